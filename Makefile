@@ -6,7 +6,7 @@ export PYTHON
 
 python := .venv/bin/python
 # What the user guide is built of: where something is newer than site/, make run builds the guide again.
-GUIDE := $(shell find docs -type f) CHANGELOG.md THIRD_PARTY.md core/__init__.py app/wording/tokens.py packaging/guide.py
+GUIDE := $(shell find docs -type f) CHANGELOG.md THIRD_PARTY.md core/__init__.py app/rendering/palette.py packaging/guide.py
 uv = $(or $(wildcard .venv/bin/uv),$(shell command -v uv))
 
 help:  ## list these targets

@@ -24,26 +24,26 @@ from pathlib import Path
 import numpy as np
 from pages import put, table
 
-from app.wording.samples import SAMPLES, sample_design
-from core.aims.curve_file import profile_goals
-from core.aims.figure import Goal
-from core.aims.girth import GIRTH
-from core.aims.outline import profile_name
-from core.aims.readings import NAMES, reading
-from core.aims.wanted import INSIDE
-from core.design import Design, ScanSource
-from core.elastics import find_elastic
+from app.presenters.samples import SAMPLES, sample_design
+from core.analysis.inverse_design.girth_quantity import GIRTH
+from core.analysis.inverse_design.objective import INSIDE
+from core.analysis.inverse_design.profile_csv import profile_goals
+from core.analysis.inverse_design.profile_quantity import profile_name
+from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.readings import NAMES, reading
+from core.analysis.inverse_design.solve import ask
+from core.document.design import Design, ScanSource
+from core.document.presets import built_in, with_preset
 from core.errors import UserError
-from core.pipeline import Stages, build
-from core.presets import built_in, with_preset
-from core.pressure import pressures
-from core.reading.scan_file import FORMATS
-from core.request import ask
-from core.sewing.comfort import comfort
-from core.sewing.tensions import line_tensions
-from core.solution import run
-from core.solving.condition import CALM_RANGE, Condition
-from core.worn_lines import free_lines
+from core.garment.elastic_library import find_elastic
+from core.garment.pressure import pressures
+from core.garment.pressure_limits import comfort
+from core.garment.tension import line_tensions
+from core.mechanics.mesh_quality import CALM_RANGE, Condition
+from core.pipeline.active_lines import free_lines
+from core.pipeline.build import Stages, build
+from core.pipeline.solve import run
+from core.scan.readers.registry import FORMATS
 
 MET = 0.5  # mm
 SHORTEST, SHORTEST_ELASTIC, LOOSE = 0.85, 0.75, 0.97

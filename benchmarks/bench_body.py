@@ -18,17 +18,17 @@ from pathlib import Path
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from core import kernels
-from core.body import read_scan
-from core.control_mesh import ControlMesh, fit_control_mesh
-from core.landmark import Landmarks
-from core.landmarks import find_landmarks
-from core.mesh import Mesh, Points
-from core.moving import MovingFaces, moving_faces
-from core.patch import patch_fade
-from core.template import read_template
-from core.tffd import Binding, bind
-from core.watch import Tapes
+from core.control_mesh.fit import ControlMesh, fit_control_mesh
+from core.control_mesh.template import read_template
+from core.deformation.blend_region import patch_fade
+from core.deformation.incremental_normals import MovingFaces, moving_faces
+from core.deformation.tffd import Binding, bind
+from core.geometry import kernels
+from core.geometry.mesh import Mesh, Points
+from core.landmarks.detect import find_landmarks
+from core.landmarks.types import Landmarks
+from core.pipeline.observables import Tapes
+from core.scan.body import read_scan
 
 SAMPLE = Path(__file__).parents[1] / "resources" / "samples" / "mannequin.ply"
 SIZES = {"33k": 0, "330k": 330_000, "1M": 1_000_000}

@@ -25,13 +25,8 @@ from bench_ask import bodies
 from pages import put, table
 from worn_pairs import bent, rough, scanned, worn_mesh, written
 
-from core.calibration import calibrate, read_worn
-from core.design import Design, ScanSource
-from core.elastics import find_elastic
-from core.errors import UserError
-from core.pipeline import Stages, build
-from core.worn_scan.aligning import moved
-from core.worn_scan.numbers import (
+from core.analysis.calibration.api import calibrate, read_worn
+from core.analysis.calibration.parameters import (
     FIRM_CHEST,
     LINE_STIFFNESS,
     PRESTRESS,
@@ -40,6 +35,11 @@ from core.worn_scan.numbers import (
     Number,
     candidates,
 )
+from core.analysis.calibration.registration import moved
+from core.document.design import Design, ScanSource
+from core.errors import UserError
+from core.garment.elastic_library import find_elastic
+from core.pipeline.build import Stages, build
 
 GARMENTS = ("glued", "sliding", "prestressed", "one line", "elastic", "one roll")
 GOOD = 0.05

@@ -23,13 +23,13 @@ from bench_ask import bodies
 from pages import put, table
 from threadpoolctl import threadpool_limits
 
-from core.advice.standing import standing
-from core.comparison import Comparison
-from core.design import Design
-from core.doctor import Diagnosis, diagnose
+from core.analysis.diagnosis.diagnose import Diagnosis, diagnose
+from core.analysis.diagnosis.trial_run import standing
+from core.document.design import Design
+from core.document.presets import built_in, with_preset
 from core.errors import UserError
-from core.pipeline import Stages, build, targets_of
-from core.presets import built_in, with_preset
+from core.mechanics.solver_comparison import Comparison
+from core.pipeline.build import Stages, build, targets_of
 
 KINDS = ("vibrating", "diverging", "folded", "overstrained", "strained", "unreachable")
 WANTED = {"vibrating": 0.5, "diverging": 0.05, "folded": 0.1, "overstrained": 0.15, "strained": 0.15}

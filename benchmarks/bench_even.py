@@ -25,20 +25,20 @@ import numpy as np
 from bench_ask import bodies
 from pages import put, table
 
-from core.advice.evening import Evened, make_even
-from core.advice.parting import ENOUGH
-from core.design import ScanSource
+from core.analysis.symmetry.balance import Evened, make_even
+from core.analysis.symmetry.compare import Evenness, evenness
+from core.analysis.symmetry.split_sides import ENOUGH
+from core.control_mesh.template import read_template
+from core.deformation.incremental_normals import volume_change
+from core.document.design import ScanSource
+from core.document.line_notation import ready_made
+from core.document.split_lines import split
 from core.errors import UserError
-from core.evenness import Evenness, evenness
-from core.export import write_mesh
-from core.measures import measures
-from core.mesh import Mesh
-from core.moving import volume_change
-from core.own_lines import ready_made
-from core.pipeline import Stages, build
-from core.solution import run
-from core.splitting import split
-from core.template import read_template
+from core.export.mesh import write_mesh
+from core.geometry.mesh import Mesh
+from core.measurements.table import measures
+from core.pipeline.build import Stages, build
+from core.pipeline.solve import run
 
 ALTERATIONS = (("up", 5.0), ("up", -12.0), ("out", 4.0), ("swollen", 3.0), ("swollen", 8.0))
 """What is done to one breast, and by how much at its bust point [mm]."""

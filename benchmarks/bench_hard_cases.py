@@ -21,7 +21,7 @@ sys.path[:0] = [str(Path(__file__).parent.parent), str(Path(__file__).parent.par
 
 from hard_cases import HardCase, hard_case  # noqa: E402
 
-from core.verdict import Verdict  # noqa: E402
+from core.mechanics.convergence import Verdict  # noqa: E402
 
 
 def ending(case: HardCase, control: str) -> tuple[float, Verdict, float]:

@@ -20,8 +20,8 @@ sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parents[1] / 
 
 from window_tools import Script, run_main, settled  # noqa: E402
 
-from app.main_window import MainWindow  # noqa: E402
-from core.elastics import find_elastic  # noqa: E402
+from app.gui.main_window import MainWindow  # noqa: E402
+from core.garment.elastic_library import find_elastic  # noqa: E402
 
 EDITS = 20
 USUAL = {"line_contact": "glued", "member_law": "force-density", "line_hold": "spring"}

@@ -28,21 +28,21 @@ from bench_ask import bodies
 from pages import put, table
 from threadpoolctl import threadpool_limits
 
-from core.advice.limits import Limits, limits_of
-from core.comparison import shape_of
-from core.cutting import is_strap
-from core.design import Design
-from core.design_lines import WornLine
-from core.elastics import find_elastic
+from core.analysis.length_limits.limits import Limits, limits_of
+from core.document.design import Design
+from core.document.lines import WornLine
+from core.document.presets import built_in, with_preset
 from core.errors import UserError
-from core.exact import solve_exact
-from core.lines import RATIO_LIMITS
-from core.pipeline import Stages, build, targets_of
-from core.presets import built_in, with_preset
-from core.pressure import pressures
-from core.sewing.comfort import comfort
-from core.solver import Targets, at_rest, turn
-from core.worn_lines import free_lines
+from core.garment.cut_list import is_strap
+from core.garment.elastic_library import find_elastic
+from core.garment.pressure import pressures
+from core.garment.pressure_limits import comfort
+from core.mechanics.constraint_lines import RATIO_LIMITS
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.iteration import Targets, at_rest, turn
+from core.mechanics.solver_comparison import shape_of
+from core.pipeline.active_lines import free_lines
+from core.pipeline.build import Stages, build, targets_of
 
 NEAR = 0.005
 STEP, FINE = 0.005, 0.0005

@@ -8,10 +8,10 @@ from pathlib import Path
 
 from threadpoolctl import threadpool_limits
 
-from core.design import Design, ScanSource
-from core.measures import before_after, measures
-from core.pipeline import build
-from core.solution import run
+from core.document.design import Design, ScanSource
+from core.measurements.table import before_after, measures
+from core.pipeline.build import build
+from core.pipeline.solve import run
 
 SAMPLES = Path(__file__).parent.parent / "resources" / "samples"
 

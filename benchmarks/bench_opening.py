@@ -28,13 +28,13 @@ import trimesh
 from PySide6.QtCore import QEventLoop, Qt, QTimer
 from PySide6.QtWidgets import QApplication
 
-from app.application import application
-from app.commands.picture import wait_until
-from app.main_window import MainWindow
-from app.window import open_window
-from app.wording.display import off_screen
-from core.design import Design, ScanSource
-from core.mesh import Faces, Points
+from app.cli.commands.picture import wait_until
+from app.gui.application import application
+from app.gui.main_window import MainWindow
+from app.gui.startup import open_window
+from app.rendering.display import off_screen
+from core.document.design import Design, ScanSource
+from core.geometry.mesh import Faces, Points
 
 SAMPLE = Path(__file__).parent.parent / "resources" / "samples" / "mannequin.ply"
 WANTED, BEAT, LONG, DEEP = 1_000_000, 5, 0.05, 7

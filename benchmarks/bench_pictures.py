@@ -13,15 +13,15 @@ from pathlib import Path
 
 import pyvista as pv
 
-from app.presenting.frame import bands
-from app.printing.studio import Studio
-from app.seeing.occlusion import bake_occlusion
-from app.seeing.scene import Scene
-from app.wording.display import off_screen
-from core.design import Design, ScanSource
-from core.pipeline import build
+from app.presenters.status import bands
+from app.rendering.ambient_occlusion import bake_occlusion
+from app.rendering.display import off_screen
+from app.rendering.offscreen import Studio
+from app.rendering.scene import Scene
+from core.document.design import Design, ScanSource
+from core.pipeline.build import build
+from core.pipeline.solve import run
 from core.progress import in_one_go
-from core.solution import run
 
 SAMPLE = Path(__file__).parents[1] / "resources" / "samples" / "mannequin.ply"
 SIZES = ((480, 540), (640, 720), (960, 1080), (2000, 2250))

@@ -17,16 +17,16 @@ from collections.abc import Callable
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from core.control_mesh import ControlMesh
-from core.exact import solve_exact
-from core.mechanics import DEFAULT_LINE_STIFFNESS, Mechanics
-from core.mesh import Mesh
-from core.model import ConstrainedModel, constrained_model
-from core.solver import Targets, at_rest, turn
-from core.solving.gain import gain_limit
-from core.solving.layout import layout_of
-from core.solving.newton import Balance
-from core.solving.potential import Potential
+from core.control_mesh.fit import ControlMesh
+from core.geometry.mesh import Mesh
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.gain_limit import gain_limit
+from core.mechanics.hessian_layout import layout_of
+from core.mechanics.iteration import Targets, at_rest, turn
+from core.mechanics.model import ConstrainedModel, constrained_model
+from core.mechanics.newton import Balance
+from core.mechanics.options import DEFAULT_LINE_STIFFNESS, Mechanics
+from core.mechanics.potential import Potential
 
 HEIGHTS = (-150.0, -92.0, -30.0, 0.0, 38.0, 70.0, 105.0, 145.0)
 ANGLES = (0.0, 20.0, 33.0, 45.0, 62.0, 80.0, 97.0)

@@ -25,8 +25,8 @@ SINGLE = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_TH
 
 def stages(path: str) -> dict[str, float]:
     """Return the processor time of each stage from the start of Python to the model [s], and memory [MB]."""
-    from core.design import Design, ScanSource  # noqa: PLC0415
-    from core.pipeline import build  # noqa: PLC0415
+    from core.document.design import Design, ScanSource  # noqa: PLC0415
+    from core.pipeline.build import build  # noqa: PLC0415
 
     begun = [("start", 0.0), ("reading", time.process_time())]
 

@@ -18,12 +18,12 @@ from pathlib import Path
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from core.design import Design, ScanSource
-from core.design_lines import WornLine
-from core.exact import solve_exact
-from core.pipeline import Stages, build
-from core.solver import Targets, at_rest, turn
-from core.watch import Tapes
+from core.document.design import Design, ScanSource
+from core.document.lines import WornLine
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.iteration import Targets, at_rest, turn
+from core.pipeline.build import Stages, build
+from core.pipeline.observables import Tapes
 
 SAMPLES = Path(__file__).parent.parent / "resources" / "samples"
 GIRTHS = ("under-bust", "mid-bust", "full-bust")

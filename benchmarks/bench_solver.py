@@ -23,18 +23,18 @@ import numpy as np
 from scipy.optimize import NonlinearConstraint, minimize
 from threadpoolctl import threadpool_limits
 
-from core.advice.limits import shortest
-from core.body import read_scan
-from core.control_mesh import fit_control_mesh
-from core.exact import solve_exact
-from core.landmarks import find_landmarks
-from core.mesh import Floats
-from core.model import ConstrainedModel, constrained_model
-from core.solver import Targets, at_rest, turn
-from core.solving.gain import gain_limit
-from core.solving.layout import layout_of
-from core.solving.potential import Place, Potential
-from core.template import read_template
+from core.analysis.length_limits.limits import shortest
+from core.control_mesh.fit import fit_control_mesh
+from core.control_mesh.template import read_template
+from core.geometry.mesh import Floats
+from core.landmarks.detect import find_landmarks
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.gain_limit import gain_limit
+from core.mechanics.hessian_layout import layout_of
+from core.mechanics.iteration import Targets, at_rest, turn
+from core.mechanics.model import ConstrainedModel, constrained_model
+from core.mechanics.potential import Place, Potential
+from core.scan.body import read_scan
 
 try:
     import ipyopt

@@ -20,14 +20,15 @@ from pathlib import Path
 
 import numpy as np
 
-from core.advice.assumed import assumed
-from core.advice.knobs import knobs, turned
-from core.advice.sampled import Sampled, sampled
-from core.advice.trials import Trials
-from core.design import Design, ScanSource
-from core.elastics import find_elastic
+from core.analysis.uncertainty.estimate import Spreading
+from core.analysis.uncertainty.input_uncertainty import assumed
+from core.analysis.uncertainty.monte_carlo import Sampled, sampled
+from core.analysis.uncertainty.parameters import knobs, turned
+from core.analysis.uncertainty.perturbed_solutions import Trials
+from core.document.design import Design, ScanSource
 from core.errors import UserError
-from core.measuring.plus_minus import (
+from core.garment.elastic_library import find_elastic
+from core.measurements.uncertain_value import (
     AFTER,
     BEFORE,
     CHANGE,
@@ -41,8 +42,7 @@ from core.measuring.plus_minus import (
     TENSION,
     Spread,
 )
-from core.pipeline import Stages, build
-from core.spread import Spreading
+from core.pipeline.build import Stages, build
 
 SAMPLES = Path(__file__).resolve().parents[1] / "resources" / "samples"
 SCANS = (".ply", ".obj", ".stl", ".off")

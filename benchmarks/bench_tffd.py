@@ -17,15 +17,15 @@ from pathlib import Path
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from core import kernels
-from core.body import read_scan
-from core.control_mesh import ControlMesh, fit_control_mesh
-from core.landmarks import find_landmarks
-from core.mesh import Floats, Mesh, Points
-from core.moving import moving_faces
-from core.patch import patch_fade
-from core.template import read_template
-from core.tffd import bind, deform, deform_moving
+from core.control_mesh.fit import ControlMesh, fit_control_mesh
+from core.control_mesh.template import read_template
+from core.deformation.blend_region import patch_fade
+from core.deformation.incremental_normals import moving_faces
+from core.deformation.tffd import bind, deform, deform_moving
+from core.geometry import kernels
+from core.geometry.mesh import Floats, Mesh, Points
+from core.landmarks.detect import find_landmarks
+from core.scan.body import read_scan
 
 SAMPLES = Path(__file__).parents[1] / "resources" / "samples"
 

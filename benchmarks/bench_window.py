@@ -25,22 +25,22 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pyvistaqt import QtInteractor
 
-from app.application import application
-from app.commands.picture import wait_until
-from app.desks.desk import Desk
-from app.main_window import MainWindow
-from app.panels.lines import LinesPanel
-from app.showing.canvas import PaintedCanvas
-from app.showing.overlay import Overlay
-from app.showing.plot_canvas import PlotCanvas
-from app.showing.viewport import Viewport
-from app.view_area import ViewArea
-from app.window import open_window
-from app.wording.display import off_screen
-from core import live
-from core.comparison import Comparison
-from core.design import Design, ScanSource
-from core.live import LiveSolver
+from app.cli.commands.picture import wait_until
+from app.gui.application import application
+from app.gui.document_controller import Desk
+from app.gui.features.lines.panel import LinesPanel
+from app.gui.main_window import MainWindow
+from app.gui.plots.canvas import PlotCanvas
+from app.gui.startup import open_window
+from app.gui.viewport.canvas import PaintedCanvas
+from app.gui.viewport.overlay import Overlay
+from app.gui.viewport.view_area import ViewArea
+from app.gui.viewport.viewport import Viewport
+from app.rendering.display import off_screen
+from core.document.design import Design, ScanSource
+from core.mechanics.solver_comparison import Comparison
+from core.pipeline import live_solver as live
+from core.pipeline.live_solver import LiveSolver
 
 SAMPLE = Path(__file__).parent.parent / "resources" / "samples" / "mannequin.ply"
 LINE, SHORTEST, EVERY, SWING = "mid-bust", 0.88, 16, 2.0

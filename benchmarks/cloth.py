@@ -15,7 +15,7 @@ from altered_bodies import smooth_step
 from people import Figure, Rng
 from scipy.ndimage import gaussian_filter, map_coordinates
 
-from core.mesh import Floats, Points
+from core.geometry.mesh import Floats, Points
 
 COLUMNS, STEP = 240, 3.0
 """Directions around the trunk, and the height of a row of the field [mm]."""

@@ -15,7 +15,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
-from app.wording.display import off_screen  # noqa: E402
+from app.rendering.display import off_screen  # noqa: E402
 
 off_screen()
 os.environ["COLUMNS"] = "100"

@@ -15,10 +15,10 @@ from typing import Any
 
 sys.path[:0] = [str(Path(__file__).parent.parent)]
 
-from core.body import body_of  # noqa: E402
 from core.errors import UserError  # noqa: E402
-from core.landmarks import find_landmarks  # noqa: E402
-from core.reading.scan_file import scan_bytes  # noqa: E402
+from core.landmarks.detect import find_landmarks  # noqa: E402
+from core.scan.body import body_of  # noqa: E402
+from core.scan.readers.registry import scan_bytes  # noqa: E402
 
 HINTS = {"size": "size", "no breasts": "flat", "clothes": "clothes", "lean": "lean", "no body": ""}
 """The hint that an expected doubt should raise; a doubt without one has to be refused."""

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 from scipy import sparse
 
-from core.mesh import Faces, Flags, Floats, Indices, Points
+from core.geometry.mesh import Faces, Flags, Floats, Indices, Points
 
 LADDERS = {
     "gender": ((0.0, "female"), (1.0, "male")),

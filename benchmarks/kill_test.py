@@ -21,13 +21,13 @@ sys.path.insert(0, str(ROOT))
 
 from PySide6.QtCore import QCoreApplication, QObject, QSettings, QTimer  # noqa: E402
 
-from app.asking.session import Session  # noqa: E402
-from app.keeping.keeping_desk import KeepingDesk  # noqa: E402
-from core.backups import backups  # noqa: E402
-from core.design import Design, ScanSource  # noqa: E402
-from core.document import Document  # noqa: E402
-from core.project import ScanFile, open_project, read_scan_file  # noqa: E402
-from core.recovery import left_behind  # noqa: E402
+from app.gui.features.project.autosave import KeepingDesk  # noqa: E402
+from app.gui.session.session import Session  # noqa: E402
+from core.document.design import Design, ScanSource  # noqa: E402
+from core.document.document import Document  # noqa: E402
+from core.document.storage.backups import backups  # noqa: E402
+from core.document.storage.project_file import ScanFile, open_project, read_scan_file  # noqa: E402
+from core.document.storage.recovery import left_behind  # noqa: E402
 
 INTERVAL = 0.2
 """Seconds after an edit until it is kept aside, in this test."""

@@ -27,13 +27,13 @@ from PySide6.QtCore import QSettings, Qt, QTimer  # noqa: E402
 from PySide6.QtTest import QTest  # noqa: E402
 from window_tools import Script, run_main, settled  # noqa: E402
 
-import app.desks.desk  # noqa: E402
-from app.application import application  # noqa: E402
-from app.main_window import MainWindow  # noqa: E402
-from app.showing.graphics import is_safe_mode  # noqa: E402
-from core.document import Document  # noqa: E402
-from core.document_text import to_texts  # noqa: E402
-from core.project import open_project, with_scan  # noqa: E402
+import app.gui.document_controller  # noqa: E402
+from app.gui.application import application  # noqa: E402
+from app.gui.main_window import MainWindow  # noqa: E402
+from app.gui.viewport.opengl import is_safe_mode  # noqa: E402
+from core.document.document import Document  # noqa: E402
+from core.document.document_text import to_texts  # noqa: E402
+from core.document.storage.project_file import open_project, with_scan  # noqa: E402
 
 SAMPLE = ROOT / "resources" / "samples" / "mannequin.ply"
 INTERVAL = 0.5
@@ -80,8 +80,8 @@ class Hand:
 def work(folder: Path, body: Path) -> None:
     """Start, have back what is offered, and work until killed."""
     project = folder / "anna.busk"
-    app.desks.desk.ask_save = lambda *_: str(project)  # type: ignore[assignment]
-    app.desks.desk.ask_about_changes = lambda *_: "discard"  # type: ignore[assignment]
+    app.gui.document_controller.ask_save = lambda *_: str(project)  # type: ignore[assignment]
+    app.gui.document_controller.ask_about_changes = lambda *_: "discard"  # type: ignore[assignment]
     application()
     QSettings().setValue("autosave", INTERVAL)
 

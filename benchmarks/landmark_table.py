@@ -18,8 +18,8 @@ import numpy as np
 
 sys.path[:0] = [str(Path(__file__).parent.parent)]
 
-from core.accuracy import OFF, TRUSTED, Case, judged  # noqa: E402
-from core.truth import read_truths  # noqa: E402
+from app.research.accuracy import OFF, TRUSTED, Case, judged  # noqa: E402
+from app.research.ground_truth import read_truths  # noqa: E402
 
 HEADS = (
     *("set", "files", "accepted", "bust within 5", "beyond 8", "beyond 10", "median", "p95", "worst"),

@@ -28,7 +28,7 @@ from altered_bodies import Alteration, altered  # noqa: E402
 from body_truth import KnownBody, true_girths  # noqa: E402
 from worn_scans import Scan, Standing  # noqa: E402
 
-from core.mesh import Mesh, Points  # noqa: E402
+from core.geometry.mesh import Mesh, Points  # noqa: E402
 
 Rng = np.random.Generator
 

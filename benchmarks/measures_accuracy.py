@@ -16,12 +16,12 @@ sys.path[:0] = [str(Path(__file__).parent.parent), str(Path(__file__).parent.par
 from breast_shapes import cap  # noqa: E402 - the shapes of the tests
 from test_geodesic import BALL, between, cone, length, ring, sheet, tube  # noqa: E402
 
-from core.body import read_scan  # noqa: E402
-from core.geodesic import shortest_way  # noqa: E402
-from core.measuring.breast import breast_of  # noqa: E402
-from core.mesh import Mesh  # noqa: E402
-from core.trunk import trunk_levels  # noqa: E402
-from core.truth import Truth, read_truths  # noqa: E402
+from app.research.ground_truth import Truth, read_truths  # noqa: E402
+from core.geometry.geodesic import shortest_way  # noqa: E402
+from core.geometry.mesh import Mesh  # noqa: E402
+from core.landmarks.torso.cross_sections import trunk_levels  # noqa: E402
+from core.measurements.breast_volume import breast_of  # noqa: E402
+from core.scan.body import read_scan  # noqa: E402
 
 
 def girths(folder: Path, truth: Truth) -> Iterator[tuple[str, float, float]]:

@@ -18,16 +18,16 @@ from threadpoolctl import threadpool_limits
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from app.wording.samples import SAMPLES, sample_design
-from core.advice.limits import Length, all_limits
-from core.design import Design
-from core.design_lines import WornLine
-from core.exact import solve_exact
-from core.own_lines import ready_made
-from core.pipeline import Stages, build
-from core.solution import Solution, run
-from core.template import read_template
-from core.watch import Marks
+from app.presenters.samples import SAMPLES, sample_design
+from core.analysis.length_limits.limits import Length, all_limits
+from core.control_mesh.template import read_template
+from core.document.design import Design
+from core.document.line_notation import ready_made
+from core.document.lines import WornLine
+from core.mechanics.exact_solution import solve_exact
+from core.pipeline.build import Stages, build
+from core.pipeline.observables import Marks
+from core.pipeline.solve import Solution, run
 
 BELOW = 0.001
 """A volume error that counts as none in the table of the controls [1]."""

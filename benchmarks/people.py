@@ -21,7 +21,7 @@ from scipy import sparse
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial import cKDTree
 
-from core.mesh import Faces, Flags, Floats, Mesh, Points
+from core.geometry.mesh import Faces, Flags, Floats, Mesh, Points
 
 Rng = np.random.Generator
 SIGN = {"left": 1.0, "right": -1.0}

@@ -13,9 +13,9 @@ from pages import put, table
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from core.sizes import built_in, size, sizes
-from core.sizing.rule import plain
-from core.sizing.table import Scale, SizeTable
+from core.measurements.size_explanation import plain
+from core.measurements.size_table import Scale, SizeTable
+from core.measurements.sizes import built_in, size, sizes
 
 BODY = (723.0, 871.0)
 """Under-bust and bust girth of the body that the page sizes in every system [mm]."""

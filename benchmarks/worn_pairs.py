@@ -9,14 +9,14 @@ from pathlib import Path
 
 import numpy as np
 
-from core.design import Design
-from core.export import write_mesh
-from core.mesh import Mesh
-from core.patch import patch_fade
-from core.pipeline import Stages, build
-from core.tffd import bind, deform
-from core.worn_scan.aligning import turned
-from core.worn_scan.fit import exact_answer
+from core.analysis.calibration.fit import exact_answer
+from core.analysis.calibration.registration import turned
+from core.deformation.blend_region import patch_fade
+from core.deformation.tffd import bind, deform
+from core.document.design import Design
+from core.export.mesh import write_mesh
+from core.geometry.mesh import Mesh
+from core.pipeline.build import Stages, build
 
 _CELL = 1.07  # of the spacing: a cube's edge at which a skin has one vertex to each square of it
 LEAN = 4.0  # degrees about x and y; a turn about z is undone when a scan is set upright, but not all of it

@@ -12,7 +12,7 @@ from sphinx.application import Sphinx
 DOCS = Path(__file__).parent
 sys.path.insert(0, str(DOCS.parent))
 
-from app.wording.tokens import DARK, LIGHT, Tokens  # noqa: E402
+from app.rendering.palette import DARK, LIGHT, Tokens  # noqa: E402
 from core import __version__  # noqa: E402
 
 japanese = tags.has("ja")  # noqa: F821 - Sphinx puts it here

@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 from scenes import HOUSE, bra, wait_for
 
-from app.main_window import MainWindow
-from core.aims.figure import Goal
-from core.aims.outline import skin_of
-from core.answer import answer_of
-from core.export import write_mesh
-from core.pipeline import Stages, build
-from core.tffd import deform
+from app.gui.main_window import MainWindow
+from core.analysis.inverse_design.profile_quantity import skin_of
+from core.analysis.inverse_design.quantities import Goal
+from core.deformation.tffd import deform
+from core.export.mesh import write_mesh
+from core.pipeline.build import Stages, build
+from core.pipeline.exact import answer_of
 
 _NOISE = 1.0  # of the made scan [mm]
 

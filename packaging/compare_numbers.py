@@ -22,7 +22,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "packaging" / "linux")]
 
 from same_answer import CLOSE, answer, is_same  # noqa: E402
 
-from core.reading.scan_file import read_triangles  # noqa: E402
+from core.scan.readers.registry import read_triangles  # noqa: E402
 
 CASES = {
     "adaptive": ["mannequin.ply", "--line", "mid-bust=93%"],
@@ -78,7 +78,7 @@ def main() -> int:
     parser.add_argument("--program", type=Path, default=ROOT / "dist" / "busk" / "busk")
     parser.add_argument("--keep", type=Path, help="a folder to leave the answers in")
     chosen = parser.parse_args()
-    source = [sys.executable, "-c", "import sys; from app.cli import main; sys.exit(main())"]
+    source = [sys.executable, "-c", "import sys; from app.cli.main import main; sys.exit(main())"]
     os.environ["PYTHONPATH"] = str(ROOT)
     code = 0
     with tempfile.TemporaryDirectory() as folder:

@@ -15,7 +15,7 @@ import numpy as np
 from PIL import Image
 from PySide6.QtGui import QImage, QPainter
 
-from app.wording.display import off_screen
+from app.rendering.display import off_screen
 
 off_screen()
 
@@ -27,10 +27,10 @@ import guide_pictures  # noqa: E402
 import measure_pictures  # noqa: E402
 from guide_pictures import SHOTS, WIDE  # noqa: E402
 
-from app.commands.picture import save_window, settled_window  # noqa: E402
-from app.printing.figures import make_figures  # noqa: E402
-from app.reporting.pages import pages_of  # noqa: E402
-from app.reporting.paper import A4, UNITS  # noqa: E402
+from app.cli.commands.picture import save_window, settled_window  # noqa: E402
+from app.report.pages import pages_of  # noqa: E402
+from app.report.painter import A4, UNITS  # noqa: E402
+from app.research.figures import make_figures  # noqa: E402
 
 DOCS = Path(__file__).parent.parent / "docs"
 PICTURES = DOCS / "pictures"

@@ -5,6 +5,6 @@ from multiprocessing import freeze_support
 
 if __name__ == "__main__":
     freeze_support()
-    from app.cli import main
+    from app.cli.main import main
 
     sys.exit(main())

@@ -21,8 +21,8 @@ from scenes import (
     vibrating,
 )
 
-from app.wording.samples import lifted_sample, sample_design
-from core.design import Design
+from app.presenters.samples import lifted_sample, sample_design
+from core.document.design import Design
 
 
 @dataclass(frozen=True)

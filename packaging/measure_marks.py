@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.landmark import SIDES, Landmarks
-from core.measures import Measures
-from core.mesh import Points
+from core.geometry.mesh import Points
+from core.landmarks.types import SIDES, Landmarks
+from core.measurements.table import Measures
 
 BUSTS = tuple(f"bust_point_{side}" for side in SIDES)
 

@@ -12,20 +12,20 @@ from measure_marks import Marks, marks_of
 from PIL import Image, ImageDraw
 from scipy.interpolate import PchipInterpolator
 
-from app.seeing.camera import View
-from app.seeing.occlusion import bake_occlusion
-from app.seeing.scene import Scene
-from app.seeing.trace import COLOURS, Trace
-from app.wording.samples import sample_design
-from core.body import Body
-from core.landmark import SIDES, Landmarks
-from core.landmarks import find_landmarks
-from core.measures import Measures, before_after, measures
-from core.measuring.definitions import DEFINITIONS
-from core.measuring.subject import Subject, subject_of
-from core.mesh import Mesh, Points
-from core.pipeline import build
-from core.solution import run
+from app.presenters.samples import sample_design
+from app.rendering.ambient_occlusion import bake_occlusion
+from app.rendering.camera import View
+from app.rendering.curve_actors import COLOURS, Trace
+from app.rendering.scene import Scene
+from core.geometry.mesh import Mesh, Points
+from core.landmarks.detect import find_landmarks
+from core.landmarks.types import SIDES, Landmarks
+from core.measurements.definitions import DEFINITIONS
+from core.measurements.subject import Subject, subject_of
+from core.measurements.table import Measures, before_after, measures
+from core.pipeline.build import build
+from core.pipeline.solve import run
+from core.scan.body import Body
 
 SIDE = 180
 """Width and height of a picture [px]."""

@@ -22,28 +22,28 @@ from typing import Any
 
 import numpy as np
 
-from app.commands.picture import draw_picture
+from app.cli.commands.picture import draw_picture
 from core import __version__
-from core.cutting import cut_list
-from core.design import Design, ScanSource
-from core.design_calibration import Calibration, FoundNumber
-from core.design_lines import LineTraits
-from core.design_measures import OwnMeasure
-from core.document import Document
-from core.elastics import find_elastic
-from core.export import write_mesh
-from core.measures import before_after, measure_rows
-from core.mesh import Mesh
-from core.own_lines import own_line
-from core.pipeline import build, find, read_body
-from core.placing import in_file
-from core.presets import built_in, with_preset
-from core.press_list import press_list
-from core.project import ScanFile, open_project, save_project
-from core.reading.scan_file import read_triangles
-from core.solution import run
-from core.space import Space
-from core.template import read_template
+from core.control_mesh.template import read_template
+from core.document.calibration_record import Calibration, FoundNumber
+from core.document.custom_measures import OwnMeasure
+from core.document.design import Design, ScanSource
+from core.document.document import Document
+from core.document.line_notation import own_line
+from core.document.lines import LineTraits
+from core.document.presets import built_in, with_preset
+from core.document.storage.project_file import ScanFile, open_project, save_project
+from core.export.mesh import write_mesh
+from core.export.units_and_axes import Space
+from core.garment.cut_list import cut_list
+from core.garment.elastic_library import find_elastic
+from core.garment.pressure_list import press_list
+from core.geometry.mesh import Mesh
+from core.landmarks.manual import in_file
+from core.measurements.table import before_after, measure_rows
+from core.pipeline.build import build, find, read_body
+from core.pipeline.solve import run
+from core.scan.readers.registry import read_triangles
 
 ROOT = Path(__file__).resolve().parent.parent
 RELEASES = ROOT / "tests" / "releases"

@@ -14,16 +14,16 @@ from tempfile import TemporaryDirectory
 
 from PySide6.QtWidgets import QApplication, QDialog, QWidget
 
-from app.commands.picture import wait_until
-from app.dress.wishes import wish_for
-from app.keeping.recent import forget_file, recent_files
-from app.main_window import MainWindow
-from app.panels.commands import CommandSheet
-from app.wording.samples import lifted_sample, sample_design, sample_path
-from app.wording.words import language
-from core.design import Design, ScanSource
-from core.elastics import find_elastic
-from core.presets import built_in, with_preset
+from app.cli.commands.picture import wait_until
+from app.gui.features.help.command_palette import CommandSheet
+from app.gui.features.project.recent_files import forget_file, recent_files
+from app.gui.main_window import MainWindow
+from app.gui.session.settings import wish_for
+from app.i18n.catalog import language
+from app.presenters.samples import lifted_sample, sample_design, sample_path
+from core.document.design import Design, ScanSource
+from core.document.presets import built_in, with_preset
+from core.garment.elastic_library import find_elastic
 
 Scene = Callable[[MainWindow], QWidget | None]
 """Brings a window to what is shown; returns the part that the picture is of, None for all of it."""

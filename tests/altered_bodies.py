@@ -14,7 +14,7 @@ import numpy as np
 from body_truth import SIDES, KnownBody, known_again, levels, trunk_outline
 from scipy import sparse
 
-from core.mesh import Floats, Mesh, Points
+from core.geometry.mesh import Floats, Mesh, Points
 
 Alteration = Callable[[KnownBody], KnownBody]
 

@@ -11,8 +11,8 @@ from PySide6.QtGui import QMouseEvent
 from PySide6.QtTest import QTest
 from window_tools import settled
 
-from app.main_window import MainWindow
-from app.showing.bust_handle import BustHandle
+from app.gui.main_window import MainWindow
+from app.gui.viewport.target_handle import BustHandle
 
 
 def wear(window: MainWindow, mid: float = 0.97, full: float = 0.98) -> Callable[[], bool]:

@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from core.mesh import Points, unit
-from core.sections import arc_length
-from core.sewing.course import Course
+from core.garment.band_path import Course
+from core.geometry.mesh import Points, unit
+from core.geometry.plane_sections import arc_length
 
 NEWTONS = 5.0
 STEP = 4.0

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from core.mesh import Mesh, Points
-from core.sections import chains, cut, hull_perimeter, resample
+from core.geometry.mesh import Mesh, Points
+from core.geometry.plane_sections import chains, cut, hull_perimeter, resample
 
 SIDES = ("left", "right")
 BUST_OFFSETS = tuple(range(-30, 31, 5))

@@ -6,10 +6,10 @@ from types import MappingProxyType
 
 import numpy as np
 
-from core.landmark import Landmark, Landmarks
-from core.measuring.chart import Chart
-from core.measuring.root import Root, Side, side_of
-from core.mesh import Mesh
+from core.geometry.mesh import Mesh
+from core.landmarks.types import Landmark, Landmarks
+from core.measurements.breast_root import Root, Side, side_of
+from core.measurements.unrolled_torso import Chart
 
 DEEP = 110.0
 """How far a chest lies before the axis of the trunk [mm]."""

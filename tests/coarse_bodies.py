@@ -7,7 +7,7 @@ from pathlib import Path
 import trimesh
 from worn_scans import decimated
 
-from app.wording.samples import sample_path
+from app.presenters.samples import sample_path
 
 VERTICES = 6000
 """So many of the mannequin's 33,000."""

@@ -9,7 +9,7 @@ import numpy as np
 from PIL import Image
 from scan_files import CORNERS, POINTS, TRIANGLES, gltf, rows
 
-from core.reading.scan_file import read_raw
+from core.scan.readers.registry import read_raw
 
 SAMPLE = Path(__file__).parent.parent / "resources" / "samples" / "mannequin.ply"
 

@@ -23,12 +23,12 @@ from pytestqt.qtbot import QtBot
 from small_project import write_project
 from threadpoolctl import threadpool_limits
 
-import core.body
-from app.wording.samples import sample_design
-from core import pipeline
-from core.design import Design, ScanSource
-from core.design_lines import WornLine
-from core.pipeline import Stages, build
+import core.scan.body
+from app.presenters.samples import sample_design
+from core.document.design import Design, ScanSource
+from core.document.lines import WornLine
+from core.pipeline import build as pipeline
+from core.pipeline.build import Stages, build
 
 SAMPLES = Path(__file__).parent.parent / "resources" / "samples"
 PATIENCE_MS = 90_000
@@ -120,7 +120,7 @@ def remembered(make: Callable[..., Any]) -> Callable[..., Any]:
 
     @wraps(make)
     def again(*inputs: object, progress: object = None, **told: object) -> object:
-        return kept(core.body.find_pose, *inputs, **told)
+        return kept(core.scan.body.find_pose, *inputs, **told)
 
     return again
 
@@ -151,7 +151,7 @@ def built() -> Callable[[str], Stages]:
 @pytest.fixture(scope="session")
 def qapp_cls() -> type[QApplication]:
     """The application of the tests is that of the program."""
-    from app.application import Application  # noqa: PLC0415 (not every test brings Qt along)
+    from app.gui.application import Application  # noqa: PLC0415 (not every test brings Qt along)
 
     return Application
 
@@ -180,16 +180,16 @@ def empty_house(
     How sure figures are is not worked out where a test does not ask: it takes half a minute of a processor.
     Frames come seldom, as on a slow machine: most of a test's time would go into ones that nobody looks at.
     """
-    from app.wording.lengths import use_unit  # noqa: PLC0415 (not every test brings the window along)
-    from app.wording.words import use_language  # noqa: PLC0415
+    from app.i18n.catalog import use_language  # noqa: PLC0415
+    from app.i18n.lengths import use_unit  # noqa: PLC0415 (not every test brings the window along)
 
     if "spared_as_in_the_program" not in request.fixturenames:
         # Else all libraries would be looked through three times after each window, and not only what it left.
-        monkeypatch.setattr("app.asking.housekeeping.gc", SPARING_NOTHING)
+        monkeypatch.setattr("app.gui.session.gc_control.gc", SPARING_NOTHING)
     if "opened_as_in_the_program" not in request.fixturenames:
-        monkeypatch.setattr("app.window.lifted_sample", sample_design)
-    monkeypatch.setattr("app.keeping.spread_desk.PAUSE", 10**8)
-    monkeypatch.setattr("core.live._SLICE", 0.1)
+        monkeypatch.setattr("app.gui.startup.lifted_sample", sample_design)
+    monkeypatch.setattr("app.gui.features.uncertainty.controller.PAUSE", 10**8)
+    monkeypatch.setattr("core.pipeline.live_solver._SLICE", 0.1)
     QSettings().clear()
     yield
     use_language("en")  # a window may have spoken another, and tests of words start none

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from core.solver import Record
-from core.verdict import judge
+from core.mechanics.convergence import judge
+from core.mechanics.iteration import Record
 
 
 def course(errors, steps=1.0, lengths=None):

@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 from PySide6.QtWidgets import QApplication
 
-import app.desks.export_desk
-from app.main_window import MainWindow
-from app.panels.export_sheet import ExportSheet
+import app.gui.features.export.controller
+from app.gui.features.export.dialog import ExportSheet
+from app.gui.main_window import MainWindow
 
 READY = "Looking what will be in it…"
 
@@ -38,7 +38,9 @@ def choose(sheet: ExportSheet, key: str, value: str) -> None:
 def saved_as(monkeypatch: pytest.MonkeyPatch, path: Path) -> list[tuple[Any, ...]]:
     """Let the dialog of files answer with a path, and return what it was asked."""
     asked: list[tuple[Any, ...]] = []
-    monkeypatch.setattr(app.desks.export_desk, "ask_save", lambda *how: asked.append(how) or str(path))
+    monkeypatch.setattr(
+        app.gui.features.export.controller, "ask_save", lambda *how: asked.append(how) or str(path)
+    )
     return asked
 
 

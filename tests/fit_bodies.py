@@ -8,9 +8,9 @@ from types import MappingProxyType
 
 import numpy as np
 
-from core.body import Body, read_scan
-from core.landmark import Landmark, Landmarks
-from core.mesh import Mesh
+from core.geometry.mesh import Mesh
+from core.landmarks.types import Landmark, Landmarks
+from core.scan.body import Body, read_scan
 
 HERE = Path(__file__).parent
 SAMPLES = ("mannequin", "person")

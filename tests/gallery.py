@@ -22,25 +22,25 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.dress.theme import apply_theme, tokens_of
-from app.panels.landmarks import LandmarksPanel, LandmarkView
-from app.panels.lines import LinesPanel, LineView
-from app.panels.measure_view import MeasureView
-from app.panels.model import ModelPanel
-from app.panels.notice import NoticeBar
-from app.panels.rail import Rail
-from app.panels.result import ResultPanel
-from app.panels.scan import ScanPanel, ScanView
-from app.panels.status import StatusBar
-from app.panels.top_bar import TopBar
-from app.panels.view_tools import CompareTools, ViewTools
-from app.presenting.scan import GROUPS, kind_of, landmark_title
-from app.showing.convergence import Strip
-from app.showing.tracks import Exact, Track
-from app.wording import words
-from app.wording.model_choices import defaults
-from app.wording.tokens import LINE_COLORS
-from app.wording.words import tr
+from app.gui.features.landmarks.panel import LandmarksPanel, LandmarkView
+from app.gui.features.lines.panel import LinesPanel, LineView
+from app.gui.features.measurements.panel import ResultPanel
+from app.gui.features.model.panel import ModelPanel
+from app.gui.features.scan.panel import ScanPanel, ScanView
+from app.gui.plots.convergence_panel import Strip
+from app.gui.status_bar import StatusBar
+from app.gui.step_navigation import Rail
+from app.gui.theme.stylesheet import apply_theme, tokens_of
+from app.gui.title_bar import TopBar
+from app.gui.viewport.toolbar import CompareTools, ViewTools
+from app.gui.widgets.notification_bar import NoticeBar
+from app.i18n import catalog as words
+from app.i18n.catalog import tr
+from app.presenters.measurement_views import MeasureView
+from app.presenters.model_options import defaults
+from app.presenters.plot_series import Exact, Track
+from app.presenters.scan import GROUPS, kind_of, landmark_title
+from app.rendering.palette import LINE_COLORS
 
 LINES = (
     ("bust", "Mid-bust line", 0.965, 454.0, 440.9, True, True, 896.0),

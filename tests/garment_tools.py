@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 from window_tools import Script
 
-from app.main_window import MainWindow
-from app.panels.elastic_chooser import ElasticChooser
-from core.cutting import CutRow, cut_list
+from app.gui.features.garment.elastic_chooser import ElasticChooser
+from app.gui.main_window import MainWindow
+from core.garment.cut_list import CutRow, cut_list
 
 
 def cut_rows(window: MainWindow) -> dict[str, CutRow]:

@@ -8,17 +8,17 @@ from functools import cached_property
 import numpy as np
 from shapes import fitted, torso
 
-from core.comparison import judge_balance, shape_of
-from core.control_mesh import ControlMesh
-from core.design_lines import OwnLine
-from core.exact import solve_exact
-from core.mechanics import CONTACTS, HOLDS, LAWS, VOLUMES, Mechanics
-from core.model import ConstrainedModel, constrained_model
-from core.own_lines import with_own_lines
-from core.pipeline import GAIN_SHARE
-from core.solver import Targets, iterate
-from core.solving.gain import gain_limit
-from core.verdict import Verdict, judge
+from core.control_mesh.fit import ControlMesh
+from core.document.line_notation import with_own_lines
+from core.document.lines import OwnLine
+from core.mechanics.convergence import Verdict, judge
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.gain_limit import gain_limit
+from core.mechanics.iteration import Targets, iterate
+from core.mechanics.model import ConstrainedModel, constrained_model
+from core.mechanics.options import CONTACTS, HOLDS, LAWS, VOLUMES, Mechanics
+from core.mechanics.solver_comparison import judge_balance, shape_of
+from core.pipeline.build import GAIN_SHARE
 
 BODIES = ("mannequin 168", "mannequin 120", "person 168", "person 120", "torso", "skew torso")
 TURNS = 300

@@ -5,19 +5,19 @@ from dataclasses import replace
 
 from hypothesis import strategies as st
 
-from core.design import TEMPLATES, WEIGHTS, Design, ScanSource
-from core.design_calibration import Calibration, FoundNumber
-from core.design_elastics import TISSUE_LIMITS, Elastic
-from core.design_lines import LineTraits, OwnLine, WornLine
-from core.design_measures import WORN_TIGHT, OwnMeasure
-from core.design_text import to_json
-from core.document import VARIANTS, Document
-from core.landmark import NAMES
-from core.lines import RATIO_LIMITS
-from core.mechanics import CHOICES, RANGES
-from core.placing import PlacedMark
-from core.printable_name import is_blank, is_printable
-from core.volume import CONTROLS
+from core.document.calibration_record import Calibration, FoundNumber
+from core.document.custom_measures import WORN_TIGHT, OwnMeasure
+from core.document.design import TEMPLATES, WEIGHTS, Design, ScanSource
+from core.document.document import VARIANTS, Document
+from core.document.elastic import TISSUE_LIMITS, Elastic
+from core.document.lines import LineTraits, OwnLine, WornLine
+from core.document.printable_name import is_blank, is_printable
+from core.document.serialization import to_json
+from core.landmarks.manual import PlacedMark
+from core.landmarks.types import NAMES
+from core.mechanics.constraint_lines import RATIO_LIMITS
+from core.mechanics.options import CHOICES, RANGES
+from core.mechanics.volume import CONTROLS
 
 PLAIN = Design(ScanSource("/scans/body.ply"))
 KNOWN = set(json.loads(to_json(PLAIN)))

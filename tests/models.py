@@ -10,12 +10,12 @@ import pytest
 from scipy import sparse
 from shapes import central_difference, torso
 
-from core.lines import Line
-from core.mechanics import Mechanics
-from core.model import ConstrainedModel, constrained_model
-from core.solver import State, Targets, iterate
-from core.solving.potential import Potential
-from core.solving.sliding import Skin
+from core.mechanics.constraint_lines import Line
+from core.mechanics.iteration import State, Targets, iterate
+from core.mechanics.model import ConstrainedModel, constrained_model
+from core.mechanics.newton_sliding import Skin
+from core.mechanics.options import Mechanics
+from core.mechanics.potential import Potential
 
 LAWS = (
     Mechanics(),

@@ -14,12 +14,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from app.cli import main
-from app.commands.cli_parser import COMMANDS, command_parser
-from app.wording.samples import sample_design
-from core.design_measures import OwnMeasure
-from core.document import Document
-from core.project import read_scan_file, save_project
+from app.cli.main import main
+from app.cli.parser import COMMANDS, command_parser
+from app.presenters.samples import sample_design
+from core.document.custom_measures import OwnMeasure
+from core.document.document import Document
+from core.document.storage.project_file import read_scan_file, save_project
 
 ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]

@@ -9,7 +9,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
 
-from core.mesh import Mesh
+from core.geometry.mesh import Mesh
 
 Limb = tuple[tuple[float, float, float], tuple[float, float, float], float]
 """A capsule: both ends of its axis and its radius [mm]."""

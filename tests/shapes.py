@@ -8,16 +8,16 @@ from pathlib import Path
 
 import numpy as np
 
-from core import pipeline
-from core.control_mesh import ControlMesh
-from core.design import Design, ScanSource
-from core.lines import line_on
-from core.mechanics import Mechanics
-from core.mesh import Mesh, frozen
-from core.model import ConstrainedModel, assemble
-from core.solver import Record, State, Targets, iterate
-from core.tensegric import TensegricModel, tensegric_model
-from core.volume import volume_measure
+from core.control_mesh.fit import ControlMesh
+from core.document.design import Design, ScanSource
+from core.geometry.mesh import Mesh, frozen
+from core.mechanics.constraint_lines import line_on
+from core.mechanics.iteration import Record, State, Targets, iterate
+from core.mechanics.model import ConstrainedModel, assemble
+from core.mechanics.options import Mechanics
+from core.mechanics.tensegrity import TensegricModel, tensegric_model
+from core.mechanics.volume import volume_measure
+from core.pipeline import build as pipeline
 
 SAMPLES = Path(__file__).parent.parent / "resources" / "samples"
 TORSO_LINES = ("under-bust", "mid-bust", "full-bust")

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from core.pipeline import Stages
-from core.tffd import bind
-from core.watch import BodyWatch
+from core.deformation.tffd import bind
+from core.pipeline.build import Stages
+from core.pipeline.observables import BodyWatch
 
 
 def slope(values: Callable[[float], np.ndarray | float], step: float = 0.01) -> np.ndarray:

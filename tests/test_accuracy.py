@@ -15,13 +15,13 @@ from body_truth import SIDES, KnownBody, known_again, stable_offset, true_girths
 from PIL import Image
 from worn_scans import Standing, axis_orders, ply_bytes
 
-from app.cli import main
-from app.commands.accuracy import run_accuracy
-from core.accuracy import compared, judged, spreads
-from core.body import read_scan
-from core.detect import detection
-from core.mesh import Mesh
-from core.truth import FORM, TruthError, read_truths
+from app.cli.main import main
+from app.research.accuracy import compared, judged, spreads
+from app.research.accuracy_command import run_accuracy
+from app.research.ground_truth import FORM, TruthError, read_truths
+from core.geometry.mesh import Mesh
+from core.landmarks.as_dict import detection
+from core.scan.body import read_scan
 
 ROOT = Path(__file__).parents[1]
 TRUTH = json.loads((ROOT / "tests/data/truth.json").read_text(encoding="utf-8"))
@@ -258,7 +258,7 @@ def test_a_crash_in_one_file_stops_no_other(folder: Path, monkeypatch: pytest.Mo
     def crash(name: str, data: bytes) -> None:
         raise ZeroDivisionError(name)
 
-    monkeypatch.setattr("core.accuracy.body_of", crash)
+    monkeypatch.setattr("app.research.accuracy.body_of", crash)
     cases = list(judged(folder, read_truths(folder)[0]))
     assert [case.crashed for case in cases] == [True, True, False, True]
     assert "ZeroDivisionError" in cases[0].failed

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from slopes import doubled, slope
 
-from app.wording.samples import sample_design
-from core.aims.answers import Answers
-from core.aims.readings import Figures
-from core.pipeline import Stages, build
-from core.presets import built_in, with_preset
-from core.worn_lines import free_lines
+from app.presenters.samples import sample_design
+from core.analysis.inverse_design.readings import Figures
+from core.analysis.inverse_design.sensitivities import Answers
+from core.document.presets import built_in, with_preset
+from core.pipeline.active_lines import free_lines
+from core.pipeline.build import Stages, build
 
 GROUPS = [("mid-bust",), ("full-bust",)]
 HERE = np.array([91.0, 96.0])

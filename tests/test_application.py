@@ -9,8 +9,8 @@ from pathlib import Path
 import platformdirs
 import pytest
 
-import app.helping.log
-from app.application import log_kept
+import app.gui.session.log_file
+from app.gui.application import log_kept
 
 
 def test_faults_are_logged_while_the_window_is_open(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -41,7 +41,7 @@ def test_the_log_is_limited_and_a_fault_that_repeats_is_collapsed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(platformdirs, "user_log_dir", lambda *_, **__: str(tmp_path))
-    monkeypatch.setattr(app.helping.log, "MOST_BYTES", 20_000)
+    monkeypatch.setattr(app.gui.session.log_file, "MOST_BYTES", 20_000)
     (tmp_path / "crash.log").write_text("x" * 30_000)
     with log_kept():
         for _ in range(5000):
@@ -67,8 +67,8 @@ def test_a_log_that_another_window_holds_open_stays_limited(
     def held(*_: object) -> None:
         raise PermissionError("held open")
 
-    monkeypatch.setattr(app.helping.log, "MOST_BYTES", 20_000)
-    log = app.helping.log.LimitedLog(tmp_path / "busk.log")
+    monkeypatch.setattr(app.gui.session.log_file, "MOST_BYTES", 20_000)
+    log = app.gui.session.log_file.LimitedLog(tmp_path / "busk.log")
     monkeypatch.setattr("os.rename", held)
     for number in range(5000):
         log.emit(logging.LogRecord("busk", logging.ERROR, "", 0, "message %d", (number,), None))

@@ -81,11 +81,11 @@ OUTSIDE = {
 }
 PANELS = ("lines", "landmarks", "model", "rail", "result", "scan", "status", "top_bar", "view_tools")
 STRANGERS = (
-    ["core.tensegric", "core.lines", "core.volume"],
+    ["core.mechanics.tensegrity", "core.mechanics.constraint_lines", "core.mechanics.volume"],
     [
-        "app.showing.viewport",
-        "app.showing.convergence",
-        "app.panels.notice",
+        "app.gui.viewport.viewport",
+        "app.gui.plots.convergence_panel",
+        "app.gui.widgets.notification_bar",
         *(f"app.panels.{panel}" for panel in PANELS),
     ],
 )

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from posed_bodies import apart
 
-from core.finding.trunk_marks import trunk_marks
-from core.landmark import SIDES, Landmark, Landmarks
-from core.mesh import Mesh
-from core.sections import resample
-from core.slicing.arms import necks
-from core.slicing.gaps import bridge
-from core.slicing.outline import BEARINGS, BINS
-from core.trunk import trunk_levels
+from core.geometry.level_outlines import BEARINGS, BINS
+from core.geometry.mesh import Mesh
+from core.geometry.plane_sections import resample
+from core.landmarks.torso.arm_removal import necks
+from core.landmarks.torso.cross_sections import trunk_levels
+from core.landmarks.torso.gap_filling import bridge
+from core.landmarks.torso_landmarks import trunk_marks
+from core.landmarks.types import SIDES, Landmark, Landmarks
 
 TRUNK = 280.0, 140.0
 """Width and depth of the trunk [mm]."""

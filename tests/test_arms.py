@@ -13,8 +13,8 @@ import trimesh
 from posed_bodies import POSES, apart, arms, grown
 from scipy.special import ellipe
 
-from core.mesh import Mesh
-from core.trunk import survey, trunk_levels
+from core.geometry.mesh import Mesh
+from core.landmarks.torso.cross_sections import survey, trunk_levels
 
 ROOT = Path(__file__).parents[1]
 TRUTH = json.loads((ROOT / "tests/data/truth.json").read_text(encoding="utf-8"))["person"]

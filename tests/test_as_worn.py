@@ -6,19 +6,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.cli import main
-from core.answer import balance_of
-from core.cutting import cut_list
-from core.design_elastics import Elastic
-from core.design_lines import WornLine
-from core.elastics import find_elastic
+from app.cli.main import main
+from core.control_mesh.template import read_template
+from core.document.elastic import Elastic
+from core.document.line_notation import ready_made
+from core.document.lines import WornLine
 from core.errors import LineError
-from core.exact import solve_exact
-from core.own_lines import ready_made
-from core.pipeline import build, targets_of
-from core.sewing.as_worn import as_worn, made_as_worn
-from core.sewing.tensions import line_tensions
-from core.template import read_template
+from core.garment.cut_list import cut_list
+from core.garment.elastic_library import find_elastic
+from core.garment.match_shape import as_worn, made_as_worn
+from core.garment.tension import line_tensions
+from core.mechanics.exact_solution import solve_exact
+from core.pipeline.build import build, targets_of
+from core.pipeline.exact import balance_of
 
 STRAP, BAND = find_elastic("strap 15"), find_elastic("plush 12")
 

@@ -9,15 +9,15 @@ from pathlib import Path
 import pytest
 from shapes import SAMPLES
 
-from app.cli import BAD_INPUT, main
-from app.commands.asked import goals_of
-from app.commands.ending import NOT_SETTLED, SETTLED
-from app.commands.settings import WANT_HELP
-from app.presenting.assessment import headline
-from core.aims.figure import Goal
-from core.aims.readings import NAMES
+from app.cli.commands.ask import goals_of
+from app.cli.exit_code import NOT_SETTLED, SETTLED
+from app.cli.main import BAD_INPUT, main
+from app.cli.options import WANT_HELP
+from app.presenters.assessment import headline
+from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.readings import NAMES
+from core.document.storage.project_file import open_project
 from core.errors import UserError
-from core.project import open_project
 
 SCAN = str(SAMPLES / "mannequin.ply")
 WORN = ("--unit", "mm", "--up", "+z", "--front", "-y", "--line", "mid-bust=100%", "--line", "full-bust=100%")

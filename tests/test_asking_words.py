@@ -6,7 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from app.presenting.asking import (
+from app.i18n.catalog import speaking
+from app.presenters.samples import sample_design
+from app.presenters.target_conflicts import unlimited_words
+from app.presenters.target_shape import (
     answer_words,
     beside_words,
     change_words,
@@ -17,16 +20,13 @@ from app.presenting.asking import (
     off_words,
     step_words,
 )
-from app.presenting.conflicts import unlimited_words
-from app.presenting.target_values import pressure_words, result_words, value_words
-from app.wording.samples import sample_design
-from app.wording.words import speaking
-from core.aims.figure import Goal
-from core.aims.girth import GIRTH
-from core.aims.outline import profile_name
-from core.aims.readings import NAMES
-from core.design import Design
-from core.request import Reply
+from app.presenters.target_values import pressure_words, result_words, value_words
+from core.analysis.inverse_design.girth_quantity import GIRTH
+from core.analysis.inverse_design.profile_quantity import profile_name
+from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.readings import NAMES
+from core.analysis.inverse_design.solve import Reply
+from core.document.design import Design
 
 
 def design() -> Design:

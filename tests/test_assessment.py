@@ -7,23 +7,23 @@ from dataclasses import replace
 
 import pytest
 
-from app.presenting.assessment import IDLE, assessment_lines, assessment_view
-from app.wording.words import read_words, speaking
-from core.advice.cure import findings
-from core.advice.standing import standing
-from core.assessment import BAD, CAUTION, GOOD, PENDING, PUSHES, Assessment, assessed, assessment_of
-from core.cutting import CutList, CutRow, cut_list
-from core.design import Design
-from core.design_elastics import Elastic
-from core.pipeline import Stages, build
-from core.press_list import PressList, PressRow, press_list
-from core.pressure import mmhg
-from core.sewing.comfort import comfort
-from core.sewing.tensions import line_tensions
-from core.sheet import Heading, sheet_of
-from core.solution import Solution, run
-from core.solving.condition import Condition
-from core.verdict import Verdict
+from app.i18n.catalog import read_words, speaking
+from app.presenters.assessment import IDLE, assessment_lines, assessment_view
+from core.analysis.diagnosis.fix import findings
+from core.analysis.diagnosis.trial_run import standing
+from core.document.design import Design
+from core.document.elastic import Elastic
+from core.export.report_data import Heading, sheet_of
+from core.garment.assessment import BAD, CAUTION, GOOD, PENDING, PUSHES, Assessment, assessed, assessment_of
+from core.garment.cut_list import CutList, CutRow, cut_list
+from core.garment.pressure import mmhg
+from core.garment.pressure_limits import comfort
+from core.garment.pressure_list import PressList, PressRow, press_list
+from core.garment.tension import line_tensions
+from core.mechanics.convergence import Verdict
+from core.mechanics.mesh_quality import Condition
+from core.pipeline.build import Stages, build
+from core.pipeline.solve import Solution, run
 
 Built = Callable[[str], Stages]
 CALM = Condition(0.99, 0.95, 1.05)

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from fit_bodies import RADIUS, analytic_body, landmarks_at, sample_of
 
-from core.cleaning.calm import calmed
-from core.control_mesh import ControlMesh, fit_control_mesh
+from core.control_mesh.back_length import back_of
+from core.control_mesh.fit import ControlMesh, fit_control_mesh
+from core.control_mesh.template import read_template
 from core.errors import FitError
-from core.fitting.back_length import back_of
-from core.mesh import Mesh
-from core.template import read_template
+from core.geometry.mesh import Mesh
+from core.scan.repair.denoise import calmed
 
 
 def ends_only(points):

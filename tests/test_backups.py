@@ -8,18 +8,18 @@ from pathlib import Path
 import pytest
 from small_project import DESIGN, PICTURE, SCAN, write_project
 
-import core.backups
-from core.backups import back_up, backed_up, backups
-from core.document import Document
+import core.document.storage.backups
+from core.document.document import Document
+from core.document.storage.backups import back_up, backed_up, backups
+from core.document.storage.project_file import open_project, save_project
 from core.errors import ProjectError
-from core.project import open_project, save_project
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="links and access rights of POSIX")
 
 
 @pytest.fixture(autouse=True)
 def own_base(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(core.backups, "backups_folder", lambda: tmp_path / "backups")
+    monkeypatch.setattr(core.document.storage.backups, "backups_folder", lambda: tmp_path / "backups")
     return tmp_path
 
 
@@ -97,7 +97,9 @@ def test_a_clock_that_was_set_back_takes_the_oldest_all_the_same(
 ) -> None:
     path = write_project(tmp_path)
     for ratio in (0.9, 0.8, 0.7, 0.6):
-        monkeypatch.setattr("core.backups.time.time_ns", lambda ratio=ratio: round(ratio * 1e6))
+        monkeypatch.setattr(
+            "core.document.storage.backups.time.time_ns", lambda ratio=ratio: round(ratio * 1e6)
+        )
         save(path, ratio, most=2)
     assert kept() == [0.7, 0.8]
 

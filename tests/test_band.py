@@ -6,11 +6,11 @@ from models import small
 from scipy import sparse
 from shapes import mid_bust, torso
 
-from core.exact import solve_exact
-from core.mechanics import Mechanics
-from core.members.band import Band, Entries, band_of, compact, joined, member_entries
-from core.model import constrained_model
-from core.solving.layout import sliding_entries
+from core.mechanics.banded_matrix import Band, Entries, band_of, compact, joined, member_entries
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.hessian_layout import sliding_entries
+from core.mechanics.model import constrained_model
+from core.mechanics.options import Mechanics
 
 SEEDS = pytest.mark.parametrize("seed", range(6))
 
@@ -143,7 +143,7 @@ def test_the_order_of_the_coordinates_is_irrelevant_to_the_answer(contact, monke
     def plain(count, first, second):
         return Band(np.arange(3 * count), 3 * count - 1)  # as they come, in a band as wide as the matrix
 
-    monkeypatch.setattr("core.solving.layout.band_of", plain)
+    monkeypatch.setattr("core.mechanics.hessian_layout.band_of", plain)
     model = constrained_model(torso(skew=0.3), worn=["mid-bust"], mechanics=choice)
     assert model.layout.band.reach == model.layout.band.size - 1
     other = solve_exact(model, mid_bust(model, 0.95))

@@ -9,17 +9,17 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.presenting.frame import bands
-from app.seeing.look import rgb
-from app.seeing.paint import Ramp
-from app.seeing.scene import Scene
-from app.viewing.band_map import BandPainter, BandValues, pressures_on, pulls_on
-from core.elastics import find_elastic
-from core.maps import pulls
-from core.pipeline import Stages, build, targets_of
-from core.presets import built_in, with_preset
-from core.pressure import LinePressure, pressures
-from core.solution import Solution, run
+from app.gui.features.maps.band_coloring import BandPainter, BandValues, pressures_on, pulls_on
+from app.presenters.status import bands
+from app.rendering.appearance import rgb
+from app.rendering.scene import Scene
+from app.rendering.vertex_colors import Ramp
+from core.document.presets import built_in, with_preset
+from core.garment.elastic_library import find_elastic
+from core.garment.pressure import LinePressure, pressures
+from core.pipeline.build import Stages, build, targets_of
+from core.pipeline.solve import Solution, run
+from core.pipeline.surface_fields import pulls
 
 RAMP = Ramp(("#EDD8C9", "#8A3408"), 0.0, 5.0, "#EDD8C9")
 

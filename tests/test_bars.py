@@ -11,18 +11,18 @@ from PySide6.QtCore import QEvent, QObject
 from PySide6.QtWidgets import QApplication, QLabel, QPushButton, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.dress.theme import apply_theme, tokens_of
-from app.panels.length_slider import LengthSlider
-from app.panels.line_parts import LineChip
-from app.panels.rail import Rail
-from app.panels.status import StatusBar
-from app.panels.view_tools import VIEWS, CompareTools, ViewTools
-from app.presenting.assessment import IDLE
-from app.showing.convergence import Strip
-from app.showing.tracks import Exact, Track
-from app.showing.verdict_chip import SHORTEST_SHOW_MS, TONES, VerdictChip
-from core.assessment import LEVELS
-from core.verdict import STATES
+from app.gui.features.lines.slider import LengthSlider
+from app.gui.plots.convergence_panel import Strip
+from app.gui.plots.status_chip import SHORTEST_SHOW_MS, TONES, VerdictChip
+from app.gui.status_bar import StatusBar
+from app.gui.step_navigation import Rail
+from app.gui.theme.stylesheet import apply_theme, tokens_of
+from app.gui.viewport.toolbar import VIEWS, CompareTools, ViewTools
+from app.gui.widgets.line_widgets import LineChip
+from app.presenters.assessment import IDLE
+from app.presenters.plot_series import Exact, Track
+from core.garment.assessment import LEVELS
+from core.mechanics.convergence import STATES
 
 
 @pytest.fixture(autouse=True)

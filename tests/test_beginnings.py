@@ -5,16 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import core.advice.limits
-from core.advice.beginnings import _worth_a_look
-from core.advice.limits import limits_of
-from core.advice.looks import COSTLY
-from core.advice.stops import Length, Stop, guess, nearest
-from core.answer import balance_of
-from core.comparison import shape_of
-from core.design_lines import WornLine
-from core.elastics import find_elastic
-from core.pipeline import build
+import core.analysis.length_limits.limits
+from core.analysis.length_limits.bracketing import _worth_a_look
+from core.analysis.length_limits.criteria import COSTLY
+from core.analysis.length_limits.limits import limits_of
+from core.analysis.length_limits.samples import Length, Stop, guess, nearest
+from core.document.lines import WornLine
+from core.garment.elastic_library import find_elastic
+from core.mechanics.solver_comparison import shape_of
+from core.pipeline.build import build
+from core.pipeline.exact import balance_of
 
 
 def stops_with(margin, ratios):
@@ -65,12 +65,12 @@ def walked(stages, name, monkeypatch):
     """The limits of a line, and the walk that told them."""
     walks = []
 
-    class Noted(core.advice.limits.Walk):
+    class Noted(core.analysis.length_limits.limits.Walk):
         def __init__(self, *given):
             super().__init__(*given)
             walks.append(self)
 
-    monkeypatch.setattr(core.advice.limits, "Walk", Noted)
+    monkeypatch.setattr(core.analysis.length_limits.limits, "Walk", Noted)
     return limits_of(stages, name, through=False), walks[0]
 
 

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 import trimesh
 
-from core.body import read_scan
-from core.cleaning.repair import repair
 from core.errors import ScanError
-from core.mesh import Mesh
-from core.reading.scan_file import read_triangles
+from core.geometry.mesh import Mesh
+from core.scan.body import read_scan
+from core.scan.readers.registry import read_triangles
+from core.scan.repair.repair import repair
 
 SAMPLES = Path(__file__).parents[1] / "resources" / "samples"
 PLY_HEADER = (

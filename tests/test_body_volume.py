@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from core.exact import solve_exact
-from core.mechanics import Mechanics
-from core.model import constrained_model
-from core.solving.body_volume import PRECISION, solve_body_exact
+from core.mechanics.dense_volume import PRECISION, solve_body_exact
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.model import constrained_model
+from core.mechanics.options import Mechanics
 
 RATIOS = (1.0, 0.8, 1.0)
 

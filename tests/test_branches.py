@@ -6,13 +6,13 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-import core.exact
-from core.advice.limits import limits_of
-from core.design_lines import WornLine
-from core.exact import solve_exact
-from core.own_lines import ready_made
-from core.pipeline import Stages, build, targets_of
-from core.template import read_template
+import core.mechanics.exact_solution
+from core.analysis.length_limits.limits import limits_of
+from core.control_mesh.template import read_template
+from core.document.line_notation import ready_made
+from core.document.lines import WornLine
+from core.mechanics.exact_solution import solve_exact
+from core.pipeline.build import Stages, build, targets_of
 
 WORN = (("mid-bust", 0.909), ("full-bust", 0.96), ("strap left", 0.973), ("strap right", 0.973))
 
@@ -61,6 +61,6 @@ def test_zones_are_of_the_answer_that_rest_leads_to(strapped: Stages) -> None:
 
 def test_a_branch_that_has_an_end_is_left(strapped: Stages, monkeypatch) -> None:
     """However little steps may leave the way that the first one leads, an answer is found."""
-    monkeypatch.setattr(core.exact, "_OFF_WAY", 0.0)
-    monkeypatch.setattr(core.exact, "_OFF_ANYWAY", 0.01)
+    monkeypatch.setattr(core.mechanics.exact_solution, "_OFF_WAY", 0.0)
+    monkeypatch.setattr(core.mechanics.exact_solution, "_OFF_ANYWAY", 0.01)
     assert len(answers(strapped, [0.65])) == 1

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from breast_shapes import cap
 
-from core.measuring.breast import breast_of
-from core.measuring.root import Root, root_of
-from core.mesh import Mesh
+from core.geometry.mesh import Mesh
+from core.measurements.breast_root import Root, root_of
+from core.measurements.breast_volume import breast_of
 
 
 @pytest.mark.parametrize(("height", "radius"), [(60.0, 60.0), (30.0, 60.0), (25.0, 80.0), (90.0, 60.0)])

@@ -10,11 +10,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from small_project import DESIGN, PICTURE, SCAN
 
-from core.design import ScanSource
-from core.design_text import to_json
-from core.document import Document
+from core.document.design import ScanSource
+from core.document.document import Document
+from core.document.serialization import to_json
+from core.document.storage.project_file import open_project, read_scan_file, save_project
 from core.errors import ProjectError, UserError
-from core.project import open_project, read_scan_file, save_project
 
 
 def test_every_truncation_is_refused_in_a_sentence(project):

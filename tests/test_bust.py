@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.presenting.bust import BustMove, BustStep, bust_sentence, move_between, step_words, ups
-from core.solver import Marks
+from app.presenters.bust_shift import BustMove, BustStep, bust_sentence, move_between, step_words, ups
+from core.mechanics.iteration import Marks
 
 REST = Marks(300.0, 310.0, 320.0, 90.0, 80.0, 70.0)
 

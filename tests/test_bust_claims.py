@@ -10,14 +10,14 @@ from scipy.sparse import csr_array, diags_array
 from scipy.sparse.linalg import spsolve
 from test_landmarks import SIDES, found, landmarks_of, part, sample
 
-from core.doubts import landmark_doubts
 from core.errors import LandmarkError
-from core.finding.anchor import find_anchor
-from core.finding.breast_profile import OFFSETS, OWN, Profile
-from core.finding.fold import trace
-from core.finding.under_breast import CREASE
-from core.landmark import CERTAIN
-from core.trunk import survey
+from core.landmarks.anchor import find_anchor
+from core.landmarks.breast_profiles import OFFSETS, OWN, Profile
+from core.landmarks.inframammary_fold import trace
+from core.landmarks.lower_breast import CREASE
+from core.landmarks.torso.cross_sections import survey
+from core.landmarks.types import CERTAIN
+from core.landmarks.warnings import landmark_doubts
 
 
 def test_a_body_that_is_too_flat_is_refused_for_that():

@@ -10,14 +10,14 @@ import pytest
 from test_landmarks import SIDES, found, landmarks_of, sample, truth
 
 from core.errors import LandmarkError
-from core.finding.anchor import Anchor, find_anchor
-from core.finding.bust_check import check_anchor
-from core.finding.bust_point import NIPPLE, SMOOTH
-from core.finding.chest import forward_places
-from core.finding.relief import in_front
-from core.landmark import CERTAIN
-from core.mesh import MIRROR, Mesh
-from core.trunk import survey
+from core.geometry.mesh import MIRROR, Mesh
+from core.landmarks.anchor import Anchor, find_anchor
+from core.landmarks.bust_point import NIPPLE, SMOOTH
+from core.landmarks.chest import forward_places
+from core.landmarks.nipple import in_front
+from core.landmarks.torso.cross_sections import survey
+from core.landmarks.types import CERTAIN
+from core.landmarks.validation import check_anchor
 
 
 def off(landmarks, name, side):

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from test_landmarks import SIDES, landmarks_of
 
-from core.finding.anchor import find_anchor
-from core.mesh import Mesh
-from core.trunk import survey
+from core.geometry.mesh import Mesh
+from core.landmarks.anchor import find_anchor
+from core.landmarks.torso.cross_sections import survey
 
 FOLD = -40.0
 """Where the crease under the bust is [mm]; the bust itself is foremost at z = 0."""

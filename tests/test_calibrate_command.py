@@ -9,15 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.cli import main
-from app.commands.calibrated import spoken
-from app.wording.samples import sample_design
+from app.cli.commands.calibrate import spoken
+from app.cli.main import main
+from app.presenters.samples import sample_design
 from benchmarks.worn_pairs import scanned, worn_mesh, written
-from core.document import Document
-from core.own_lines import ready_made
-from core.pipeline import build
-from core.project import open_project, save_project
-from core.template import read_template
+from core.control_mesh.template import read_template
+from core.document.document import Document
+from core.document.line_notation import ready_made
+from core.document.storage.project_file import open_project, save_project
+from core.pipeline.build import build
 
 
 @pytest.fixture(scope="module")

@@ -9,24 +9,24 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.presenting.worn import better_words
+from app.presenters.scan_comparison import better_words
 from benchmarks.worn_pairs import scanned, worn_mesh, written
-from core.calibration import CalibrationResult, Worn, calibrate, read_worn
-from core.design import Design, ScanSource
-from core.design_calibration import Calibration, FoundNumber
-from core.design_text import from_json, to_json
-from core.elastics import find_elastic
+from core.analysis.calibration.api import CalibrationResult, Worn, calibrate, read_worn
+from core.analysis.calibration.fit import exact_answer
+from core.analysis.calibration.identifiability import not_told
+from core.analysis.calibration.parameters import MOST, Number, candidates, precision_before, rates_by
+from core.analysis.calibration.registration import align
+from core.analysis.calibration.residuals import laid_on
+from core.analysis.calibration.robust_least_squares import Normal
+from core.analysis.calibration.surface_distance import WornSkin
+from core.document.calibration_record import Calibration, FoundNumber
+from core.document.design import Design, ScanSource
+from core.document.serialization import from_json, to_json
+from core.document.storage.project_file import open_project
 from core.errors import ProjectError, UserError
-from core.pipeline import Stages, build
+from core.garment.elastic_library import find_elastic
+from core.pipeline.build import Stages, build
 from core.progress import Cancelled
-from core.project import open_project
-from core.worn_scan.aligning import align
-from core.worn_scan.comparing import laid_on
-from core.worn_scan.fit import exact_answer
-from core.worn_scan.gap import WornSkin
-from core.worn_scan.least_squares import Normal
-from core.worn_scan.numbers import MOST, Number, candidates, precision_before, rates_by
-from core.worn_scan.telling import not_told
 
 STEP = 3e-4
 

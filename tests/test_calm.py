@@ -7,10 +7,10 @@ import pytest
 import trimesh
 from shapes import SAMPLES
 
-from core.body import read_scan
-from core.cleaning.calm import GIANT, calmed, noise_of, thinned
-from core.cleaning.skin import Skin
-from core.mesh import Mesh
+from core.geometry.mesh import Mesh
+from core.scan.body import read_scan
+from core.scan.repair.denoise import GIANT, calmed, noise_of, thinned
+from core.scan.repair.editable_mesh import Skin
 
 
 @pytest.fixture(scope="module")

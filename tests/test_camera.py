@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.seeing.camera import SLANTED, STEEPEST, VIEWS, View
-from app.seeing.framing import framing_place
-from app.seeing.scene import Scene
+from app.rendering.camera import SLANTED, STEEPEST, VIEWS, View
+from app.rendering.framing import framing_place
+from app.rendering.scene import Scene
 
 WIDTH, HEIGHT = 450, 300
 

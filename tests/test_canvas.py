@@ -9,10 +9,10 @@ from PySide6.QtGui import QGuiApplication, QImage
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.dress.theme import apply_theme
-from app.showing import canvas
-from app.showing.viewport import Viewport
-from core.mesh import Mesh
+from app.gui.theme.stylesheet import apply_theme
+from app.gui.viewport import canvas
+from app.gui.viewport.viewport import Viewport
+from core.geometry.mesh import Mesh
 
 
 def picture(qtbot: QtBot) -> np.ndarray:

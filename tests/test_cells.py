@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.writing_out.cells import cell
+from core.export.csv_cells import cell
 
 
 @pytest.mark.parametrize("text", ["=1+1", "+cmd|'/C calc'!A0", "@SUM(A1)", "-2+3", "\t=1", "-", "+A1"])

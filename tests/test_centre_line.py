@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from core.centre_line import STEP, Surface, centre_line
-from core.mesh import Mesh
-from core.sections import arc_length
+from core.garment.curve_smoothing import STEP, Surface, centre_line
+from core.geometry.mesh import Mesh
+from core.geometry.plane_sections import arc_length
 
 RADIUS = 120.0
 

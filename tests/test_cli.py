@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 import trimesh
 
-from app.cli import main
+from app.cli.main import main
 from core import __version__
-from core.design import Design, ScanSource
-from core.design_lines import OwnLine, WornLine
-from core.document import Document
-from core.project import ScanFile, open_project, save_project
+from core.document.design import Design, ScanSource
+from core.document.document import Document
+from core.document.lines import OwnLine, WornLine
+from core.document.storage.project_file import ScanFile, open_project, save_project
 
 TURN_COLUMNS = [
     "turn",
@@ -257,7 +257,7 @@ def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_batch_commands_load_no_qt(mannequin: Path, tmp_path: Path) -> None:
     code = (
-        "import sys; from app.cli import main; "
+        "import sys; from app.cli.main import main; "
         f"code = main(['solve', {str(mannequin)!r}, '--line', 'mid-bust=97%', '--volume', 'exact', "
         f"'--out', {str(tmp_path)!r}]); "
         "sys.exit(code or any(name.startswith(('PySide6', 'pyvistaqt')) for name in sys.modules))"

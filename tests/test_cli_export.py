@@ -9,12 +9,12 @@ import pytest
 import trimesh
 from PIL import Image
 
-from app.cli import main
-from app.commands import exported
-from core.design import Design, ScanSource
-from core.document import Document
-from core.pipeline import build
-from core.project import ScanFile, save_project
+from app.cli.commands import export as exported
+from app.cli.main import main
+from core.document.design import Design, ScanSource
+from core.document.document import Document
+from core.document.storage.project_file import ScanFile, save_project
+from core.pipeline.build import build
 
 SAMPLES = Path(__file__).parents[1] / "resources" / "samples"
 SCAN = SAMPLES / "mannequin.ply"

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 import trimesh
 
-from app.cli import main
+from app.cli.main import main
 
 
 @pytest.mark.parametrize(

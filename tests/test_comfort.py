@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from band_courses import ellipse
 
-from core.pressure import LEFT_OUT, band_pressure
-from core.sewing.comfort import AMBER, GREEN, RED, comfort
+from core.garment.pressure import LEFT_OUT, band_pressure
+from core.garment.pressure_limits import AMBER, GREEN, RED, comfort
 
 WIDTH = 15.0
 

@@ -21,9 +21,9 @@ from page_commands import (
     words_of,
 )
 
-from app.commands.cli_parser import COMMANDS, command_options, command_parser, window_options
-from app.commands.ending import SETTLED
-from app.commands.self_test import PARTS
+from app.cli.commands.self_test import PARTS
+from app.cli.exit_code import SETTLED
+from app.cli.parser import COMMANDS, command_options, command_parser, window_options
 from core.errors import UserError
 
 COMMANDS_PAGE = ROOT / "docs" / "commands.md"
@@ -66,7 +66,7 @@ def test_a_page_says_what_its_commands_print(
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "100")
     # The pages tell what is said at a terminal; on a desktop a window would open and say it.
-    monkeypatch.setattr("app.cli.is_seen_in_window", lambda file: False)
+    monkeypatch.setattr("app.cli.main.is_seen_in_window", lambda file: False)
     for example in filter(runs, examples_of(path)):
         printed, code = run(example)
         if example.said is None:

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from shapes import torso
 
-from core.comparison import MOST_TURNS, Comparison, judge_balance
-from core.exact import solve_exact
-from core.model import constrained_model
-from core.solver import Marks, Targets, iterate
-from core.solving.condition import rest_shape
-from core.solving.gain import gain_limit
-from core.verdict import Verdict
+from core.mechanics.convergence import Verdict
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.gain_limit import gain_limit
+from core.mechanics.iteration import Marks, Targets, iterate
+from core.mechanics.mesh_quality import rest_shape
+from core.mechanics.model import constrained_model
+from core.mechanics.solver_comparison import MOST_TURNS, Comparison, judge_balance
 
 MODEL = constrained_model(torso(), worn=["mid-bust"])
 CALM = 0.9 * gain_limit(MODEL)

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from shapes import fitted, octahedron, tent, tent_model, torso
 
-from core.comparison import shape_of
-from core.exact import solve_exact
-from core.mechanics import Mechanics
-from core.model import constrained_model
-from core.solving.condition import Condition, condition, rest_shape
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.mesh_quality import Condition, condition, rest_shape
+from core.mechanics.model import constrained_model
+from core.mechanics.options import Mechanics
+from core.mechanics.solver_comparison import shape_of
 
 SIDE = np.sqrt(41.0)  # from a corner of the tent to its tip
 

@@ -9,17 +9,17 @@ from dataclasses import replace
 import pytest
 from shapes import SAMPLES
 
-from app.cli import main
-from app.commands.asked import goals_of
-from app.commands.ending import NOT_SETTLED
-from app.wording.samples import sample_design
-from core.aims.figure import PRIORITIES, Goal
-from core.aims.line_selection import LineSelection, optional_lines, switched_on
-from core.aims.readings import tolerance
-from core.aims.wanted import NEAR, weights_of
-from core.elastics import find_elastic
-from core.pipeline import Stages, build
-from core.request import Asking, ask
+from app.cli.commands.ask import goals_of
+from app.cli.exit_code import NOT_SETTLED
+from app.cli.main import main
+from app.presenters.samples import sample_design
+from core.analysis.inverse_design.line_selection import LineSelection, optional_lines, switched_on
+from core.analysis.inverse_design.objective import NEAR, weights_of
+from core.analysis.inverse_design.quantities import PRIORITIES, Goal
+from core.analysis.inverse_design.readings import tolerance
+from core.analysis.inverse_design.solve import Asking, ask
+from core.garment.elastic_library import find_elastic
+from core.pipeline.build import Stages, build
 
 SCAN = str(SAMPLES / "mannequin.ply")
 AXES = ("--unit", "mm", "--up", "+z", "--front", "-y")

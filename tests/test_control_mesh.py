@@ -19,10 +19,10 @@ from fit_bodies import (
 )
 from scipy.spatial import cKDTree
 
-from core.control_mesh import fit_control_mesh
-from core.fitting.fit_check import agreement, bends, corner_angles
-from core.mesh import Mesh
-from core.template import TEMPLATES, read_template
+from core.control_mesh.fit import fit_control_mesh
+from core.control_mesh.template import TEMPLATES, read_template
+from core.control_mesh.validation import agreement, bends, corner_angles
+from core.geometry.mesh import Mesh
 
 MIRROR = np.array([-1.0, 1.0, 1.0])
 

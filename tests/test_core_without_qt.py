@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from core.body import read_scan
+from core.scan.body import read_scan
 
 ROOT = Path(__file__).parent.parent
 NO_QT = """
@@ -25,7 +25,7 @@ sys.meta_path.insert(0, NoQt())
 CORE = sorted(path for path in (ROOT / "core").rglob("*.py") if path.stem != "__init__")
 QT_FREE = [".".join(path.relative_to(ROOT).with_suffix("").parts) for path in CORE]
 QT_FREE += [f"app.seeing.{path.stem}" for path in sorted((ROOT / "app" / "seeing").glob("[a-z]*.py"))] + [
-    "app.cli",
+    "app.cli.main",
 ]
 
 
@@ -45,7 +45,7 @@ def test_everything_below_the_session_imports_without_qt() -> None:
 
 
 def test_a_line_is_shortened_from_the_command_line_without_qt(mannequin: Path, tmp_path: Path) -> None:
-    code = "from app.cli import main\nsys.exit(main(sys.argv[1:]))"
+    code = "from app.cli.main import main\nsys.exit(main(sys.argv[1:]))"
     done = without_qt(code, "solve", str(mannequin), "--line", "mid-bust=97%", "--out", str(tmp_path))
     assert done.returncode == 0, done.stderr
     report = json.loads((tmp_path / "report.json").read_text("utf-8"))

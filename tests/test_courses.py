@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.wording.samples import sample_design
-from core.centre_line import USUAL_WIDTH, Surface
-from core.pipeline import build
-from core.sewing.course import course_of, courses
-from core.sewing.tensions import line_tensions
-from core.solution import run
-from core.tffd import deform
+from app.presenters.samples import sample_design
+from core.deformation.tffd import deform
+from core.garment.band_path import course_of, courses
+from core.garment.curve_smoothing import USUAL_WIDTH, Surface
+from core.garment.tension import line_tensions
+from core.pipeline.build import build
+from core.pipeline.solve import run
 
 
 def test_a_course_that_was_laid_before_is_that_of_the_shape_that_is_asked_for() -> None:

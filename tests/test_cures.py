@@ -9,17 +9,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.presenting.doctor import change_words, details
-from app.wording.samples import sample_design
-from core.advice.outlook import outlook, outlook_about
-from core.advice.standing import gone_on, standing
-from core.advice.ways import line_ways
-from core.comparison import Comparison
-from core.doctor import Diagnosis, diagnose
-from core.own_lines import ready_made
-from core.pipeline import Stages, build, targets_of
-from core.settled import settled_frame
-from core.template import read_template
+from app.presenters.diagnosis import change_words, details
+from app.presenters.samples import sample_design
+from core.analysis.diagnosis.candidate_changes import line_ways
+from core.analysis.diagnosis.diagnose import Diagnosis, diagnose
+from core.analysis.diagnosis.stability import outlook, outlook_about
+from core.analysis.diagnosis.trial_run import gone_on, standing
+from core.control_mesh.template import read_template
+from core.document.line_notation import ready_made
+from core.mechanics.solver_comparison import Comparison
+from core.pipeline.build import Stages, build, targets_of
+from core.pipeline.converged import settled_frame
 
 
 @cache

@@ -8,16 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.wording.samples import sample_design
-from core.aims.curve_file import profile_goals, read_profile
-from core.aims.outline import section_at
-from core.aims.readings import reading
+from app.presenters.samples import sample_design
+from core.analysis.inverse_design.profile_csv import profile_goals, read_profile
+from core.analysis.inverse_design.profile_quantity import section_at
+from core.analysis.inverse_design.readings import reading
+from core.deformation.tffd import deform
 from core.errors import UserError
-from core.export import write_profile
-from core.pipeline import Stages, build
-from core.profile import Plane, Slicer
-from core.solution import run
-from core.tffd import deform
+from core.export.mesh import write_profile
+from core.geometry.planar_curves import Plane, Slicer
+from core.pipeline.build import Stages, build
+from core.pipeline.solve import run
 
 
 @pytest.fixture(scope="module")

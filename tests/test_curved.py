@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.aims.curved import Curved, learnt, next_reach
+from core.analysis.inverse_design.quadratic_model import Curved, learnt, next_reach
 
 RNG = np.random.default_rng(4)
 

@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 from test_own_measures import _Editing
 
-from core.design import Design, ScanSource
-from core.design_measures import OwnMeasure
-from core.design_text import from_json, to_json
-from core.document import Document
-from core.document_text import from_texts, to_texts
+from core.document.custom_measures import OwnMeasure
+from core.document.design import Design, ScanSource
+from core.document.document import Document
+from core.document.document_text import from_texts, to_texts
+from core.document.serialization import from_json, to_json
+from core.document.storage.project_file import ScanFile, open_project, save_project
 from core.errors import ProjectError, UserError
-from core.project import ScanFile, open_project, save_project
 
 PLAIN = Design(ScanSource("a.ply"))
 ANNA = replace(PLAIN, customer="Anna K., 0412 \N{EM DASH} 佐藤")

@@ -11,23 +11,23 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from app.cli import main
-from app.presenting.garment import as_table
-from core.cutting import FAR, FRONT_ONLY, SLACK, cut_list
-from core.design_elastics import Elastic
-from core.design_lines import LineTraits, OwnLine, WornLine
-from core.elastics import find_elastic, write_elastic
+from app.cli.main import main
+from app.presenters.cut_list import as_table
+from core.control_mesh.template import read_template
+from core.document.elastic import Elastic
+from core.document.line_notation import ready_made
+from core.document.lines import LineTraits, OwnLine, WornLine
 from core.errors import LineError
-from core.exact import solve_exact
-from core.own_lines import ready_made
-from core.pipeline import build, targets_of
-from core.press_list import press_list
-from core.pressure import NOT_FOR_STRAPS
-from core.sewing.tensions import line_tensions
-from core.solution import run
-from core.solver import Targets, iterate
-from core.solving.newtons import newtons_per_unit
-from core.template import read_template
+from core.garment.cut_list import FAR, FRONT_ONLY, SLACK, cut_list
+from core.garment.elastic_library import find_elastic, write_elastic
+from core.garment.pressure import NOT_FOR_STRAPS
+from core.garment.pressure_list import press_list
+from core.garment.tension import line_tensions
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.force_units import newtons_per_unit
+from core.mechanics.iteration import Targets, iterate
+from core.pipeline.build import build, targets_of
+from core.pipeline.solve import run
 
 EDGE = Elastic("edge", 10.0, ((0.0, 0.0), (0.2, 0.8), (0.5, 1.8), (1.0, 4.0)), 15.0)
 HOOKE = Elastic("straight", 10.0, ((0.0, 0.0), (1.0, 6.0)), 20.0, "by hand", estimate=False)

@@ -9,11 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from made_designs import KNOWN, PLAIN, anything, designs
 
-from core.answer import NoBalanceError
-from core.design import Design, ScanSource
-from core.design_lines import LineTraits, OwnLine
-from core.design_text import FORMAT, from_json, to_json
+from core.document.design import Design, ScanSource
+from core.document.lines import LineTraits, OwnLine
+from core.document.serialization import FORMAT, from_json, to_json
 from core.errors import LineError, ProjectError, UserError
+from core.pipeline.exact import NoBalanceError
 
 
 @settings(deadline=None, max_examples=50)

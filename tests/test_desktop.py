@@ -14,17 +14,17 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 from window_tools import Script, drag, run_main, settled, undrawn
 
-from app.application import log_folder
-from app.dress.divider import STEP
-from app.dress.sheet import Sheet
-from app.main_window import MainWindow
-from app.panels.about import AboutSheet, DiagnosticsSheet
-from app.panels.commands import CommandSheet
-from app.panels.fault import FaultSheet
-from app.panels.preferences import PreferencesSheet
-from app.wording.tokens import DARK
-from core.backups import backups_folder
-from core.recovery import recovery_folder
+from app.gui.application import log_folder
+from app.gui.features.help.about import AboutSheet, DiagnosticsSheet
+from app.gui.features.help.command_palette import CommandSheet
+from app.gui.features.help.crash_dialog import FaultSheet
+from app.gui.features.preferences.dialog import PreferencesSheet
+from app.gui.main_window import MainWindow
+from app.gui.widgets.dialog import Sheet
+from app.gui.widgets.splitter import STEP
+from app.rendering.palette import DARK
+from core.document.storage.backups import backups_folder
+from core.document.storage.recovery import recovery_folder
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

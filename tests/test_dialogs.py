@@ -11,13 +11,13 @@ from PySide6.QtCore import QSettings, QStandardPaths, QTimer
 from PySide6.QtWidgets import QApplication, QDialogButtonBox, QFileDialog, QLabel, QLineEdit, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.application import application
-from app.dress.ask import ask, ask_name
-from app.dress.sheet import Sheet
-from app.helping import machine
-from app.helping.folders import shown_folder
-from app.keeping.dialogs import ask_about_changes, ask_open, ask_save
-from app.keeping.last_folders import free_name, last_folder, remember_folder
+from app.gui.application import application
+from app.gui.features.help import system_info as machine
+from app.gui.session.app_folders import shown_folder
+from app.gui.widgets.dialog import Sheet
+from app.gui.widgets.file_dialogs import ask_about_changes, ask_open, ask_save
+from app.gui.widgets.last_folders import free_name, last_folder, remember_folder
+from app.gui.widgets.message_box import ask, ask_name
 
 KINDS = "PLY (*.ply);;OBJ (*.obj);;STL (*.stl)"
 

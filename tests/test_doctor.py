@@ -10,22 +10,22 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.wording.samples import sample_design
-from core.advice.fight import fight_of
-from core.advice.outlook import outlook
-from core.advice.remedy import Search
-from core.advice.standing import gone_on, standing
-from core.advice.ways import GAIN_STEP, LENGTH_STEP, Change, lower_gains, settings
-from core.comparison import Comparison
-from core.design import Design
-from core.design_lines import LineTraits
-from core.doctor import Diagnosis, diagnose
-from core.own_lines import ready_made
-from core.pipeline import Stages, build, targets_of
+from app.presenters.samples import sample_design
+from core.analysis.diagnosis.candidate_changes import GAIN_STEP, LENGTH_STEP, Change, lower_gains, settings
+from core.analysis.diagnosis.diagnose import Diagnosis, diagnose
+from core.analysis.diagnosis.opposing_constraints import fight_of
+from core.analysis.diagnosis.search import Search
+from core.analysis.diagnosis.stability import outlook
+from core.analysis.diagnosis.trial_run import gone_on, standing
+from core.control_mesh.template import read_template
+from core.document.design import Design
+from core.document.line_notation import ready_made
+from core.document.lines import LineTraits
+from core.mechanics.solver_comparison import Comparison
+from core.pipeline.build import Stages, build, targets_of
+from core.pipeline.converged import settled_frame
+from core.pipeline.solve import run
 from core.progress import Cancelled, quiet
-from core.settled import settled_frame
-from core.solution import run
-from core.template import read_template
 
 
 @cache

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from shapes import SAMPLES
 
-from app.cli import BAD_INPUT, main
-from app.commands.ending import NOT_SETTLED, SETTLED
-from core.pipeline import build
-from core.project import open_project, save_project
+from app.cli.exit_code import NOT_SETTLED, SETTLED
+from app.cli.main import BAD_INPUT, main
+from core.document.storage.project_file import open_project, save_project
+from core.pipeline.build import build
 
 SCAN = str(SAMPLES / "mannequin.ply")
 READ = ("--unit", "mm", "--up", "+z", "--front", "-y")

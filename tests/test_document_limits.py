@@ -10,13 +10,10 @@ from hypothesis import HealthCheck, given, settings
 from made_designs import documents
 from small_project import DESIGN, PICTURE, SCAN
 
-import core.project
-from core.design_elastics import MOST_POINTS, Elastic
-from core.design_lines import LineTraits, OwnLine, WornLine
-from core.design_measures import OwnMeasure
-from core.design_text import from_json, to_json
-from core.document import Document
-from core.document_limits import (
+import core.document.storage.project_file
+from core.document.custom_measures import OwnMeasure
+from core.document.document import Document
+from core.document.document_limits import (
     LARGEST_TEXT,
     LARGEST_UNKNOWN,
     MOST_ELASTICS,
@@ -27,12 +24,15 @@ from core.document_limits import (
     MOST_VALUES,
     check_values,
 )
-from core.document_limits import (
+from core.document.document_limits import (
     MOST_POINTS as MOST_POINTS_OF_LINES,
 )
-from core.document_text import from_texts, to_texts
+from core.document.document_text import from_texts, to_texts
+from core.document.elastic import MOST_POINTS, Elastic
+from core.document.lines import LineTraits, OwnLine, WornLine
+from core.document.serialization import from_json, to_json
+from core.document.storage.project_file import open_project, save_project
 from core.errors import ProjectError, UserError
-from core.project import open_project, save_project
 
 ROW = 1.2345678901234567
 
@@ -135,13 +135,15 @@ def test_sizes_are_the_same_for_saving_and_for_opening(
     project: Path, monkeypatch: pytest.MonkeyPatch, what: str
 ) -> None:
     document = open_project(project)
-    monkeypatch.setattr(core.project, what, len(SCAN.data) if what == "LARGEST_SCAN" else 100)
+    monkeypatch.setattr(
+        core.document.storage.project_file, what, len(SCAN.data) if what == "LARGEST_SCAN" else 100
+    )
     if what == "LARGEST_SCAN":
         save_project(project, document, SCAN, None)
-        assert core.project.read_scan_file(document.design.scan).data == SCAN.data
-        monkeypatch.setattr(core.project, what, len(SCAN.data) - 1)
+        assert core.document.storage.project_file.read_scan_file(document.design.scan).data == SCAN.data
+        monkeypatch.setattr(core.document.storage.project_file, what, len(SCAN.data) - 1)
         with pytest.raises(ProjectError, match=r"body\.ply of this project is larger"):
-            core.project.read_scan_file(document.design.scan)
+            core.document.storage.project_file.read_scan_file(document.design.scan)
     else:
         with pytest.raises(ProjectError, match=r"design\.json of this project is larger"):
             open_project(project)
@@ -154,7 +156,7 @@ def test_sizes_are_the_same_for_saving_and_for_opening(
 def test_a_picture_that_would_not_be_shown_is_left_out(
     project: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(core.project, "LARGEST_PICTURE", 3)
+    monkeypatch.setattr(core.document.storage.project_file, "LARGEST_PICTURE", 3)
     save_project(project, Document.of(DESIGN), SCAN, PICTURE)
     with zipfile.ZipFile(project) as archive:
         assert "preview.png" not in archive.namelist()

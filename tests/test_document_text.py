@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 
-from core.design import Design, ScanSource
-from core.design_text import WITH_ELASTICS, WITH_VARIANTS
-from core.document import Document
-from core.document_text import DESIGN, from_texts, to_texts
-from core.elastics import find_elastic
+from core.document.design import Design, ScanSource
+from core.document.document import Document
+from core.document.document_text import DESIGN, from_texts, to_texts
+from core.document.serialization import WITH_ELASTICS, WITH_VARIANTS
+from core.garment.elastic_library import find_elastic
 
 PLAIN = Design(ScanSource("anna.ply")).with_line("mid-bust", 0.9)
 ELASTIC = PLAIN.with_elastic("mid-bust", find_elastic("picot 10"))

@@ -13,18 +13,18 @@ import pytest
 import pyvista as pv
 from PySide6.QtSvg import QSvgRenderer
 
-from core.cutting import cut_list
-from core.design import Design, ScanSource
-from core.elastics import find_elastic
+from core.control_mesh.template import read_template
+from core.document.design import Design, ScanSource
+from core.document.line_notation import ready_made
 from core.errors import LineError, UserError
-from core.own_lines import ready_made
-from core.pipeline import build
-from core.sections import arc_length
-from core.solution import run
-from core.space import UNITS, Space
-from core.template import read_template
-from core.writing_out.drawing import SCALE_BAR, told, write_curves, write_strips
-from core.writing_out.worn import AS_WORN, Strip, strips, worn_curves
+from core.export.band_geometry import AS_WORN, Strip, strips, worn_curves
+from core.export.drawings import SCALE_BAR, told, write_curves, write_strips
+from core.export.units_and_axes import UNITS, Space
+from core.garment.cut_list import cut_list
+from core.garment.elastic_library import find_elastic
+from core.geometry.plane_sections import arc_length
+from core.pipeline.build import build
+from core.pipeline.solve import run
 
 SAMPLES = Path(__file__).parents[1] / "resources" / "samples"
 SVG = {"s": "http://www.w3.org/2000/svg"}
@@ -240,8 +240,8 @@ def test_nothing_else_is_left_in_the_folders_of_the_user(tmp_path):
     home, out = tmp_path / "home", tmp_path / "w.dxf"
     home.mkdir()
     code = (
-        "import sys; from core.writing_out.drawing import write_strips; "
-        "from core.writing_out.worn import Strip; write_strips(sys.argv[1], [Strip('a', 'a', 100.0, 10.0)])"
+        "import sys; from core.export.drawings import write_strips; "
+        "from core.export.band_geometry import Strip; write_strips(sys.argv[1], [Strip('a', 'a', 100.0, 10.0)])"
     )
     folders = {"HOME": str(home), "XDG_CACHE_HOME": str(home / "cache"), "USERPROFILE": str(home)}
     subprocess.run(

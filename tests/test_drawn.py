@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.wording.samples import sample_design
-from core.aims.drawn import FARTHEST, Drawn, drawn, from_table, outline
-from core.aims.outline import profile_name
-from core.aims.readings import reading
-from core.answer import answer_of
-from core.pipeline import Stages, build
-from core.presets import built_in, with_preset
+from app.presenters.samples import sample_design
+from core.analysis.inverse_design.profile_curve import FARTHEST, Drawn, drawn, from_table, outline
+from core.analysis.inverse_design.profile_quantity import profile_name
+from core.analysis.inverse_design.readings import reading
+from core.document.presets import built_in, with_preset
+from core.pipeline.build import Stages, build
+from core.pipeline.exact import answer_of
 
 
 def body(name: str) -> Stages:

@@ -7,18 +7,18 @@ from dataclasses import replace
 
 import pytest
 
-from app.wording.samples import lifted_sample
-from core.advice.easing import WIDEST
-from core.advice.remedy import Search
-from core.advice.standing import standing
-from core.advice.ways import Change
-from core.assessment import BAD, assessed
-from core.design import Design
-from core.design_elastics import OverstretchedError
-from core.doctor import Diagnosis, diagnose
-from core.pipeline import Stages, build
+from app.presenters.samples import lifted_sample
+from core.analysis.diagnosis.candidate_changes import Change
+from core.analysis.diagnosis.diagnose import Diagnosis, diagnose
+from core.analysis.diagnosis.pressure_fixes import WIDEST
+from core.analysis.diagnosis.search import Search
+from core.analysis.diagnosis.trial_run import standing
+from core.document.design import Design
+from core.document.elastic import OverstretchedError
+from core.garment.assessment import BAD, assessed
+from core.pipeline.build import Stages, build
+from core.pipeline.solve import run
 from core.progress import quiet
-from core.solution import run
 
 Built = Callable[[str], Stages]
 

@@ -9,10 +9,10 @@ import pytest
 from garment_tools import at_rest, made_of
 from window_tools import PATIENCE, Script, run_undrawn, settled
 
-from app.lining import elastic_offer
-from app.main_window import MainWindow
-from app.wording.samples import lifted_sample
-from core.elastics import find_elastic
+from app.gui.features.garment import elastic_offer
+from app.gui.main_window import MainWindow
+from app.presenters.samples import lifted_sample
+from core.garment.elastic_library import find_elastic
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

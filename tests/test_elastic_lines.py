@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from models import pairs_of
 
-from core.design_elastics import Elastic
-from core.design_lines import LineTraits, WornLine
+from core.document.elastic import Elastic
+from core.document.lines import LineTraits, WornLine
 from core.errors import LineError
-from core.exact import solve_exact
-from core.pipeline import build, targets_of
-from core.solution import run
-from core.solving.body_volume import solve_body_exact
-from core.solving.newtons import newtons_per_unit
+from core.mechanics.dense_volume import solve_body_exact
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.force_units import newtons_per_unit
+from core.pipeline.build import build, targets_of
+from core.pipeline.solve import run
 
 
 def hooke(ea, reach=1.0):

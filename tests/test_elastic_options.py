@@ -9,14 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from app.cli import main
-from app.commands import elastics
-from core.design_elastics import Elastic
-from core.design_lines import WornLine
-from core.elastics import built_in, find_elastic
-from core.pipeline import Stages, build
-from core.sewing.as_worn import fitted, reached_points
-from core.sewing.elastic_options import (
+from app.cli import elastic_list as elastics
+from app.cli.main import main
+from core.document.elastic import Elastic
+from core.document.lines import WornLine
+from core.garment.elastic_library import built_in, find_elastic
+from core.garment.elastic_options import (
     FIRST_STRETCH,
     KEEP_CUT,
     KEEP_FIT,
@@ -26,6 +24,8 @@ from core.sewing.elastic_options import (
     outcome_of,
     strongest,
 )
+from core.garment.match_shape import fitted, reached_points
+from core.pipeline.build import Stages, build
 
 STRAP = find_elastic("strap 15")
 WEAK = Elastic("weak", 10.0, ((0.0, 0.0), (0.3, 0.5)))

@@ -5,13 +5,15 @@ from dataclasses import replace
 
 import pytest
 
-from core.design import Design, ScanSource
-from core.design_elastics import Elastic
-from core.design_lines import LineTraits
-from core.design_text import from_json, to_json
-from core.document import Document
-from core.document_text import DESIGN, VARIANTS, from_texts, to_texts
-from core.elastics import (
+from core.document.design import Design, ScanSource
+from core.document.document import Document
+from core.document.document_text import DESIGN, VARIANTS, from_texts, to_texts
+from core.document.elastic import Elastic
+from core.document.lines import LineTraits
+from core.document.serialization import from_json, to_json
+from core.errors import LineError, UserError
+from core.garment.elastic_csv import TEMPLATE, csv_of, elastic_from_csv
+from core.garment.elastic_library import (
     ALLOWANCE,
     built_in,
     find_elastic,
@@ -23,8 +25,6 @@ from core.elastics import (
     told_allowance,
     write_elastic,
 )
-from core.errors import LineError, UserError
-from core.sewing.elastic_csv import TEMPLATE, csv_of, elastic_from_csv
 
 ROLL = Elastic("roll 7", 12.0, ((0.0, 0.0), (0.2, 1.0), (0.5, 4.0)), 30.0, "measured", estimate=False)
 WORN = Design(ScanSource("a.ply")).with_line("mid-bust", 0.7)

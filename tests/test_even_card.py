@@ -8,15 +8,15 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication, QScrollArea
 
-from app.dress.theme import load_fonts
-from app.panels.even_card import EvenCard, EvenTitle
-from app.panels.result import ResultPanel
-from app.presenting.even import even_summary
-from app.wording.samples import sample_design
-from app.wording.words import speaking
-from core.advice.mirrored import SkinGap
-from core.evenness import BeforeAfter, Evenness
-from core.pipeline import build
+from app.gui.features.measurements.panel import ResultPanel
+from app.gui.features.symmetry.card import EvenCard, EvenTitle
+from app.gui.theme.stylesheet import load_fonts
+from app.i18n.catalog import speaking
+from app.presenters.samples import sample_design
+from app.presenters.symmetry import even_summary
+from core.analysis.symmetry.compare import BeforeAfter, Evenness
+from core.analysis.symmetry.mirrored_surface import SkinGap
+from core.pipeline.build import build
 
 NARROWEST = 296
 """What a card has in a window that is 1180 px wide [px]."""

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 from shapes import SAMPLES
 
-from app.cli import BAD_INPUT, main
-from app.commands.ending import NOT_SETTLED, SETTLED
-from app.presenting.assessment import headline
-from core.backups import backups
-from core.project import open_project
+from app.cli.exit_code import NOT_SETTLED, SETTLED
+from app.cli.main import BAD_INPUT, main
+from app.presenters.assessment import headline
+from core.document.storage.backups import backups
+from core.document.storage.project_file import open_project
 
 STANDING = ("--unit", "mm", "--up", "+z", "--front", "-y")
 PERSON = (str(SAMPLES / "person.ply"), *STANDING, "--line", "mid-bust=93%")

@@ -7,20 +7,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.panels.even_card import EvenSummary
-from app.presenting.even import asks_to_be_even, even_summary, evened_words, map_note
-from app.wording.samples import sample_design
-from app.wording.words import speaking
-from core.advice.mirrored import SkinGap
-from core.aims.figure import Goal
-from core.design_lines import LineTraits
-from core.evenness import BeforeAfter, Evenness, evenness
-from core.measuring.plus_minus import SOURCES, Doubt, Spread
-from core.own_lines import ready_made
-from core.pipeline import Stages, build
-from core.request import Reply
-from core.splitting import split
-from core.template import read_template
+from app.gui.features.symmetry.card import EvenSummary
+from app.i18n.catalog import speaking
+from app.presenters.samples import sample_design
+from app.presenters.symmetry import asks_to_be_even, even_summary, evened_words, map_note
+from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.solve import Reply
+from core.analysis.symmetry.compare import BeforeAfter, Evenness, evenness
+from core.analysis.symmetry.mirrored_surface import SkinGap
+from core.control_mesh.template import read_template
+from core.document.line_notation import ready_made
+from core.document.lines import LineTraits
+from core.document.split_lines import split
+from core.measurements.uncertain_value import SOURCES, Doubt, Spread
+from core.pipeline.build import Stages, build
 
 TEMPLATE = read_template("168")
 

@@ -6,19 +6,19 @@ from dataclasses import replace
 
 import pytest
 
-from app.wording.samples import sample_design
-from core.advice.evening import EVEN, even_goals, make_even
-from core.advice.parting import ENOUGH, moves_one_side, partable, parted
-from core.aims.readings import reading
-from core.design_lines import LineTraits
+from app.presenters.samples import sample_design
+from core.analysis.inverse_design.readings import reading
+from core.analysis.symmetry.balance import EVEN, even_goals, make_even
+from core.analysis.symmetry.compare import NO_BREAST, evenness
+from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, partable, parted
+from core.control_mesh.template import read_template
+from core.document.line_notation import ready_made
+from core.document.lines import LineTraits
+from core.document.split_lines import split
 from core.errors import UserError
-from core.evenness import NO_BREAST, evenness
-from core.finding.bust_point import ACROSS
-from core.own_lines import ready_made
-from core.pipeline import Stages, build
-from core.solution import run
-from core.splitting import split
-from core.template import read_template
+from core.landmarks.bust_point import ACROSS
+from core.pipeline.build import Stages, build
+from core.pipeline.solve import run
 
 TEMPLATE = read_template("168")
 

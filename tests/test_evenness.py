@@ -9,20 +9,20 @@ import numpy as np
 import pytest
 from shapes import mirrored as mirrored_control
 
-from app.wording.samples import sample_design
-from core.advice.mirrored import Mirrored
-from core.aims.even import FURTHER_OUT, HIGHER
-from core.aims.readings import reading
-from core.evenness import NO_BREAST, evenness
-from core.finding.bust_point import ACROSS
-from core.landmark import Landmarks
-from core.mesh import MIRROR, Mesh, Points
-from core.moving import moving_faces
-from core.patch import patch_fade
-from core.pipeline import Stages, build
-from core.solution import run
-from core.tffd import bind
-from core.watch import BodyWatch
+from app.presenters.samples import sample_design
+from core.analysis.inverse_design.balance_quantity import FURTHER_OUT, HIGHER
+from core.analysis.inverse_design.readings import reading
+from core.analysis.symmetry.compare import NO_BREAST, evenness
+from core.analysis.symmetry.mirrored_surface import Mirrored
+from core.deformation.blend_region import patch_fade
+from core.deformation.incremental_normals import moving_faces
+from core.deformation.tffd import bind
+from core.geometry.mesh import MIRROR, Mesh, Points
+from core.landmarks.bust_point import ACROSS
+from core.landmarks.types import Landmarks
+from core.pipeline.build import Stages, build
+from core.pipeline.observables import BodyWatch
+from core.pipeline.solve import run
 
 BALL_AT = 12.0
 

@@ -8,14 +8,14 @@ import pytest
 from scipy.optimize import brentq, minimize
 from shapes import central_difference, fitted, mid_bust, mirrored, tent, torso
 
-from core.exact import newton, solve_exact
-from core.lines import line_on
-from core.mechanics import Mechanics
-from core.model import assemble, constrained_model
-from core.solver import Targets, iterate
-from core.solving.potential import Potential
-from core.tensegric import tensegric_model
-from core.volume import volume_measure
+from core.mechanics.constraint_lines import line_on
+from core.mechanics.exact_solution import newton, solve_exact
+from core.mechanics.iteration import Targets, iterate
+from core.mechanics.model import assemble, constrained_model
+from core.mechanics.options import Mechanics
+from core.mechanics.potential import Potential
+from core.mechanics.tensegrity import tensegric_model
+from core.mechanics.volume import volume_measure
 
 TORSO = constrained_model(torso(), worn=["mid-bust"])
 SKEW = constrained_model(torso(skew=0.3))

@@ -6,9 +6,9 @@ import trimesh
 from shapes import octahedron, torso
 
 from core.errors import UserError
-from core.export import FORMATS, write_mesh
-from core.mesh import Mesh
-from core.space import Space
+from core.export.mesh import FORMATS, write_mesh
+from core.export.units_and_axes import Space
+from core.geometry.mesh import Mesh
 
 
 @pytest.mark.parametrize("kind", FORMATS)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from pages_alike import alike
 
-from app.cli import main
+from app.cli.main import main
 
 ROOT = Path(__file__).parent.parent
 PAGE = (ROOT / "docs/export.md").read_text("utf-8")

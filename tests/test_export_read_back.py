@@ -16,26 +16,26 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.exporting.choices import Choices
-from app.exporting.outcome import Manner, Outcome
-from app.exporting.ready import CONTROL_FORMATS, make_ready
-from app.wording.export_choices import exports
-from app.wording.words import speaking
-from core.cutting import cut_list
-from core.design import Design, ScanSource
-from core.design_measures import OwnMeasure
-from core.elastics import find_elastic
-from core.export import FORMATS
-from core.mesh import Mesh
-from core.own_lines import ready_made
-from core.pipeline import build
+from app.i18n.catalog import speaking
+from app.presenters.export_formats import exports
+from app.presenters.export_preview import CONTROL_FORMATS, make_ready
+from app.presenters.export_request import Manner, Outcome
+from app.presenters.export_settings import Choices
+from core.control_mesh.template import read_template
+from core.document.custom_measures import OwnMeasure
+from core.document.design import Design, ScanSource
+from core.document.line_notation import ready_made
+from core.export.drawings import CURVE_FORMATS, STRIP_FORMATS
+from core.export.measurement_files import MEASURE_FORMATS
+from core.export.mesh import FORMATS
+from core.export.units_and_axes import AXES, UNITS, space_of
+from core.garment.cut_list import cut_list
+from core.garment.elastic_library import find_elastic
+from core.geometry.mesh import Mesh
+from core.geometry.plane_sections import arc_length
+from core.pipeline.build import build
+from core.pipeline.solve import run
 from core.progress import quiet
-from core.sections import arc_length
-from core.solution import run
-from core.space import AXES, UNITS, space_of
-from core.template import read_template
-from core.writing_out.drawing import CURVE_FORMATS, STRIP_FORMATS
-from core.writing_out.measures_file import MEASURE_FORMATS
 
 SAMPLES = Path(__file__).parents[1] / "resources" / "samples"
 SVG = "{http://www.w3.org/2000/svg}"

@@ -10,10 +10,10 @@ import trimesh
 from shapes import octahedron
 
 from core.errors import UserError
-from core.export import FORMATS, write_mesh
-from core.mesh import Mesh
+from core.export.mesh import FORMATS, write_mesh
+from core.export.units_and_axes import AXES, UNITS, Space, space_of
+from core.geometry.mesh import Mesh
 from core.progress import Cancelled
-from core.space import AXES, UNITS, Space, space_of
 
 NOSE, CROWN, LEFT = np.array([0.0, -100.0, 0.0]), np.array([0.0, 0.0, 300.0]), np.array([200.0, 0.0, 0.0])
 

@@ -12,17 +12,17 @@ import matplotlib.image
 import numpy as np
 import pytest
 
-from app.cli import main
-from app.printing.bodies import figure_1
-from app.printing.figures import FIGURES, draw, make_some
-from app.printing.page import page_of
-from app.printing.search import Pair, pairs_of, search_words
-from app.printing.side import outward, profile
-from app.printing.study import Study, line_share, moved, reached_length
-from app.printing.style import trimmed
+from app.cli.main import main
+from app.research.cases import Study, line_share, moved, reached_length
+from app.research.fig_1_3_5 import figure_1
+from app.research.fig_4 import outward, profile
+from app.research.figure_style import trimmed
+from app.research.figures import FIGURES, draw, make_some
+from app.research.page import page_of
+from app.research.parameter_study import RATIOS, Finding, mirrored_mean, routes
+from app.research.parameter_study_text import Pair, pairs_of, search_words
 from core.errors import UserError
-from core.mesh import Mesh
-from core.studies.search import RATIOS, Finding, mirrored_mean, routes
+from core.geometry.mesh import Mesh
 
 
 @pytest.fixture(scope="module")
@@ -181,7 +181,7 @@ def test_the_command_draws_what_is_asked(tmp_path: Path, capsys: pytest.CaptureF
 
 def test_figures_need_no_window() -> None:
     code = (
-        "import sys, app.printing.figures; sys.exit(any(name.startswith('PySide6') for name in sys.modules))"
+        "import sys, app.research.figures; sys.exit(any(name.startswith('PySide6') for name in sys.modules))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False, capture_output=True).returncode == 0
 

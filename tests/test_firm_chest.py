@@ -6,12 +6,12 @@ from models import settled, small
 from scipy.optimize import minimize
 from shapes import fitted, mid_bust, run, tent, torso
 
-from core.exact import solve_exact
-from core.mechanics import Mechanics
-from core.model import constrained_model
-from core.solver import Targets
-from core.solving.gain import gain_limit
-from core.tensegric import tensegric_model, tissue_depth
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.gain_limit import gain_limit
+from core.mechanics.iteration import Targets
+from core.mechanics.model import constrained_model
+from core.mechanics.options import Mechanics
+from core.mechanics.tensegrity import tensegric_model, tissue_depth
 
 FIRM = Mechanics(firm_chest=0.1)
 SAMPLES = ("mannequin", "person")

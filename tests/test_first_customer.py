@@ -16,17 +16,17 @@ from test_model_panel import choose
 from test_window_scan import pull
 from window_tools import Script, drag, run_main, settled, undrawn
 
-from app.main_window import MainWindow
-from app.panels.elastic_pull import ElasticPull
-from app.presenting.bust import bust_move, move_between
-from app.wording.samples import lifted_sample
-from core.cutting import cut_list
-from core.design import ScanSource
-from core.pipeline import Stages, build
-from core.press_list import press_list
-from core.project import open_project
-from core.sewing.as_worn import reached_points
-from core.sewing.comfort import comfort
+from app.gui.main_window import MainWindow
+from app.gui.widgets.elastic_button import ElasticPull
+from app.presenters.bust_shift import bust_move, move_between
+from app.presenters.samples import lifted_sample
+from core.document.design import ScanSource
+from core.document.storage.project_file import open_project
+from core.garment.cut_list import cut_list
+from core.garment.match_shape import reached_points
+from core.garment.pressure_limits import comfort
+from core.garment.pressure_list import press_list
+from core.pipeline.build import Stages, build
 
 DOCS = Path(__file__).parent.parent / "docs"
 
@@ -38,9 +38,9 @@ def own_house(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, person: Path) -> 
     """A customer's scan, and answers to the dialogs of files."""
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
     shutil.copy(person, tmp_path / "anna.ply")
-    monkeypatch.setattr("app.desks.desk.ask_open", lambda *_: str(tmp_path / "anna.ply"))
-    monkeypatch.setattr("app.desks.desk.ask_save", lambda *_: str(tmp_path / "anna.busk"))
-    monkeypatch.setattr("app.desks.report_desk.ask_save", lambda *_: str(tmp_path / "anna.pdf"))
+    monkeypatch.setattr("app.gui.document_controller.ask_open", lambda *_: str(tmp_path / "anna.ply"))
+    monkeypatch.setattr("app.gui.document_controller.ask_save", lambda *_: str(tmp_path / "anna.busk"))
+    monkeypatch.setattr("app.gui.features.report.controller.ask_save", lambda *_: str(tmp_path / "anna.pdf"))
 
 
 def test_the_first_customer_as_the_guide_tells_it(tmp_path: Path) -> None:

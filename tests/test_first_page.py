@@ -10,16 +10,16 @@ import pytest
 from pdf_tools import Pdf
 from PySide6.QtGui import QImage
 
-from app.dress.theme import load_fonts
-from app.reporting.cut_rows import line_notes
-from app.reporting.handout import SHOTS, Handout
-from app.reporting.pages import pages_of
-from app.reporting.pdf import write_pdf
-from core.design_lines import LineTraits
-from core.pipeline import Stages, build
-from core.presets import built_in, with_preset
-from core.sheet import Heading, Sheet, sheet_of
-from core.solution import run
+from app.gui.theme.stylesheet import load_fonts
+from app.report.cut_rows import line_notes
+from app.report.document import SHOTS, Handout
+from app.report.pages import pages_of
+from app.report.pdf import write_pdf
+from core.document.lines import LineTraits
+from core.document.presets import built_in, with_preset
+from core.export.report_data import Heading, Sheet, sheet_of
+from core.pipeline.build import Stages, build
+from core.pipeline.solve import run
 
 LONG = "Upper edge of the cup, laid double, left"
 

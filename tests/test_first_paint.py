@@ -15,26 +15,26 @@ from PySide6.QtWidgets import QAbstractButton, QApplication, QWidget
 from pytestqt.qtbot import QtBot
 from window_tools import Script, run_main, settled, small_view
 
-import app.window
-from app.asking.housekeeping import Housekeeping
-from app.asking.jobs import Jobs
-from app.dress import first_paint
-from app.main_window import MainWindow
+import app.gui.startup
+from app.gui.main_window import MainWindow
+from app.gui.session.gc_control import Housekeeping
+from app.gui.session.jobs import Jobs
+from app.gui.widgets import first_paint
 
 ROOT = Path(__file__).parent.parent
 LATER = ("pyvista", "vtkmodules", "pyvistaqt", "matplotlib", "PIL", "ezdxf", "trimesh", "pyqtgraph", "numba")
-LATER += ("scipy.interpolate", "scipy.optimize", "app.seeing.scene", "app.printing.studio")
+LATER += ("scipy.interpolate", "scipy.optimize", "app.rendering.scene", "app.rendering.offscreen")
 
 UNTIL_PAINTED = f"""
 import sys
-import app.window
-from app.cli import main
+import app.gui.startup
+from app.cli.main import main
 
 def painted(window, what):
     print(*(name for name in {LATER!r} if name in sys.modules), "and no more")
     window.close()
 
-app.window._go_on = painted
+app.gui.startup._go_on = painted
 main(["resources/samples/mannequin.ply"])
 """
 
@@ -49,9 +49,9 @@ CURVES_SHOWN = """
 import sys
 import numpy as np
 from PySide6.QtWidgets import QApplication
-from app.showing.plot_canvas import PlotCanvas
-from app.showing.plot_curves import Curve, Plotted
-from app.showing.profile_plot import Drawn, ProfilePlot
+from app.gui.plots.canvas import PlotCanvas
+from app.presenters.curves import Curve, Plotted
+from app.gui.plots.section_plot import Drawn, ProfilePlot
 
 app = QApplication(["busk", "-platform", "offscreen"])
 run = Curve(np.arange(3.0), np.zeros(3), "main")
@@ -74,7 +74,7 @@ def test_what_draws_curves_is_loaded_with_the_first_and_not_while_it_is_painted(
 def test_the_window_is_at_work_before_there_is_a_body(
     mannequin: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    go_on, seen = app.window._go_on, []
+    go_on, seen = app.gui.startup._go_on, []
 
     def painted(window: MainWindow, what: str) -> None:
         seen.append(window.session.frame)
@@ -96,7 +96,7 @@ def test_the_window_is_at_work_before_there_is_a_body(
         assert scene.body is not None
         assert (scene.body.shown_points == scene.body.rest.vertices).all()
 
-    monkeypatch.setattr(app.window, "_go_on", painted)
+    monkeypatch.setattr(app.gui.startup, "_go_on", painted)
     assert run_main([str(mannequin)], script) == 0
     assert seen == [None]
 

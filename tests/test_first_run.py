@@ -12,14 +12,14 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 from window_tools import Script, drag, run_main, settled
 
-from app.desks.report_desk import ReportDesk
-from app.main_window import MainWindow
-from app.panels.coach_mark import CoachMark
-from app.presenting.bust import bust_move, move_between, up_words
-from app.wording.samples import FIRST_SAMPLE, LIFTING_LINE, SAMPLES, lifted_sample
-from core.assessment import BAD, assessed
-from core.pipeline import build
-from core.solution import run
+from app.gui.features.report.controller import ReportDesk
+from app.gui.main_window import MainWindow
+from app.gui.widgets.coach_mark import CoachMark
+from app.presenters.bust_shift import bust_move, move_between, up_words
+from app.presenters.samples import FIRST_SAMPLE, LIFTING_LINE, SAMPLES, lifted_sample
+from core.garment.assessment import BAD, assessed
+from core.pipeline.build import build
+from core.pipeline.solve import run
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -16,10 +16,10 @@ import sys
 import threading
 import time
 from PySide6.QtCore import QTimer
-import app.window
-from app.cli import main
+import app.gui.startup
+from app.cli.main import main
 
-faults, seen, began, go_on = [], [], time.monotonic(), app.window._go_on
+faults, seen, began, go_on = [], [], time.monotonic(), app.gui.startup._go_on
 
 class Finder:
     def find_spec(self, name, path=None, target=None):
@@ -45,7 +45,7 @@ def look():
 
 windows = []
 sys.meta_path.insert(0, Finder())
-app.window._go_on = begin
+app.gui.startup._go_on = begin
 """
 
 ASKED_FOR = """

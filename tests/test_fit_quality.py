@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from fit_bodies import RADIUS, analytic_body, body_of
 
-from core.fitting.bridging import rebuilt
-from core.fitting.easing import eased
-from core.fitting.fit_check import corner_angles, crossing_faces, find_faults
-from core.fitting.fit_quality import FitQuality, deviations, measure_fit
-from core.fitting.near_skin import NearSkin
-from core.mesh import Mesh
+from core.control_mesh.missing_points import rebuilt
+from core.control_mesh.quality import FitQuality, deviations, measure_fit
+from core.control_mesh.relaxation import eased
+from core.control_mesh.surface_projection import NearSkin
+from core.control_mesh.validation import corner_angles, crossing_faces, find_faults
+from core.geometry.mesh import Mesh
 
 FLAT = [(0.0, 0.0, 0.0), (4.0, 0.0, 0.0), (0.0, 4.0, 0.0)]
 

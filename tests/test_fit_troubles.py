@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 from fit_bodies import analytic_body, analytic_landmarks, body_of, hanging, landmarks_at, sample_of
 
-from core.control_mesh import fit_control_mesh
+from core.control_mesh.fit import fit_control_mesh
+from core.control_mesh.template import TEMPLATES, read_template
+from core.control_mesh.validation import agreement, bends, corner_angles
+from core.deformation.blend_region import patch_fade
+from core.deformation.tffd import bind, deform
 from core.errors import FitError
-from core.exact import solve_exact
-from core.fitting.fit_check import agreement, bends, corner_angles
-from core.mesh import Mesh
-from core.model import constrained_model
-from core.patch import patch_fade
-from core.template import TEMPLATES, read_template
-from core.tffd import bind, deform
+from core.geometry.mesh import Mesh
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.model import constrained_model
 
 
 @pytest.fixture(scope="module", params=TEMPLATES)

@@ -10,12 +10,12 @@ from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.dress.parts import FloatingPanel
-from app.dress.shadow import floating_ground
-from app.dress.theme import Sentence, apply_theme
-from app.panels.draw_card import DrawCard
-from app.showing.floating import APART, GAP, Floating
-from app.wording.tokens import DARK, LIGHT
+from app.gui.features.lines.draw_card import DrawCard
+from app.gui.theme.shadow import floating_ground
+from app.gui.theme.stylesheet import Sentence, apply_theme
+from app.gui.widgets.basic import FloatingPanel
+from app.gui.widgets.overlay_layout import APART, GAP, Floating
+from app.rendering.palette import DARK, LIGHT
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 import pytest
 from PySide6.QtWidgets import QApplication
 
-from app.dress.theme import load_fonts
-from app.reporting.flow import Block, Column, flow
-from app.reporting.paper import elided, line_height, text_width, wrapped
+from app.gui.theme.stylesheet import load_fonts
+from app.report.layout import Block, Column, flow
+from app.report.painter import elided, line_height, text_width, wrapped
 
 
 def columns() -> Iterator[Column]:

@@ -9,14 +9,14 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QHBoxLayout, QPushButton, QScrollArea, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.dress.divider import Divider
-from app.dress.focus import next_stop, stops
-from app.dress.wishes import UNTIL_THEN
-from app.menus import Menus
-from app.panels.preferences import PreferencesSheet
-from app.panels.setting_field import field_of
-from app.wording.model_choices import Choice
-from app.wording.words import use_language
+from app.gui.features.preferences.dialog import PreferencesSheet
+from app.gui.menus import Menus
+from app.gui.session.settings import UNTIL_THEN
+from app.gui.widgets.focus_chain import next_stop, stops
+from app.gui.widgets.option_field import field_of
+from app.gui.widgets.splitter import Divider
+from app.i18n.catalog import use_language
+from app.presenters.model_options import Choice
 
 
 @pytest.fixture

@@ -6,21 +6,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.design import Design, ScanSource
-from core.design_lines import OwnLine
-from core.design_text import from_json, to_json
-from core.embedding import embed
+from core.control_mesh.embedding import embed
+from core.control_mesh.path_snapping import off_by, snap
+from core.control_mesh.skin_projection import mesh_places, skin_places
+from core.control_mesh.template import read_template
+from core.document.design import Design, ScanSource
+from core.document.free_lines import free_curve
+from core.document.line_notation import mirror_image, own_line, text_of
+from core.document.lines import OwnLine
+from core.document.serialization import from_json, to_json
+from core.document.split_lines import split
 from core.errors import LineError
-from core.free_curves import free_curve
-from core.geodesic import SkinWays
-from core.mesh import Points
-from core.own_lines import mirror_image, own_line, text_of
-from core.pipeline import Stages, build
-from core.sections import resample
-from core.skin_places import mesh_places, skin_places
-from core.snapping import off_by, snap
-from core.splitting import split
-from core.template import read_template
+from core.geometry.geodesic import SkinWays
+from core.geometry.mesh import Points
+from core.geometry.plane_sections import resample
+from core.pipeline.build import Stages, build
 
 TEMPLATE = read_template("168")
 Built = Callable[[str], Stages]

@@ -8,16 +8,16 @@ import pytest
 from models import LAWS, cable_force, check_sliding_derivative, energy_of, law_of, settled, volume_slopes
 from shapes import central_difference, mirrored, run, torso
 
-from core.control_mesh import ControlMesh
-from core.design_lines import OwnLine
-from core.embedding import embed, weighted
-from core.exact import newton, solve_exact
-from core.mechanics import CONTACTS, HOLDS, Mechanics
-from core.model import ConstrainedModel, constrained_model
-from core.own_lines import with_own_lines
-from core.solver import Targets, at_rest, iterate, turn
-from core.solving.gain import Swing, gain_limit
-from core.solving.potential import Potential
+from core.control_mesh.embedding import embed, weighted
+from core.control_mesh.fit import ControlMesh
+from core.document.line_notation import with_own_lines
+from core.document.lines import OwnLine
+from core.mechanics.exact_solution import newton, solve_exact
+from core.mechanics.gain_limit import Swing, gain_limit
+from core.mechanics.iteration import Targets, at_rest, iterate, turn
+from core.mechanics.model import ConstrainedModel, constrained_model
+from core.mechanics.options import CONTACTS, HOLDS, Mechanics
+from core.mechanics.potential import Potential
 
 RNG = np.random.default_rng(7)
 DIAGONAL = OwnLine("diagonal", places=((1.4, -4.3), (2.3, -2.2), (3.6, -0.4), (4.9, 2.6)))

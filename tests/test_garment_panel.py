@@ -10,11 +10,11 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QPushButton, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.dress.theme import apply_theme
-from app.panels.garment import GarmentPanel
-from app.panels.garment_view import CutView, GarmentView, PressureView
-from app.panels.inspector import Inspector
-from app.wording.words import LANGUAGES, tr, use_language
+from app.gui.features.garment.panel import GarmentPanel
+from app.gui.inspector import Inspector
+from app.gui.theme.stylesheet import apply_theme
+from app.i18n.catalog import LANGUAGES, tr, use_language
+from app.presenters.cut_list_views import CutView, GarmentView, PressureView
 
 STRAP = CutView("strap left", "Strap left", "#E2A32F", 15.0, "Strap 15 mm", "432", "+43 %", "5.0")
 BAND = CutView("under-bust", "Under-bust", "#5A3F94", 18.0, "Bra band", "627", "", "2.6", (), 25.0)

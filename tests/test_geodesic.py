@@ -7,8 +7,8 @@ import pytest
 import trimesh
 
 from core.errors import LineError
-from core.geodesic import SkinWays, shortest_way, unpinched
-from core.mesh import Mesh
+from core.geometry.geodesic import SkinWays, shortest_way, unpinched
+from core.geometry.mesh import Mesh
 
 Pair = tuple[float, float]
 Ends = tuple[np.ndarray, ...]

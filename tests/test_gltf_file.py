@@ -11,7 +11,7 @@ from scan_files import HOUSES, gltf
 
 from core.errors import ScanError
 from core.progress import Cancelled
-from core.reading.scan_file import read_raw, scan_bytes
+from core.scan.readers.registry import read_raw, scan_bytes
 
 
 def test_a_gltf_file_is_read_with_the_file_beside_it_and_with_no_other(tmp_path):

@@ -10,12 +10,12 @@ import pytest
 from test_word_list import refused
 from test_words import asked_words
 
-from app.presenting.elastics import kind_title
-from app.wording.model_choices import Choice, groups
-from app.wording.samples import SAMPLES
-from app.wording.words import read_words, say, speaking, tr
-from core.elastics import built_in as elastics
-from core.presets import built_in as presets
+from app.i18n.catalog import read_words, say, speaking, tr
+from app.presenters.elastics import kind_title
+from app.presenters.model_options import Choice, groups
+from app.presenters.samples import SAMPLES
+from core.document.presets import built_in as presets
+from core.garment.elastic_library import built_in as elastics
 
 DOCS = Path(__file__).parent.parent / "docs"
 PAGES = ("first.md", "screens.md")

@@ -10,8 +10,8 @@ from math import isfinite, isnan
 import pytest
 from hard_cases import hard_case
 
-from core.mechanics import CHOICES
-from core.verdict import MOTIONS
+from core.mechanics.convergence import MOTIONS
+from core.mechanics.options import CHOICES
 
 SEEDS = range(60)
 TURNS = 100

@@ -5,11 +5,11 @@ import pytest
 from fit_bodies import SAMPLES, body_of, landmarks_at, sample_of
 from scipy.spatial import cKDTree
 
-from core.control_mesh import fit_control_mesh
-from core.fitting.near_skin import NearSkin
-from core.fitting.torso import measure_torso
-from core.mesh import Mesh
-from core.template import TEMPLATES, read_template
+from core.control_mesh.fit import fit_control_mesh
+from core.control_mesh.surface_projection import NearSkin
+from core.control_mesh.template import TEMPLATES, read_template
+from core.control_mesh.torso_frame import measure_torso
+from core.geometry.mesh import Mesh
 
 REACH = 75.0
 """Size of the part that is pulled with a breast [mm]."""

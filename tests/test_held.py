@@ -9,15 +9,15 @@ from models import LAWS, energy_of, law_of, pairs_of, path_of, settled, small
 from scipy.optimize import brentq
 from shapes import fitted, mid_bust, run, tent, torso
 
-from core.exact import newton, solve_exact
-from core.lines import line_on
-from core.mechanics import Mechanics
-from core.model import assemble, constrained_model
-from core.solver import Targets
-from core.solving.potential import Potential
-from core.studies.sphere import sphere_model
-from core.tensegric import tensegric_model
-from core.volume import volume_measure
+from app.research.sphere import sphere_model
+from core.mechanics.constraint_lines import line_on
+from core.mechanics.exact_solution import newton, solve_exact
+from core.mechanics.iteration import Targets
+from core.mechanics.model import assemble, constrained_model
+from core.mechanics.options import Mechanics
+from core.mechanics.potential import Potential
+from core.mechanics.tensegrity import tensegric_model
+from core.mechanics.volume import volume_measure
 
 HELD = Mechanics(line_hold="held")
 RATIOS = (1.0, 0.9, 0.97)

@@ -8,9 +8,9 @@ from scipy.ndimage import maximum_filter
 from test_landmarks import SIDES, part, sample, truth
 from test_landmarks_damaged import body
 
-from core.finding.under_breast import CREASE
-from core.landmarks import find_landmarks
-from core.mesh import Mesh
+from core.geometry.mesh import Mesh
+from core.landmarks.detect import find_landmarks
+from core.landmarks.lower_breast import CREASE
 
 
 def seen_from(mesh: Mesh, azimuth: float, elevation: float) -> np.ndarray:

@@ -11,14 +11,14 @@ from scipy.spatial import ConvexHull
 from shapes import fitted, mid_bust, torso
 from threadpoolctl import threadpool_limits
 
-from core.exact import solve_exact
-from core.mechanics import Mechanics
-from core.mesh import Mesh
-from core.model import ConstrainedModel, constrained_model
-from core.solver import Targets
-from core.studies.sphere import sphere
-from core.tensegric import tensegric_model
-from core.volume import volume_measure
+from app.research.sphere import sphere
+from core.geometry.mesh import Mesh
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.iteration import Targets
+from core.mechanics.model import ConstrainedModel, constrained_model
+from core.mechanics.options import Mechanics
+from core.mechanics.tensegrity import tensegric_model
+from core.mechanics.volume import volume_measure
 
 RATIOS = (1.0, 0.85, 0.95)
 LITRE = 1e6

@@ -11,12 +11,12 @@ import pytest
 import trimesh
 from worn_scans import ply_bytes, with_legs
 
-from core.body import Body, body_of, read_scan
-from core.cleaning import inner
-from core.cleaning.inner import BURIED, drop_hidden
-from core.cleaning.repair import repair
-from core.cleaning.skin import Skin
-from core.landmarks import find_landmarks
+from core.landmarks.detect import find_landmarks
+from core.scan.body import Body, body_of, read_scan
+from core.scan.repair import inner_surfaces as inner
+from core.scan.repair.editable_mesh import Skin
+from core.scan.repair.inner_surfaces import BURIED, drop_hidden
+from core.scan.repair.repair import repair
 
 
 @cache

@@ -12,17 +12,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from made_designs import anything, designs
 
-from core.design import Design, ScanSource
-from core.design_calibration import Calibration, FoundNumber
-from core.design_elastics import Elastic
-from core.design_lines import LineTraits, OwnLine, WornLine
-from core.design_measures import OwnMeasure
-from core.design_text import from_json, to_json
-from core.document import Document
-from core.document_text import from_texts, to_texts
+from core.document.calibration_record import Calibration, FoundNumber
+from core.document.custom_measures import OwnMeasure
+from core.document.design import Design, ScanSource
+from core.document.document import Document
+from core.document.document_text import from_texts, to_texts
+from core.document.elastic import Elastic
+from core.document.json_values import parsed, value_of
+from core.document.lines import LineTraits, OwnLine, WornLine
+from core.document.serialization import from_json, to_json
 from core.errors import ProjectError, UserError
-from core.json_values import parsed, value_of
-from core.placing import PlacedMark
+from core.landmarks.manual import PlacedMark
 
 WHOLE = Design(
     ScanSource("", "scan/body.ply", "cm", "+z", "-y"),

@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from core import kernels
-from core.mesh import Mesh
+from core.geometry import kernels
+from core.geometry.mesh import Mesh
 
 RANDOM = np.random.default_rng(6)
 POINTS = RANDOM.normal((0.0, -200.0, 1100.0), 80.0, size=(70, 3))
@@ -129,5 +129,5 @@ def test_what_goes_wrong_leaves_the_definitions_and_is_told(monkeypatch):
 
 def test_numba_is_not_read_before_it_is_asked_for():
     """It takes about a second, which no first picture has."""
-    program = "import sys, core.pipeline, core.kernels; sys.exit('numba' in sys.modules)"
+    program = "import sys, core.pipeline.build, core.geometry.kernels; sys.exit('numba' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0

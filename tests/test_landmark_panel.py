@@ -12,13 +12,13 @@ from pytestqt.qtbot import QtBot
 from test_landmarks import found, sample, truth
 from test_landmarks_damaged import body
 
-from app.panels.landmark_row import LandmarkView
-from app.panels.landmarks import LandmarksPanel
-from app.presenting.scan import landmark_view, spot_of
-from core.doubts import first_doubt, landmark_doubts
-from core.finding.bust_point import NIPPLE
-from core.landmark import CERTAIN, Landmark, Landmarks
-from core.landmarks import find_landmarks
+from app.gui.features.landmarks.panel import LandmarksPanel
+from app.gui.features.landmarks.row import LandmarkView
+from app.presenters.scan import landmark_view, spot_of
+from core.landmarks.bust_point import NIPPLE
+from core.landmarks.detect import find_landmarks
+from core.landmarks.types import CERTAIN, Landmark, Landmarks
+from core.landmarks.warnings import first_doubt, landmark_doubts
 
 LEFT = LandmarkView("fold_left", "Fold left", 0.3, "A rule.", "under", weak=True)
 RIGHT = LandmarkView("fold_right", "Fold right", 0.4, "A rule.", "under", weak=True)

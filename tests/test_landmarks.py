@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 import trimesh
 
-from core.body import Body
 from core.errors import LandmarkError
-from core.finding.bust_point import MIRRORED, NIPPLE, SMOOTH
-from core.finding.relief import relief_kernels
-from core.landmark import CERTAIN, Landmarks
-from core.landmarks import find_landmarks
-from core.mesh import Mesh
-from core.standing.upright import Pose
+from core.geometry.mesh import Mesh
+from core.landmarks.bust_point import MIRRORED, NIPPLE, SMOOTH
+from core.landmarks.detect import find_landmarks
+from core.landmarks.nipple import relief_kernels
+from core.landmarks.types import CERTAIN, Landmarks
+from core.scan.body import Body
+from core.scan.orientation.pose import Pose
 
 ROOT = Path(__file__).parents[1]
 TRUTH = json.loads((ROOT / "tests/data/truth.json").read_text(encoding="utf-8"))

@@ -10,20 +10,20 @@ import pytest
 from test_landmarks import NAMES, SIDES, found, part, sample, truth
 from worn_scans import decimated
 
-from core.body import Body
 from core.errors import LandmarkError
-from core.finding.anchor import find_anchor
-from core.finding.breast_profile import OFFSETS, OWN, Profile, profiles
-from core.finding.bust_check import check
-from core.finding.chest import find_poles
-from core.finding.fold import Trace, _rival
-from core.finding.under_breast import CREASE, MIRRORED, _apart, _confidence, _less_sure
-from core.landmark import Landmark, Landmarks
-from core.landmarks import find_landmarks
-from core.mesh import Mesh
-from core.placing import laid_on
-from core.standing.upright import Pose
-from core.trunk import survey
+from core.geometry.mesh import Mesh
+from core.landmarks.anchor import find_anchor
+from core.landmarks.breast_profiles import OFFSETS, OWN, Profile, profiles
+from core.landmarks.chest import find_poles
+from core.landmarks.detect import find_landmarks
+from core.landmarks.inframammary_fold import Trace, _rival
+from core.landmarks.lower_breast import CREASE, MIRRORED, _apart, _confidence, _less_sure
+from core.landmarks.manual import laid_on
+from core.landmarks.torso.cross_sections import survey
+from core.landmarks.types import Landmark, Landmarks
+from core.landmarks.validation import check
+from core.scan.body import Body
+from core.scan.orientation.pose import Pose
 
 
 def body(mesh: Mesh) -> Body:

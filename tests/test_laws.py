@@ -9,16 +9,16 @@ from models import LAWS, cable_force, energy_of, law_of, settled, small
 from scipy.optimize import minimize
 from shapes import central_difference, run, tent, torso
 
-from core.exact import solve_exact
-from core.mechanics import CONTACTS, HOLDS, Mechanics
-from core.members.cells import cells
-from core.members.springs import laplacian
-from core.model import constrained_model
-from core.solver import State, Targets, at_rest, turn
-from core.solving.potential import Potential
-from core.studies.sphere import sphere_control
-from core.tensegric import tensegric_model
-from core.volume import CONTROLS, Pressure
+from app.research.sphere import sphere_control
+from core.mechanics.corotated_cells import cells
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.iteration import State, Targets, at_rest, turn
+from core.mechanics.model import constrained_model
+from core.mechanics.options import CONTACTS, HOLDS, Mechanics
+from core.mechanics.potential import Potential
+from core.mechanics.springs import laplacian
+from core.mechanics.tensegrity import tensegric_model
+from core.mechanics.volume import CONTROLS, Pressure
 
 RNG = np.random.default_rng(21)
 RATIOS = (1.0, 0.9, 1.05)

@@ -6,17 +6,17 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from core.advice.limits import Length, Limits, Span, limits_of
-from core.design_lines import WornLine
-from core.elastics import find_elastic
-from core.exact import solve_exact
-from core.leeway import Leeway, Reason, leeway, leeway_of
-from core.lines import RATIO_LIMITS
-from core.pipeline import Stages, build, targets_of
-from core.pressure import pressures
-from core.sewing.comfort import comfort
-from core.sewing.tensions import line_tensions
-from core.solver import Targets, iterate
+from core.analysis.length_limits.limits import Length, Limits, Span, limits_of
+from core.analysis.length_limits.zones import Leeway, Reason, leeway, leeway_of
+from core.document.lines import WornLine
+from core.garment.elastic_library import find_elastic
+from core.garment.pressure import pressures
+from core.garment.pressure_limits import comfort
+from core.garment.tension import line_tensions
+from core.mechanics.constraint_lines import RATIO_LIMITS
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.iteration import Targets, iterate
+from core.pipeline.build import Stages, build, targets_of
 
 
 def dressed(built, sample="mannequin", elastic=None, **lines) -> Stages:

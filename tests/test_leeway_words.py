@@ -11,14 +11,14 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 from window_tools import Script, run_main, settled
 
-import app.lining.limits_desk
-from app.dress.tip import set_tip, shown_tip
-from app.main_window import MainWindow
-from app.panels.leeway_key import LeewayKey
-from app.panels.leeway_words import hint, key, placed, refusal, tone_at
-from app.panels.length_groove import _zones, wall_of
-from app.panels.length_slider import LengthSlider
-from core.leeway import Leeway, Reason, Zone
+import app.gui.features.lines.limits_controller
+from app.gui.features.lines.limits_legend import LeewayKey
+from app.gui.features.lines.slider import LengthSlider
+from app.gui.features.lines.slider_groove import _zones, wall_of
+from app.gui.main_window import MainWindow
+from app.gui.widgets.tooltip import set_tip, shown_tip
+from app.presenters.length_limits import hint, key, placed, refusal, tone_at
+from core.analysis.length_limits.zones import Leeway, Reason, Zone
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -191,7 +191,7 @@ def test_a_slider_tells_the_zone_under_the_pointer_and_on_its_handle_the_set_one
 def test_zones_follow_an_edit_while_the_model_still_settles(monkeypatch: pytest.MonkeyPatch) -> None:
     """Turns are made so slowly that nothing settles; zones come all the same, the selected first."""
     order: list[str] = []
-    work_out = app.lining.limits_desk.leeway_of
+    work_out = app.gui.features.lines.limits_controller.leeway_of
     seen = threading.Event()  # the zones of before, faint: new ones may be too quick for a look
     seen.set()
 
@@ -200,7 +200,7 @@ def test_zones_follow_an_edit_while_the_model_still_settles(monkeypatch: pytest.
         seen.wait(20.0)
         return work_out(stages, name, progress, **how)
 
-    monkeypatch.setattr(app.lining.limits_desk, "leeway_of", noted)
+    monkeypatch.setattr(app.gui.features.lines.limits_controller, "leeway_of", noted)
 
     def script(window: MainWindow) -> Script:
         yield settled(window)

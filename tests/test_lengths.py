@@ -7,16 +7,16 @@ from collections.abc import Iterator
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.panels.figure_field import FigureField
-from app.panels.line_row import LineRow, LineView
-from app.panels.measure_view import MeasureView, length_off
-from app.panels.number_field import NumberField
-from app.panels.variants import Figure
-from app.presenting.bust import up_words
-from app.presenting.measures import as_table
-from app.reporting.telling import figure
-from app.wording.lengths import length, read_length, use_unit
-from app.wording.words import say, use_language
+from app.gui.features.lines.row import LineRow, LineView
+from app.gui.features.variants.panel import Figure
+from app.gui.widgets.length_edit import NumberField
+from app.gui.widgets.value_edit import FigureField
+from app.i18n.catalog import say, use_language
+from app.i18n.lengths import length, read_length, use_unit
+from app.presenters.bust_shift import up_words
+from app.presenters.measurement_views import MeasureView, length_off
+from app.presenters.measurements import as_table
+from app.report.text import figure
 
 UNITS = ("mm", "cm", "in")
 

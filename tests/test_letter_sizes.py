@@ -2,8 +2,8 @@
 
 import pytest
 
-from core.measuring.definitions import DEFINITIONS
-from core.sizing.letters import letter_sizes
+from core.measurements.definitions import DEFINITIONS
+from core.measurements.letter_sizes import letter_sizes
 
 TABLES = {table.key: table for table in letter_sizes().tables}
 

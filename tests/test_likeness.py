@@ -11,20 +11,20 @@ import pytest
 import trimesh
 from altered_bodies import smooth_step
 
-from app.commands.found import found_text
-from core.body import Body
-from core.cleaning.clipping import above
-from core.detect import detection
+from app.cli.commands.detect import found_text
 from core.errors import LandmarkError
-from core.finding.body_scale import size_hint, whole_figure
-from core.finding.build import Build, build_of
-from core.finding.lean import lean_hint
-from core.finding.likeness import SMALL, clothes_hint, flat_hint, refuse_angular
-from core.landmark import CERTAIN, Hint, Landmarks
-from core.landmarks import find_landmarks
-from core.mesh import Mesh, Points
-from core.standing.upright import Pose
-from core.trunk import stable_level, trunk_levels
+from core.geometry.mesh import Mesh, Points
+from core.landmarks.as_dict import detection
+from core.landmarks.body_build import Build, build_of
+from core.landmarks.body_scale import size_hint, whole_figure
+from core.landmarks.detect import find_landmarks
+from core.landmarks.lean import lean_hint
+from core.landmarks.plausibility import SMALL, clothes_hint, flat_hint, refuse_angular
+from core.landmarks.torso.cross_sections import stable_level, trunk_levels
+from core.landmarks.types import CERTAIN, Hint, Landmarks
+from core.scan.body import Body
+from core.scan.orientation.pose import Pose
+from core.scan.repair.clipping import above
 
 ROOT = Path(__file__).parents[1]
 FACTOR = {"mm": 1.0, "inch": 25.4}

@@ -8,18 +8,18 @@ import numpy as np
 import pytest
 from shapes import fitted, torso
 
-from app.cli import main
-from app.panels.leeway_words import key, tone_at
-from core.advice.limits import PRECISION, SIGNS, all_limits, limits_of, shortest
-from core.comparison import shape_of
-from core.elastics import find_elastic
+from app.cli.main import main
+from app.presenters.length_limits import key, tone_at
+from core.analysis.length_limits.limits import PRECISION, SIGNS, all_limits, limits_of, shortest
+from core.analysis.length_limits.zones import leeway_of
 from core.errors import LineError
-from core.exact import solve_exact
-from core.leeway import leeway_of
-from core.lines import RATIO_LIMITS
-from core.mechanics import Mechanics
-from core.model import constrained_model
-from core.pipeline import build
+from core.garment.elastic_library import find_elastic
+from core.mechanics.constraint_lines import RATIO_LIMITS
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.model import constrained_model
+from core.mechanics.options import Mechanics
+from core.mechanics.solver_comparison import shape_of
+from core.pipeline.build import build
 
 WORN = ("mid-bust", "full-bust")
 CHOICES = {

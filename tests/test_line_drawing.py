@@ -11,14 +11,14 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
-from app.lining.line_drawing import LineDrawing
-from app.main_window import MainWindow
-from app.panels.draw_card import DrawCard
-from core.free_curves import FreeCurve
-from core.own_lines import mirror_image, mirrored
-from core.sections import resample
-from core.snapping import Snapped
-from core.template import read_template
+from app.gui.features.lines.draw_card import DrawCard
+from app.gui.features.lines.draw_tool import LineDrawing
+from app.gui.main_window import MainWindow
+from core.control_mesh.path_snapping import Snapped
+from core.control_mesh.template import read_template
+from core.document.free_lines import FreeCurve
+from core.document.line_notation import mirror_image, mirrored
+from core.geometry.plane_sections import resample
 
 TEMPLATE = read_template("168")
 

@@ -13,13 +13,13 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 from window_tools import Script, drag, points, run_main, run_undrawn, settled
 
-from app.lining import line_maker
-from app.lining.line_dialog import LineDialog
-from app.main_window import MainWindow
-from core.design_lines import OwnLine
-from core.own_lines import own_line, ready_made
-from core.pipeline import build
-from core.template import read_template
+from app.gui.features.lines import add_lines as line_maker
+from app.gui.features.lines.path_dialog import LineDialog
+from app.gui.main_window import MainWindow
+from core.control_mesh.template import read_template
+from core.document.line_notation import own_line, ready_made
+from core.document.lines import OwnLine
+from core.pipeline.build import build
 
 BIG = read_template("168")
 

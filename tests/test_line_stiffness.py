@@ -7,14 +7,14 @@ import pytest
 from models import LAWS, energy_of, law_of, settled
 from shapes import central_difference, torso
 
-from core.design_lines import LineTraits, WornLine
-from core.exact import solve_exact
-from core.mechanics import Mechanics
-from core.model import constrained_model
-from core.pipeline import build
-from core.solver import Targets, iterate
-from core.solving.gain import gain_limit
-from core.solving.potential import Potential
+from core.document.lines import LineTraits, WornLine
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.gain_limit import gain_limit
+from core.mechanics.iteration import Targets, iterate
+from core.mechanics.model import constrained_model
+from core.mechanics.options import Mechanics
+from core.mechanics.potential import Potential
+from core.pipeline.build import build
 
 CONTACTS = [
     Mechanics(),

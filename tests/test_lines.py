@@ -8,7 +8,7 @@ from models import pairs_of
 from shapes import torso
 
 from core.errors import LineError
-from core.lines import RATIO_LIMITS, length_ratio, line_on
+from core.mechanics.constraint_lines import RATIO_LIMITS, length_ratio, line_on
 
 POINTS = np.array([[0, 0, 0], [300, 0, 0], [300, 100, 0]], dtype=float)
 BAND = line_on("mid-bust", (0, 1, 2), POINTS, free=np.array([1]), back_length=400.0)

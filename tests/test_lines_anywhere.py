@@ -7,12 +7,12 @@ import pytest
 from models import cable_force, line_force, small, volume_slopes
 from shapes import fitted, run, torso
 
-from core.design_lines import OwnLine
-from core.exact import solve_exact
-from core.mechanics import CONTACTS, HOLDS, LAWS, VOLUMES, Mechanics
-from core.model import constrained_model
-from core.own_lines import with_own_lines
-from core.solver import Targets
+from core.document.line_notation import with_own_lines
+from core.document.lines import OwnLine
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.iteration import Targets
+from core.mechanics.model import constrained_model
+from core.mechanics.options import CONTACTS, HOLDS, LAWS, VOLUMES, Mechanics
 
 
 def point(row, column):

@@ -8,15 +8,15 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from window_tools import Script, drag, run_main, settled, undrawn
 
-from app.asking.editing import Editing
-from app.main_window import MainWindow
-from app.panels.notice import Notice
-from app.presenting.lines import titled
-from core.design import Design, ScanSource
-from core.design_lines import LineTraits, OwnLine
-from core.document import Document
-from core.leeway import Leeway, Reason, Zone
-from core.presets import built_in, preset_from
+from app.gui.main_window import MainWindow
+from app.gui.session.document_editor import Editing
+from app.gui.widgets.notification_bar import Notice
+from app.presenters.lines import titled
+from core.analysis.length_limits.zones import Leeway, Reason, Zone
+from core.document.design import Design, ScanSource
+from core.document.document import Document
+from core.document.lines import LineTraits, OwnLine
+from core.document.presets import built_in, preset_from
 
 FOLDS_BELOW_93 = Leeway(
     "mid-bust", (Zone("red", 0.5, 0.93, (Reason("folded", 0.5, 0.93),)), Zone("green", 0.93, 1.3))

@@ -19,8 +19,8 @@ from types import ModuleType
 
 import pytest
 
-from app.commands.cli_parser import COMMANDS, command_parser, window_parser
-from core.reading.scan_file import FORMATS
+from app.cli.parser import COMMANDS, command_parser, window_parser
+from core.scan.readers.registry import FORMATS
 
 LINUX = Path(__file__).parent.parent / "packaging" / "linux"
 ENTRIES = sorted(LINUX.glob("*.desktop"))
@@ -66,7 +66,7 @@ def test_a_menu_entry_is_valid(path: Path) -> None:
 def test_a_desktop_finds_the_menu_entry_of_a_window() -> None:
     # In a process of its own: that of the tests has its application already.
     asked = (
-        "from app.application import application as a; b = a();"
+        "from app.gui.application import application as a; b = a();"
         " print(b.desktopFileName(), b.applicationName());"
         " print(*(size.width() for size in b.windowIcon().availableSizes()))"
     )

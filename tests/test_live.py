@@ -10,12 +10,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core import live
-from core.design import Design, ScanSource
+from core.document.design import Design, ScanSource
 from core.errors import UserError
-from core.exact import solve_exact
-from core.live import Failure, Frame, LiveSolver
-from core.pipeline import Stages
+from core.mechanics.exact_solution import solve_exact
+from core.pipeline import live_solver as live
+from core.pipeline.build import Stages
+from core.pipeline.live_solver import Failure, Frame, LiveSolver
 
 Built = Callable[[str], Stages]
 PATIENCE = 90.0
@@ -237,7 +237,7 @@ def test_an_exact_answer_that_is_not_found_is_said_and_the_last_frame_stays(
     settled(solver, solver.submit(design))
     lost = replace(solve_exact(built("mannequin").model, (1.0, 1.0, 1.0)), residual=np.inf)
     with monkeypatch.context() as patch:
-        patch.setattr("core.comparison.solve_exact", lambda *_, **__: lost)
+        patch.setattr("core.mechanics.solver_comparison.solve_exact", lambda *_, **__: lost)
         solver.submit(design.with_line("mid-bust", 0.8))
         with pytest.raises(UserError, match="No balance was found"):
             answer(solver, lambda frame: frame.stages.design.ratio("mid-bust") == 0.8)

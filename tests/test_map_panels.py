@@ -8,15 +8,15 @@ from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from app.panels.legend import Legend
-from app.panels.legend_bar import BAR
-from app.panels.profile import STEPS, ProfilePanel
-from app.panels.typed_field import read_figure
-from app.presenting.bust import BustMove, BustStep
-from app.presenting.maps import MAPS, automatic_range, map_kinds, ramp_of, section_words, sides_words
-from app.seeing.look import rgb
-from app.showing.profile_plot import Drawn, ProfilePlot, grid_step
-from core.measuring.plus_minus import SOURCES, Doubt, Spread
+from app.gui.features.maps.color_bar import BAR
+from app.gui.features.maps.legend import Legend
+from app.gui.features.sections.panel import STEPS, ProfilePanel
+from app.gui.plots.section_plot import Drawn, ProfilePlot, grid_step
+from app.gui.widgets.inline_edit import read_figure
+from app.presenters.bust_shift import BustMove, BustStep
+from app.presenters.maps import MAPS, automatic_range, map_kinds, ramp_of, section_words, sides_words
+from app.rendering.appearance import rgb
+from core.measurements.uncertain_value import SOURCES, Doubt, Spread
 
 
 @pytest.fixture

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from shapes import mid_bust, run, tent_model, torso
 
-from core.asymmetry import Sides, mirror_plane
-from core.maps import StrainOnBody, moved_outward, pulls, strains
-from core.mesh import MIRROR, Mesh
-from core.model import constrained_model
-from core.pipeline import Stages
-from core.solver import Targets
-from core.studies.sphere import sphere
+from app.research.sphere import sphere
+from core.geometry.mesh import MIRROR, Mesh
+from core.geometry.mirror_plane import Sides, mirror_plane
+from core.mechanics.iteration import Targets
+from core.mechanics.model import constrained_model
+from core.pipeline.build import Stages
+from core.pipeline.surface_fields import StrainOnBody, moved_outward, pulls, strains
 
 BALL = sphere(rings=31, spokes=64)
 

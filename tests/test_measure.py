@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 import trimesh
 
-from core.body import Body
-from core.cleaning.calm import calmed
-from core.landmark import Landmark, Landmarks
-from core.measure import Girth, girth_at, girth_doubts, girths
-from core.mesh import Mesh
-from core.standing.upright import Pose
-from core.trunk import stable_level, trunk_levels
+from core.geometry.mesh import Mesh
+from core.landmarks.torso.cross_sections import stable_level, trunk_levels
+from core.landmarks.torso.girths import Girth, girth_at, girth_doubts, girths
+from core.landmarks.types import Landmark, Landmarks
+from core.scan.body import Body
+from core.scan.orientation.pose import Pose
+from core.scan.repair.denoise import calmed
 
 ROOT = Path(__file__).parents[1]
 TRUTH = json.loads((ROOT / "tests/data/truth.json").read_text(encoding="utf-8"))

@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 from pages_alike import alike
 
-from app.cli import main
-from core.design import Design, ScanSource
-from core.design_measures import OwnMeasure
-from core.document import Document
-from core.measuring.definitions import DEFINITIONS, KEYS
-from core.project import open_project, read_scan_file, save_project
+from app.cli.main import main
+from core.document.custom_measures import OwnMeasure
+from core.document.design import Design, ScanSource
+from core.document.document import Document
+from core.document.storage.project_file import open_project, read_scan_file, save_project
+from core.measurements.definitions import DEFINITIONS, KEYS
 
 DOCS = Path(__file__).parent.parent / "docs"
 GORE = OwnMeasure("Gore", "straight", ("bust_point_left", "bust_point_right"))

@@ -8,12 +8,12 @@ from PySide6.QtCore import QRect
 from PySide6.QtGui import QImage
 from pytestqt.qtbot import QtBot
 
-from app.panels.measure_row import ROW, cells
-from app.panels.measure_table import HEAD, TOP, MeasureTable
-from app.panels.measure_view import MeasureView
-from app.presenting.measures import as_table
-from app.presenting.spread import spread_views
-from core.measuring.plus_minus import SOURCES, Doubt, Spread
+from app.gui.features.measurements.table import HEAD, TOP, MeasureTable
+from app.gui.features.measurements.table_row import ROW, cells
+from app.presenters.measurement_views import MeasureView
+from app.presenters.measurements import as_table
+from app.presenters.uncertainty import spread_views
+from core.measurements.uncertain_value import SOURCES, Doubt, Spread
 
 GIRTH = MeasureView("Bust", "mm", 900.0, 869.5, key="bust_girth", group="Girths", tip="By tape.")
 LINE = MeasureView("Mid-bust", "mm", 422.3, 410.9, "along the line, side to side", group="Followed")

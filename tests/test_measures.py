@@ -10,24 +10,24 @@ import pytest
 import trimesh
 from shapes import SAMPLES
 
-from core.body import read_scan
-from core.design import Design, ScanSource
-from core.design_measures import OwnMeasure
-from core.finding.bust_point import ACROSS
-from core.finding.under_breast import MIRRORED
-from core.landmark import Landmarks
-from core.landmarks import find_landmarks
-from core.measure import UNDER, girth_at, girths
-from core.measures import before_after, calm_moves, measure_rows, measures
-from core.measuring.definitions import DEFINITIONS, KEYS, definition_of
-from core.measuring.riding import carried, riders
-from core.measuring.rings import enclosed, skin_ring, tape_ring
-from core.mesh import Mesh
-from core.pipeline import build
-from core.sections import arc_length
-from core.solution import Solution, run
-from core.trunk import Level, trunk_levels
-from core.watch import Tapes
+from core.document.custom_measures import OwnMeasure
+from core.document.design import Design, ScanSource
+from core.geometry.mesh import Mesh
+from core.geometry.plane_sections import arc_length
+from core.landmarks.bust_point import ACROSS
+from core.landmarks.detect import find_landmarks
+from core.landmarks.lower_breast import MIRRORED
+from core.landmarks.torso.cross_sections import Level, trunk_levels
+from core.landmarks.torso.girths import UNDER, girth_at, girths
+from core.landmarks.types import Landmarks
+from core.measurements.definitions import DEFINITIONS, KEYS, definition_of
+from core.measurements.table import before_after, calm_moves, measure_rows, measures
+from core.measurements.tape import enclosed, skin_ring, tape_ring
+from core.measurements.tracked_points import carried, riders
+from core.pipeline.build import build
+from core.pipeline.observables import Tapes
+from core.pipeline.solve import Solution, run
+from core.scan.body import read_scan
 
 
 def length(curve: np.ndarray) -> float:

@@ -8,8 +8,8 @@ from xml.etree import ElementTree
 import pytest
 
 from core.errors import UserError
-from core.measuring.definitions import KEYS
-from core.writing_out.measures_file import MeasuresSheet, seamly_names, write_measures
+from core.export.measurement_files import MeasuresSheet, seamly_names, write_measures
+from core.measurements.definitions import KEYS
 
 VALUES = {
     "bust_girth": (912.34, "mm"),

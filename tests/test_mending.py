@@ -8,14 +8,14 @@ import trimesh
 from scipy.spatial import cKDTree
 from shapes import SAMPLES
 
-from core.body import read_scan
-from core.cleaning.holes import find_holes, hole_sentences
-from core.cleaning.mending import mend, mended
-from core.cleaning.polygon import triangulated
-from core.cleaning.repair import repair
-from core.cleaning.skin import Skin
-from core.mesh import Mesh
+from core.geometry.mesh import Mesh
+from core.geometry.triangulate import triangulated
 from core.progress import Cancelled
+from core.scan.body import read_scan
+from core.scan.repair.editable_mesh import Skin
+from core.scan.repair.hole_filling import mend, mended
+from core.scan.repair.holes import find_holes, hole_sentences
+from core.scan.repair.repair import repair
 
 CENTRES = {"back": (0.0, 30.0, 260.0), "belly": (10.0, -170.0, 60.0), "side": (140.0, -80.0, 180.0)}
 

@@ -5,8 +5,8 @@ import pytest
 import trimesh
 from shapes import octahedron, tent, torso
 
-from core.mesh import Mesh, boundary_loops, incidence, unit
-from core.studies.sphere import sphere
+from app.research.sphere import sphere
+from core.geometry.mesh import Mesh, boundary_loops, incidence, unit
 
 CORNER = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
 TETRAHEDRON = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])

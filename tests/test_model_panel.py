@@ -10,13 +10,13 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from window_tools import Script, points, run_undrawn, settled
 
-from app.main_window import MainWindow
-from app.panels.setting_field import AmountField, MenuField, SegmentField
-from app.wording.model_choices import consequences, defaults, groups, summary
-from core.design import Design, ScanSource
-from core.design_lines import OwnLine
-from core.live import Frame
-from core.report import kept_volume
+from app.gui.main_window import MainWindow
+from app.gui.widgets.option_field import AmountField, MenuField, SegmentField
+from app.presenters.model_options import consequences, defaults, groups, summary
+from core.document.design import Design, ScanSource
+from core.document.lines import OwnLine
+from core.export.solution_report import kept_volume
+from core.pipeline.live_solver import Frame
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from core.mesh import Mesh
-from core.moving import moving_faces, volume_change
+from core.deformation.incremental_normals import moving_faces, volume_change
+from core.geometry.mesh import Mesh
 
 SPHERE = trimesh.creation.icosphere(subdivisions=3, radius=50.0)
 BALL = Mesh(SPHERE.vertices + np.array([300.0, -200.0, 1000.0]), SPHERE.faces)

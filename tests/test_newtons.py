@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from models import LAWS, law_of
 
-from core.mechanics import Mechanics
-from core.mesh import Mesh
-from core.model import assemble
-from core.solving.newtons import line_ea, net_stiffness, newtons_per_unit
-from core.tensegric import TensegricModel, tensegric_model
-from core.volume import volume_measure
+from core.geometry.mesh import Mesh
+from core.mechanics.force_units import line_ea, net_stiffness, newtons_per_unit
+from core.mechanics.model import assemble
+from core.mechanics.options import Mechanics
+from core.mechanics.tensegrity import TensegricModel, tensegric_model
+from core.mechanics.volume import volume_measure
 
 SIDE = 7.0
 

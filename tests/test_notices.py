@@ -8,8 +8,8 @@ import pytest
 from PySide6.QtWidgets import QApplication, QLabel, QPushButton
 from pytestqt.qtbot import QtBot
 
-from app.dress.theme import apply_theme
-from app.panels.notice import NoticeBar
+from app.gui.theme.stylesheet import apply_theme
+from app.gui.widgets.notification_bar import NoticeBar
 
 
 @pytest.fixture(autouse=True)

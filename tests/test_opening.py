@@ -12,19 +12,19 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-import core.body
-from app.presenting.scan import scan_view
-from app.seeing import skin as skin_module
-from app.seeing.ready import make_ready
-from app.seeing.scene import Scene
-from app.seeing.skin import skin_of
-from app.seeing.skin_part import SkinPart
-from core import pipeline
-from core.body import read_scan
-from core.cleaning import calm
-from core.design import Design, ScanSource
-from core.mesh import Mesh
+import core.scan.body
+from app.presenters.scan import scan_view
+from app.rendering import render_mesh as skin_module
+from app.rendering.body_part_actor import SkinPart
+from app.rendering.prepare import make_ready
+from app.rendering.render_mesh import skin_of
+from app.rendering.scene import Scene
+from core.document.design import Design, ScanSource
+from core.geometry.mesh import Mesh
+from core.pipeline import build as pipeline
 from core.progress import Cancelled
+from core.scan.body import read_scan
+from core.scan.repair import denoise as calm
 
 ROOT = Path(__file__).parent.parent
 BALL = pv.Sphere(radius=100.0, theta_resolution=60, phi_resolution=60)
@@ -72,7 +72,7 @@ def test_the_holes_that_are_listed_were_looked_for_where_the_skin_was_prepared(b
     stages = built("mannequin")
     fresh = replace(stages, body=replace(stages.body))
     make_ready(fresh)
-    monkeypatch.setattr(core.body, "find_holes", _refuse)
+    monkeypatch.setattr(core.scan.body, "find_holes", _refuse)
     assert scan_view(fresh.design.scan, fresh.body).edits is not None
 
 
@@ -131,9 +131,11 @@ def test_a_build_that_is_cancelled_stops_while_the_skin_is_calmed(mannequin, mon
 
 
 def test_the_window_starts_without_what_only_some_commands_need():
-    rare = ("trimesh", "numba", "app.printing.figures", "app.commands.picture", "pandas", "IPython")
+    rare = ("trimesh", "numba", "app.research.figures", "app.cli.commands.picture", "pandas", "IPython")
     rare += ("pyvistaqt", "pyqtgraph")
-    code = f"import sys, app.window, app.main_window; print(*[n for n in {rare} if n in sys.modules])"
+    code = (
+        f"import sys, app.gui.startup, app.gui.main_window; print(*[n for n in {rare} if n in sys.modules])"
+    )
     told = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     assert told.stdout.split() == []
 

@@ -10,9 +10,9 @@ from PySide6.QtCore import QPointF
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.dress.theme import apply_theme
-from app.seeing.camera import View
-from app.showing.overlay import MARGIN, SPACING, Overlay, Pin, spread
+from app.gui.theme.stylesheet import apply_theme
+from app.gui.viewport.overlay import MARGIN, SPACING, Overlay, Pin, spread
+from app.rendering.camera import View
 
 WIDTH, HEIGHT = 500, 300
 

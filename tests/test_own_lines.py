@@ -8,15 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.design import Design, ScanSource
-from core.design_lines import OwnLine
-from core.design_text import from_json, to_json
+from core.control_mesh.template import read_template
+from core.document.design import Design, ScanSource
+from core.document.line_notation import own_line, place_of, with_own_lines
+from core.document.lines import OwnLine
+from core.document.serialization import from_json, to_json
 from core.errors import LineError
-from core.exact import solve_exact
-from core.own_lines import own_line, place_of, with_own_lines
-from core.pipeline import Stages, build
-from core.report import still_lines
-from core.template import read_template
+from core.export.solution_report import still_lines
+from core.mechanics.exact_solution import solve_exact
+from core.pipeline.build import Stages, build
 
 BIG, SMALL = read_template("168"), read_template("120")
 

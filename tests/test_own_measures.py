@@ -7,11 +7,11 @@ import json
 import pytest
 from PySide6.QtWidgets import QApplication
 
-from app.asking.editing import Editing
-from core.design import Design, ScanSource
-from core.design_measures import OwnMeasure, own_measure
-from core.design_text import from_json, to_json
-from core.document import Document
+from app.gui.session.document_editor import Editing
+from core.document.custom_measures import OwnMeasure, own_measure
+from core.document.design import Design, ScanSource
+from core.document.document import Document
+from core.document.serialization import from_json, to_json
 from core.errors import ProjectError, UserError
 
 GORE = OwnMeasure("Gore", "straight", ("bust_point_left", "front_centre"))

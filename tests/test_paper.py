@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.exact import solve_exact
-from core.pipeline import Stages, build
-from core.solution import Solution, run
-from core.solver import Targets, iterate
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.iteration import Targets, iterate
+from core.pipeline.build import Stages, build
+from core.pipeline.solve import Solution, run
 
 Built = Callable[[str], Stages]
 SAMPLES = ("mannequin", "person")

@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from core import pipeline
-from core.body import Body, read_scan
-from core.control_mesh import ControlMesh, fit_control_mesh
+from core.control_mesh.fit import ControlMesh, fit_control_mesh
+from core.control_mesh.template import read_template
+from core.deformation.blend_region import Patch, patch_fade, smooth_step
+from core.deformation.tffd import bind, deform
 from core.errors import FitError
-from core.landmarks import find_landmarks
-from core.mesh import Mesh
-from core.patch import Patch, patch_fade, smooth_step
-from core.template import read_template
-from core.tffd import bind, deform
+from core.geometry.mesh import Mesh
+from core.landmarks.detect import find_landmarks
+from core.pipeline import build as pipeline
+from core.scan.body import Body, read_scan
 
 
 def grid(xs: np.ndarray, zs: np.ndarray, y: float = 0.0) -> Mesh:

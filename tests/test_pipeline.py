@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from core import pipeline
-from core.design import Design, ScanSource
-from core.design_lines import WornLine
+from core.document.design import Design, ScanSource
+from core.document.lines import WornLine
 from core.errors import LandmarkError, LineError, ScanError, UserError
-from core.landmarks import find_landmarks
-from core.pipeline import Stages, StuckError, build, targets_of
+from core.landmarks.detect import find_landmarks
+from core.pipeline import build as pipeline
+from core.pipeline.build import Stages, StuckError, build, targets_of
 from core.progress import Cancelled
 
 Built = Callable[[str], Stages]

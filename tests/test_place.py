@@ -8,9 +8,9 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 from window_tools import Script, run_main, undrawn
 
-from app.dress import place
-from app.dress.place import TITLE, fitted, put_first, put_on_screen
-from app.main_window import MainWindow
+from app.gui.main_window import MainWindow
+from app.gui.widgets import window_geometry as place
+from app.gui.widgets.window_geometry import TITLE, fitted, put_first, put_on_screen
 
 LAPTOP, SECOND = QRect(0, 0, 1440, 900), QRect(1440, 0, 1920, 1080)
 

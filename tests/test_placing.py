@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 import trimesh
 
-from app.cli import main
-from app.wording.words import say, use_language
-from core.design import Design, ScanSource
-from core.design_text import from_json, to_json
+from app.cli.main import main
+from app.i18n.catalog import say, use_language
+from core.document.design import Design, ScanSource
+from core.document.serialization import from_json, to_json
 from core.errors import LandmarkError, ProjectError
-from core.pipeline import Stages, build, find
-from core.placing import PlacedMark, in_file, in_mm, placed_mark
+from core.landmarks.manual import PlacedMark, in_file, in_mm, placed_mark
+from core.pipeline.build import Stages, build, find
 
 Built = Callable[[str], Stages]
 

@@ -13,17 +13,17 @@ from PySide6.QtWidgets import QAbstractItemView, QApplication, QLabel, QWidget
 from pytestqt.qtbot import QtBot
 from window_tools import Script, run_undrawn, settled
 
-from app.dress.menu import Menu
-from app.dress.tip import set_tip, shown_tip
-from app.keeping.recent import remember_file
-from app.main_window import MainWindow
-from app.wording.samples import sample_path
-from core.design import Design, ScanSource
-from core.design_elastics import Elastic
-from core.design_lines import LineTraits, OwnLine
-from core.design_measures import OwnMeasure
-from core.document import Document
-from core.project import ScanFile, save_project
+from app.gui.features.project.recent_files import remember_file
+from app.gui.main_window import MainWindow
+from app.gui.widgets.menu import Menu
+from app.gui.widgets.tooltip import set_tip, shown_tip
+from app.presenters.samples import sample_path
+from core.document.custom_measures import OwnMeasure
+from core.document.design import Design, ScanSource
+from core.document.document import Document
+from core.document.elastic import Elastic
+from core.document.lines import LineTraits, OwnLine
+from core.document.storage.project_file import ScanFile, save_project
 
 HOSTILE = '<img src="//127.0.0.1/a.png"><h1>A</h1>'
 """A name that a label with a guess would take for HTML, and fetch a picture for."""

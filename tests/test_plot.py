@@ -12,12 +12,12 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.dress.theme import apply_theme
-from app.showing.convergence import Strip
-from app.showing.live_plot import LivePlot, Quantity
-from app.showing.plot_curves import Curve, Event, envelope, flips_every_turn
-from app.showing.plot_scale import round_ticks
-from app.showing.tracks import Exact, Track, tolerance_of
+from app.gui.plots.axes import round_ticks
+from app.gui.plots.convergence_panel import Strip
+from app.gui.plots.live_plot import LivePlot, Quantity
+from app.gui.theme.stylesheet import apply_theme
+from app.presenters.curves import Curve, Event, envelope, flips_every_turn
+from app.presenters.plot_series import Exact, Track, tolerance_of
 
 ERROR = Quantity("error_percent", "Volume error", "%", 0.4)
 

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.seeing.portrait import portrait
-from app.seeing.scene import Scene
-from app.seeing.ways import pictures, ways
-from core.body import read_scan
-from core.mesh import Mesh
-from core.standing.upright import Pose
+from app.rendering.orientation_thumbnails import pictures, ways
+from app.rendering.scene import Scene
+from app.rendering.thumbnail import portrait
+from core.geometry.mesh import Mesh
+from core.scan.body import read_scan
+from core.scan.orientation.pose import Pose
 
 CLAY = (200, 150, 120)
 

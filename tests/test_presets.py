@@ -5,14 +5,10 @@ from dataclasses import replace
 
 import pytest
 
-from core.comparison import shape_of
-from core.design_lines import LineTraits, OwnLine
-from core.elastics import find_elastic
-from core.errors import LineError
-from core.exact import solve_exact
-from core.own_lines import ready_made, text_of
-from core.pipeline import build, targets_of
-from core.presets import (
+from core.control_mesh.template import read_template
+from core.document.line_notation import ready_made, text_of
+from core.document.lines import LineTraits, OwnLine
+from core.document.presets import (
     FORMAT,
     Preset,
     PresetLine,
@@ -25,7 +21,11 @@ from core.presets import (
     save_preset,
     with_preset,
 )
-from core.template import read_template
+from core.errors import LineError
+from core.garment.elastic_library import find_elastic
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.solver_comparison import shape_of
+from core.pipeline.build import build, targets_of
 
 GOOD = {"format": FORMAT, "title": "X", "lines": [{"line": "mid-bust", "length": 0.97}]}
 

@@ -13,20 +13,20 @@ import numpy as np
 import pytest
 from shapes import SAMPLES
 
-from app.cli import main
-from core.design import Design, ScanSource
-from core.document import Document
-from core.elastics import find_elastic
-from core.pipeline import Stages, build
-from core.presets import built_in, with_preset
-from core.press_list import press_list
-from core.pressure import LEFT_OUT, pressures
-from core.project import read_scan_file, save_project
-from core.sewing.comfort import comfort
-from core.sewing.tensions import line_tensions
-from core.sewing.whereabouts import SHOULDERS, SIDES, whereabouts
-from core.solution import Solution, run
-from core.studies.sphere import sphere
+from app.cli.main import main
+from app.research.sphere import sphere
+from core.document.design import Design, ScanSource
+from core.document.document import Document
+from core.document.presets import built_in, with_preset
+from core.document.storage.project_file import read_scan_file, save_project
+from core.garment.body_location import SHOULDERS, SIDES, whereabouts
+from core.garment.elastic_library import find_elastic
+from core.garment.pressure import LEFT_OUT, pressures
+from core.garment.pressure_limits import comfort
+from core.garment.pressure_list import press_list
+from core.garment.tension import line_tensions
+from core.pipeline.build import Stages, build
+from core.pipeline.solve import Solution, run
 
 BALL = sphere(rings=61, spokes=120)  # of radius 100 mm
 SCAN = str(SAMPLES / "mannequin.ply")

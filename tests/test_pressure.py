@@ -10,17 +10,17 @@ import pytest
 from band_courses import NEWTONS, STEP, arc, course, ellipse, flat, parallel, polar, winding
 from shapes import SAMPLES
 
-from core.centre_line import Surface
-from core.design import Design, ScanSource
-from core.mesh import Mesh, unit
-from core.pipeline import build
-from core.presets import built_in, with_preset
-from core.pressure import LinePressure, band_pressure, mmhg, pressures
-from core.sections import arc_length, chains, cut, hull_perimeter, resample
-from core.sewing.course import Course, course_of
-from core.sewing.tensions import LineTension, line_tensions
-from core.solution import Solution, run
-from core.tffd import deform
+from core.deformation.tffd import deform
+from core.document.design import Design, ScanSource
+from core.document.presets import built_in, with_preset
+from core.garment.band_path import Course, course_of
+from core.garment.curve_smoothing import Surface
+from core.garment.pressure import LinePressure, band_pressure, mmhg, pressures
+from core.garment.tension import LineTension, line_tensions
+from core.geometry.mesh import Mesh, unit
+from core.geometry.plane_sections import arc_length, chains, cut, hull_perimeter, resample
+from core.pipeline.build import build
+from core.pipeline.solve import Solution, run
 
 WIDTH = 15.0
 LOBED = 35.0

@@ -10,17 +10,17 @@ import pytest
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QApplication
 
-from app.dress.theme import tokens_of
-from app.panels.legend import Legend
-from app.panels.legend_bar import BAR
-from app.panels.pressure_card import PressureCard
-from app.presenting.maps import map_kinds, ramp_of
-from app.presenting.pressure import light_limits, pressure_summary, pressure_views, side_words
-from app.wording.words import use_language
-from core.design import Design, ScanSource
-from core.press_list import PressList, PressRow
-from core.sewing.comfort import AMBER, GREEN, RED, comfort
-from core.sewing.whereabouts import SHOULDERS, SIDES
+from app.gui.features.garment.pressure_card import PressureCard
+from app.gui.features.maps.color_bar import BAR
+from app.gui.features.maps.legend import Legend
+from app.gui.theme.stylesheet import tokens_of
+from app.i18n.catalog import use_language
+from app.presenters.maps import map_kinds, ramp_of
+from app.presenters.pressure import light_limits, pressure_summary, pressure_views, side_words
+from core.document.design import Design, ScanSource
+from core.garment.body_location import SHOULDERS, SIDES
+from core.garment.pressure_limits import AMBER, GREEN, RED, comfort
+from core.garment.pressure_list import PressList, PressRow
 
 DESIGN = Design(ScanSource("anna.ply")).with_line("mid-bust", 0.8)
 ROW = PressRow(

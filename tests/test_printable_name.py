@@ -14,20 +14,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 from small_project import DESIGN
 
-from app.commands.surroundings import PlainStream, settle_in
-from core.design_calibration import Calibration
-from core.design_elastics import Elastic
-from core.design_lines import LineTraits, OwnLine, WornLine
-from core.design_measures import OwnMeasure
-from core.design_text import from_json, to_json
+from app.cli.environment import PlainStream, settle_in
+from core.document.calibration_record import Calibration
+from core.document.custom_measures import OwnMeasure
+from core.document.elastic import Elastic
+from core.document.lines import LineTraits, OwnLine, WornLine
+from core.document.presets import Preset, PresetLine, preset_of
+from core.document.printable_name import is_printable, printable, repeated, shown
+from core.document.serialization import from_json, to_json
 from core.errors import UserError
-from core.presets import Preset, PresetLine, preset_of
-from core.printable_name import is_printable, printable, repeated, shown
-from core.sewing.elastic_csv import elastic_from_csv
-from core.writing_out.cells import cell, csv_text
-from core.writing_out.drawing import write_strips
-from core.writing_out.measures_file import MeasuresSheet, write_measures
-from core.writing_out.worn import Strip
+from core.export.band_geometry import Strip
+from core.export.csv_cells import cell, csv_text
+from core.export.drawings import write_strips
+from core.export.measurement_files import MeasuresSheet, write_measures
+from core.garment.elastic_csv import elastic_from_csv
 
 BAD = ("a\ud800b", "a\x01b", "a\x1b[31mb", "a\nb", "a\x7f", "a\x9bb", "\u202egnp.exe", "\u2066a")
 BAD += ("a\u2028b", "a\uffffb", "n" * 2000)

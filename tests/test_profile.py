@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from app.research.sphere import sphere
 from core.errors import UserError
-from core.export import write_profile
-from core.mesh import Mesh
-from core.pipeline import Stages
-from core.profile import Plane, Slicer, apexes, mirrored, nearest, stand_out
-from core.studies.sphere import sphere
+from core.export.mesh import write_profile
+from core.geometry.mesh import Mesh
+from core.geometry.planar_curves import Plane, Slicer, apexes, mirrored, nearest, stand_out
+from core.pipeline.build import Stages
 
 
 def tube(radius: float = 100.0) -> Mesh:

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from core.fitting.profiles import Profile, exits, find_fold, heading, profile
-from core.mesh import Mesh
-from core.sections import arc_length
+from core.control_mesh.radial_profiles import Profile, exits, find_fold, heading, profile
+from core.geometry.mesh import Mesh
+from core.geometry.plane_sections import arc_length
 
 AXIS = np.zeros(3)
 

@@ -10,10 +10,16 @@ from pathlib import Path
 import pytest
 from small_project import DESIGN, PICTURE, SCAN
 
-from core.design import ScanSource
-from core.document import Document
+from core.document.design import ScanSource
+from core.document.document import Document
+from core.document.storage.project_file import (
+    ScanFile,
+    is_project,
+    open_project,
+    read_scan_file,
+    save_project,
+)
 from core.errors import ProjectError, ScanError
-from core.project import ScanFile, is_project, open_project, read_scan_file, save_project
 
 
 def left_over(folder):

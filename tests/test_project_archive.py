@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 from small_project import DESIGN
 
-from core.design import ScanSource
-from core.design_text import to_json
+from core.document.design import ScanSource
+from core.document.serialization import to_json
+from core.document.storage.archive import HEADROOM
+from core.document.storage.project_file import open_project, picture_bytes, read_scan_file
 from core.errors import ProjectError
-from core.project import open_project, picture_bytes, read_scan_file
-from core.project_archive import HEADROOM
 
 MEMBER = "scan/body.ply"
 INSIDE = to_json(replace(DESIGN, scan=ScanSource("", member=MEMBER)))

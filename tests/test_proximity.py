@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from core.mesh import Mesh
-from core.proximity import Frames, centroids, nearest_on, neighbourhoods
+from core.geometry.closest_point import Frames, centroids, nearest_on, neighbourhoods
+from core.geometry.mesh import Mesh
 
 RANDOM = np.random.default_rng(12)
 CENTRES = np.repeat(RANDOM.normal(scale=60.0, size=(30, 3)), 3, axis=0)

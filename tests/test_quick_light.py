@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pyvista as pv
 
-from app.seeing.quick_light import QuickLight
-from app.seeing.scene import Scene
-from core.mesh import Mesh
+from app.rendering.scene import Scene
+from app.rendering.vertex_lighting import QuickLight
+from core.geometry.mesh import Mesh
 
 
 def test_quick_light_looks_like_that_of_every_pixel_and_goes_without_a_trace() -> None:

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from app.cli import BAD_INPUT, main
-from core.design import Design, ScanSource
-from core.document import Document
-from core.project import read_scan_file, save_project
+from app.cli.main import BAD_INPUT, main
+from core.document.design import Design, ScanSource
+from core.document.document import Document
+from core.document.storage.project_file import read_scan_file, save_project
 
 
 @pytest.fixture

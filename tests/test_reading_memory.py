@@ -10,11 +10,11 @@ from contextlib import suppress
 import numpy as np
 import pytest
 
-from core.body import body_of
 from core.errors import ScanError
-from core.mesh import rows_of
-from core.reading.ply_file import read_ply
-from core.reading.scan_file import read_raw
+from core.geometry.mesh import rows_of
+from core.scan.body import body_of
+from core.scan.readers.ply import read_ply
+from core.scan.readers.registry import read_raw
 
 FREE, TIMES, SIZE = 64 << 20, 20, 12_000_000
 CORNERS = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
@@ -145,8 +145,8 @@ def test_missing_memory_is_called_that(monkeypatch):
 
 
 def test_lists_of_any_lengths_are_picked_item_by_item(monkeypatch):
-    monkeypatch.setattr("core.reading.ply_file.BLOCK", 7)
-    monkeypatch.setattr("core.reading.raw_scan.BLOCK", 5)
+    monkeypatch.setattr("core.scan.readers.ply.BLOCK", 7)
+    monkeypatch.setattr("core.scan.readers.raw_scan.BLOCK", 5)
     chance = random.Random(4)
     polygons = [
         [chance.randrange(40) for _ in range(chance.choice((0, 1, 3, 3, 4, 9, 30)))] for _ in range(60)

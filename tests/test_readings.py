@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 from slopes import doubled, slope
 
-from app.wording.samples import sample_design
-from core.aims.outline import profile_name, section_at
-from core.aims.readings import NAMES, reading
+from app.presenters.samples import sample_design
+from core.analysis.inverse_design.profile_quantity import profile_name, section_at
+from core.analysis.inverse_design.readings import NAMES, reading
+from core.deformation.tffd import deform
 from core.errors import UserError
-from core.measures import before_after
-from core.pipeline import Stages, build
-from core.profile import Plane, Slicer
-from core.solution import run
-from core.tffd import deform
+from core.geometry.planar_curves import Plane, Slicer
+from core.measurements.table import before_after
+from core.pipeline.build import Stages, build
+from core.pipeline.solve import run
 
 
 @pytest.fixture(scope="module")

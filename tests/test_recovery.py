@@ -8,20 +8,20 @@ from pathlib import Path
 import pytest
 from small_project import DESIGN, PICTURE, SCAN, write_project
 
-import core.backups
-import core.recovery
-from core.document import Document
+import core.document.storage.backups
+import core.document.storage.recovery
+from core.document.document import Document
+from core.document.storage.project_file import ScanFile, read_scan_file, save_project, with_scan
+from core.document.storage.recovery import Recovery, left_behind, read_kept
 from core.errors import ProjectError
-from core.project import ScanFile, read_scan_file, save_project, with_scan
-from core.recovery import Recovery, left_behind, read_kept
 
 SHORT = Document.of(DESIGN).showing("B").with_design(DESIGN.with_line("mid-bust", 0.8))
 
 
 @pytest.fixture(autouse=True)
 def own_base(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(core.recovery, "recovery_folder", lambda: tmp_path / "recovery")
-    monkeypatch.setattr(core.backups, "backups_folder", lambda: tmp_path / "backups")
+    monkeypatch.setattr(core.document.storage.recovery, "recovery_folder", lambda: tmp_path / "recovery")
+    monkeypatch.setattr(core.document.storage.backups, "backups_folder", lambda: tmp_path / "backups")
     return tmp_path
 
 
@@ -72,7 +72,7 @@ def test_the_scan_is_written_when_it_changes_only_and_the_old_one_stays_until_th
     written = first.stat().st_mtime_ns, first.stat().st_ino
     recovery.keep(Document.of(DESIGN), SCAN, "anna", None)
     assert (first.stat().st_mtime_ns, first.stat().st_ino) == written
-    monkeypatch.setattr(core.recovery, "to_texts", lambda _: 1 / 0)
+    monkeypatch.setattr(core.document.storage.recovery, "to_texts", lambda _: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         recovery.keep(SHORT, ScanFile("body.ply", b"another"), "anna", None)
     assert read_scan_file(read_kept(recovery.folder).document.design.scan).data == SCAN.data

@@ -6,12 +6,12 @@ from odd_objects import objects, pieces
 from scipy.spatial.transform import Rotation
 from test_upright import SAMPLES, angle_between
 
-from core.body import Body
 from core.errors import UserError
-from core.landmarks import find_landmarks
-from core.mesh import Mesh
-from core.reading.scan_file import read_triangles
-from core.standing.upright import find_pose
+from core.geometry.mesh import Mesh
+from core.landmarks.detect import find_landmarks
+from core.scan.body import Body
+from core.scan.orientation.pose import find_pose
+from core.scan.readers.registry import read_triangles
 
 OBJECTS = objects()
 TILTED = Rotation.from_euler("xyz", (25.0, -20.0, 70.0), degrees=True).as_matrix()

@@ -7,16 +7,16 @@ from pathlib import Path
 
 import pytest
 
-from core.aims.curve_file import read_profile
-from core.design import ScanSource
-from core.elastics import read_elastic
+from app.research.ground_truth import read_truths
+from core.analysis.inverse_design.profile_csv import read_profile
+from core.document.design import ScanSource
+from core.document.presets import read_preset
+from core.document.storage.project_file import open_project, picture_bytes, read_scan_file
+from core.document.storage.recovery import read_kept
 from core.errors import UserError
-from core.presets import read_preset
-from core.project import open_project, picture_bytes, read_scan_file
-from core.recovery import read_kept
-from core.regular_file import read_regular
-from core.sizing.table_file import read_table
-from core.truth import read_truths
+from core.files.regular_file import read_regular
+from core.garment.elastic_library import read_elastic
+from core.measurements.size_table_file import read_table
 
 READERS: dict[str, tuple[str, Callable[[Path], object]]] = {
     "project": ("anna.busk", open_project),

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from core import __version__
-from core.design_text import FORMAT
+from core.document.serialization import FORMAT
+from core.document.storage.project_file import open_project, read_scan_file, save_project, with_scan
 from core.errors import ProjectError
-from core.project import open_project, read_scan_file, save_project, with_scan
 
 ROOT = Path(__file__).parent.parent
 RELEASES = ROOT / "tests" / "releases"

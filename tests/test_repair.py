@@ -9,9 +9,9 @@ import pytest
 import trimesh
 from shapes import SAMPLES
 
-from core.cleaning.repair import repair
-from core.mesh import Mesh
-from core.reading.scan_file import read_triangles
+from core.geometry.mesh import Mesh
+from core.scan.readers.registry import read_triangles
+from core.scan.repair.repair import repair
 
 RNG = np.random.default_rng
 

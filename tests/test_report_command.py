@@ -15,12 +15,12 @@ from pathlib import Path
 import pytest
 from pdf_tools import Pdf
 
-from app.cli import BAD_INPUT, main
-from app.commands.ending import SETTLED
-from app.wording import lengths
-from core.design import Design, ScanSource
-from core.document import Document
-from core.project import read_scan_file, save_project
+from app.cli.exit_code import SETTLED
+from app.cli.main import BAD_INPUT, main
+from app.i18n import lengths
+from core.document.design import Design, ScanSource
+from core.document.document import Document
+from core.document.storage.project_file import read_scan_file, save_project
 
 ROOT = Path(__file__).parent.parent
 WORN = ["--line", "mid-bust=70%", "--elastic", "mid-bust=plush 12"]
@@ -32,7 +32,7 @@ def test_a_sheet_with_no_display(mannequin: Path, tmp_path: Path) -> None:
     environment = {key: value for key, value in os.environ.items() if key not in NO_DISPLAY}
     words = ["report", str(mannequin), *WORN, "--out", "sheet.pdf", "--json", "sheet.json"]
     words += ["--csv", "sheet.csv", "--language", "ja", "--customer", "佐藤 0412", "--system", "eu"]
-    run = "import sys; from app.cli import main; sys.exit(main(sys.argv[1:]))"
+    run = "import sys; from app.cli.main import main; sys.exit(main(sys.argv[1:]))"
     command = [sys.executable, "-c", run, *words]
     path = {**environment, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(command, cwd=tmp_path, env=path, capture_output=True, text=True, check=False)

@@ -15,20 +15,20 @@ from pdf_tools import Pdf
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication
 
-from app.dress.theme import load_fonts
-from app.presenting.lines import line_colours
-from app.reporting.handout import SHOT_SIZES, SHOTS, Handout
-from app.reporting.pages import pages_of
-from app.reporting.paper import A4, MARGIN, TYPES
-from app.reporting.pdf import write_pdf
-from app.wording.words import language, number, use_language
-from core.assessment import Assessment, Finding
-from core.design_lines import LineTraits
-from core.elastics import find_elastic
+from app.gui.theme.stylesheet import load_fonts
+from app.i18n.catalog import language, number, use_language
+from app.presenters.lines import line_colours
+from app.report.document import SHOT_SIZES, SHOTS, Handout
+from app.report.pages import pages_of
+from app.report.painter import A4, MARGIN, TYPES
+from app.report.pdf import write_pdf
+from core.document.lines import LineTraits
 from core.errors import UserError
-from core.pipeline import Stages, build
-from core.sheet import Heading, Sheet, sheet_of
-from core.solution import run
+from core.export.report_data import Heading, Sheet, sheet_of
+from core.garment.assessment import Assessment, Finding
+from core.garment.elastic_library import find_elastic
+from core.pipeline.build import Stages, build
+from core.pipeline.solve import run
 
 LONG = "Customer 0412, who has a name so long that it never fits on one line of any sheet, however wide it is"
 HEADING = Heading("Bodysuit", "2026-11-22", "Customer 0412", "B", "eu")

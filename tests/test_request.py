@@ -7,24 +7,24 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.wording.samples import sample_design
-from core.advice.limits import limits_of
-from core.aims.figure import Goal
-from core.aims.outline import profile_name
-from core.aims.reaching import Bounds, Search
-from core.aims.readings import reading
-from core.aims.wanted import INSIDE, NEAR
-from core.assessment import BAD, assessed
-from core.elastics import find_elastic
+from app.presenters.samples import sample_design
+from core.analysis.inverse_design.objective import INSIDE, NEAR
+from core.analysis.inverse_design.profile_quantity import profile_name
+from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.readings import reading
+from core.analysis.inverse_design.search import Bounds, Search
+from core.analysis.inverse_design.solve import Asking, Reply, ask
+from core.analysis.length_limits.limits import limits_of
 from core.errors import UserError
-from core.pipeline import Stages, build
+from core.garment.assessment import BAD, assessed
+from core.garment.elastic_library import find_elastic
+from core.garment.pressure_limits import comfort
+from core.garment.tension import line_tensions
+from core.mechanics.force_units import newtons_per_unit
+from core.mechanics.mesh_quality import CALM_RANGE
+from core.pipeline.build import Stages, build
+from core.pipeline.solve import run
 from core.progress import Cancelled
-from core.request import Asking, Reply, ask
-from core.sewing.comfort import comfort
-from core.sewing.tensions import line_tensions
-from core.solution import run
-from core.solving.condition import CALM_RANGE
-from core.solving.newtons import newtons_per_unit
 
 CONTACTS = ("glued", "sliding")
 

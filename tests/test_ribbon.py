@@ -10,18 +10,18 @@ import pyvista as pv
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
-from app.presenting.frame import bands
-from app.seeing.band import OFF_WIDTH, Band, band_width
-from app.seeing.bands import Bands, RibbonActor
-from app.seeing.ribbon import CASING, Ribbon, Surface, build_casing, build_ribbon
-from app.seeing.sight import Sight
-from core.centre_line import centre_line
-from core.design import Design, ScanSource
-from core.mesh import Mesh, unit
-from core.pipeline import Stages, build
-from core.routes import Route
-from core.sections import arc_length
-from core.solution import run
+from app.presenters.status import bands
+from app.rendering.band import OFF_WIDTH, Band, band_width
+from app.rendering.band_actors import Bands, RibbonActor
+from app.rendering.picking import Sight
+from app.rendering.ribbon_mesh import CASING, Ribbon, Surface, build_casing, build_ribbon
+from core.document.design import Design, ScanSource
+from core.garment.curve_smoothing import centre_line
+from core.geometry.mesh import Mesh, unit
+from core.geometry.plane_sections import arc_length
+from core.pipeline.build import Stages, build
+from core.pipeline.line_routes import Route
+from core.pipeline.solve import run
 
 RADIUS = 120.0
 

@@ -10,21 +10,21 @@ import pytest
 import pyvista as pv
 from PySide6.QtWidgets import QApplication
 
-from app.dress.theme import apply_theme
-from app.presenting.frame import bands
-from app.seeing import piece as piece_module
-from app.seeing import ribbon as ribbon_module
-from app.seeing.band import Band
-from app.seeing.piece import CELL, pieces_of
-from app.seeing.ready import make_ready
-from app.seeing.scene import Scene
-from app.seeing.skin import skin_of
-from app.showing.fine_picture import fine_picture
-from app.showing.panes import Panes
-from app.showing.viewport import Viewport
-from core.design import Design, ScanSource
-from core.mesh import Mesh
-from core.pipeline import build
+from app.gui.theme.stylesheet import apply_theme
+from app.gui.viewport.screenshot import fine_picture
+from app.gui.viewport.split_view import Panes
+from app.gui.viewport.viewport import Viewport
+from app.presenters.status import bands
+from app.rendering import render_mesh_parts as piece_module
+from app.rendering import ribbon_mesh as ribbon_module
+from app.rendering.band import Band
+from app.rendering.prepare import make_ready
+from app.rendering.render_mesh import skin_of
+from app.rendering.render_mesh_parts import CELL, pieces_of
+from app.rendering.scene import Scene
+from core.document.design import Design, ScanSource
+from core.geometry.mesh import Mesh
+from core.pipeline.build import build
 
 RADIUS = 30.0
 

@@ -12,13 +12,13 @@ from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 from window_tools import Script, run_main, settled
 
-import app.helping.safe_mode
-from app.asking.session import Session
-from app.helping.safe_mode import SafeMode
-from app.main_window import MainWindow
-from app.showing.canvas import Canvas
-from app.showing.graphics import begin_graphics, graphics_work, spare_graphics
-from core.starts import failed_starts, starts_folder
+import app.gui.features.help.safe_mode
+from app.gui.features.help.safe_mode import SafeMode
+from app.gui.main_window import MainWindow
+from app.gui.session.session import Session
+from app.gui.viewport.canvas import Canvas
+from app.gui.viewport.opengl import begin_graphics, graphics_work, spare_graphics
+from core.document.storage.crash_counter import failed_starts, starts_folder
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -48,7 +48,7 @@ def test_the_safe_mode_draws_without_the_graphics_driver_and_says_so() -> None:
     run_main([], failed)
 
 
-_START = "import sys; from core.starts import Start; start = Start(); print(1, flush=True); sys.stdin.read()"
+_START = "import sys; from core.document.storage.crash_counter import Start; start = Start(); print(1, flush=True); sys.stdin.read()"
 
 
 @contextmanager
@@ -85,7 +85,7 @@ def test_windows_that_are_opened_together_are_no_crashes(qapp: QApplication) -> 
 def test_only_an_end_while_the_driver_is_at_work_counts_as_its_fault(
     qtbot: QtBot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(app.helping.safe_mode, "_DRAWN_FOR", 1)
+    monkeypatch.setattr(app.gui.features.help.safe_mode, "_DRAWN_FOR", 1)
     window = QWidget()
     qtbot.addWidget(window)
     window.session = Session(window)

@@ -23,17 +23,17 @@ from coloured_scans import (
 from PIL import Image
 from scan_files import HOUSES
 
-from core.body import body_of, read_scan
-from core.cleaning.edits import ScanEdits
-from core.design import Design, ScanSource
-from core.document import Document
-from core.edited_body import edited
+from core.document.design import Design, ScanSource
+from core.document.document import Document
+from core.document.storage.project_file import ScanFile, open_project, save_project
 from core.errors import ScanError
-from core.pipeline import read_body
-from core.project import ScanFile, open_project, save_project
-from core.reading.colours import UNREADABLE, texture
-from core.reading.raw_scan import RawScan
-from core.reading.scan_file import read_raw, scan_bytes
+from core.pipeline.build import read_body
+from core.scan.body import body_of, read_scan
+from core.scan.edited_body import edited
+from core.scan.edits import ScanEdits
+from core.scan.readers.colors import UNREADABLE, texture
+from core.scan.readers.raw_scan import RawScan
+from core.scan.readers.registry import read_raw, scan_bytes
 
 
 def check(scan: RawScan, off: int = 1) -> None:
@@ -138,8 +138,8 @@ def test_a_scan_that_is_too_fine_is_refused_before_its_texture_is_sampled(tmp_pa
     (tmp_path / "house.mtl").write_bytes(MTL)
     (tmp_path / "skin.png").write_bytes(picture())
     (tmp_path / "house.obj").write_bytes(textured_obj())
-    monkeypatch.setattr("core.reading.raw_scan.MOST_TRIANGLES", 12)
-    monkeypatch.setattr("core.reading.obj_texture.blocks", pytest.fail)
+    monkeypatch.setattr("core.scan.readers.raw_scan.MOST_TRIANGLES", 12)
+    monkeypatch.setattr("core.scan.readers.obj_texture.blocks", pytest.fail)
     with pytest.raises(ScanError, match="too fine"):
         read_raw("house.obj", scan_bytes(tmp_path / "house.obj"))
 

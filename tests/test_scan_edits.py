@@ -12,23 +12,23 @@ from scipy.spatial import cKDTree
 from shapes import SAMPLES
 from test_mending import is_sound, pierced
 
-from app.commands.even import run_even
-from app.presenting.even import even_summary
-from core.body import read_scan
-from core.cleaning.clipping import above, mirrored_half
-from core.cleaning.edits import ScanEdits
-from core.cleaning.filling import filled
-from core.cleaning.holes import find_holes
-from core.design import Design, ScanSource
-from core.design_text import from_json, to_json
-from core.doubts import doubts
-from core.edited_body import edited, is_estimated, mirror_sentence
+from app.cli.commands.symmetry import run_even
+from app.presenters.symmetry import even_summary
+from core.document.design import Design, ScanSource
+from core.document.serialization import from_json, to_json
 from core.errors import LandmarkError, UserError
-from core.landmark import CERTAIN
-from core.landmarks import ESTIMATED, find_landmarks
-from core.mesh import Mesh
-from core.pipeline import StuckError, build
-from core.standing.symmetry import even_cloud, middle_of
+from core.geometry.mesh import Mesh
+from core.landmarks.detect import ESTIMATED, find_landmarks
+from core.landmarks.types import CERTAIN
+from core.landmarks.warnings import doubts
+from core.pipeline.build import StuckError, build
+from core.scan.body import read_scan
+from core.scan.edited_body import edited, is_estimated, mirror_sentence
+from core.scan.edits import ScanEdits
+from core.scan.orientation.symmetry_planes import even_cloud, middle_of
+from core.scan.repair.clipping import above, mirrored_half
+from core.scan.repair.holes import find_holes
+from core.scan.repair.large_holes import filled
 
 
 @pytest.fixture(scope="module")

@@ -13,10 +13,10 @@ from damaged_files import damaged_file
 from scan_files import CLOUDS, CORNERS, HOUSES, TRIANGLES, VOLUME, gltf, off, ply, vtp
 
 from core.errors import ScanError
-from core.mesh import Mesh
+from core.geometry.mesh import Mesh
 from core.progress import Cancelled
-from core.reading.raw_scan import RawScan
-from core.reading.scan_file import LARGEST_FILE, read_raw, read_triangles, scan_bytes
+from core.scan.readers.raw_scan import RawScan
+from core.scan.readers.registry import LARGEST_FILE, read_raw, read_triangles, scan_bytes
 
 
 @pytest.mark.parametrize("name", HOUSES)
@@ -162,7 +162,7 @@ def test_a_file_packed_in_pieces_is_read_whole():
 
 
 def test_corners_of_single_triangles_are_no_more_points_than_shared_ones(monkeypatch):
-    monkeypatch.setattr("core.reading.raw_scan.MOST_POINTS", 20)
+    monkeypatch.setattr("core.scan.readers.raw_scan.MOST_POINTS", 20)
     for name in ("binary.stl", "text.stl"):
         assert len(read_raw(name, HOUSES[name]).vertices) == 3 * len(TRIANGLES) > 20
 
@@ -207,7 +207,7 @@ def test_places_far_from_the_origin_keep_all_digits_of_the_file():
 
 
 def test_too_much_is_refused_with_a_number(monkeypatch):
-    monkeypatch.setattr("core.reading.raw_scan.MOST_TRIANGLES", 10)
+    monkeypatch.setattr("core.scan.readers.raw_scan.MOST_TRIANGLES", 10)
     for name in ("little.ply", "groups.obj", "binary.stl", "plain.off", "binary.glb"):
         with pytest.raises(ScanError, match="too fine") as refusal:
             read_raw(name, HOUSES[name])
@@ -217,7 +217,7 @@ def test_too_much_is_refused_with_a_number(monkeypatch):
 def test_a_packed_bomb_is_left_alone(monkeypatch):
     with pytest.raises(ScanError, match="unpacks to more than 50 times its size"):
         read_raw("a.obj.gz", gzip.compress(bytes(100_000_000), 1))
-    monkeypatch.setattr("core.reading.scan_file.LARGEST_FILE", 1_000_000)
+    monkeypatch.setattr("core.scan.readers.registry.LARGEST_FILE", 1_000_000)
     with pytest.raises(ScanError, match="too large when unpacked"):
         read_raw("a.obj.gz", gzip.compress(bytes(2_000_000), 0))
 

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.seeing.band import Band
-from app.seeing.camera import VIEWS
-from app.seeing.look import LOOKS, rgb
-from app.seeing.ribbon import Surface, build_casing, build_ribbon
-from app.seeing.scene import Scene
-from app.seeing.sight import Sight
-from app.seeing.skin import split_plates
-from core.centre_line import centre_line
-from core.mesh import Mesh
-from core.routes import Route
+from app.rendering.appearance import LOOKS, rgb
+from app.rendering.band import Band
+from app.rendering.camera import VIEWS
+from app.rendering.picking import Sight
+from app.rendering.render_mesh import split_plates
+from app.rendering.ribbon_mesh import Surface, build_casing, build_ribbon
+from app.rendering.scene import Scene
+from core.garment.curve_smoothing import centre_line
+from core.geometry.mesh import Mesh
+from core.pipeline.line_routes import Route
 
 ROOT = Path(__file__).parents[1]
 WIDTH, HEIGHT = 450, 300

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.seeing.body import BodyActor
-from app.seeing.look import LOOKS, rgb
-from app.seeing.occlusion import bake_occlusion
-from app.seeing.paint import clay_colours
-from app.seeing.skin import plate_faces, skin_of, split_plates
-from core.mesh import Mesh
+from app.rendering.ambient_occlusion import bake_occlusion
+from app.rendering.appearance import LOOKS, rgb
+from app.rendering.body_actor import BodyActor
+from app.rendering.render_mesh import plate_faces, skin_of, split_plates
+from app.rendering.vertex_colors import clay_colours
+from core.geometry.mesh import Mesh
 
 SAMPLES = Path(__file__).parents[1] / "resources" / "samples"
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.seeing.look import LOOKS, rgb
-from app.seeing.scene import Scene
-from core.mesh import Mesh
+from app.rendering.appearance import LOOKS, rgb
+from app.rendering.scene import Scene
+from core.geometry.mesh import Mesh
 
 WIDTH, HEIGHT, RADIUS = 300, 240, 150.0
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.seeing.look import LOOKS, rgb
-from app.seeing.paint import FOLDS, Ramp
-from app.seeing.scene import Scene
-from core.profile import Plane, Slicer
-from core.studies.sphere import sphere
+from app.rendering.appearance import LOOKS, rgb
+from app.rendering.scene import Scene
+from app.rendering.vertex_colors import FOLDS, Ramp
+from app.research.sphere import sphere
+from core.geometry.planar_curves import Plane, Slicer
 
 BALL = sphere(rings=61, spokes=120)  # of radius 100 mm
 RAMP = Ramp(("#0000FF", "#EDD8C9", "#FF0000"), -10.0, 10.0, "#EDD8C9")

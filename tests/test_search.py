@@ -6,9 +6,9 @@ import pytest
 from PySide6.QtCore import Qt
 from window_tools import Script, run_main, settled, undrawn
 
-from app.main_window import MainWindow
-from app.panels.commands import CommandSheet, plain
-from app.wording.synonyms import SYNONYMS
+from app.gui.features.help.command_palette import CommandSheet, plain
+from app.gui.main_window import MainWindow
+from app.i18n.search_terms import SYNONYMS
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

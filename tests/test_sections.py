@@ -6,9 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapes import octahedron, torso
 
-from core.mesh import Mesh
-from core.sections import arc_length, chains, cut, hull_perimeter, resample
-from core.studies.sphere import sphere
+from app.research.sphere import sphere
+from core.geometry.mesh import Mesh
+from core.geometry.plane_sections import arc_length, chains, cut, hull_perimeter, resample
 
 BALL = sphere(rings=31, spokes=64)
 

@@ -19,18 +19,21 @@ from PIL import Image
 from PySide6.QtCore import QSettings, qWarning
 from PySide6.QtWidgets import QApplication
 
-import app.reporting.pdf
-import core.presets
-from app.checking import figures, letters, papers, program
-from app.checking.apart import PASSING, apart
-from app.checking.bench import Bench
-from app.checking.hearing import hearing
-from app.checking.parts import Part, PartError, try_parts
-from app.commands import picture
-from app.commands.self_test import LINES, PARTS
-from app.dress.theme import load_fonts
+import app.report.pdf
+import core.document.presets
+from app.cli.commands import picture
+from app.cli.commands.self_test import LINES, PARTS
+from app.cli.self_test import core_checks as figures
+from app.cli.self_test import fonts as letters
+from app.cli.self_test import installation as program
+from app.cli.self_test import outputs as papers
+from app.cli.self_test.checks import Part, PartError, try_parts
+from app.cli.self_test.fixture import Bench
+from app.cli.self_test.message_capture import hearing
+from app.cli.self_test.sandbox import PASSING, apart
+from app.gui.theme.stylesheet import load_fonts
 from core.errors import UserError
-from core.pipeline import Stages
+from core.pipeline.build import Stages
 
 ROOT = Path(__file__).parent.parent
 
@@ -47,7 +50,7 @@ def test_all_is_well_here_without_display_and_without_streams(tmp_path: Path) ->
     """As a windowed program of Windows it has neither; what it made and said lies in the folder."""
     code = (
         "import sys; sys.stdin = sys.stdout = sys.stderr = sys.__stdout__ = sys.__stderr__ = None; "
-        "from app.cli import main; sys.exit(main(['self-test', '--out', sys.argv[1]]))"
+        "from app.cli.main import main; sys.exit(main(['self-test', '--out', sys.argv[1]]))"
     )
     homes = {f"XDG_{kind}_HOME": str(tmp_path / "user") for kind in ("CONFIG", "DATA", "STATE", "CACHE")}
     world = {name: value for name, value in os.environ.items() if not name.endswith("DISPLAY")}
@@ -151,7 +154,7 @@ def test_a_system_that_does_not_let_it_be_apart_is_left_alone(
 def test_what_is_not_shipped_is_named(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "3 presets" in program.shipped_files(bench)
     with monkeypatch.context() as patch:
-        patch.setattr(core.presets, "built_in", lambda: core.presets.preset_of("{"))
+        patch.setattr(core.document.presets, "built_in", lambda: core.document.presets.preset_of("{"))
         with pytest.raises(PartError, match="a preset cannot be read"):
             program.shipped_files(bench)
     monkeypatch.setattr(program, "is_frozen", lambda: True)
@@ -176,7 +179,7 @@ def test_type_without_its_letters_is_found_out(
         patch.setattr(letters, "_drawn", lambda _: b"box")
         with pytest.raises(PartError, match="boxes are drawn"):
             letters.japanese(bench)
-    monkeypatch.setattr("app.dress.theme.load_fonts", lambda: ("Inter",))
+    monkeypatch.setattr("app.gui.theme.stylesheet.load_fonts", lambda: ("Inter",))
     with pytest.raises(PartError, match="Noto Sans JP is not among"):
         letters.japanese(bench)
 
@@ -184,10 +187,10 @@ def test_type_without_its_letters_is_found_out(
 def test_files_that_are_not_what_they_should_be_are_found_out(
     qapp: QApplication, bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.reporting.pictures.shots", lambda *_: iter(()))
+    monkeypatch.setattr("app.report.images.shots", lambda *_: iter(()))
     monkeypatch.setattr(papers, "in_one_go", lambda _: {})
     assert "sheet-ja.pdf of 2 pages" in papers.report(bench)
-    write = app.reporting.pdf.write_pdf
+    write = app.report.pdf.write_pdf
     for spoil, said in (
         (lambda data: data[: len(data) // 2], "no whole PDF"),
         (lambda data: data.replace(b"/Type /Page\n", b"/Type /None\n", 1), "has 1 pages"),
@@ -198,7 +201,7 @@ def test_files_that_are_not_what_they_should_be_are_found_out(
             write(path, *told)
             path.write_bytes(spoil(path.read_bytes()))
 
-        monkeypatch.setattr(app.reporting.pdf, "write_pdf", spoilt)
+        monkeypatch.setattr(app.report.pdf, "write_pdf", spoilt)
         with pytest.raises(PartError, match=said):
             papers.report(bench)
 

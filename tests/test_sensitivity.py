@@ -10,12 +10,12 @@ import pytest
 from models import LAWS, law_of, small
 from slopes import slope
 
-from core.exact import solve_exact
-from core.mechanics import Mechanics
-from core.model import ConstrainedModel
-from core.solving.newton import Balance
-from core.solving.potential import Potential
-from core.solving.sensitivity import Answer
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.model import ConstrainedModel
+from core.mechanics.newton import Balance
+from core.mechanics.options import Mechanics
+from core.mechanics.potential import Potential
+from core.mechanics.sensitivity import Answer
 
 RATIOS = (1.0, 0.93, 0.96)
 STEP = 5e-5

@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.asking.session import Session
+from app.gui.session.session import Session
+from core.document.storage.project_file import save_project
+from core.document.storage.recovery import Recovery, left_behind
 from core.errors import LineError
-from core.live import Failure
-from core.project import save_project
-from core.recovery import Recovery, left_behind
+from core.pipeline.live_solver import Failure
 
 
 @pytest.fixture

@@ -6,8 +6,8 @@ from dataclasses import fields, replace
 
 import pytest
 
-from app.commands.settings import NUMBERS, SWITCHES, WORDS, settings_of
-from core.design import Design, ScanSource
+from app.cli.options import NUMBERS, SWITCHES, WORDS, settings_of
+from core.document.design import Design, ScanSource
 
 
 @pytest.mark.parametrize(

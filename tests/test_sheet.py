@@ -11,15 +11,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.cutting import cut_list
-from core.doubts import doubts
-from core.elastics import find_elastic
-from core.measures import before_after, measure_rows
-from core.pipeline import Stages, build
-from core.press_list import press_list
-from core.sheet import Heading, Sheet, sheet_of
-from core.solution import Solution, run
-from core.writing_out.sheet_file import COLUMNS, sheet_csv, sheet_json
+from core.export.report_data import Heading, Sheet, sheet_of
+from core.export.report_data_file import COLUMNS, sheet_csv, sheet_json
+from core.garment.cut_list import cut_list
+from core.garment.elastic_library import find_elastic
+from core.garment.pressure_list import press_list
+from core.landmarks.warnings import doubts
+from core.measurements.table import before_after, measure_rows
+from core.pipeline.build import Stages, build
+from core.pipeline.solve import Solution, run
 
 HEADING = Heading("Anna", "2026-11-22", "Customer 0412", system="uk", allowance_mm=5.0)
 Built = Callable[[str], Stages]

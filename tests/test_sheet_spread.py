@@ -14,16 +14,20 @@ import pytest
 from pdf_tools import Pdf
 from PySide6.QtGui import QImage
 
-from app.commands import reported
-from app.commands.reported import SheetWishes, run_report
-from app.dress.theme import load_fonts
-from app.reporting.cut_rows import line_notes, vague_forces
-from app.reporting.grounds import note_groups
-from app.reporting.handout import SHOTS, Handout
-from app.reporting.pages import pages_of
-from app.wording.samples import sample_design
-from core.elastics import find_elastic
-from core.measuring.plus_minus import (
+from app.cli.commands import report as reported
+from app.cli.commands.report import SheetWishes, run_report
+from app.gui.theme.stylesheet import load_fonts
+from app.presenters.samples import sample_design
+from app.report.cut_rows import line_notes, vague_forces
+from app.report.document import SHOTS, Handout
+from app.report.notes import note_groups
+from app.report.pages import pages_of
+from core.document.presets import built_in, with_preset
+from core.export.report_data import Heading, Sheet, sheet_of, with_spread
+from core.export.report_data_file import sheet_csv, sheet_json
+from core.export.solution_report import Shown
+from core.garment.elastic_library import find_elastic
+from core.measurements.uncertain_value import (
     AFTER,
     BEFORE,
     CHANGE,
@@ -36,12 +40,8 @@ from core.measuring.plus_minus import (
     Doubt,
     Spread,
 )
-from core.pipeline import Stages, build
-from core.presets import built_in, with_preset
-from core.report import Shown
-from core.sheet import Heading, Sheet, sheet_of, with_spread
-from core.solution import Solution, run
-from core.writing_out.sheet_file import sheet_csv, sheet_json
+from core.pipeline.build import Stages, build
+from core.pipeline.solve import Solution, run
 
 OFFS = {"before:bust_girth": 3.7, "after:bust_girth": 4.2, "change:bust_girth": 0.7, "lift": 0.1}
 

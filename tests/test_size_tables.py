@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from app.wording.words import say, use_language
+from app.i18n.catalog import say, use_language
 from core.errors import SizeError
-from core.sizes import built_in, own_folder, own_tables, sizes
-from core.sizing.table_file import read_table, table_of
+from core.measurements.size_table_file import read_table, table_of
+from core.measurements.sizes import built_in, own_folder, own_tables, sizes
 
 ROOT = Path(__file__).parent.parent
 GOOD = {

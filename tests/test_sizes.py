@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.errors import SizeError
-from core.sizes import built_in, size, sizes, sizes_text
-from core.sizing.table import BAND
+from core.measurements.size_table import BAND
+from core.measurements.sizes import built_in, size, sizes, sizes_text
 
 TABLES = {table.key: table for table in built_in()}
 every_table = pytest.mark.parametrize("table", built_in(), ids=lambda table: table.key)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from core.sizes import built_in, nearby, size
+from core.measurements.sizes import built_in, nearby, size
 
 
 @pytest.mark.parametrize("table", built_in(), ids=lambda table: table.key)

@@ -19,14 +19,14 @@ from models import (
 )
 from shapes import fitted, mid_bust, mirrored, torso
 
-from core.design_lines import OwnLine
-from core.exact import NEWTON_LIMIT, newton, solve_exact
-from core.mechanics import HOLDS, Mechanics
-from core.model import constrained_model
-from core.own_lines import with_own_lines
-from core.solver import State, Targets, at_rest, turn
-from core.studies.sphere import sphere_model
-from core.volume import CONTROLS, Pressure
+from app.research.sphere import sphere_model
+from core.document.line_notation import with_own_lines
+from core.document.lines import OwnLine
+from core.mechanics.exact_solution import NEWTON_LIMIT, newton, solve_exact
+from core.mechanics.iteration import State, Targets, at_rest, turn
+from core.mechanics.model import constrained_model
+from core.mechanics.options import HOLDS, Mechanics
+from core.mechanics.volume import CONTROLS, Pressure
 
 SLIDING = Mechanics(line_contact="sliding")
 RATIOS = (1.0, 0.9, 1.0)

@@ -7,8 +7,8 @@ import pytest
 from slopes import slope
 from test_tffd import BODY, BOTH, CONTROL, FULL, RING, shaken
 
-from core.moving import moving_faces
-from core.tffd import bind, deform_moving
+from core.deformation.incremental_normals import moving_faces
+from core.deformation.tffd import bind, deform_moving
 
 
 @BOTH

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scan_files import VOLUME, gltf
 
-from core.cleaning.mending import mend
-from core.mesh import Mesh
-from core.reading.scan_file import read_triangles
-from core.standing.body_size import find_unit
+from core.geometry.mesh import Mesh
+from core.scan.orientation.unit_detection import find_unit
+from core.scan.readers.registry import read_triangles
+from core.scan.repair.hole_filling import mend
 
 
 @pytest.mark.parametrize(

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from shapes import fitted
 
-from core.control_mesh import ControlMesh
+from core.control_mesh.fit import ControlMesh
+from core.control_mesh.path_snapping import both_ways, off_by, resampled, snap
+from core.control_mesh.template import read_template
+from core.document.line_notation import mirrored, ready_made
 from core.errors import LineError
-from core.own_lines import mirrored, ready_made
-from core.snapping import both_ways, off_by, resampled, snap
-from core.template import read_template
 
 TEMPLATE = read_template("168")
 KNOWN = {line.name: line for kind in ("straps", "slings", "rings") for line in ready_made(TEMPLATE)[kind]}

@@ -8,15 +8,15 @@ import pytest
 from models import pairs_of
 from shapes import mid_bust, run, tent_model, torso
 
-from core.lines import line_on
-from core.mechanics import DEFAULT_LINE_STIFFNESS
-from core.mesh import Mesh
-from core.model import assemble, constrained_model
-from core.solver import Marks, State, Targets, at_rest, iterate, record, turn
-from core.solving.potential import Potential
-from core.studies.sphere import sphere
-from core.tensegric import tensegric_model
-from core.volume import Pressure, volume_measure
+from app.research.sphere import sphere
+from core.geometry.mesh import Mesh
+from core.mechanics.constraint_lines import line_on
+from core.mechanics.iteration import Marks, State, Targets, at_rest, iterate, record, turn
+from core.mechanics.model import assemble, constrained_model
+from core.mechanics.options import DEFAULT_LINE_STIFFNESS
+from core.mechanics.potential import Potential
+from core.mechanics.tensegrity import tensegric_model
+from core.mechanics.volume import Pressure, volume_measure
 
 CONTROLS = ("none", "conventional", "adaptive")
 TORSO = constrained_model(torso(), worn=["mid-bust"])

@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 from pytestqt.qtbot import QtBot
 
-import app.asking.edit
-from app.asking.jobs import Jobs
-from app.asking.session import Session
-from core.comparison import Comparison
+import app.gui.session.edit_command
+from app.gui.session.jobs import Jobs
+from app.gui.session.session import Session
+from core.document.storage.project_file import open_project
 from core.errors import LineError
-from core.live import Failure
-from core.project import open_project
+from core.mechanics.solver_comparison import Comparison
+from core.pipeline.live_solver import Failure
 
 LINES = ("mid-bust", "full-bust")
 FAULTS = [RuntimeError("a fault"), MemoryError("no room"), SystemExit(1), KeyboardInterrupt()]
@@ -127,7 +127,7 @@ def test_a_fault_while_another_file_opens_leaves_the_document_alone(
     qtbot.waitUntil(lambda: is_solved(session))
     document, reported = session.document, []
     session.failed.connect(reported.append)
-    monkeypatch.setattr("core.pipeline.find", lambda *_, **__: (_ for _ in ()).throw(MemoryError()))
+    monkeypatch.setattr("core.pipeline.build.find", lambda *_, **__: (_ for _ in ()).throw(MemoryError()))
     session.open(str(person))
     qtbot.waitUntil(lambda: bool(reported))
     assert isinstance(reported[0], MemoryError)
@@ -166,7 +166,7 @@ def test_an_undo_that_is_refused_takes_nothing_else_back(session: Session, qtbot
 def test_quick_steps_that_are_refused_go_back_to_the_last_that_was_solved(
     session: Session, qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(app.asking.edit, "PAUSE", 600.0)
+    monkeypatch.setattr(app.gui.session.edit_command, "PAUSE", 600.0)
     for ratio in (0.98, 0.97):
         session.commit_line("mid-bust", "Mid-bust line", ratio)
         qtbot.waitUntil(lambda: is_solved(session))
@@ -189,7 +189,7 @@ def test_quick_steps_that_are_refused_go_back_to_the_last_that_was_solved(
 def test_a_step_that_is_refused_when_made_again_leaves_the_steps_after_it(
     session: Session, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(app.asking.edit, "PAUSE", 600.0)
+    monkeypatch.setattr(app.gui.session.edit_command, "PAUSE", 600.0)
     session.commit_line("mid-bust", "Mid-bust line", 0.98)
     qtbot.waitUntil(lambda: is_solved(session))
     session.commit_line("mid-bust", "Mid-bust line", 0.97)
@@ -216,7 +216,7 @@ def test_a_thread_that_is_ended_from_within_is_reported(
     jobs.run("Work", end, print, reported.append)
     qtbot.waitUntil(lambda: bool(reported))
     jobs.close()
-    monkeypatch.setattr("app.asking.session.save_project", end)
+    monkeypatch.setattr("app.gui.session.session.save_project", end)
     session.not_saved.connect(reported.append)
     edit(session, 1)
     assert session.save(str(tmp_path / "anna.busk"), None)

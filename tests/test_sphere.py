@@ -10,11 +10,11 @@ import pytest
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from core.exact import Balance, solve_exact
-from core.mechanics import CONTACTS, HOLDS, LAWS, Mechanics
-from core.mesh import Points
-from core.solver import Targets, iterate
-from core.studies.sphere import SphereModel, sphere_model
+from app.research.sphere import SphereModel, sphere_model
+from core.geometry.mesh import Points
+from core.mechanics.exact_solution import Balance, solve_exact
+from core.mechanics.iteration import Targets, iterate
+from core.mechanics.options import CONTACTS, HOLDS, LAWS, Mechanics
 
 LINES = ("horizontal", "vertical")
 

@@ -7,16 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.wording.samples import sample_design
-from core.design import Design, ScanSource
-from core.design_lines import LineTraits, OwnLine
-from core.elastics import find_elastic
+from app.presenters.samples import sample_design
+from core.control_mesh.template import read_template
+from core.document.design import Design, ScanSource
+from core.document.line_notation import mirrored, ready_made
+from core.document.lines import LineTraits, OwnLine
+from core.document.split_lines import can_split, halves, is_split, split
 from core.errors import LineError
-from core.own_lines import mirrored, ready_made
-from core.pipeline import Stages, build
-from core.solution import run
-from core.splitting import can_split, halves, is_split, split
-from core.template import read_template
+from core.garment.elastic_library import find_elastic
+from core.pipeline.build import Stages, build
+from core.pipeline.solve import run
 
 TEMPLATE = read_template("168")
 PLAIN = Design(ScanSource("a.ply"), lines=()).with_line("mid-bust", 0.93)

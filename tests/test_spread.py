@@ -11,17 +11,19 @@ import numpy as np
 import pytest
 from coarse_bodies import coarse_mannequin
 
-from app.wording.samples import sample_design
-from core.advice.assumed import NUMBERS, Assumed, assumed, assuming, origins
-from core.advice.knobs import PLACING, knobs, turned
-from core.advice.propagated import Propagation
-from core.advice.sampled import sampled
-from core.advice.trials import Trials
-from core.answer import answer_of
-from core.design_measures import OwnMeasure
-from core.elastics import find_elastic
+from app.presenters.samples import sample_design
+from core.analysis.uncertainty.estimate import SLIDING, WAIST, Spreading, cautions
+from core.analysis.uncertainty.input_uncertainty import NUMBERS, Assumed, assumed, assuming, origins
+from core.analysis.uncertainty.linear_propagation import Propagation
+from core.analysis.uncertainty.monte_carlo import sampled
+from core.analysis.uncertainty.parameters import PLACING, knobs, turned
+from core.analysis.uncertainty.perturbed_solutions import Trials
+from core.document.custom_measures import OwnMeasure
 from core.errors import UserError
-from core.measuring.plus_minus import (
+from core.garment.elastic_library import find_elastic
+from core.garment.tension import line_tensions
+from core.geometry.planar_curves import Plane, Slicer
+from core.measurements.uncertain_value import (
     LANDMARKS,
     LINE,
     SCAN,
@@ -33,12 +35,10 @@ from core.measuring.plus_minus import (
     digits,
     rounded,
 )
-from core.pipeline import Stages, build
-from core.profile import Plane, Slicer
+from core.pipeline.build import Stages, build
+from core.pipeline.exact import answer_of
+from core.pipeline.solve import run
 from core.progress import Cancelled
-from core.sewing.tensions import line_tensions
-from core.solution import run
-from core.spread import SLIDING, WAIST, Spreading, cautions
 
 SURE = replace(assumed(), unsure_landmark_mm=0.0)
 """Of the mannequin only the folds are sure: fewer landmarks are quicker."""
@@ -276,8 +276,8 @@ def test_a_bare_body_is_neither_fitted_nor_solved(plain: Stages, monkeypatch: py
     known = Trials(bare)
     assert known.bare
     assert known.points is not None
-    monkeypatch.setattr("core.advice.trials.build", None)
-    monkeypatch.setattr("core.advice.trials.resting_answer", None)
+    monkeypatch.setattr("core.analysis.uncertainty.perturbed_solutions.build", None)
+    monkeypatch.setattr("core.analysis.uncertainty.perturbed_solutions.resting_answer", None)
     spread = Spreading(known, SURE).whole()
     assert spread.whole
     assert spread.contact == ""

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from coarse_bodies import coarse_mannequin
 
-from app.cli import main
+from app.cli.main import main
 
 QUICK = ("--assume", "landmark_mm=0", "--assume", "unsure_landmark_mm=0")
 WORN = ("--line", "mid-bust=70%", "--elastic", "mid-bust=picot 10")

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from core.standing.cues import CUES, Fold, Look, Side
-from core.standing.silhouette import Silhouette
+from core.scan.orientation.orientation_cues import CUES, Fold, Look, Side
+from core.scan.orientation.silhouette import Silhouette
 
 FLAT = [0.0] * 20
 

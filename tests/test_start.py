@@ -12,12 +12,18 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from window_tools import Script, run_main, settled
 
-import app.desks.desk
-import app.desks.start_desk
-from app.keeping.recent import day_of, file_at_start, project_views, recent_files, remember_file
-from app.main_window import MainWindow
-from app.panels.project_card import ProjectCard
-from core.assessment import LEVELS
+import app.gui.document_controller
+import app.gui.features.project.start_controller
+from app.gui.features.project.project_card import ProjectCard
+from app.gui.features.project.recent_files import (
+    day_of,
+    file_at_start,
+    project_views,
+    recent_files,
+    remember_file,
+)
+from app.gui.main_window import MainWindow
+from core.garment.assessment import LEVELS
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -36,8 +42,8 @@ def test_the_first_start_leads_through_the_sample_and_later_ones_go_on(
 ) -> None:
     saved, gone = tmp_path / "customer 0412.busk", tmp_path / "customer 0340.busk"
     answers = iter(["", str(saved)])
-    monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(saved))
-    monkeypatch.setattr(app.desks.start_desk, "ask_open", lambda *_: next(answers))
+    monkeypatch.setattr(app.gui.document_controller, "ask_save", lambda *_: str(saved))
+    monkeypatch.setattr(app.gui.features.project.start_controller, "ask_open", lambda *_: next(answers))
 
     def first(window: MainWindow) -> Script:
         yield settled(window)

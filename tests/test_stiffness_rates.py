@@ -10,14 +10,14 @@ import pytest
 from models import LAWS, law_of, small
 from slopes import slope
 
-from core.design_elastics import Elastic
-from core.exact import solve_exact
-from core.mechanics import Mechanics
-from core.model import ConstrainedModel, assemble
-from core.solving.elastic_lines import ElasticLines, fit_elastics
-from core.solving.potential import Potential
-from core.solving.sensitivity import Answer
-from core.solving.stiffness import Changes, answers_to, by_stiffness
+from core.document.elastic import Elastic
+from core.mechanics.elastic_lines import ElasticLines, fit_elastics
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.model import ConstrainedModel, assemble
+from core.mechanics.options import Mechanics
+from core.mechanics.potential import Potential
+from core.mechanics.sensitivity import Answer
+from core.mechanics.stiffness_sensitivity import Changes, answers_to, by_stiffness
 
 RATIOS = (1.0, 0.93, 0.96)
 STEP = 5e-5

@@ -11,10 +11,10 @@ import pyvista as pv
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 
-from app.seeing.band import Band
-from app.seeing.scene import Scene
-from app.seeing.still import StillPicture
-from core.mesh import Mesh
+from app.rendering.band import Band
+from app.rendering.layer_cache import StillPicture
+from app.rendering.scene import Scene
+from core.geometry.mesh import Mesh
 
 WIDTH, HEIGHT = 240, 180
 
@@ -89,7 +89,7 @@ def test_graphics_that_cannot_keep_a_picture_draw_each_one_once(
     scene: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     formats = iter(range(1000))
-    monkeypatch.setattr("app.seeing.still._depth_of", lambda _: next(formats))  # never the same
+    monkeypatch.setattr("app.rendering.layer_cache._depth_of", lambda _: next(formats))  # never the same
     still, counts = StillPicture(scene.plotter), []
     for by in (0.1, 0.2, 0.3, 0.4):
         press(scene, by)

@@ -7,17 +7,17 @@ import pytest
 from models import cable_force, settled, volume_slopes
 from shapes import central_difference, torso
 
-from core.design_lines import OwnLine
+from core.control_mesh.straps import shoulder_above, tail_of
+from core.document.line_notation import with_own_lines
+from core.document.lines import OwnLine
 from core.errors import LineError
-from core.exact import solve_exact
-from core.mechanics import HOLDS, Mechanics
-from core.mesh import Mesh
-from core.model import ConstrainedModel, constrained_model
-from core.own_lines import with_own_lines
-from core.solver import Targets
-from core.solving.potential import Potential
-from core.solving.sensitivity import Answer
-from core.straps import shoulder_above, tail_of
+from core.geometry.mesh import Mesh
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.iteration import Targets
+from core.mechanics.model import ConstrainedModel, constrained_model
+from core.mechanics.options import HOLDS, Mechanics
+from core.mechanics.potential import Potential
+from core.mechanics.sensitivity import Answer
 
 RADIUS, LOW, BEND = 50.0, -200.0, 24
 STRAP = OwnLine("strap", tuple(13 * row + 9 for row in range(2, 7)), over_shoulder=True)

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from app.presenting.assessment import assessment_view
-from app.presenting.bust import bust_girths
-from app.presenting.verdict import StripVerdict, strip_verdict
-from core.assessment import assessment_of
-from core.comparison import Comparison
-from core.cutting import cut_list
-from core.live import Frame, make_frame
-from core.pipeline import Stages, build, targets_of
-from core.press_list import press_list
+from app.presenters.assessment import assessment_view
+from app.presenters.bust_shift import bust_girths
+from app.presenters.convergence import StripVerdict, strip_verdict
+from core.garment.assessment import assessment_of
+from core.garment.cut_list import cut_list
+from core.garment.pressure_list import press_list
+from core.mechanics.solver_comparison import Comparison
+from core.pipeline.build import Stages, build, targets_of
+from core.pipeline.live_solver import Frame, make_frame
 
 
 def verdict_of(frame: Frame) -> StripVerdict:

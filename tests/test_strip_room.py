@@ -6,12 +6,12 @@ import pytest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.dress.theme import apply_theme, load_fonts
-from app.layout import LOW, NARROW, TALLER
-from app.panels.rail import Rail
-from app.presenting.verdict import StripVerdict
-from app.showing.convergence import Strip
-from app.wording.words import speaking
+from app.gui.layout import LOW, NARROW, TALLER
+from app.gui.plots.convergence_panel import Strip
+from app.gui.step_navigation import Rail
+from app.gui.theme.stylesheet import apply_theme, load_fonts
+from app.i18n.catalog import speaking
+from app.presenters.convergence import StripVerdict
 
 NUMBERS = {
     "en": [("Bust point", "0.2 mm up, 1.2 mm back"), ("Bust girth", "895.4 mm"), ("Pressure", "12.8 kPa")],

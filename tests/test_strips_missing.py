@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from core.body import Body, read_scan
-from core.landmark import Landmarks
-from core.landmarks import find_landmarks
-from core.measure import girth_doubts, girths
-from core.mesh import Mesh
-from core.slicing.gaps import over_strips
-from core.slicing.outline import BINS
-from core.trunk import trunk_levels
+from core.geometry.level_outlines import BINS
+from core.geometry.mesh import Mesh
+from core.landmarks.detect import find_landmarks
+from core.landmarks.torso.cross_sections import trunk_levels
+from core.landmarks.torso.gap_filling import over_strips
+from core.landmarks.torso.girths import girth_doubts, girths
+from core.landmarks.types import Landmarks
+from core.scan.body import Body, read_scan
 
 SAMPLES = Path(__file__).parents[1] / "resources" / "samples"
 

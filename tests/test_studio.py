@@ -5,14 +5,14 @@ import pytest
 import pyvista as pv
 from PIL import Image
 
-import app.printing.studio as room
-from app.presenting.frame import bands
-from app.printing.studio import Studio, on_ground, on_nothing, write_picture
-from app.seeing.scene import Scene
-from app.wording.display import off_screen
+import app.rendering.offscreen as room
+from app.presenters.status import bands
+from app.rendering.display import off_screen
+from app.rendering.offscreen import Studio, on_ground, on_nothing, write_picture
+from app.rendering.scene import Scene
 from core.errors import UserError
+from core.pipeline.solve import run
 from core.progress import Cancelled, in_one_go
-from core.solution import run
 
 SIZE = (150, 180)
 

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from core.body import body_of
 from core.errors import ScanError
-from core.mesh import Mesh
+from core.geometry.mesh import Mesh
 from core.progress import Cancelled
-from core.reading.raw_scan import RawScan
-from core.reading.scan_file import read_triangles
-from core.reading.surface import is_cloud, surface_of
+from core.scan.body import body_of
+from core.scan.readers.raw_scan import RawScan
+from core.scan.readers.registry import read_triangles
+from core.scan.reconstruction.point_cloud import is_cloud, surface_of
 
 SAMPLES = Path(__file__).parents[1] / "resources" / "samples"
 

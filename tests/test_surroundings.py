@@ -15,13 +15,13 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMessageBox
 from window_tools import Script, drag, run_main, settled, undrawn
 
-import app.desks.desk
-from app.application import Application, hand_files_to
-from app.cli import BAD_INPUT, INTERRUPTED, main
-from app.commands import surroundings
-from app.commands.surroundings import is_seen_in_window, path_of, settle_in
-from app.main_window import MainWindow
-from app.panels.notice import NoticeBar
+import app.gui.document_controller
+from app.cli import environment as surroundings
+from app.cli.environment import is_seen_in_window, path_of, settle_in
+from app.cli.main import BAD_INPUT, INTERRUPTED, main
+from app.gui.application import Application, hand_files_to
+from app.gui.main_window import MainWindow
+from app.gui.widgets.notification_bar import NoticeBar
 
 ROOT = Path(__file__).parent.parent
 
@@ -76,7 +76,7 @@ def test_a_double_click_on_what_cannot_be_opened_is_answered_in_the_window(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "folder.busk").mkdir()
-    monkeypatch.setattr("app.cli.is_seen_in_window", lambda _: True)
+    monkeypatch.setattr("app.cli.main.is_seen_in_window", lambda _: True)
 
     def script(window: MainWindow) -> Script:
         yield lambda: window.start_desk.page.isVisible() and bool(said_by(window))
@@ -97,7 +97,9 @@ def test_files_that_the_desktop_wants_opened_come_to_the_window(
     """As on macOS: one before there is a window, one while there are unsaved changes."""
     assert isinstance(qapp, Application)
     asked: list[str] = []
-    monkeypatch.setattr(app.desks.desk, "ask_about_changes", lambda _, name: asked.append(name) or answer[0])
+    monkeypatch.setattr(
+        app.gui.document_controller, "ask_about_changes", lambda _, name: asked.append(name) or answer[0]
+    )
     answer = ["stay"]
 
     def script(window: MainWindow) -> Script:
@@ -149,7 +151,7 @@ def test_a_program_without_streams_says_in_a_box_why_it_does_not_begin(
 def test_letters_that_a_console_does_not_have_end_nothing(mannequin: Path, tmp_path: Path) -> None:
     scan = tmp_path / "試し.ply"
     scan.write_bytes(mannequin.read_bytes())
-    code = "import sys; from app.cli import main; sys.exit(main(sys.argv[1:]))"
+    code = "import sys; from app.cli.main import main; sys.exit(main(sys.argv[1:]))"
     for coding in ("ascii", "cp1252", "cp932"):
         world = {**os.environ, "PYTHONIOENCODING": coding}
         for words in (["measure", str(scan)], ["detect", str(tmp_path / "無し.ply")]):
@@ -217,6 +219,6 @@ def test_an_interrupt_ends_a_command_without_a_traceback(
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("core.pipeline.read_body", interrupted)
+    monkeypatch.setattr("core.pipeline.build.read_body", interrupted)
     assert main(["detect", str(mannequin)]) == INTERRUPTED
     assert capsys.readouterr() == ("", "")

@@ -6,7 +6,7 @@ from courses import course, motions
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.verdict import judge
+from core.mechanics.convergence import judge
 
 LONG = np.arange(160)
 

@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from core import __version__
-from core.reading.scan_file import FORMATS
+from core.scan.readers.registry import FORMATS
 
 ROOT = Path(__file__).parent.parent
 PACKAGING = ROOT / "packaging"
@@ -45,7 +45,7 @@ class Frozen:
             "SPECPATH": str(PACKAGING),
             "workpath": str(folder),
             "Analysis": lambda *_, **told: SimpleNamespace(
-                pure=[("core.design", "design.py", "PYMODULE")],
+                pure=[("core.document.design", "design.py", "PYMODULE")],
                 scripts=[],
                 binaries=[("libvtkB.so", "vtkmodules/libvtkB.so", "SYMLINK")],
                 datas=[(place, source, "DATA") for source, place in told["datas"]],
@@ -77,7 +77,7 @@ def frozen_on(platform, monkeypatch, folder):
 def test_the_bill_is_told_where_everything_came_from(monkeypatch, tmp_path, platform):
     frozen_on(platform, monkeypatch, tmp_path)
     told = dict(json.loads((tmp_path / "origins.json").read_text("utf-8")))
-    assert told["core.design"] == "design.py"
+    assert told["core.document.design"] == "design.py"
     assert Path(told["resources"]) == ROOT / "resources"
     assert "libvtkB.so" not in told, "a link is no part of its own"
 

@@ -7,11 +7,11 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from core.body import read_scan
-from core.mesh import Mesh
-from core.moving import MovingFaces, moving_faces
-from core.trunk import trunk_levels
-from core.watch import Tapes
+from core.deformation.incremental_normals import MovingFaces, moving_faces
+from core.geometry.mesh import Mesh
+from core.landmarks.torso.cross_sections import trunk_levels
+from core.pipeline.observables import Tapes
+from core.scan.body import read_scan
 
 
 @pytest.fixture(scope="module", params=["mannequin", "person"])

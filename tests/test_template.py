@@ -6,9 +6,9 @@ from importlib import resources
 import numpy as np
 import pytest
 
+from core.control_mesh.template import TEMPLATES, parse_template, read_template
 from core.errors import FitError
-from core.mesh import Mesh
-from core.template import TEMPLATES, parse_template, read_template
+from core.geometry.mesh import Mesh
 
 
 @pytest.fixture(params=TEMPLATES)

@@ -5,8 +5,8 @@ import pytest
 from scipy import sparse
 from shapes import string, tent, torso
 
-from core.members.springs import incidence_of, laplacian
-from core.tensegric import tensegric_model
+from core.mechanics.springs import incidence_of, laplacian
+from core.mechanics.tensegrity import tensegric_model
 
 
 def test_force_densities_are_inverse_lengths_with_mean_one():

@@ -13,9 +13,9 @@ from PySide6.QtCore import QSettings, QTimer
 from PySide6.QtGui import QGuiApplication
 from window_tools import Script, run_undrawn, settled
 
-from app.cli import main
-from app.main_window import MainWindow
-from core.recovery import left_behind, read_kept, recovery_folder
+from app.cli.main import main
+from app.gui.main_window import MainWindow
+from core.document.storage.recovery import left_behind, read_kept, recovery_folder
 
 FILE = Path(__file__)
 RATIO = 0.9
@@ -23,7 +23,7 @@ RATIO = 0.9
 
 def work(body: Path) -> int:
     """Edit once, print that this is done, and stay, with autosave an hour away; returns the exit code."""
-    from app.application import application  # noqa: PLC0415 (in the process that is ended)
+    from app.gui.application import application  # noqa: PLC0415 (in the process that is ended)
 
     app = application()
     QSettings().setValue("autosave", 3600.0)

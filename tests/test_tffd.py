@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from core import kernels
-from core.mesh import Mesh
-from core.tffd import bind, deform, deform_moving, uncollared
+from core.deformation.tffd import bind, deform, deform_moving, uncollared
+from core.geometry import kernels
+from core.geometry.mesh import Mesh
 
 BOTH = pytest.mark.parametrize("weights", ["paper", "smooth"])
 

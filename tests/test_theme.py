@@ -13,10 +13,10 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QFontInfo
 from PySide6.QtWidgets import QApplication, QCheckBox, QWidget
 
-from app.dress.icons import SCALES, icon, pixmap
-from app.dress.parts import ToolButton, sentence
-from app.dress.theme import ROLES, apply_theme, font, label, load_fonts, tokens_of
-from app.wording.tokens import DARK, LIGHT, LINE_COLORS, Tokens
+from app.gui.theme.icons import SCALES, icon, pixmap
+from app.gui.theme.stylesheet import ROLES, apply_theme, font, label, load_fonts, tokens_of
+from app.gui.widgets.basic import ToolButton, sentence
+from app.rendering.palette import DARK, LIGHT, LINE_COLORS, Tokens
 
 ICONS = Path(__file__).parent.parent / "resources" / "icons"
 

@@ -7,21 +7,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from core.body import body_of, read_scan
-from core.cleaning.holes import MOST, find_holes, frame_of
 from core.errors import LandmarkError, ScanError
-from core.finding.anchor import ABOVE, find_anchor
-from core.finding.breast_profile import LONGEST, profiles
-from core.finding.chest import Pole, find_poles
-from core.finding.relief import breast_patch
-from core.measuring.rings import skin_ring, tape_ring
-from core.mesh import Mesh
-from core.reading.contour import distinct
-from core.sections import hull_corners, hull_perimeter, hull_slopes
-from core.slicing.arms import necks
-from core.slicing.outline import Pieces, reach, ring
-from core.slicing.trunk_pieces import GAP, _linked, limbs
-from core.trunk import Level, survey
+from core.geometry.level_outlines import Pieces, reach, ring
+from core.geometry.mesh import Mesh
+from core.geometry.plane_sections import hull_corners, hull_perimeter, hull_slopes
+from core.landmarks.anchor import ABOVE, find_anchor
+from core.landmarks.breast_profiles import LONGEST, profiles
+from core.landmarks.chest import Pole, find_poles
+from core.landmarks.nipple import breast_patch
+from core.landmarks.torso.arm_removal import necks
+from core.landmarks.torso.contour_classification import GAP, _linked, limbs
+from core.landmarks.torso.cross_sections import Level, survey
+from core.measurements.tape import skin_ring, tape_ring
+from core.scan.body import body_of, read_scan
+from core.scan.reconstruction.isosurface import distinct
+from core.scan.repair.holes import MOST, find_holes, frame_of
 
 PERSON = Path(__file__).parents[1] / "resources" / "samples" / "person.ply"
 
@@ -183,5 +183,5 @@ def test_the_reach_of_many_segments_is_worked_out_in_parts(monkeypatch):
     segments = np.concatenate([chance.uniform(-200.0, 200.0, (500, 2, 2)), np.zeros((500, 2, 1))], axis=2)
     level, centre = chance.integers(0, 3, 500), np.zeros((3, 2))
     whole = reach(segments, level, centre)
-    monkeypatch.setattr("core.slicing.outline.BLOCK", 37)
+    monkeypatch.setattr("core.geometry.level_outlines.BLOCK", 37)
     assert np.array_equal(reach(segments, level, centre), whole, equal_nan=True)

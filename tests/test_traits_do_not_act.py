@@ -9,11 +9,11 @@ from test_live import Built, settled, solver
 from window_tools import Script, run_main, undrawn
 from window_tools import settled as at_rest
 
-from app.main_window import MainWindow
-from core.design import Design, ScanSource
-from core.design_lines import LineTraits
-from core.design_measures import OwnMeasure
-from core.live import LiveSolver
+from app.gui.main_window import MainWindow
+from core.document.custom_measures import OwnMeasure
+from core.document.design import Design, ScanSource
+from core.document.lines import LineTraits
+from core.pipeline.live_solver import LiveSolver
 
 __all__ = ["solver"]
 

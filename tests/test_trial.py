@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from shapes import torso
 
-from app.cli import main
-from app.commands.trials import LENGTHS, STIFFNESSES
-from app.wording.samples import SAMPLES
-from core.mechanics import LAWS, Mechanics
-from core.studies.sphere import sphere_control
-from core.studies.trial import CONTROLS, TURNS, Subject, _stays_below, trials
+from app.cli.main import main
+from app.presenters.samples import SAMPLES
+from app.research.control_study import CONTROLS, TURNS, Subject, _stays_below, trials
+from app.research.control_study_command import LENGTHS, STIFFNESSES
+from app.research.sphere import sphere_control
+from core.mechanics.options import LAWS, Mechanics
 
 TORSO = Subject("torso", torso(), "mid-bust", Mechanics(volume_of="both"))
 

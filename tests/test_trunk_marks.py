@@ -16,11 +16,11 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
 
-from core.finding.roots import root_marks
-from core.finding.trunk_marks import trunk_marks
-from core.landmark import NAMES, SIDES, Landmark, Landmarks
-from core.measure import girth_levels
-from core.mesh import Mesh
+from core.geometry.mesh import Mesh
+from core.landmarks.breast_root import root_marks
+from core.landmarks.torso.girths import girth_levels
+from core.landmarks.torso_landmarks import trunk_marks
+from core.landmarks.types import NAMES, SIDES, Landmark, Landmarks
 
 ROOT = Path(__file__).parents[1]
 TRUTH = json.loads((ROOT / "tests/data/truth.json").read_text(encoding="utf-8"))

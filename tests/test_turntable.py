@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from app.presenting.frame import bands
-from app.printing.studio import Studio, on_ground
-from app.printing.turntable import FORMATS, Turntable, turn_round, write_turntable
+from app.presenters.status import bands
+from app.rendering.offscreen import Studio, on_ground
+from app.rendering.turntable import FORMATS, Turntable, turn_round, write_turntable
 from core.errors import UserError
+from core.pipeline.solve import run
 from core.progress import Cancelled, in_one_go
-from core.solution import run
 
 SMALL = Turntable(frames=4, size=(120, 100), seconds=2.0)
 

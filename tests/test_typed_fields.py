@@ -8,10 +8,10 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
-from app.panels.figure_field import FigureField
-from app.panels.line_parts import StiffnessField
-from app.panels.number_field import NumberField
-from app.panels.typed_field import Refusal
+from app.gui.widgets.inline_edit import Refusal
+from app.gui.widgets.length_edit import NumberField
+from app.gui.widgets.line_widgets import StiffnessField
+from app.gui.widgets.value_edit import FigureField
 
 pytestmark = pytest.mark.usefixtures("qapp")
 

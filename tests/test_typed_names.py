@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.cli import BAD_INPUT, main
+from app.cli.main import BAD_INPUT, main
 
 
 @pytest.mark.parametrize(

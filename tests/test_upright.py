@@ -10,10 +10,10 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from core.errors import ScanError
-from core.reading.scan_file import read_triangles
-from core.standing import upright
-from core.standing.symmetry import even_cloud, mirror_planes
-from core.standing.upright import AXES, MILLIMETRES, find_pose
+from core.scan.orientation import pose as upright
+from core.scan.orientation.pose import AXES, MILLIMETRES, find_pose
+from core.scan.orientation.symmetry_planes import even_cloud, mirror_planes
+from core.scan.readers.registry import read_triangles
 
 SAMPLES = Path(__file__).parents[1] / "resources" / "samples"
 CANONICAL = np.eye(4)

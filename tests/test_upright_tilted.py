@@ -9,7 +9,7 @@ from test_refused import sample
 from test_upright import angle_between, torso
 
 from core.errors import ScanError
-from core.standing.upright import find_pose
+from core.scan.orientation.pose import find_pose
 
 
 def tilted(degrees, about, yaw=0.0):

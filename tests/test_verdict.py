@@ -7,10 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapes import fitted, mid_bust
 
-from core.model import constrained_model
-from core.solver import Targets, at_rest, iterate
-from core.solving.condition import Condition
-from core.verdict import MOTIONS, SETTLED_STEP, STATES, Verdict, judge
+from core.mechanics.convergence import MOTIONS, SETTLED_STEP, STATES, Verdict, judge
+from core.mechanics.iteration import Targets, at_rest, iterate
+from core.mechanics.mesh_quality import Condition
+from core.mechanics.model import constrained_model
 
 TURNS = np.arange(60)
 FLIP = (-1.0) ** TURNS

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from shapes import central_difference, errors_of, fitted, mid_bust, run, torso
 
-from core.mechanics import Mechanics
-from core.model import constrained_model
-from core.solver import State, Targets, at_rest, turn
-from core.solving.gain import gain_limit
-from core.volume import Pressure
+from core.mechanics.gain_limit import gain_limit
+from core.mechanics.iteration import State, Targets, at_rest, turn
+from core.mechanics.model import constrained_model
+from core.mechanics.options import Mechanics
+from core.mechanics.volume import Pressure
 
 CONTROLS = ("none", "conventional", "adaptive")
 TORSO = constrained_model(torso(), worn=["mid-bust"])

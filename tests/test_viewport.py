@@ -16,12 +16,12 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 from window_tools import small_view
 
-from app.dress.theme import apply_theme
-from app.seeing.band import Band
-from app.showing.overlay import Pin
-from app.showing.pointer import NOTCH, TURN
-from app.showing.viewport import Viewport
-from core.mesh import Mesh
+from app.gui.theme.stylesheet import apply_theme
+from app.gui.viewport.interaction import NOTCH, TURN
+from app.gui.viewport.overlay import Pin
+from app.gui.viewport.viewport import Viewport
+from app.rendering.band import Band
+from core.geometry.mesh import Mesh
 
 Button, Keys, XY = Qt.MouseButton, Qt.KeyboardModifier, tuple[float, float]
 LEFT, MIDDLE, NONE = Qt.MouseButton.LeftButton, Qt.MouseButton.MiddleButton, Qt.MouseButton.NoButton

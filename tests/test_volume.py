@@ -6,11 +6,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapes import central_difference, octahedron, tent, torso
 
-from core.mesh import Mesh
-from core.solving.gain import sum_of
-from core.studies.sphere import sphere
-from core.tensegric import tensegric_model
-from core.volume import CONTROLS, Pressure, next_pressure, volume_measure
+from app.research.sphere import sphere
+from core.geometry.mesh import Mesh
+from core.mechanics.gain_limit import sum_of
+from core.mechanics.tensegrity import tensegric_model
+from core.mechanics.volume import CONTROLS, Pressure, next_pressure, volume_measure
 
 
 def measured(control):

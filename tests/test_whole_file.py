@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-import core.whole_file
+import core.files.atomic_write
 from core.errors import ProjectError
-from core.whole_file import private_folder, safe_ending, whole_file, write_text
+from core.files.atomic_write import private_folder, safe_ending, whole_file, write_text
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="links, pipes and access rights of POSIX")
 
@@ -52,7 +52,7 @@ def test_one_file_is_not_written_by_two_at_once(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
 def test_a_really_full_device(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(core.whole_file, "_new_partial", lambda *_: Path("/dev/full"))
+    monkeypatch.setattr(core.files.atomic_write, "_new_partial", lambda *_: Path("/dev/full"))
     monkeypatch.setattr(Path, "unlink", lambda self, missing_ok: None)
     with pytest.raises(ProjectError, match=r"No space left.*make room"):
         write(tmp_path / "table.csv")
@@ -139,7 +139,7 @@ def test_no_name_beside_the_file_can_be_guessed_or_taken(
     assert len(set(names)) == 2
     other = tmp_path / "other"
     other.write_text("not ours")
-    monkeypatch.setattr("core.whole_file.secrets.token_hex", lambda _: "guessed")
+    monkeypatch.setattr("core.files.atomic_write.secrets.token_hex", lambda _: "guessed")
     (tmp_path / ".table.csv.guessed.part").symlink_to(other)
     with pytest.raises(ProjectError, match="cannot be written"):
         write(tmp_path / "table.csv", "secret")

@@ -13,13 +13,13 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLabel, QPushButton
 from pytestqt.qtbot import QtBot
 
-from app.dress.theme import apply_theme
-from app.panels.length_groove import LONGEST, SHORTEST
-from app.panels.length_slider import LengthSlider
-from app.panels.line_row import LineView
-from app.panels.lines import LinesPanel
-from app.wording.words import use_language
-from core.leeway import Leeway, Reason, Zone
+from app.gui.features.lines.panel import LinesPanel
+from app.gui.features.lines.row import LineView
+from app.gui.features.lines.slider import LengthSlider
+from app.gui.features.lines.slider_groove import LONGEST, SHORTEST
+from app.gui.theme.stylesheet import apply_theme
+from app.i18n.catalog import use_language
+from core.analysis.length_limits.zones import Leeway, Reason, Zone
 
 WAIST = LineView("waist", "Waist", "#7A1F2E", 1.0, 400.0, 396.0, True, True, 700.0)
 RED_BELOW_97 = Leeway(

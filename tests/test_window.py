@@ -11,8 +11,8 @@ from PySide6.QtGui import QColor, QImage
 from PySide6.QtTest import QTest
 from window_tools import Script, drag, points, run_main, settled
 
-from app.main_window import MainWindow
-from app.seeing.camera import VIEWS
+from app.gui.main_window import MainWindow
+from app.rendering.camera import VIEWS
 from core.errors import ProjectError
 
 pytestmark = pytest.mark.usefixtures("empty_house")

@@ -21,9 +21,9 @@ from PySide6.QtWidgets import (
 )
 from window_tools import Script, run_main, settled
 
-from app.main_window import MainWindow
-from app.panels.length_slider import LengthSlider
-from app.wording.words import use_language
+from app.gui.features.lines.slider import LengthSlider
+from app.gui.main_window import MainWindow
+from app.i18n.catalog import use_language
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

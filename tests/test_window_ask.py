@@ -12,11 +12,11 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from window_tools import Script, points, run_main, settled, undrawn
 
-from app.main_window import MainWindow
-from core.aims.figure import Goal
-from core.design import Design
-from core.elastics import find_elastic
-from core.project import open_project
+from app.gui.main_window import MainWindow
+from core.analysis.inverse_design.quantities import Goal
+from core.document.design import Design
+from core.document.storage.project_file import open_project
+from core.garment.elastic_library import find_elastic
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -7,8 +7,8 @@ import pytest
 from ask_tools import answered, drag, type_wish, wear
 from window_tools import Script, run_main, settled, undrawn
 
-from app.main_window import MainWindow
-from core.aims.figure import Goal
+from app.gui.main_window import MainWindow
+from core.analysis.inverse_design.quantities import Goal
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -9,8 +9,8 @@ from ask_tools import answered, type_wish, wear
 from PySide6.QtCore import QCoreApplication, QEvent, QPoint
 from window_tools import Script, run_main, settled, undrawn
 
-from app.main_window import MainWindow
-from core.sewing.comfort import comfort
+from app.gui.main_window import MainWindow
+from core.garment.pressure_limits import comfort
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -12,8 +12,8 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
-from app.main_window import MainWindow
-from app.showing.wish_curve import WishCurve
+from app.gui.main_window import MainWindow
+from app.gui.viewport.target_curve import WishCurve
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -8,9 +8,9 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
-from app.main_window import MainWindow
-from app.panels.figure_field import FigureField
-from core.aims.figure import Goal
+from app.gui.main_window import MainWindow
+from app.gui.widgets.value_edit import FigureField
+from core.analysis.inverse_design.quantities import Goal
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -10,11 +10,11 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 from window_tools import Script, points, run_main, settled, undrawn
 
-from app.dress.tip import shown_tip
-from app.lining.band_pull import STEP
-from app.main_window import MainWindow
-from app.panels.length_groove import RESISTANCE
-from core.leeway import Leeway, Reason, Zone
+from app.gui.features.lines.band_drag import STEP
+from app.gui.features.lines.slider_groove import RESISTANCE
+from app.gui.main_window import MainWindow
+from app.gui.widgets.tooltip import shown_tip
+from core.analysis.length_limits.zones import Leeway, Reason, Zone
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -7,7 +7,7 @@ import pytest
 from coloured_scans import RED, painted_sample
 from window_tools import Script, run_undrawn, settled
 
-from app.main_window import MainWindow
+from app.gui.main_window import MainWindow
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

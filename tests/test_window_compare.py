@@ -13,12 +13,12 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QApplication
 from window_tools import Script, run_main, settled
 
-from app.dress.wishes import wish
-from app.main_window import MainWindow
-from app.showing.viewport import Viewport
-from app.showing.wipe import REACH
-from app.viewing import flip_key
-from core.live import Frame
+from app.gui.main_window import MainWindow
+from app.gui.session.settings import wish
+from app.gui.viewport import compare_key as flip_key
+from app.gui.viewport.split_handle import REACH
+from app.gui.viewport.viewport import Viewport
+from core.pipeline.live_solver import Frame
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

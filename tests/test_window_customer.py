@@ -8,8 +8,8 @@ import pytest
 from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
-from app.main_window import MainWindow
-from core.project import open_project
+from app.gui.main_window import MainWindow
+from core.document.storage.project_file import open_project
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -85,8 +85,10 @@ def test_no_piece_of_a_former_document_is_listed() -> None:
 def test_a_typed_name_is_saved_and_asked_about(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "dora.busk"
     asked = []
-    monkeypatch.setattr("app.desks.desk.ask_save", lambda *_: str(path))
-    monkeypatch.setattr("app.desks.desk.ask_about_changes", lambda *_: asked.append(1) or "discard")
+    monkeypatch.setattr("app.gui.document_controller.ask_save", lambda *_: str(path))
+    monkeypatch.setattr(
+        "app.gui.document_controller.ask_about_changes", lambda *_: asked.append(1) or "discard"
+    )
 
     def script(window: MainWindow) -> Script:
         undrawn(window)

@@ -9,12 +9,12 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from window_tools import Script, run_main, run_undrawn, settled, undrawn
 
-import app.keeping.pressure_desk
-from app.desks.doctor_desk import ABOUT
-from app.main_window import MainWindow
-from app.panels.notice import REFUSED, Notice
-from app.presenting.assessment import tone
-from core.press_list import press_list
+import app.gui.features.garment.pressure_controller
+from app.gui.features.diagnosis.controller import ABOUT
+from app.gui.main_window import MainWindow
+from app.gui.widgets.notification_bar import REFUSED, Notice
+from app.presenters.assessment import tone
+from core.garment.pressure_list import press_list
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -155,7 +155,7 @@ def test_asked_before_the_verdict_is_known_he_says_what_presses(monkeypatch: pyt
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        monkeypatch.setattr(app.keeping.pressure_desk, "press_list", slow)
+        monkeypatch.setattr(app.gui.features.garment.pressure_controller, "press_list", slow)
         window.lines_desk.commit_length("mid-bust", 0.93)
         yield settled(window)
         frame = window.session.frame

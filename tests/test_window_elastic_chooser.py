@@ -11,13 +11,13 @@ import pytest
 from garment_tools import at_rest, chooser_of, cut_rows, made_of, mark
 from window_tools import PATIENCE, Script, run_undrawn, settled
 
-from app.lining import elastic_offer
-from app.main_window import MainWindow
-from app.presenting.bust import bust_move
-from app.wording.words import number
-from core.design_elastics import Elastic
-from core.elastics import save_elastic
-from core.sewing.elastic_options import KEEP_CUT
+from app.gui.features.garment import elastic_offer
+from app.gui.main_window import MainWindow
+from app.i18n.catalog import number
+from app.presenters.bust_shift import bust_move
+from core.document.elastic import Elastic
+from core.garment.elastic_library import save_elastic
+from core.garment.elastic_options import KEEP_CUT
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -12,11 +12,11 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from window_tools import Script, run_undrawn, settled
 
-from app.lining import elastics_desk
-from app.main_window import MainWindow
-from core.design_elastics import Elastic
-from core.elastics import own_elastics, own_folder, read_elastic, save_elastic
-from core.sewing.elastic_csv import TEMPLATE
+from app.gui.features.garment import elastics_controller as elastics_desk
+from app.gui.main_window import MainWindow
+from core.document.elastic import Elastic
+from core.garment.elastic_csv import TEMPLATE
+from core.garment.elastic_library import own_elastics, own_folder, read_elastic, save_elastic
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -18,10 +18,10 @@ from shiboken6 import isValid
 from test_window_work import endless
 from window_tools import Script, drag, run_main, settled
 
-import app.desks.desk
-from app.main_window import MainWindow
-from app.wording.samples import sample_design
-from core.recovery import recovery_folder
+import app.gui.document_controller
+from app.gui.main_window import MainWindow
+from app.presenters.samples import sample_design
+from core.document.storage.recovery import recovery_folder
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -110,8 +110,8 @@ def test_a_closed_window_leaves_nothing(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     sync = os.fsync
-    monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(tmp_path / "anna.busk"))
-    monkeypatch.setattr(app.desks.desk, "ask_about_changes", lambda *_: "discard")
+    monkeypatch.setattr(app.gui.document_controller, "ask_save", lambda *_: str(tmp_path / "anna.busk"))
+    monkeypatch.setattr(app.gui.document_controller, "ask_about_changes", lambda *_: "discard")
     if state is writing:
         QSettings().setValue("autosave", 0.01)
         monkeypatch.setattr(os, "fsync", lambda file: (time.sleep(0.3), sync(file)))

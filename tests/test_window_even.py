@@ -11,13 +11,13 @@ from PySide6.QtTest import QTest
 from shapes import SAMPLES
 from window_tools import Script, run_main, settled, undrawn
 
-import app.keeping.even_desk as desk_module
-from app.keeping.spread_desk import SpreadDesk
-from app.main_window import MainWindow
-from app.panels.even_card import EvenCard
-from core.evenness import BeforeAfter, evenness
-from core.splitting import split
-from core.template import read_template
+import app.gui.features.symmetry.controller as desk_module
+from app.gui.features.symmetry.card import EvenCard
+from app.gui.features.uncertainty.controller import SpreadDesk
+from app.gui.main_window import MainWindow
+from core.analysis.symmetry.compare import BeforeAfter, evenness
+from core.control_mesh.template import read_template
+from core.document.split_lines import split
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 PERSON = [str(SAMPLES / "person.ply")]

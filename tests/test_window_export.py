@@ -15,11 +15,11 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QFileDialog, QWidget
 from window_tools import Script, run_main, settled, undrawn
 
-import app.desks.export_desk
-import app.printing.studio
-from app.main_window import MainWindow
-from app.panels.export_sheet import ExportSheet
-from app.wording.export_choices import exports
+import app.gui.features.export.controller
+import app.rendering.offscreen
+from app.gui.features.export.dialog import ExportSheet
+from app.gui.main_window import MainWindow
+from app.presenters.export_formats import exports
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -111,12 +111,12 @@ def test_choices_are_remembered_for_each_thing_and_each_format(tmp_path: Path) -
     ],
 )
 def test_settings_that_are_no_choices_are_forgotten(kept: str) -> None:
-    choices = app.desks.export_desk.Choices(kept)
+    choices = app.gui.features.export.controller.Choices(kept)
     assert choices.export.what == "body"
     assert choices.values("body") == {"format": "glb", "shape": ""}
     assert choices.values("body", "ply") == {"format": "ply", "shape": "", "unit": "mm", "axes": "z-up"}
     choices.choose("turntable", "size", "480x540")
-    manner = app.desks.export_desk.Choices(choices.text).manner("turntable")
+    manner = app.gui.features.export.controller.Choices(choices.text).manner("turntable")
     assert (manner.size, manner.frames, manner.seconds) == ((480, 540), 36, 6.0)
     assert json.loads(choices.text)["turntable/size"] == "480x540"
 

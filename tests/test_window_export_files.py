@@ -13,10 +13,10 @@ from PIL import Image
 from PySide6.QtWidgets import QApplication
 from window_tools import Script, run_main, settled, undrawn
 
-import app.desks.export_desk
-import app.printing.studio
-from app.main_window import MainWindow
-from core.tffd import deform
+import app.gui.features.export.controller
+import app.rendering.offscreen
+from app.gui.main_window import MainWindow
+from core.deformation.tffd import deform
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -26,15 +26,15 @@ def test_a_turntable_is_drawn_between_events_and_can_be_left(
 ) -> None:
     path = tmp_path / "anna.gif"
     saved_as(monkeypatch, path)
-    monkeypatch.setattr(app.printing.studio, "LONGEST", 300)
+    monkeypatch.setattr(app.rendering.offscreen, "LONGEST", 300)
     made: list[Any] = []
-    studio_of = app.printing.studio.Studio.__enter__
-    leave = app.printing.studio.Studio.__exit__
+    studio_of = app.rendering.offscreen.Studio.__enter__
+    leave = app.rendering.offscreen.Studio.__exit__
     monkeypatch.setattr(
-        app.printing.studio.Studio, "__enter__", lambda each: made.append(each) or studio_of(each)
+        app.rendering.offscreen.Studio, "__enter__", lambda each: made.append(each) or studio_of(each)
     )
     monkeypatch.setattr(
-        app.printing.studio.Studio, "__exit__", lambda each, *how: made.remove(each) or leave(each, *how)
+        app.rendering.offscreen.Studio, "__exit__", lambda each, *how: made.remove(each) or leave(each, *how)
     )
 
     def script(window: MainWindow) -> Script:
@@ -145,7 +145,9 @@ def test_a_series_does_not_take_the_place_of_another_unasked(
     saved_as(monkeypatch, tmp_path / "anna.png")
     (tmp_path / "anna-07.png").write_text("another series")
     asked: list[str] = []
-    monkeypatch.setattr(app.desks.export_desk, "ask", lambda _, question, *__: asked.append(question) or "")
+    monkeypatch.setattr(
+        app.gui.features.export.controller, "ask", lambda _, question, *__: asked.append(question) or ""
+    )
 
     def script(window: MainWindow) -> Script:
         undrawn(window)
@@ -178,7 +180,7 @@ def test_a_body_is_written_as_it_is_when_the_dialog_closes(
                 QApplication.processEvents()
             return str(path)
 
-        monkeypatch.setattr(app.desks.export_desk, "ask_save", place)
+        monkeypatch.setattr(app.gui.features.export.controller, "ask_save", place)
         show = window.notices.show_notice
         monkeypatch.setattr(
             window.notices,

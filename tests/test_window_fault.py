@@ -11,10 +11,10 @@ from PySide6.QtWidgets import QLabel
 from test_solver_faults import Faults, edit
 from window_tools import Script, drag, run_undrawn, settled
 
-import app.desks.desk
-from app.main_window import MainWindow
-from core.project import open_project
-from core.recovery import read_kept
+import app.gui.document_controller
+from app.gui.main_window import MainWindow
+from core.document.storage.project_file import open_project
+from core.document.storage.recovery import read_kept
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -31,7 +31,7 @@ def test_a_solver_that_fails_for_long_loses_nothing(
 ) -> None:
     QSettings().setValue("autosave", 0.05)
     path = tmp_path / "anna.busk"
-    monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(app.gui.document_controller, "ask_save", lambda *_: str(path))
     caplog.set_level(logging.CRITICAL)
 
     def script(window: MainWindow) -> Script:

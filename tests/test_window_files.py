@@ -14,20 +14,20 @@ import trimesh
 from PySide6.QtGui import QImage
 from window_tools import Script, drag, points, run_main, run_undrawn, settled, undrawn
 
-import app.desks.desk
-import app.desks.export_desk
-from app.main_window import MainWindow
-from app.wording.samples import sample_design
-from core.backups import backups
-from core.document import Document
-from core.project import ScanFile, open_project, save_project
+import app.gui.document_controller
+import app.gui.features.export.controller
+from app.gui.main_window import MainWindow
+from app.presenters.samples import sample_design
+from core.document.document import Document
+from core.document.storage.backups import backups
+from core.document.storage.project_file import ScanFile, open_project, save_project
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
 
 def test_a_project_is_saved_and_reopened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "customer 0412.busk"
-    monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(app.gui.document_controller, "ask_save", lambda *_: str(path))
     seen = []
 
     def first(window: MainWindow) -> Script:
@@ -89,7 +89,9 @@ def test_the_shown_body_is_exported(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         yield settled(window)
         for ending in ("ply", "obj", "stl"):
             path = tmp_path / f"body.{ending}"
-            monkeypatch.setattr(app.desks.export_desk, "ask_save", lambda *_, path=path: str(path))
+            monkeypatch.setattr(
+                app.gui.features.export.controller, "ask_save", lambda *_, path=path: str(path)
+            )
             window.actions_.export.trigger()
             yield path.exists
             body = trimesh.load(path, process=False)
@@ -115,16 +117,16 @@ def test_an_export_that_failed_is_told_until_it_succeeds(
 
         undrawn(window)
         yield settled(window)
-        monkeypatch.setattr(app.desks.export_desk, "ask_save", lambda *_: str(nowhere))
+        monkeypatch.setattr(app.gui.features.export.controller, "ask_save", lambda *_: str(nowhere))
         window.actions_.export.trigger()
         yield lambda: tone() == "bad"
-        monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(project))
+        monkeypatch.setattr(app.gui.document_controller, "ask_save", lambda *_: str(project))
         window.actions_.save.trigger()
         yield project.exists
         assert window.session.finish_saving()
         yield lambda: "Saved" in window.status._saved.text()
         assert tone() == "bad", "a save writes no body"
-        monkeypatch.setattr(app.desks.export_desk, "ask_save", lambda *_: str(body))
+        monkeypatch.setattr(app.gui.features.export.controller, "ask_save", lambda *_: str(body))
         window.actions_.export.trigger()
         yield lambda: tone() == "ok"
         window.notices.close_notice()
@@ -182,7 +184,9 @@ def test_a_save_that_fails_elsewhere_leaves_what_is_saved_here_saved(
 ) -> None:
     saved, scan = tmp_path / "customer.busk", ScanFile(mannequin.name, mannequin.read_bytes())
     save_project(saved, Document.of(sample_design()), scan, None)
-    monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(tmp_path / "nowhere" / "a.busk"))
+    monkeypatch.setattr(
+        app.gui.document_controller, "ask_save", lambda *_: str(tmp_path / "nowhere" / "a.busk")
+    )
     told: list[object] = []
 
     def script(window: MainWindow) -> Script:
@@ -205,8 +209,8 @@ def test_a_save_that_fails_elsewhere_leaves_what_is_saved_here_saved(
 @pytest.mark.parametrize("last", ["discard", "save"])
 def test_closing_asks_about_changes(last: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path, answers = tmp_path / "kept.busk", ["stay", last]
-    monkeypatch.setattr(app.desks.desk, "ask_about_changes", lambda *_: answers.pop(0))
-    monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(app.gui.document_controller, "ask_about_changes", lambda *_: answers.pop(0))
+    monkeypatch.setattr(app.gui.document_controller, "ask_save", lambda *_: str(path))
 
     def script(window: MainWindow) -> Script:
         yield settled(window)

@@ -12,13 +12,13 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
 from window_tools import Script, run_undrawn, settled
 
-from app.keeping import tables
-from app.lining.elastic_choice import LIFT_TOLD
-from app.main_window import MainWindow
-from app.presenting.bust import bust_move
-from app.wording.words import number
-from core.report import still_lines
-from core.sewing.elastic_options import FIRST_STRETCH, KEEP_CUT
+from app.gui.features.garment.elastic_assignment import LIFT_TOLD
+from app.gui.main_window import MainWindow
+from app.gui.widgets import table_export as tables
+from app.i18n.catalog import number
+from app.presenters.bust_shift import bust_move
+from core.export.solution_report import still_lines
+from core.garment.elastic_options import FIRST_STRETCH, KEEP_CUT
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -11,9 +11,9 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QPushButton
 from window_tools import Script, run_main, undrawn
 
-from app.helping import guide
-from app.main_window import MainWindow
-from app.wording.words import speaking
+from app.gui.features.help import user_guide as guide
+from app.gui.main_window import MainWindow
+from app.i18n.catalog import speaking
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -15,13 +15,13 @@ from PySide6.QtCore import QLockFile, QSettings
 from test_window_work import endless
 from window_tools import Script, drag, points, run_main, run_undrawn, settled
 
-import app.desks.desk
-import app.keeping.recovery_desk
-import app.keeping.variant_desk
-from app.main_window import MainWindow
-from core.backups import backups
-from core.project import open_project
-from core.recovery import left_behind, recovery_folder
+import app.gui.document_controller
+import app.gui.features.project.recovery
+import app.gui.features.variants.controller
+from app.gui.main_window import MainWindow
+from core.document.storage.backups import backups
+from core.document.storage.project_file import open_project
+from core.document.storage.recovery import left_behind, recovery_folder
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -39,7 +39,7 @@ def test_a_crash_loses_nothing_and_the_next_start_offers_it(
 ) -> None:
     QSettings().setValue("autosave", 0.05)
     path = tmp_path / "anna.busk"
-    monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(app.gui.document_controller, "ask_save", lambda *_: str(path))
     seen = []
 
     def first(window: MainWindow) -> Script:
@@ -81,7 +81,7 @@ def test_a_crash_loses_nothing_and_the_next_start_offers_it(
 
 
 def test_what_is_not_restored_stays_until_it_is_discarded(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(app.keeping.recovery_desk, "may_discard", lambda *_: True)
+    monkeypatch.setattr(app.gui.features.project.recovery, "may_discard", lambda *_: True)
 
     def first(window: MainWindow) -> Script:
         yield settled(window)
@@ -130,7 +130,7 @@ def test_saving_waits_for_no_disk_and_closing_waits_for_saving(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path, disk = tmp_path / "anna.busk", threading.Event()
-    monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(app.gui.document_controller, "ask_save", lambda *_: str(path))
     sync = os.fsync
     monkeypatch.setattr(os, "fsync", lambda file: (disk.wait(60), sync(file)))
 
@@ -143,7 +143,7 @@ def test_saving_waits_for_no_disk_and_closing_waits_for_saving(
         yield settled(window)  # all goes on
         assert window.status._saved.text() == "Saving…"
         threading.Timer(0.2, disk.set).start()
-        monkeypatch.setattr(app.desks.desk, "ask_about_changes", lambda *_: "discard")
+        monkeypatch.setattr(app.gui.document_controller, "ask_about_changes", lambda *_: "discard")
         assert window.close()
         assert open_project(path).design.ratio("mid-bust") == 0.9
 
@@ -154,10 +154,10 @@ def test_two_windows_and_a_change_from_outside_are_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, project: Path, mannequin: Path
 ) -> None:
     path, asked = tmp_path / "lotte.busk", []
-    monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(app.gui.document_controller, "ask_save", lambda *_: str(path))
     answers = iter(("overwrite", "stay", "overwrite"))
     monkeypatch.setattr(
-        app.desks.desk, "ask_overwrite", lambda *what: asked.append(what[1:]) or next(answers)
+        app.gui.document_controller, "ask_overwrite", lambda *what: asked.append(what[1:]) or next(answers)
     )
 
     def script(window: MainWindow) -> Script:
@@ -268,7 +268,7 @@ def test_variants_are_chosen_undone_and_seen_side_by_side(
         assert area.beside.way == "after"
         window.variant_desk.choose("B")
         window.variant_desk.choose("A")
-        monkeypatch.setattr(app.keeping.variant_desk, "settled_frame", endless([]))
+        monkeypatch.setattr(app.gui.features.variants.controller, "settled_frame", endless([]))
         window.variant_desk._solved.clear()
         window.variant_desk.show_side_by_side()
         assert len([job for job in window.jobs.at_work() if job.waited]) == 1

@@ -7,7 +7,7 @@ from PySide6.QtCore import QCoreApplication, QEvent, QRect
 from PySide6.QtWidgets import QWidget
 from window_tools import Script, run_undrawn, settled
 
-from app.main_window import MainWindow
+from app.gui.main_window import MainWindow
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -12,12 +12,12 @@ from PySide6.QtTest import QTest
 from test_window_scan import pull
 from window_tools import Script, run_main, settled
 
-import app.desks.desk
-from app.main_window import MainWindow
-from app.panels.landmark_row import LandmarkView
-from app.panels.landmarks import LandmarksPanel
-from core.mesh import Points
-from core.placing import nearest_skin
+import app.gui.document_controller
+from app.gui.features.landmarks.panel import LandmarksPanel
+from app.gui.features.landmarks.row import LandmarkView
+from app.gui.main_window import MainWindow
+from core.geometry.mesh import Points
+from core.landmarks.manual import nearest_skin
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -76,8 +76,8 @@ def test_the_model_follows_a_pin_before_it_is_let_go_and_escape_brings_all_back(
 def test_linked_sides_are_placed_as_in_a_mirror_in_one_step_and_keys_move_a_pin(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(app.desks.desk, "ask_about_changes", lambda *_: "cancel")
-    monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(tmp_path / "pins.busk"))
+    monkeypatch.setattr(app.gui.document_controller, "ask_about_changes", lambda *_: "cancel")
+    monkeypatch.setattr(app.gui.document_controller, "ask_save", lambda *_: str(tmp_path / "pins.busk"))
 
     def script(window: MainWindow) -> Script:
         yield settled(window)

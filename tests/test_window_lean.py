@@ -11,10 +11,10 @@ from scipy.spatial.transform import Rotation
 from test_window_scan_edits import type_level
 from window_tools import Script, run_undrawn, settled
 
-from app.main_window import MainWindow
-from core.body import read_scan
-from core.cleaning.clipping import above
-from core.standing.lean_angles import corrected_up, lean_angles
+from app.gui.main_window import MainWindow
+from core.scan.body import read_scan
+from core.scan.orientation.lean_angles import corrected_up, lean_angles
+from core.scan.repair.clipping import above
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -10,10 +10,13 @@ import pytest
 from PySide6.QtWidgets import QLabel
 from window_tools import PATIENCE, Script, run_main, settled, undrawn
 
-from app.asking.jobs import Job
-from app.desks import report_desk, verdict_desk
-from app.keeping import measures_desk, own_measures_desk, pressure_desk
-from app.main_window import MainWindow
+from app.gui.features.diagnosis import step_badges as verdict_desk
+from app.gui.features.garment import pressure_controller as pressure_desk
+from app.gui.features.measurements import controller as measures_desk
+from app.gui.features.measurements import custom_measures as own_measures_desk
+from app.gui.features.report import controller as report_desk
+from app.gui.main_window import MainWindow
+from app.gui.session.jobs import Job
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

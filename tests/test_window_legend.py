@@ -9,7 +9,7 @@ from PySide6.QtCore import QRect, QRectF, Qt
 from PySide6.QtWidgets import QApplication, QWidget
 from window_tools import Script, run_main, settled, undrawn
 
-from app.main_window import MainWindow
+from app.gui.main_window import MainWindow
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from window_tools import Script, run_main, settled, undrawn
 
-from app.main_window import MainWindow
-from app.seeing.scene import Scene
+from app.gui.main_window import MainWindow
+from app.rendering.scene import Scene
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

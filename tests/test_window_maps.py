@@ -11,10 +11,10 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from window_tools import Script, drag, run_main, settled
 
-import app.viewing.section_desk as section_module
-from app.main_window import MainWindow
-from app.seeing.material import look_of
-from core.profile import Curve, nearest
+import app.gui.features.sections.controller as section_module
+from app.gui.main_window import MainWindow
+from app.rendering.material import look_of
+from core.geometry.planar_curves import Curve, nearest
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

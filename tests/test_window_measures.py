@@ -10,13 +10,13 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QLineEdit
 
-from app.dress.wishes import wish
-from app.main_window import MainWindow
-from app.panels.measure_table import MeasureTable
-from app.presenting.measures import as_table
-from core.measures import before_after
-from core.sizes import sizes
-from core.sizing.letters import letter_sizes
+from app.gui.features.measurements.table import MeasureTable
+from app.gui.main_window import MainWindow
+from app.gui.session.settings import wish
+from app.presenters.measurements import as_table
+from core.measurements.letter_sizes import letter_sizes
+from core.measurements.sizes import sizes
+from core.measurements.table import before_after
 from tests.window_tools import Script, run_main, settled, undrawn
 
 TOPS = letter_sizes().tables[0]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from window_tools import Script, run_main, settled, undrawn
 
-from app.main_window import MainWindow
-from core.elastics import find_elastic
+from app.gui.main_window import MainWindow
+from core.garment.elastic_library import find_elastic
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from window_tools import Script, drag, run_undrawn, settled
 
-from app.main_window import MainWindow
-from app.panels.notice import SCAN
+from app.gui.main_window import MainWindow
+from app.gui.widgets.notification_bar import SCAN
 from core.errors import UserError
 
 pytestmark = pytest.mark.usefixtures("empty_house")

@@ -8,12 +8,12 @@ import pytest
 from PySide6.QtGui import QColor, QImage
 from window_tools import Script, run_undrawn, settled
 
-from app.keeping.project_picture import project_picture
-from app.main_window import MainWindow
-from app.wording.samples import sample_path
-from core.design import Design, ScanSource
-from core.document import Document
-from core.project import ScanFile, save_project
+from app.gui.main_window import MainWindow
+from app.gui.session.project_thumbnail import project_picture
+from app.presenters.samples import sample_path
+from core.document.design import Design, ScanSource
+from core.document.document import Document
+from core.document.storage.project_file import ScanFile, save_project
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -12,13 +12,13 @@ from PySide6.QtCore import QPoint, QPointF, QSettings, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 
-from app.keeping import tables
-from app.main_window import MainWindow
-from app.panels.mark_field import MarkField
-from app.panels.measure_table import MeasureTable
-from app.wording.words import use_language
-from core.design_measures import OwnMeasure
-from core.measures import before_after
+from app.gui.features.measurements.table import MeasureTable
+from app.gui.main_window import MainWindow
+from app.gui.widgets import table_export as tables
+from app.gui.widgets.landmark_combo import MarkField
+from app.i18n.catalog import use_language
+from core.document.custom_measures import OwnMeasure
+from core.measurements.table import before_after
 from tests.test_window_access import shortcomings
 from tests.window_tools import Script, run_main, settled, undrawn
 

@@ -13,11 +13,11 @@ from PySide6.QtWidgets import QPushButton, QWidget
 from pytestqt.qtbot import QtBot
 from window_tools import Script, run_main
 
-from app.desks import picture_desk
-from app.desks.picture_desk import fitted
-from app.main_window import MainWindow
-from app.showing import fine_picture
-from app.showing.wipe import WipeHandle
+from app.gui.main_window import MainWindow
+from app.gui.viewport import image_export as picture_desk
+from app.gui.viewport import screenshot as fine_picture
+from app.gui.viewport.image_export import fitted
+from app.gui.viewport.split_handle import WipeHandle
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -13,17 +13,17 @@ from PySide6.QtGui import QImage
 from PySide6.QtSvg import QSvgRenderer
 from window_tools import Script, drag, run_main, settled
 
-import app.desks.plot_desk
-from app.main_window import MainWindow
-from app.presenting.measures import measure_views
-from app.presenting.run import PLOTTED_TURNS, tracks
-from core.live import Frame
+import app.gui.plots.controller
+from app.gui.main_window import MainWindow
+from app.presenters.measurements import measure_views
+from app.presenters.plot_data import PLOTTED_TURNS, tracks
+from core.pipeline.live_solver import Frame
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
 
 def test_turns_can_be_watched_marked_and_saved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(app.desks.plot_desk, "ask_save", lambda *given: str(tmp_path / given[2]))
+    monkeypatch.setattr(app.gui.plots.controller, "ask_save", lambda *given: str(tmp_path / given[2]))
 
     def script(window: MainWindow) -> Script:
         yield settled(window)

@@ -7,10 +7,10 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QWidget
 from window_tools import Script, run_main, settled, undrawn
 
-from app.lining import preset_desk
-from app.main_window import MainWindow
-from core.design import Design, ScanSource
-from core.presets import built_in, is_worn, own_file, with_preset
+from app.gui.features.lines import presets as preset_desk
+from app.gui.main_window import MainWindow
+from core.document.design import Design, ScanSource
+from core.document.presets import built_in, is_worn, own_file, with_preset
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -10,15 +10,15 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QLabel
 from window_tools import Script, drag, run_main, run_undrawn, settled, undrawn
 
-import app.keeping.pressure_desk as desk_module
-from app.main_window import MainWindow
-from app.panels.pressure_card import PressureCard
-from app.presenting.maps import pressure_note
-from app.viewing.band_map import BandValues
-from core.elastics import find_elastic
-from core.press_list import PressList, press_list
-from core.pressure import LEFT_OUT
-from core.sewing.comfort import comfort
+import app.gui.features.garment.pressure_controller as desk_module
+from app.gui.features.garment.pressure_card import PressureCard
+from app.gui.features.maps.band_coloring import BandValues
+from app.gui.main_window import MainWindow
+from app.presenters.maps import pressure_note
+from core.garment.elastic_library import find_elastic
+from core.garment.pressure import LEFT_OUT
+from core.garment.pressure_limits import comfort
+from core.garment.pressure_list import PressList, press_list
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -14,13 +14,13 @@ from PySide6.QtPrintSupport import QPrinter
 from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
-from app.main_window import MainWindow
-from app.panels.picture_list import VIEW
-from app.reporting.handout import SHOTS
-from app.reporting.paper import A4
-from app.reporting.pdf import write_pdf
-from app.wording.words import language
-from core.measures import before_after, measure_rows
+from app.gui.main_window import MainWindow
+from app.gui.widgets.thumbnail_list import VIEW
+from app.i18n.catalog import language
+from app.report.document import SHOTS
+from app.report.painter import A4
+from app.report.pdf import write_pdf
+from core.measurements.table import before_after, measure_rows
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -121,7 +121,9 @@ def test_what_came_of_an_edit_on_the_sheet_is_kept_with_its_picture() -> None:
 def test_the_customer_is_one_step_and_measures_nothing_again(monkeypatch: pytest.MonkeyPatch) -> None:
     measured = []
     real = before_after
-    monkeypatch.setattr("core.sheet.before_after", lambda *all_: measured.append(1) or real(*all_))
+    monkeypatch.setattr(
+        "core.export.report_data.before_after", lambda *all_: measured.append(1) or real(*all_)
+    )
 
     def script(window: MainWindow) -> Script:
         undrawn(window)
@@ -154,7 +156,7 @@ def test_a_name_that_is_typed_goes_out_with_the_next_press(
     def place(parent: object, title: str, name: str, kinds: str, ending: str) -> str:
         return str(tmp_path / f"sheet{ending}")
 
-    monkeypatch.setattr("app.desks.report_desk.ask_save", place)
+    monkeypatch.setattr("app.gui.features.report.controller.ask_save", place)
 
     def script(window: MainWindow) -> Script:
         undrawn(window)
@@ -186,7 +188,7 @@ def test_the_sheet_is_saved_in_another_language(tmp_path: Path, monkeypatch: pyt
     def place(parent: object, title: str, name: str, kinds: str, ending: str) -> str:
         return str(tmp_path / f"sheet{ending}")
 
-    monkeypatch.setattr("app.desks.report_desk.ask_save", place)
+    monkeypatch.setattr("app.gui.features.report.controller.ask_save", place)
 
     def script(window: MainWindow) -> Script:
         undrawn(window)
@@ -219,7 +221,7 @@ def test_the_printer_gets_the_same_pages(tmp_path: Path, monkeypatch: pytest.Mon
         def exec(self) -> int:
             return 1
 
-    monkeypatch.setattr("app.desks.report_desk.QPrintDialog", Dialog)
+    monkeypatch.setattr("app.gui.features.report.controller.QPrintDialog", Dialog)
 
     def script(window: MainWindow) -> Script:
         undrawn(window)
@@ -250,7 +252,7 @@ def test_only_the_pages_that_were_chosen_are_printed(tmp_path: Path, monkeypatch
         def exec(self) -> int:
             return 1
 
-    monkeypatch.setattr("app.desks.report_desk.QPrintDialog", Dialog)
+    monkeypatch.setattr("app.gui.features.report.controller.QPrintDialog", Dialog)
 
     def script(window: MainWindow) -> Script:
         undrawn(window)
@@ -271,7 +273,7 @@ def test_the_sheet_comes_without_pictures_where_they_cannot_be_drawn(monkeypatch
     def fails(*_: object, **__: object) -> None:
         raise RuntimeError("no graphics")
 
-    monkeypatch.setattr("app.reporting.pictures.Studio", fails)
+    monkeypatch.setattr("app.report.images.Studio", fails)
 
     def script(window: MainWindow) -> Script:
         undrawn(window)

@@ -9,13 +9,13 @@ from PySide6.QtCore import QRect, QSettings, QSize
 from PySide6.QtWidgets import QPushButton
 from window_tools import Script, run_undrawn, settled
 
-import app.helping.preferences_desk
-import app.keeping.dialogs
-from app.main_window import MainWindow
-from app.panels.coach_mark import _beside
-from app.panels.commands import plain
-from app.presenting.lines import line_title
-from app.wording.words import use_language
+import app.gui.features.preferences.controller
+import app.gui.widgets.file_dialogs
+from app.gui.features.help.command_palette import plain
+from app.gui.main_window import MainWindow
+from app.gui.widgets.coach_mark import _beside
+from app.i18n.catalog import use_language
+from app.presenters.lines import line_title
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -24,7 +24,7 @@ def test_a_language_is_found_in_any_other_and_changes_by_a_button(
     mannequin: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     begun: list[str] = []
-    monkeypatch.setattr(app.helping.preferences_desk, "start_again", begun.append)
+    monkeypatch.setattr(app.gui.features.preferences.controller, "start_again", begun.append)
 
     def script(window: MainWindow) -> Script:
         yield settled(window)

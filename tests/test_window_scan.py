@@ -14,13 +14,13 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from window_tools import Script, drag, run_main, run_undrawn, settled
 
-import app.desks.desk
-import core.body
-import core.pipeline
-from app.main_window import MainWindow
-from core.body import Body
+import app.gui.document_controller
+import core.pipeline.build
+import core.scan.body
+from app.gui.main_window import MainWindow
 from core.progress import Progress
-from core.standing.upright import Pose, find_pose
+from core.scan.body import Body
+from core.scan.orientation.pose import Pose, find_pose
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -64,7 +64,7 @@ def pull(window: MainWindow, name: str, by: QPoint) -> None:
 def test_an_unsure_scan_asks_and_the_answer_is_one_undo_step(
     mannequin: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(core.body, "find_pose", doubtful(0.0))
+    monkeypatch.setattr(core.scan.body, "find_pose", doubtful(0.0))
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -95,7 +95,7 @@ def test_an_unsure_scan_asks_and_the_answer_is_one_undo_step(
 def test_a_scan_that_shows_no_bust_is_turned_by_a_picture(
     mannequin: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(core.body, "find_pose", doubtful(180.0))
+    monkeypatch.setattr(core.scan.body, "find_pose", doubtful(180.0))
 
     def script(window: MainWindow) -> Script:
         yield window.view.question.isVisible
@@ -136,7 +136,7 @@ def test_the_reading_of_a_scan_can_be_cancelled(person: Path, monkeypatch: pytes
         window.activateWindow()
         yield window.isActiveWindow
         design, frame, busy = window.session.design, window.session.frame, window.view.busy
-        monkeypatch.setattr(core.pipeline, "body_of", slow)
+        monkeypatch.setattr(core.pipeline.build, "body_of", slow)
         for way in ("button", "escape"):
             window.desk.open_file(str(person))
             yield busy.isVisible
@@ -162,7 +162,7 @@ def test_a_cancelled_edit_of_the_scan_leaves_no_trace(monkeypatch: pytest.Monkey
     def script(window: MainWindow) -> Script:
         yield settled(window)
         design = window.session.design
-        monkeypatch.setattr(core.pipeline, "body_of", slow)
+        monkeypatch.setattr(core.pipeline.build, "body_of", slow)
         window.scan.told.emit("front", "+y")
         yield window.view.busy.isVisible
         assert window.session.undo_stack.count() == 1
@@ -176,7 +176,7 @@ def test_a_cancelled_edit_of_the_scan_leaves_no_trace(monkeypatch: pytest.Monkey
 
 def test_a_dragged_pin_is_a_correction_that_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "corrected.busk"
-    monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(app.gui.document_controller, "ask_save", lambda *_: str(path))
     kept: list[Any] = []
 
     def first(window: MainWindow) -> Script:

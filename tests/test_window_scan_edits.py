@@ -13,10 +13,10 @@ from PySide6.QtWidgets import QPushButton
 from test_mending import pierced
 from window_tools import Script, run_undrawn, settled
 
-from app.main_window import MainWindow
-from core.body import read_scan
-from core.cleaning.edits import UNEDITED, ScanEdits
-from core.project import open_project
+from app.gui.main_window import MainWindow
+from core.document.storage.project_file import open_project
+from core.scan.body import read_scan
+from core.scan.edits import UNEDITED, ScanEdits
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

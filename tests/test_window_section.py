@@ -8,9 +8,9 @@ from hand_tools import PLAIN, SHIFT, move, press, release
 from PySide6.QtCore import QEvent, QObject, QPoint, QSize, Qt
 from window_tools import Script, run_main, settled, undrawn
 
-from app.main_window import MainWindow
-from app.showing.plane_handle import PlaneHandle
-from app.showing.viewport import Viewport
+from app.gui.main_window import MainWindow
+from app.gui.viewport.plane_handle import PlaneHandle
+from app.gui.viewport.viewport import Viewport
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import app.keeping.spread_desk
-import core.spread
-from app.main_window import MainWindow
-from app.presenting.spread import left_out_sentences
-from core.advice.assumed import assumed
+import app.gui.features.uncertainty.controller
+import core.analysis.uncertainty.estimate
+from app.gui.main_window import MainWindow
+from app.presenters.uncertainty import left_out_sentences
+from core.analysis.uncertainty.input_uncertainty import assumed
 from core.errors import UserError
-from core.measuring.plus_minus import Spread
+from core.measurements.uncertain_value import Spread
 from core.progress import Progress
 from tests.window_tools import Script, run_main, settled, undrawn
 
@@ -23,8 +23,8 @@ from tests.window_tools import Script, run_main, settled, undrawn
 def quick(empty_house: None, monkeypatch: pytest.MonkeyPatch) -> None:
     """Landmarks are taken as known: a fit for each takes too long for a test of the window."""
     known = replace(assumed(), landmark_mm=0.0, unsure_landmark_mm=0.0)
-    monkeypatch.setattr(core.spread, "assumed", lambda: known)
-    monkeypatch.setattr(app.keeping.spread_desk, "PAUSE", 50)
+    monkeypatch.setattr(core.analysis.uncertainty.estimate, "assumed", lambda: known)
+    monkeypatch.setattr(app.gui.features.uncertainty.controller, "PAUSE", 50)
 
 
 def whole(window: MainWindow) -> bool:
@@ -72,15 +72,19 @@ def test_it_is_told_where_it_is_looked_at_and_fades_while_a_line_moves() -> None
 
 
 def test_nothing_is_shown_before_all_sources_are_in(monkeypatch: pytest.MonkeyPatch) -> None:
-    reached, go, known = threading.Event(), threading.Event(), core.spread.Spreading.whole
+    reached, go, known = (
+        threading.Event(),
+        threading.Event(),
+        core.analysis.uncertainty.estimate.Spreading.whole,
+    )
 
-    def waiting(self: core.spread.Spreading, progress: Progress) -> Spread:
+    def waiting(self: core.analysis.uncertainty.estimate.Spreading, progress: Progress) -> Spread:
         self.quick(progress)
         reached.set()
         go.wait(60.0)
         return known(self, progress)
 
-    monkeypatch.setattr(core.spread.Spreading, "whole", waiting)
+    monkeypatch.setattr(core.analysis.uncertainty.estimate.Spreading, "whole", waiting)
 
     def script(window: MainWindow) -> Script:
         undrawn(window)
@@ -105,7 +109,7 @@ def test_where_it_is_given_up_there_is_none_and_the_reason_stands_there(
     def refused(*_: object) -> object:
         raise UserError("No balance was found with the lines at these lengths.", "Set them nearer to 100 %.")
 
-    monkeypatch.setattr(core.spread.Spreading, "whole", refused)
+    monkeypatch.setattr(core.analysis.uncertainty.estimate.Spreading, "whole", refused)
 
     def script(window: MainWindow) -> Script:
         undrawn(window)

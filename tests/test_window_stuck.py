@@ -15,21 +15,21 @@ from test_window_scan import doubtful, pull
 from trimesh.creation import box
 from window_tools import Script, run_main, settled
 
-import app.desks.desk
-import app.desks.scan_desk
-import app.seeing.ways
-import core.body
-import core.pipeline
-from app.commands.picture import draw_window
-from app.dress.parts import ToolButton
-from app.main_window import MainWindow
-from core.body import Body
-from core.design import Design, ScanSource
+import app.gui.document_controller
+import app.gui.features.scan.controller
+import app.rendering.orientation_thumbnails
+import core.pipeline.build
+import core.scan.body
+from app.cli.commands.picture import draw_window
+from app.gui.main_window import MainWindow
+from app.gui.widgets.basic import ToolButton
+from core.document.design import Design, ScanSource
 from core.errors import LandmarkError, ScanError
-from core.landmarks import find_landmarks
-from core.pipeline import StuckError
-from core.placing import in_mm
-from core.standing.upright import find_pose
+from core.landmarks.detect import find_landmarks
+from core.landmarks.manual import in_mm
+from core.pipeline.build import StuckError
+from core.scan.body import Body
+from core.scan.orientation.pose import find_pose
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -69,7 +69,7 @@ def no_waist(body: Body, placed: Any, **_: Any) -> Any:
 def test_a_scan_that_cannot_go_on_is_shown_and_a_placed_point_lets_it_in(
     mannequin: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(core.pipeline, "find", nothing_unless_placed)
+    monkeypatch.setattr(core.pipeline.build, "find", nothing_unless_placed)
 
     def script(window: MainWindow) -> Script:
         yield lambda: window.scan_desk.stuck is not None and not window.view.busy.isVisible()
@@ -98,9 +98,11 @@ def test_a_scan_that_cannot_go_on_is_read_once_however_many_pins_it_takes(
     mannequin: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     read: list[Any] = []
-    reading = core.pipeline._read_upright
-    monkeypatch.setattr(core.pipeline, "find", partial(nothing_unless_placed, needed=2))
-    monkeypatch.setattr(core.pipeline, "_read_upright", lambda *a, **b: (read.append(a), reading(*a, **b))[1])
+    reading = core.pipeline.build._read_upright
+    monkeypatch.setattr(core.pipeline.build, "find", partial(nothing_unless_placed, needed=2))
+    monkeypatch.setattr(
+        core.pipeline.build, "_read_upright", lambda *a, **b: (read.append(a), reading(*a, **b))[1]
+    )
 
     def script(window: MainWindow) -> Script:
         desk, panel = window.scan_desk, window.landmarks
@@ -130,13 +132,15 @@ def test_a_scan_that_only_asks_leaves_the_open_one_alone(
     person: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     asked: list[str] = []
-    monkeypatch.setattr(app.desks.desk, "ask_about_changes", lambda _, name: asked.append(name) or "cancel")
-    monkeypatch.setattr(app.seeing.ways, "portrait", unpainted)
+    monkeypatch.setattr(
+        app.gui.document_controller, "ask_about_changes", lambda _, name: asked.append(name) or "cancel"
+    )
+    monkeypatch.setattr(app.rendering.orientation_thumbnails, "portrait", unpainted)
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
         session, question = window.session, window.view.question
-        monkeypatch.setattr(core.body, "find_pose", doubtful(180.0))
+        monkeypatch.setattr(core.scan.body, "find_pose", doubtful(180.0))
         session.open(str(person))
         yield question.isVisible
         leave(window)
@@ -160,8 +164,8 @@ def test_a_scan_that_only_asks_leaves_the_open_one_alone(
 def test_a_scan_whose_question_is_left_is_shown_and_can_be_told(
     mannequin: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(core.body, "find_pose", doubtful(180.0))
-    monkeypatch.setattr(app.seeing.ways, "portrait", unpainted)
+    monkeypatch.setattr(core.scan.body, "find_pose", doubtful(180.0))
+    monkeypatch.setattr(app.rendering.orientation_thumbnails, "portrait", unpainted)
 
     def script(window: MainWindow) -> Script:
         yield window.view.question.isVisible
@@ -221,7 +225,7 @@ def test_on_a_refused_scan_nothing_can_be_placed_and_what_was_stays_in_sight(
 def test_the_picture_of_a_scan_that_cannot_go_on_shows_it(
     mannequin: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(core.pipeline, "find", nothing_unless_placed)
+    monkeypatch.setattr(core.pipeline.build, "find", nothing_unless_placed)
     with pytest.raises(StuckError, match="No bust is here"):
         draw_window(Design(ScanSource(str(mannequin))), tmp_path / "stuck.png", size=(1280, 800))
     assert (tmp_path / "stuck.png").stat().st_size > 100_000
@@ -235,7 +239,7 @@ def test_a_refused_scan_is_shown_as_it_lies_and_can_be_told_how_it_stands(
             raise ScanError("This is no body.", "Say which way is up.")
         return find_pose(vertices, faces, **told)
 
-    monkeypatch.setattr(core.body, "find_pose", refuse)
+    monkeypatch.setattr(core.scan.body, "find_pose", refuse)
 
     def script(window: MainWindow) -> Script:
         yield lambda: window.scan_desk.stuck is not None and not window.view.busy.isVisible()
@@ -255,7 +259,7 @@ def test_a_refused_scan_is_shown_as_it_lies_and_can_be_told_how_it_stands(
 
 
 def test_a_landmark_that_was_not_found_can_be_placed_and_undone(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(core.pipeline, "find", no_waist)
+    monkeypatch.setattr(core.pipeline.build, "find", no_waist)
 
     def script(window: MainWindow) -> Script:
         yield settled(window)

@@ -11,12 +11,12 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
-import app.keeping.tables
-from app.main_window import MainWindow
-from app.panels.picture_list import VIEW, PictureRow
-from app.wording.words import number
-from core.frame import Frame
-from core.solving.condition import CALM_RANGE
+import app.gui.widgets.table_export
+from app.gui.main_window import MainWindow
+from app.gui.widgets.thumbnail_list import VIEW, PictureRow
+from app.i18n.catalog import number
+from core.mechanics.mesh_quality import CALM_RANGE
+from core.pipeline.frame import Frame
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -207,7 +207,7 @@ def test_measures_say_from_where_they_count_and_leave_as_a_table(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "measures.csv"
-    monkeypatch.setattr(app.keeping.tables, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(app.gui.widgets.table_export, "ask_save", lambda *_: str(path))
 
     def script(window: MainWindow) -> Script:
         undrawn(window)

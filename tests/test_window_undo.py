@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from window_tools import Script, points, run_main, settled, undrawn
 
-from app.main_window import MainWindow
+from app.gui.main_window import MainWindow
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -15,17 +15,17 @@ from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QComboBox, QStyle, QStyleOptionFrame, QTreeWidget
 from window_tools import Script, points, run_main, settled
 
-import app.keeping.spread_desk
-import core.spread
-from app.main_window import MainWindow
-from app.panels.typed_field import TypedField
-from app.wording.words import LANGUAGES
-from core.advice.assumed import assumed, origins
-from core.design_measures import OwnMeasure
-from core.document import Document
-from core.elastics import built_in
-from core.pipeline import build
-from core.project import open_project, save_project
+import app.gui.features.uncertainty.controller
+import core.analysis.uncertainty.estimate
+from app.gui.main_window import MainWindow
+from app.gui.widgets.inline_edit import TypedField
+from app.i18n.catalog import LANGUAGES
+from core.analysis.uncertainty.input_uncertainty import assumed, origins
+from core.document.custom_measures import OwnMeasure
+from core.document.document import Document
+from core.document.storage.project_file import open_project, save_project
+from core.garment.elastic_library import built_in
+from core.pipeline.build import build
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -44,7 +44,7 @@ MEANT = re.compile(
 def quick(empty_house: None, monkeypatch: pytest.MonkeyPatch) -> None:
     """Landmarks are taken as known: a fit for each takes too long for a test of the window."""
     known = replace(assumed(), landmark_mm=0.0, unsure_landmark_mm=0.0)
-    monkeypatch.setattr(core.spread, "assumed", lambda: known)
+    monkeypatch.setattr(core.analysis.uncertainty.estimate, "assumed", lambda: known)
 
 
 @pytest.fixture
@@ -104,7 +104,7 @@ def too_narrow(root: QObject) -> Iterator[str]:
 def test_no_length_is_left_in_millimetres(
     design: str, painted: set[str], unit: str, language: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(app.keeping.spread_desk, "PAUSE", 50)
+    monkeypatch.setattr(app.gui.features.uncertainty.controller, "PAUSE", 50)
     QSettings().setValue("unit", unit)
     QSettings().setValue("language", language)
     seen: dict[str, str] = {}

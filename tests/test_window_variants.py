@@ -11,15 +11,15 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
-import app.keeping.tables
-import app.keeping.variant_desk
-from app.main_window import MainWindow
-from app.viewing import flip_key
-from core.cutting import cut_list
-from core.design import Design
-from core.elastics import find_elastic
+import app.gui.features.variants.controller
+import app.gui.widgets.table_export
+from app.gui.main_window import MainWindow
+from app.gui.viewport import compare_key as flip_key
+from core.document.design import Design
 from core.errors import LineError
-from core.live import Frame
+from core.garment.cut_list import cut_list
+from core.garment.elastic_library import find_elastic
+from core.pipeline.live_solver import Frame
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 SPACE = Qt.Key.Key_Space
@@ -83,7 +83,7 @@ def test_the_figures_of_all_variants_stand_beside_each_other(
         lift = next(row for row in panel.view.rows if row.label == "Bust point, up").figures[0]
         assert lift.values[1] == pytest.approx(lift_of(window.session.frame))
         assert lift.values[0] == pytest.approx(lift_of(first), abs=0.2), "solved anew, from rest"
-        monkeypatch.setattr(app.keeping.tables, "ask_save", lambda *_: str(path))
+        monkeypatch.setattr(app.gui.widgets.table_export, "ask_save", lambda *_: str(path))
         desk.export()
         table = list(csv.reader(path.read_text("utf-8-sig").splitlines()))
         assert table[0] == ["Figure", "Unit", "A", "B", "B - A"]
@@ -142,7 +142,7 @@ def what_cannot_be_solved_is_told_once(window: MainWindow, monkeypatch: pytest.M
         asked.append(1)
         raise LineError("No balance holds this.", "Set it longer.")
 
-    monkeypatch.setattr(app.keeping.variant_desk, "settled_frame", refuse)
+    monkeypatch.setattr(app.gui.features.variants.controller, "settled_frame", refuse)
     window.variant_desk.choose("A")
     yield lambda: bool(asked)
     yield settled(window)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from window_tools import Script, run_main, settled, undrawn
 
-from app.main_window import MainWindow
+from app.gui.main_window import MainWindow
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -10,9 +10,9 @@ from PySide6.QtCore import QSettings
 from walk_steps import Walker
 from window_tools import Script, run_main, settled, undrawn
 
-import app.asking.edit
-import app.desks.desk
-from app.main_window import MainWindow
+import app.gui.document_controller
+import app.gui.session.edit_command
+from app.gui.main_window import MainWindow
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -22,9 +22,9 @@ STEPS, EVERY, SEED = 100, 100, 5
 def test_a_random_walk_through_the_window_ends_where_its_model_does(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(app.asking.edit, "PAUSE", -1.0)  # every edit is one step, however quick
+    monkeypatch.setattr(app.gui.session.edit_command, "PAUSE", -1.0)  # every edit is one step, however quick
     for name in ("ask_save", "ask_open", "ask_about_changes", "ask_overwrite"):
-        monkeypatch.setattr(app.desks.desk, name, None)  # brought back after the walk
+        monkeypatch.setattr(app.gui.document_controller, name, None)  # brought back after the walk
     QSettings().setValue("autosave", 0.05)
 
     def script(window: MainWindow) -> Script:

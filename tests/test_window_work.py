@@ -14,15 +14,15 @@ from PySide6.QtTest import QTest
 from test_window_scan import doubtful
 from window_tools import Script, drag, run_main, settled
 
-import app.desks.export_desk
-import app.desks.scan_desk
-import app.exporting.ready
-import app.lining.limits_desk
-import app.view_area
-import core.body
-from app.asking.jobs import Jobs
-from app.main_window import MainWindow
-from core.leeway import leeway_of
+import app.gui.features.export.controller
+import app.gui.features.lines.limits_controller
+import app.gui.features.scan.controller
+import app.gui.viewport.view_area
+import app.presenters.export_preview
+import core.scan.body
+from app.gui.main_window import MainWindow
+from app.gui.session.jobs import Jobs
+from core.analysis.length_limits.zones import leeway_of
 from core.progress import Pieces, Progress
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -53,8 +53,8 @@ def test_an_export_is_named_and_can_be_left_by_card_key_and_status_bar(
 ) -> None:
     body, left = tmp_path / "body.ply", []
     body.write_text("what stood there")
-    monkeypatch.setattr(app.desks.export_desk, "ask_save", lambda *_: str(body))
-    write, begun = app.exporting.ready.write_mesh, []
+    monkeypatch.setattr(app.gui.features.export.controller, "ask_save", lambda *_: str(body))
+    write, begun = app.presenters.export_preview.write_mesh, []
 
     def never_written(path: Path, mesh: Any, hear: Progress, space: Any) -> None:
         begun.append(path)
@@ -66,7 +66,7 @@ def test_an_export_is_named_and_can_be_left_by_card_key_and_status_bar(
         yield window.isActiveWindow
         busy, status = window.view.busy, window.status
         busy._wait.setInterval(0)
-        monkeypatch.setattr(app.exporting.ready, "write_mesh", never_written)
+        monkeypatch.setattr(app.presenters.export_preview, "write_mesh", never_written)
         for count, way in enumerate(("card", "key", "status bar"), start=1):
             window.actions_.export.trigger()
             yield lambda n=count: busy.isVisible() and status.stop.isVisible() and len(begun) == n
@@ -84,7 +84,7 @@ def test_an_export_is_named_and_can_be_left_by_card_key_and_status_bar(
             assert len(left) == count
             assert body.read_text() == "what stood there"
             assert window.notices.notice().tone == "warn", "the verdict alone, no file is reported"
-        monkeypatch.setattr(app.exporting.ready, "write_mesh", write)
+        monkeypatch.setattr(app.presenters.export_preview, "write_mesh", write)
         window.actions_.export.trigger()
         yield lambda: window.notices.notice().tone == "ok"
         assert body.read_bytes().startswith(b"ply")
@@ -94,7 +94,7 @@ def test_an_export_is_named_and_can_be_left_by_card_key_and_status_bar(
 
 def test_limits_come_beside_the_window_and_are_those_of_the_core(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[str] = []
-    work_out = app.lining.limits_desk.leeway_of
+    work_out = app.gui.features.lines.limits_controller.leeway_of
 
     def counted(stages: Any, name: str, progress: Progress, **told: Any) -> Any:
         asked.append(name)
@@ -107,7 +107,7 @@ def test_limits_come_beside_the_window_and_are_those_of_the_core(monkeypatch: py
     def known(window: MainWindow) -> Callable[[], bool]:
         return lambda: settled(window)() and all(each and not stale for each, stale in shown(window).values())
 
-    monkeypatch.setattr(app.lining.limits_desk, "leeway_of", counted)
+    monkeypatch.setattr(app.gui.features.lines.limits_controller, "leeway_of", counted)
 
     def script(window: MainWindow) -> Script:
         yield known(window)
@@ -134,8 +134,8 @@ def test_limits_come_beside_the_window_and_are_those_of_the_core(monkeypatch: py
 
 def test_an_edit_ends_what_was_worked_out_for_the_design_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
     left: list[str] = []
-    monkeypatch.setattr(app.lining.limits_desk, "leeway_of", endless(left))
-    monkeypatch.setattr(app.view_area, "bake_occlusion", endless(left))
+    monkeypatch.setattr(app.gui.features.lines.limits_controller, "leeway_of", endless(left))
+    monkeypatch.setattr(app.gui.viewport.view_area, "bake_occlusion", endless(left))
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -216,14 +216,14 @@ def test_pictures_that_cannot_be_painted_leave_no_question(
     def fail(*_: Any) -> None:
         raise RuntimeError("no paint")
 
-    monkeypatch.setattr(core.body, "find_pose", doubtful(0.0))
-    monkeypatch.setattr(app.desks.scan_desk, "pictures", fail)
+    monkeypatch.setattr(core.scan.body, "find_pose", doubtful(0.0))
+    monkeypatch.setattr(app.gui.features.scan.controller, "pictures", fail)
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
         yield lambda: "Scan step" in getattr(window.notices.notice(), "hint", "")
         assert not window.view.question.isVisible()
-        monkeypatch.setattr(app.desks.scan_desk, "pictures", endless([]))
+        monkeypatch.setattr(app.gui.features.scan.controller, "pictures", endless([]))
         window.scan_desk.ask()
         assert "picture below" in window.notices.notice().hint
         yield lambda: window.job_desk._shown_job() is window.scan_desk._painting

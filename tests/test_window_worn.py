@@ -13,20 +13,20 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLabel, QScrollArea
 from window_tools import Script, run_main, settled, undrawn
 
-import app.keeping.worn_desk
-from app.main_window import MainWindow
-from app.panels.worn_page import WornPage, WornView
-from app.presenting.worn import bust_words, number_title
-from app.wording.samples import sample_design
-from app.wording.words import speaking
+import app.gui.features.scan_comparison.controller
+from app.gui.features.scan_comparison.page import WornPage, WornView
+from app.gui.main_window import MainWindow
+from app.i18n.catalog import speaking
+from app.presenters.samples import sample_design
+from app.presenters.scan_comparison import bust_words, number_title
 from benchmarks.worn_pairs import scanned, worn_mesh, written
-from core.calibration import Difference, Figures, calibrate, compare
-from core.document import Document
+from core.analysis.calibration.api import Difference, Figures, calibrate, compare
+from core.control_mesh.template import read_template
+from core.document.document import Document
+from core.document.line_notation import ready_made
+from core.document.storage.project_file import open_project, save_project
 from core.errors import UserError
-from core.own_lines import ready_made
-from core.pipeline import build
-from core.project import open_project, save_project
-from core.template import read_template
+from core.pipeline.build import build
 
 
 @pytest.fixture(scope="module")
@@ -249,6 +249,6 @@ def test_what_is_begun_with_another_thickness_is_never_shown(
         assert page.view.numbers == ()
         window.session.undo_stack.setClean()
 
-    monkeypatch.setattr(app.keeping.worn_desk, "compare", held_up)
-    monkeypatch.setattr(app.keeping.worn_desk, "calibrate", failing)
+    monkeypatch.setattr(app.gui.features.scan_comparison.controller, "compare", held_up)
+    monkeypatch.setattr(app.gui.features.scan_comparison.controller, "calibrate", failing)
     assert run_main([project], script) == 0

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.wording.words import read_words
+from app.i18n.catalog import read_words
 
 ROOT = Path(__file__).parent.parent
 

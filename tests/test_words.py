@@ -12,9 +12,8 @@ import pytest
 from PySide6.QtGui import QRawFont, QTextLayout
 from PySide6.QtWidgets import QApplication, QLabel
 
-from app.dress.parts import sentence
-from app.wording.lengths import use_unit
-from app.wording.words import (
+from app.gui.widgets.basic import sentence
+from app.i18n.catalog import (
     LANGUAGES,
     colon,
     held_together,
@@ -27,6 +26,7 @@ from app.wording.words import (
     tr,
     use_language,
 )
+from app.i18n.lengths import use_unit
 
 ROOT = Path(__file__).parent.parent
 TRANSLATIONS = [code for code in LANGUAGES if code != "en"]

@@ -10,20 +10,20 @@ import pytest
 from scipy.spatial import ConvexHull
 
 from benchmarks.worn_pairs import only, other_mesh, scanned, worn_mesh
-from core.body import Body
-from core.calibration import compare, predicted
+from core.analysis.calibration import point_to_surface as feet
+from core.analysis.calibration.api import compare, predicted
+from core.analysis.calibration.point_to_surface import Ground
+from core.analysis.calibration.registration import align, turned
+from core.analysis.calibration.residuals import Worn, laid_on, refuse_mirrored
+from core.analysis.calibration.robust_least_squares import Beforehand, cost, normal, spread_of
+from core.analysis.calibration.surface_distance import WornSkin, curvature
+from core.deformation.incremental_normals import moving_faces
+from core.document.storage.project_file import open_project
 from core.errors import ScanError
-from core.mesh import MIRROR, Mesh
-from core.moving import moving_faces
-from core.pipeline import Stages, build
-from core.project import open_project
-from core.standing.upright import Pose
-from core.worn_scan import feet
-from core.worn_scan.aligning import align, turned
-from core.worn_scan.comparing import Worn, laid_on, refuse_mirrored
-from core.worn_scan.feet import Ground
-from core.worn_scan.gap import WornSkin, curvature
-from core.worn_scan.least_squares import Beforehand, cost, normal, spread_of
+from core.geometry.mesh import MIRROR, Mesh
+from core.pipeline.build import Stages, build
+from core.scan.body import Body
+from core.scan.orientation.pose import Pose
 
 POSE = Pose("mm", "+z", "-y", np.eye(4), True, "", 0.0)
 

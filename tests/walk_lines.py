@@ -12,12 +12,12 @@ from shiboken6 import isValid
 from window_tools import Script, drag
 from window_walk import WindowWalk
 
-from app.panels.line_row import LineRow
-from core.design import Design
-from core.design_lines import partner_of
-from core.lines import typed_ratio
-from core.own_lines import ready_made
-from core.template import read_template
+from app.gui.features.lines.row import LineRow
+from core.control_mesh.template import read_template
+from core.document.design import Design
+from core.document.line_notation import ready_made
+from core.document.lines import partner_of
+from core.mechanics.constraint_lines import typed_ratio
 
 NO_KEY, SHIFT = Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.ShiftModifier
 TRAITS = ("locked", "linked", "title", "colour", "stiffness", "hide")

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import fields
 
-from app.main_window import MainWindow
-from app.panels.setting_field import AmountField
-from app.wording.words import number
-from core.design import Design
-from core.document import Document
+from app.gui.main_window import MainWindow
+from app.gui.widgets.option_field import AmountField
+from app.i18n.catalog import number
+from core.document.design import Design
+from core.document.document import Document
 
 
 def differences(one: Document, other: Document) -> list[str]:

@@ -13,12 +13,12 @@ from walk_lines import NO_KEY, SHIFT, LinesWalk, type_in
 from window_tools import Script
 from window_walk import Step
 
-from app.panels.setting_field import AmountField, MenuField, SegmentField
-from app.wording.model_choices import Amount, Choice, consequences, defaults, groups
-from core.design import TEMPLATES, Design
-from core.placing import nearest_skin
-from core.presets import built_in, with_preset
-from core.project import with_scan
+from app.gui.widgets.option_field import AmountField, MenuField, SegmentField
+from app.presenters.model_options import Amount, Choice, consequences, defaults, groups
+from core.document.design import TEMPLATES, Design
+from core.document.presets import built_in, with_preset
+from core.document.storage.project_file import with_scan
+from core.landmarks.manual import nearest_skin
 
 SETTINGS = [setting for _, settings in groups() for setting in settings]
 AMOUNTS = {

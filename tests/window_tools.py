@@ -12,9 +12,9 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 from shiboken6 import isValid
 
-from app.cli import main
-from app.main_window import MainWindow
-from app.showing.viewport import Viewport
+from app.cli.main import main
+from app.gui.main_window import MainWindow
+from app.gui.viewport.viewport import Viewport
 
 PATIENCE = 90.0
 """Seconds that a script waits for one thing: a limit for what hangs, not for a machine with other work."""

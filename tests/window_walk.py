@@ -12,16 +12,16 @@ import numpy as np
 from walk_looks import differences, differences_seen
 from window_tools import Script
 
-import app.desks.desk
-from app.main_window import MainWindow
-from core.design import Design
-from core.document import Document
+import app.gui.document_controller
+from app.gui.main_window import MainWindow
+from core.document.design import Design
+from core.document.document import Document
+from core.document.storage.project_file import open_project, with_scan
+from core.document.storage.recovery import read_kept
 from core.errors import UserError
-from core.live import Failure
-from core.pipeline import build
-from core.project import open_project, with_scan
-from core.recovery import read_kept
-from core.settled import settled_frame
+from core.pipeline.build import build
+from core.pipeline.converged import settled_frame
+from core.pipeline.live_solver import Failure
 
 Edit = Callable[[Design], Design]
 Step = Iterable[Callable[[], bool]] | None
@@ -47,7 +47,7 @@ class WindowWalk:
         self.far, self.refused, self.sent_back = (0.0, 0.0), 0, 0
         self.session._solving.refused.connect(self.refusals.append)
         self.session.failed.connect(self.faults.append)
-        module: Any = app.desks.desk
+        module: Any = app.gui.document_controller
         module.ask_save = module.ask_open = lambda *_: self.answers["path"]
         module.ask_about_changes = lambda *_: self.answers["changes"]
         module.ask_overwrite = lambda *_: "overwrite"

@@ -11,7 +11,7 @@ from itertools import permutations
 
 import numpy as np
 
-from core.mesh import Faces, Floats, Mesh, Points
+from core.geometry.mesh import Faces, Floats, Mesh, Points
 
 Scan = tuple[Points, Faces]
 

@@ -10,14 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from core.body import body_of
-from core.control_mesh import fit_control_mesh
-from core.detect import detection
+from core.control_mesh.fit import fit_control_mesh
+from core.control_mesh.template import read_template
 from core.errors import UserError
-from core.landmarks import find_landmarks
-from core.mesh import Points
-from core.reading.scan_file import read_raw
-from core.template import read_template
+from core.geometry.mesh import Points
+from core.landmarks.as_dict import detection
+from core.landmarks.detect import find_landmarks
+from core.scan.body import body_of
+from core.scan.readers.registry import read_raw
 from fuzzing.simpler import without_items
 
 SAMPLES = Path(__file__).parents[2] / "resources" / "samples"

@@ -10,9 +10,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from core.body import body_of
-from core.landmarks import find_landmarks
-from core.project import open_project, read_scan_file
+from core.document.storage.project_file import open_project, read_scan_file
+from core.landmarks.detect import find_landmarks
+from core.scan.body import body_of
 
 SIZE = 60_000_000
 """So much [bytes] the packed ones unpack to."""

@@ -16,19 +16,19 @@ from typing import Any
 
 import ezdxf
 
-from app.commands.cut import Cut, cut_text
-from app.commands.worn import Worn, run_to_body
-from app.exporting.outcome import Manner, Outcome
-from app.exporting.ready import make_ready
-from core.cutting import cut_list
-from core.design import Design, ScanSource
-from core.design_elastics import Elastic
-from core.design_lines import LineTraits, OwnLine
-from core.design_measures import OwnMeasure
-from core.document import Document
-from core.pipeline import Stages, build
+from app.cli.commands.cut import Cut, cut_text
+from app.cli.solve_design import Worn, run_to_body
+from app.presenters.export_preview import make_ready
+from app.presenters.export_request import Manner, Outcome
+from core.document.custom_measures import OwnMeasure
+from core.document.design import Design, ScanSource
+from core.document.document import Document
+from core.document.elastic import Elastic
+from core.document.lines import LineTraits, OwnLine
+from core.document.storage.project_file import open_project, read_scan_file, save_project
+from core.garment.cut_list import cut_list
+from core.pipeline.build import Stages, build
 from core.progress import in_one_go, quiet
-from core.project import open_project, read_scan_file, save_project
 
 BODY = Path(__file__).parents[2] / "resources" / "samples" / "person.ply"
 

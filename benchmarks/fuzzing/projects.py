@@ -13,15 +13,15 @@ from typing import Any
 
 from damaged_files import damaged_file
 
-from core.design import Design, ScanSource
-from core.design_elastics import Elastic
-from core.design_lines import LineTraits, OwnLine
-from core.design_measures import OwnMeasure
-from core.document import Document
-from core.document_text import DESIGN, VARIANTS, to_texts
+from core.document.custom_measures import OwnMeasure
+from core.document.design import Design, ScanSource
+from core.document.document import Document
+from core.document.document_text import DESIGN, VARIANTS, to_texts
+from core.document.elastic import Elastic
+from core.document.lines import LineTraits, OwnLine
+from core.document.storage.project_file import ScanFile, open_project, read_scan_file, save_project
 from core.errors import UserError
-from core.placing import PlacedMark
-from core.project import ScanFile, open_project, read_scan_file, save_project
+from core.landmarks.manual import PlacedMark
 from fuzzing.simpler import packed, unpacked, without_items
 
 MEMBER = "scan/body.ply"

@@ -12,8 +12,8 @@ from coloured_scans import COLOURED, MTL, picture, textured_obj
 from damaged_files import damaged_file
 from scan_files import CLOUDS, HOUSES
 
-from core.body import body_of
-from core.reading.scan_file import read_raw, scan_bytes
+from core.scan.body import body_of
+from core.scan.readers.registry import read_raw, scan_bytes
 from fuzzing.simpler import packed, unpacked, without_chunks
 
 TEXTURED = {"house.obj": textured_obj(), "house.mtl": MTL, "skin.png": picture()}

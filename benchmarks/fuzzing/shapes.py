@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from core.body import body_of
-from core.landmarks import find_landmarks
+from core.landmarks.detect import find_landmarks
+from core.scan.body import body_of
 from fuzzing.bodies import TOLD, Skin, file_of, sample
 
 BODY = "person.ply"

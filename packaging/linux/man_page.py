@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import time
 
-from app.commands.cli_parser import COMMANDS, command_parser, window_parser
+from app.cli.parser import COMMANDS, command_parser, window_parser
 from core import __version__
 
 HEAD = r"""

@@ -3,9 +3,9 @@
 import sys
 from pathlib import Path
 
-from app.wording.samples import sample_design, sample_path
-from core.document import Document
-from core.project import ScanFile, save_project
+from app.presenters.samples import sample_design, sample_path
+from core.document.document import Document
+from core.document.storage.project_file import ScanFile, save_project
 
 scan = sample_path("mannequin")
 save_project(Path(sys.argv[1]), Document.of(sample_design()), ScanFile(scan.name, scan.read_bytes()), None)

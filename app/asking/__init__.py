@@ -1,1 +1,0 @@
-"""Asking: the session, which alone changes the document, and what works behind it."""

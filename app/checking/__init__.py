@@ -1,1 +1,0 @@
-"""The program that tests itself: what is tried, part by part, by `busk self-test`."""

@@ -1,0 +1,132 @@
+"""Pictures with no display: the body from one side, or the whole window."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.rendering.display import off_screen
+from core.document.design import Design
+from core.errors import UserError
+from core.files.atomic_write import whole_file
+from core.progress import in_one_go, quiet
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+_PATIENCE, _LONGEST = 300.0, 1800.0
+"""Seconds of processor time, and of any time, after which an answer is not waited for any longer: of the
+first a machine with other work gives the program little.
+"""
+
+
+def draw_picture(
+    design: Design,
+    out: Path,
+    *,
+    view: str = "three-quarter",
+    dark: bool = False,
+    size: tuple[int, int] = (1600, 1000),
+) -> None:
+    """Write a PNG of the reshaped body from one side. Raises UserError."""
+    _check_name(out)
+    from app.presenters.export_preview import make_ready
+    from app.presenters.export_request import Manner, Outcome
+    from app.rendering.camera import VIEWS
+    from core.pipeline.build import build
+    from core.pipeline.solve import run
+
+    side = {"side": "left"}.get(view, view)
+    if side not in VIEWS:
+        raise UserError(f"There is no view '{view}'.", f"Choose one of: {', '.join(VIEWS)}, side.")
+    solution = run(build(design))
+    outcome = Outcome(solution.stages, solution.control_points)
+    ready = make_ready("picture", out, outcome, Manner(view=side, size=size, dark=dark))
+    assert ready.draw is not None
+    ready.write(out, in_one_go(ready.draw()), quiet)
+
+
+def draw_window(
+    design: Design,
+    out: Path,
+    *,
+    dark: bool = False,
+    language: str = "en",
+    size: tuple[int, int] = (1600, 1000),
+) -> None:
+    """Write a PNG of the whole window on a settled design. Raises UserError, that of a stuck scan too."""
+    _check_name(out)
+    with settled_window(design, dark=dark, language=language, size=size) as window:
+        save_window(window, out)
+        if window.scan_desk.stuck is not None:
+            raise window.scan_desk.stuck
+
+
+@contextmanager
+def settled_window(
+    what: str | Design, *, dark: bool = False, language: str = "en", size: tuple[int, int] = (1600, 1000)
+) -> Iterator[MainWindow]:
+    """Give a window on a file or a design, solved to the end and fully drawn; it is closed afterwards.
+
+    A scan that cannot go on is shown as far as it came, and stays in ``window.scan_desk.stuck``.
+    """
+    off_screen()
+    from app.gui.application import application
+    from app.gui.startup import open_window
+
+    app = application(language=language, dark=dark)
+    window = open_window(what)
+    failures: list[Exception] = []
+    window.session.failed.connect(failures.append)
+    window.view.viewport.motion = False
+    window.resize(*size)
+    window.show()
+
+    def ready() -> bool:
+        view = window.view
+        seen = window.scan_desk.stuck is not None or window.is_settled()
+        return bool(failures) or (seen and view.is_shaded and not window.scan_desk.painting)
+
+    try:
+        wait_until(ready, app.processEvents)
+        if failures:
+            raise failures[0]
+        yield window
+    finally:
+        window.session.undo_stack.setClean()
+        window.close()
+
+
+def save_window(window: MainWindow, out: Path) -> None:
+    """Write a PNG of a window as it stands. Raises UserError."""
+    from PySide6.QtWidgets import QApplication
+
+    from app.gui.session.project_thumbnail import png_of
+
+    window.desk.plot_now()
+    wait_until(lambda: not window.jobs.at_work(), QApplication.processEvents)
+    # The view smooths its outlines once it has been still for a while.
+    still = time.monotonic() + 0.6
+    wait_until(lambda: time.monotonic() > still, QApplication.processEvents)
+    with whole_file(out) as partial:
+        partial.write_bytes(png_of(window.grab().toImage()))
+
+
+def _check_name(out: Path) -> None:
+    if out.suffix.lower() != ".png":
+        raise UserError(f"'{out}' is no name for a picture.", "Choose one that ends in .png.")
+    if not out.parent.is_dir():
+        raise UserError(f"There is no folder {out.parent}.", "Make it, or choose another one.")
+
+
+def wait_until(ready: Callable[[], bool], turn: Callable[[], None]) -> None:
+    """Let events pass until ``ready``. Raises UserError if that takes too long."""
+    patience, longest = time.process_time() + _PATIENCE, time.monotonic() + _LONGEST
+    while not ready():
+        if time.process_time() > patience or time.monotonic() > longest:
+            raise UserError("Busk has waited too long for its own answer.", "Try again, or report this.")
+        turn()
+        time.sleep(0.005)

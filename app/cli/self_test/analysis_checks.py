@@ -1,0 +1,30 @@
+"""The part of a self-test that tries what advises: how far lines can go, and asking for the result."""
+
+from __future__ import annotations
+
+from app.cli.self_test.checks import check
+from app.cli.self_test.fixture import MOVED, Bench
+
+
+def advice(bench: Bench) -> str:
+    """Ask for the lift that a known length gives, and look where that length lies in its line's zones."""
+    from core.analysis.inverse_design.quantities import Goal  # noqa: PLC0415 (brings a search along that no other part needs)
+    from core.analysis.inverse_design.solve import Asking  # noqa: PLC0415
+    from core.analysis.length_limits.zones import leeway_of  # noqa: PLC0415
+    from core.pipeline.build import build  # noqa: PLC0415
+
+    known = bench.design.ratio(MOVED)
+    lift = Asking(bench.stages).now(["lift"])[0]["lift"]
+    other = build(bench.design.with_linked(MOVED, 0.5 * (1.0 + known)), bench.stages)
+    reply = Asking(other).reply([Goal("lift", lift)])
+    apart = 100.0 * abs(reply.design.ratio(MOVED) - known)
+    check(reply.reachable, f"the lift of {lift:.2f} mm is told to be out of reach")
+    check(apart < 0.1, f"the length that was asked for is off by {apart:.2f} %")
+    leeway = leeway_of(bench.stages, MOVED)
+    check(leeway is not None, "no length of the line has a balance")
+    assert leeway is not None
+    tone = leeway.at(known).tone
+    check(tone in ("green", "amber"), f"{known:.0%} of the line is told to be {tone}")
+    red = leeway.red_below
+    check(red is not None, "no length of the line is told to be too short")
+    return f"the length found again within {apart:.3f} %, red below {100.0 * (red or 0.0):.1f} %"

@@ -1,1 +1,0 @@
-"""Commands: what the command line does, one room a command."""

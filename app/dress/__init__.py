@@ -1,1 +1,0 @@
-"""Dress: theme, icons and the small widgets that every panel is put together from."""

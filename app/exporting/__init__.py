@@ -1,1 +1,0 @@
-"""Rooms of what leaves Busk for other programs: by command, or from the window."""

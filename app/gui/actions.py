@@ -1,0 +1,151 @@
+"""All that can be asked of the window by menu or key; a desk adds what is its own with ``add``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QAction, QKeySequence, QUndoGroup
+from PySide6.QtWidgets import QWidget
+
+from app.gui.menus import Menus
+from app.i18n.catalog import LANGUAGES, tr
+from app.presenters.samples import SAMPLES
+
+CONTROLS = ("adaptive", "conventional", "accumulating", "exact", "none")
+
+_VIEW_MENUS = {
+    "compare": ("ghost", "wipe", "side"),
+    "looks": ("front", "left", "right", "back", "three-quarter", "top", "perspective"),
+    "layers": ("control-mesh", "landmarks", "bands", "section", "colours"),
+}
+"""What stands in a menu of its own within that of the view; the rest stands in that itself."""
+
+_KEYS = QKeySequence.StandardKey
+
+
+class Actions(Menus):
+    """The actions that the window itself knows, by name; ``app.gui.wiring`` connects them."""
+
+    def __init__(self, parent: QWidget, undo: QUndoGroup, view: Mapping[str, QAction]) -> None:
+        super().__init__(parent)
+        self._fill_file()
+        self._fill_edit(undo)
+        self._fill_view(view)
+        self._fill_lines()
+        self._fill_solve()
+        self._fill_window()
+        self._fill_help()
+
+    def _fill_file(self) -> None:
+        self.open = self.add("file", tr("Open…"), _KEYS.Open)
+        self.recent = self.submenu("file", "recent", tr("Open recent"))
+        self.submenu("file", "samples", tr("Open sample"))
+        self.samples = {name: self.add("samples", tr(title)) for name, title in SAMPLES.items()}
+        self.rule("file")
+        self.save = self.add("file", tr("Save"), _KEYS.Save, of_document=True)
+        self.save_as = self.add("file", tr("Save as…"), "Ctrl+Shift+S", of_document=True)
+        said = tr("Body, lines, strips, measures, pictures, a turntable: for other programs")
+        self.export_any = self.add("file", tr("Export…"), "Ctrl+Shift+E", said, of_document=True)
+        said = tr("Write the reshaped body at once, as it was exported last")
+        self.export = self.add("file", tr("Export body…"), "Ctrl+E", said, of_document=True)
+        self.rule("file")
+        self.cancel = self.add("file", tr("Cancel the work in hand"), "Esc")
+        self.cancel.setEnabled(False)
+        self.rule("file")
+        self.quit = self.add("file", tr("Quit"), "Ctrl+Q")
+        self.quit.setMenuRole(QAction.MenuRole.QuitRole)
+        self.end("file", 4)
+
+    def _fill_edit(self, undo: QUndoGroup) -> None:
+        self.undo = undo.createUndoAction(self._parent, tr("Undo"))
+        self.undo.setShortcut(_KEYS.Undo)
+        self.redo = undo.createRedoAction(self._parent, tr("Redo"))
+        self.redo.setShortcuts([QKeySequence("Ctrl+Shift+Z"), QKeySequence("Ctrl+Y")])
+        for action in (self.undo, self.redo):
+            self.place("edit", action)
+        self.rule("edit")
+        said = tr("Take all lines off that are not locked")
+        self.reset = self.add("edit", tr("Reset to scan"), "Ctrl+R", said, of_document=True)
+
+    def _fill_view(self, view: Mapping[str, QAction]) -> None:
+        said = tr("Show the body at rest, or reshaped")
+        self.flip = self.add("view", tr("Before / after"), "Space", said, of_document=True)
+        self.submenu("view", "compare", tr("Compare"))
+        self.submenu("view", "looks", tr("Look from"))
+        self.submenu("view", "layers", tr("Show"))
+        self.rule("view")
+        for name, action in view.items():
+            self.place(next((menu for menu, held in _VIEW_MENUS.items() if name in held), "view"), action)
+        self.rule("view")
+        self.submenu("view", "theme", tr("Theme"))
+        titles = {"system": tr("As the system"), "light": tr("Light"), "dark": tr("Dark")}
+        self.themes = self.group("theme", titles)
+        self.submenu("view", "language", tr("Language"))
+        self.languages = self.group("language", dict(LANGUAGES))
+        self.end("view", 3)
+
+    def _fill_lines(self) -> None:
+        titles = {
+            "straps": tr("Add straps over the bust points"),
+            "slings": tr("Add slings round the breasts"),
+            "obliques": tr("Add oblique lines from the sides"),
+            "rings": tr("Add closed rings round the bust points"),
+        }
+        self.add_lines = {name: self.add("lines", title, of_document=True) for name, title in titles.items()}
+        self.rule("lines")
+        said = tr("Click points on the body to draw a line; it keeps the curve or snaps to control points")
+        self.draw_line = self.add("lines", tr("Draw a line on the body"), "N", said, of_document=True)
+        self.own_line = self.add("lines", tr("Line through control points…"), of_document=True)
+
+    def _fill_solve(self) -> None:
+        titles = {
+            "adaptive": tr("Adaptive volume force"),
+            "conventional": tr("Conventional volume force"),
+            "accumulating": tr("Accumulating volume force"),
+            "exact": tr("Exact answer"),
+            "none": tr("No volume control"),
+        }
+        self.controls = self.group("solve", {name: titles[name] for name in CONTROLS})
+        self.rule("solve")
+        self.submenu("solve", "templates", tr("Control mesh"))
+        counts = {name: tr("{count} polygons").format(count=name) for name in ("168", "120")}
+        self.templates = self.group("templates", counts)
+        self.rule("solve")
+        said = tr("Choose how lines, skin and volume act")
+        self.model = self.add("solve", tr("How the model works…"), "Ctrl+M", said, of_document=True)
+
+    def _fill_window(self) -> None:
+        titles = {
+            "scan": tr("Scan"),
+            "landmarks": tr("Landmarks"),
+            "lines": tr("Lines"),
+            "result": tr("Result"),
+        }
+        self.steps = self.group("window", titles)
+        for number, action in enumerate(self.steps.values(), start=1):
+            action.setShortcut(f"Ctrl+{number}")
+        self.rule("window")
+        self.inspector = self.add("window", tr("Inspector"), "Ctrl+I", checkable=True)
+        self.strip = self.add("window", tr("Live plot"), "Ctrl+J", checkable=True)
+        said = tr("Hide all but the 3D view; Tab in the view brings the rest back")
+        self.alone = self.add("window", tr("View alone"), "Tab", said, checkable=True)
+        # Elsewhere Tab goes on to the next field: the layout gives this action to the view alone.
+        self.alone.setShortcutContext(Qt.ShortcutContext.WidgetShortcut)
+        self.full_screen = self.add("window", tr("Full screen"), "F11", checkable=True)
+        self.next_pane = self.add("window", tr("Next pane"), "F6", tr("Go on with the keyboard elsewhere"))
+        said = tr("Go through the menus with the arrow keys")
+        self.add("window", tr("Menu bar"), "F10", said, do=self.enter_bar)
+        self.rule("window")
+        said = tr("Give inspector and live plot their first sizes again")
+        self.reset_layout = self.add("window", tr("Reset layout"), tip=said)
+
+    def _fill_help(self) -> None:
+        said = tr("In the browser, at the page that fits what you are doing")
+        self.guide = self.add("help", tr("User guide"), _KEYS.HelpContents, said)
+        said = tr("From a scan to lengths of elastic, click by click")
+        self.first_steps = self.add("help", tr("First customer in ten minutes"), tip=said)
+        self.rule("help")
+        self.about = self.add("help", tr("About Busk"))
+        self.about.setMenuRole(QAction.MenuRole.AboutRole)
+        self.end("help", 1)

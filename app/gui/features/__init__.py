@@ -1,0 +1,1 @@
+"""The window's features, each with its controller and widgets."""

@@ -1,0 +1,284 @@
+"""The desk of the doctor: a notice of what is wrong with a design, and a button that ends it as one step."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, QTimer
+
+from app.gui.session.jobs import Job
+from app.gui.widgets.notification_bar import REFUSED, Action
+from app.i18n.catalog import joined, say, tr
+from app.presenters import diagnosis as words
+from app.presenters.assessment import AssessmentView, assessment_view, tone
+from app.presenters.convergence import plain_sentence, state_of, swing_mm
+from app.presenters.lines import titled
+from core.analysis.diagnosis.diagnose import Diagnosis, diagnose
+from core.document.design import Design
+from core.errors import UserError
+from core.garment.assessment import BAD, CAUTION, GOOD, LEVELS, PENDING, Assessment
+from core.pipeline.build import build
+from core.pipeline.exact import NoBalanceError
+from core.pipeline.live_solver import Frame
+from core.progress import Progress
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+ABOUT = "doctor"
+"""What its notices are about."""
+
+PATIENCE = 1200
+"""Milliseconds that a strained design rests before it is looked at: who is still at work hears nothing."""
+
+REASONS = 2
+"""Reasons of the verdict that a notice names; the others are in its details."""
+
+_BAD = ("vibrating", "diverging", "folded", "overstrained")
+_CALM = ("strained", "settling")
+_CURED = ("lines", "traits", "gain", "volume", "line_force", "line_hold")
+
+
+@dataclass(frozen=True)
+class _Trouble:
+    """What a notice is about: the complaint, and the two that fight once they are known."""
+
+    complaint: str
+    pair: tuple[tuple[str, ...], ...] | None = None
+
+    def is_that(self, other: _Trouble) -> bool:
+        """Tell whether it is the same, as far as is known."""
+        return self.complaint == other.complaint and (
+            None in (self.pair, other.pair) or self.pair == other.pair
+        )
+
+
+def _level_of(complaint: str) -> str:
+    return CAUTION if complaint == "strained" else BAD
+
+
+def _severity(level: str) -> int:
+    return LEVELS.index(level) if level in LEVELS else 0
+
+
+class DoctorDesk(QObject):
+    """Tells at once that a design is no result, and what ends it as soon as that is known.
+
+    Of mere strain it speaks calmly: once a design has rested for a while, and once only.
+    """
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._frame: Frame | None = None
+        self._about: Design | None = None
+        self._quiet: set[Design] = set()
+        self._cured: Design | None = None
+        self._said: _Trouble | None = None
+        self._closed: _Trouble | None = None
+        self._job: Job | None = None
+        self._asked = False
+        window.notices.closed.connect(self._note_closed)
+        self._later = QTimer(self, interval=PATIENCE, singleShot=True)
+        self._later.timeout.connect(self._look)
+        window.strip.why_asked.connect(self.ask)
+        said = tr("Say what fights in this design, and what ends it")
+        window.actions_.add("solve", tr("What is wrong here?"), tip=said, do=self.ask, of_document=True)
+
+    def follow(self, frame: Frame) -> None:
+        """Tell of a design that has come to its end; whatever is edited meanwhile ends that."""
+        self._frame = frame
+        design = frame.stages.design
+        if self._asked:
+            self._begin_asked()
+        if design is self._about:
+            return
+        self._forget()
+        if frame.at_work or design is not self._window.session.design:
+            return
+        state = state_of(frame)
+        if state == "settling" and design is self._cured:
+            self._cured = None
+            self._window.session.go_on()  # back from a fold it takes more turns: the doctor knows
+            return
+        self._about = design
+        if state not in _BAD:
+            self._closed = None
+        if state in _BAD:
+            self._tell_at_once(frame)
+            self._look()
+        elif state == "strained" and design not in self._quiet:
+            self._later.start()
+
+    def refuse(self, error: Exception) -> None:
+        """Look at a design whose lengths were refused; the notice of the refusal stands already."""
+        frame = self._window.session.frame
+        if isinstance(error, NoBalanceError) and frame is not None:
+            self._forget()
+            self._about = self._window.session.design  # what stands again: its frames change nothing
+
+            def work(progress: Progress) -> Diagnosis:
+                return diagnose(build(error.design, frame.stages), progress)
+
+            self._run(work, partial(self._tell_refused, error))
+
+    def ask(self) -> None:
+        """Say what is wrong with the present design, once it is shown, or that nothing is."""
+        self._asked = True
+        self._begin_asked()
+
+    def _begin_asked(self) -> None:
+        """Begin with what was asked for, unless the first frame of the design is still to come."""
+        frame, session = self._frame, self._window.session
+        if frame is None or not (frame is session.frame and (session.is_answered or session.failure)):
+            return
+        self._asked = False
+        self._forget()
+        self._closed = None
+        self._about = frame.stages.design
+        self._run(partial(diagnose, frame.stages), partial(self._answer, frame), waited=True)
+
+    def _forget(self) -> None:
+        """Let go of what was said or looked for of another design."""
+        self._later.stop()
+        self._window.jobs.cancel(self._job)
+        self._job = None
+        if self._about is not None:
+            self._about = None
+            self._withdraw()
+
+    def _look(self) -> None:
+        frame = self._frame
+        if frame is not None and frame.stages.design is self._about:
+            self._run(partial(diagnose, frame.stages), partial(self._found, frame))
+
+    def _run(
+        self, work: Callable[[Progress], object], done: Callable[[object], None], *, waited: bool = False
+    ) -> None:
+        self._job = self._window.jobs.run(
+            tr("Finding out what fights"), work, done, self._miss, waited=waited
+        )
+
+    def _miss(self, error: Exception) -> None:
+        self._job = None
+        if isinstance(error, UserError):
+            self._window.desk.show_failure(error, ABOUT)
+        else:
+            logging.error("the doctor failed", exc_info=error)
+
+    def _tell_at_once(self, frame: Frame) -> None:
+        hint = tr("No garment does that: what is seen here is no result.")
+        self._show(BAD, plain_sentence(frame), hint, [], "", _Trouble(state_of(frame)))
+
+    def _found(self, frame: Frame, found: object, *, asked: bool = False) -> None:
+        """Tell what was found in place of what was told at once."""
+        assert isinstance(found, Diagnosis)
+        self._job = None
+        if not found.complaint:
+            return  # from rest it does come to rest: what was told at once still holds for what is seen
+        found, swing = found.seen(frame.verdict), swing_mm(frame)[1]
+        level = max(_level_of(found.complaint), self._judged(frame, found).level, key=_severity)
+        actions = self._fixes(found)
+        self._quiet.add(frame.stages.design)
+        worst = found.fight.worst
+        trouble = _Trouble(found.complaint, (worst.one.lines, worst.other.lines) if worst else ())
+        said = words.sentence(found, swing)
+        self._show(level, said, words.hint(found), actions, words.details(found), trouble, asked)
+
+    def _answer(self, frame: Frame, found: object) -> None:
+        """Tell what was asked for, well or not."""
+        assert isinstance(found, Diagnosis)
+        if found.complaint:
+            self._found(frame, found, asked=True)
+            return
+        self._job = None
+        # It may have come to rest since it was asked.
+        frame = self._frame or frame
+        overall = self._judged(frame, found)
+        level, reasons = overall.level, overall.reasons
+        if reasons:
+            said = joined(message for message, _ in reasons[:REASONS])
+            actions = self._fixes(found)
+            trouble = _Trouble("checked")
+            hint = words.hint(found) if found.findings else joined(reasons[0][1:])
+            details = "\n".join((*map(joined, reasons), words.details(found)))
+            self._show(level, said, hint, actions, details, trouble, asked=True)
+            return
+        said = tr("Nothing is wrong: the calculation comes to rest, and the skin is calm.")
+        self._show(GOOD, said, "", [], words.details(found), None)
+
+    def _judged(self, frame: Frame, found: Diagnosis) -> AssessmentView:
+        """Return the overall verdict of a frame; what it waits for the diagnosis knows already."""
+        overall = self._window.verdict_desk.of(frame)
+        if overall.level != PENDING:
+            return overall
+        own = assessment_view(Assessment(found.findings), frame.stages.design)
+        return replace(own, reasons=(*own.reasons, *overall.reasons))
+
+    def _tell_refused(self, error: NoBalanceError, found: object) -> None:
+        """Tell why lengths were refused, and the nearest that are not, in place of the bare refusal."""
+        assert isinstance(found, Diagnosis)
+        self._job = None
+        notices = self._window.notices
+        said = say(titled(error.message, error.design))
+        fights = words.sentence(found, 0.0) if found.complaint and found.fight.worst else ""
+        notices.withdraw(REFUSED)
+        hint = joined((fights, words.hint(found) if found.cure else say(error.hint)))
+        notices.show_notice(
+            "bad",
+            said,
+            hint,
+            self._fixes(found),
+            lasting=True,
+            details=words.details(found),
+            about=REFUSED,
+        )
+
+    def _show(
+        self,
+        level: str,
+        sentence: str,
+        hint: str,
+        actions: list[Action],
+        details: str,
+        trouble: _Trouble | None,
+        asked: bool = False,
+    ) -> None:
+        """Show a notice in the tone of a verdict's ``level`` in place of the last.
+
+        The same ``trouble`` is not told again once it was closed by hand. Mere strain leaves by itself;
+        what was ``asked`` for stays till it is closed.
+        """
+        if trouble and self._closed and trouble.is_that(self._closed):
+            return
+        self._withdraw()
+        lasting = asked or (trouble is not None and trouble.complaint not in _CALM)
+        self._window.notices.show_notice(tone(level), sentence, hint, actions, lasting, details, ABOUT)
+        self._said = trouble if lasting else None
+
+    def _withdraw(self) -> None:
+        self._said = None
+        self._window.notices.withdraw(ABOUT)
+
+    def _note_closed(self) -> None:
+        """Remember what was closed by hand: it is not told again before something else is wrong."""
+        if self._said is not None and not self._window.notices.says(ABOUT):
+            self._closed, self._said = self._said, None
+
+    def _fixes(self, found: Diagnosis) -> list[Action]:
+        """Return a button for each of the best fixes; the others are in the details."""
+        said = ((words.change_words(found, cure.change), cure) for cure in words.shown_fixes(found))
+        return [(text, partial(self._apply, text, cure.change.design)) for text, cure in said]
+
+    def _apply(self, said: str, cured: Design) -> None:
+        """Make the change as one step, whatever was only called otherwise since."""
+        changed = {name: getattr(cured, name) for name in _CURED}
+        self._window.session.edit(lambda design: replace(design, **changed), said)
+        design = self._window.session.design
+        if design is not None:
+            self._quiet.add(design)
+            self._cured = design

@@ -1,0 +1,207 @@
+"""What the window does to export: it shows the choices, asks for a place, and writes beside the work."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from PySide6.QtCore import QObject
+
+from app.gui.features.export.dialog import ExportSheet
+from app.gui.features.export.worker import ExportWork
+from app.gui.plots.status_chip import state_title
+from app.gui.session.jobs import Job
+from app.gui.session.settings import wish, wish_for
+from app.gui.widgets.file_dialogs import ask_save
+from app.gui.widgets.last_folders import free_name, last_folder
+from app.gui.widgets.message_box import ask
+from app.i18n.catalog import colon, joined, say, tr
+from app.presenters.convergence import is_result, state_of
+from app.presenters.export_formats import exports, format_title
+from app.presenters.export_preview import Ready, make_ready
+from app.presenters.export_request import Manner, Outcome
+from app.presenters.export_settings import Choices
+from core.errors import UserError
+from core.files.atomic_write import still_written
+from core.garment.assessment import BAD
+from core.pipeline.live_solver import Frame
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+_DOUBT = "export"  # what a notice of an export of an unfinished run is about
+
+
+class ExportDesk(QObject):
+    """Opens the sheet of what can be exported, tells what will be in a file, and writes it.
+
+    ``sheet`` is there while it is open.
+    """
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._choices = Choices(wish("export"))
+        self.sheet: ExportSheet | None = None
+        self._outcome: Outcome | None = None
+        self._job: Job | None = None
+        self._works: list[ExportWork] = []
+
+    def show(self) -> None:
+        """Show all that can be exported."""
+        sheet = self.sheet = ExportSheet(self._window, exports())
+        sheet.chosen.connect(self._choose_export)
+        sheet.changed.connect(self._choose)
+        sheet.save_asked.connect(self._save)
+        sheet.finished.connect(self._forget)
+        self._refresh()
+        sheet.open()
+        sheet.items[self._choices.export.what].setFocus()
+
+    def export_body(self) -> None:
+        """Ask for a place and write the reshaped body, else as it was chosen last."""
+        frame = self._ask_and_write("body", tr("Export body"), reshaped=True)
+        doubt = self._doubt(frame) if frame is not None else ""
+        if frame is not None:
+            self._window.notices.withdraw(_DOUBT)
+        if doubt:
+            self._window.notices.show_notice("warn", doubt, lasting=True, about=_DOUBT)
+
+    def show_frame(self, frame: Frame) -> None:
+        """Tell of the body as it is now, if somebody looks and it rests."""
+        if self.sheet is not None and not frame.at_work:
+            self._tell()
+
+    # -- the sheet
+
+    def _choose_export(self, what: str) -> None:
+        self._choices.choose_export(what)
+        self._refresh()
+
+    def _choose(self, key: str, value: str) -> None:
+        self._choices.choose(self._choices.export.what, key, value)
+        self._refresh()
+
+    def _refresh(self) -> None:
+        """Show the choices of what is to be exported, and what they come to."""
+        wish_for("export", self._choices.text)
+        export = self._choices.export
+        if self.sheet is not None:
+            settings = self._choices.settings(export.what)
+            self.sheet.show_export(export, settings, self._choices.values(export.what))
+            self._tell()
+
+    def _tell(self) -> None:
+        """Work out beside the window what will be in the file, and say so."""
+        window, frame, sheet = self._window, self._window.session.frame, self.sheet
+        window.jobs.cancel(self._job)
+        if frame is None or sheet is None:
+            return
+        what = self._choices.export.what
+        name, outcome, manner = self._file_name(what), self._outcome_of(frame), self._manner(what)
+        doubt = "" if manner.before and what != "flat" else self._doubt(frame)
+        sheet.show_contents(name, tr("Looking what will be in it…"), doubt)
+        self._job = window.jobs.run(
+            tr("Preparing the export"),
+            lambda progress: make_ready(what, name, outcome, manner),
+            lambda ready: sheet.show_contents(name, _sentence(cast(Ready, ready)), doubt),
+            partial(self._show_refused, name),
+        )
+
+    def _show_refused(self, name: str, error: Exception) -> None:
+        if isinstance(error, UserError) and self.sheet is not None:
+            self.sheet.show_contents(name, "", joined((say(error.message), say(error.hint))), possible=False)
+        else:
+            self._window.desk.show_failure(error)
+
+    def _forget(self) -> None:
+        self.sheet = self._outcome = None  # a body is much to hold, and quickly worked out again
+        self._window.jobs.cancel(self._job)
+
+    # -- a file
+
+    def _save(self) -> None:
+        export, sheet = self._choices.export, self.sheet
+        written = self._ask_and_write(export.what, tr("Export: {what}").format(what=export.title))
+        if written is not None and sheet is not None:
+            sheet.accept()
+
+    def _ask_and_write(self, what: str, title: str, reshaped: bool = False) -> Frame | None:
+        """Ask for a place and begin to write; returns what is written, or None if nothing is."""
+        usual = self._choices.kind(what)
+        kinds = sorted(self._choices.find(what).formats, key=lambda kind: kind != usual)
+        filters = ";;".join(f"{format_title(kind)} (*.{kind})" for kind in kinds)
+        path = ask_save(self._parent, title, f"{self._stem(what)}.{usual}", filters, f".{usual}")
+        # A run may go on behind the dialog: what is written is what is shown when it closes.
+        frame = self._window.session.frame
+        if not path or frame is None:
+            return None
+        manner = self._manner(what, Path(path).suffix.lower().lstrip("."))
+        if reshaped:
+            manner = replace(manner, before=False)
+        if what == "turntable" and not self._may_number(Path(path), manner):
+            return None
+        if any(work.path == Path(path) and work.at_work for work in self._works):
+            self._window.desk.show_failure(still_written(Path(path)), f"export {what}")
+            return None
+        work = ExportWork(self._window, what, Path(path), self._outcome_of(frame), manner)
+        self._works = [*(each for each in self._works if each.at_work), work]
+        work.begin()
+        return frame
+
+    def _may_number(self, path: Path, manner: Manner) -> bool:
+        """Ask before a series of pictures takes the place of another, which the dialog has not seen."""
+        from app.rendering.turntable import turntable_files  # noqa: PLC0415 (brings VTK along)
+
+        there = [each.name for each in turntable_files(path, manner.frames) if each != path and each.exists()]
+        if not there:
+            return True
+        question = tr("{name} is there already. Replace it?").format(name=there[0])
+        return ask(self._parent, question, "", [("replace", tr("Replace"))]) == "replace"
+
+    # -- what is known
+
+    @property
+    def _parent(self) -> Any:
+        return self.sheet or self._window
+
+    def _outcome_of(self, frame: Frame) -> Outcome:
+        """Return what came out: while nothing changes the same one, with all that it has worked out."""
+        view, known = self._window.view, self._outcome
+        material = view.viewport.scene.material
+        session = self._window.session
+        named = session.name, session.design.customer if session.design else ""
+        looks = view.hidden_lines, material, named
+        same = known is not None and known.control_points is frame.control_points
+        if known is None or not same or looks != (known.hidden, known.material, known.named):
+            tracks = frame.tracks
+            records = tracks.get(frame.stages.design.volume) or next(iter(tracks.values()), ())
+            known = self._outcome = Outcome(frame.stages, frame.control_points, records, *looks)
+        return known
+
+    def _manner(self, what: str, kind: str = "") -> Manner:
+        return self._choices.manner(what, kind, self._window.view.viewport.scene.view)
+
+    def _stem(self, what: str) -> str:
+        return f"{self._window.session.name}-{what}"
+
+    def _doubt(self, frame: Frame) -> str:
+        """Return what to mind of a reshaped body that would be written, or nothing."""
+        if self._window.session.failure is not None:
+            return tr("The design could not be computed: the file holds the last computed shape.")
+        if frame.at_work:
+            return tr("The run is still under way: what is written is how far it is.")
+        if is_result(frame):
+            overall = self._window.verdict_desk.of(frame)
+            return f"{overall.headline}{colon()}{overall.first}" if overall.level == BAD else ""
+        return tr("{state}: this is no shape to work from.").format(state=state_title(state_of(frame)))
+
+    def _file_name(self, what: str) -> str:
+        return free_name(last_folder("written"), f"{self._stem(what)}.{self._choices.kind(what)}").name
+
+
+def _sentence(ready: Ready) -> str:
+    said = tr("{contents}, {how}") if ready.how else "{contents}"
+    return said.format(contents=ready.contents, how=ready.how)

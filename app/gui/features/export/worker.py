@@ -1,0 +1,73 @@
+"""One file on its way out of the window."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from app.gui.session.jobs import Job
+from app.i18n.catalog import tr
+from app.presenters.export_preview import Ready, make_ready
+from app.presenters.export_request import Manner, Outcome
+from core.progress import Progress
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+
+class ExportWork:
+    """Makes a file ready in a thread, draws its pictures piece by piece here, and writes it in a thread.
+
+    Each of these is a job that the user waits for and may leave; then nothing is written. At the end a notice
+    says what was written and where, or why not.
+    """
+
+    def __init__(self, window: MainWindow, what: str, path: Path, outcome: Outcome, manner: Manner) -> None:
+        self._window, self.path, self._about = window, path, f"export {what}"
+        self._make = partial(make_ready, what, path, outcome, manner)
+        self._job: Job | None = None
+
+    @property
+    def at_work(self) -> bool:
+        """Whether the file is still on its way."""
+        return self._job in self._window.jobs.at_work()
+
+    def begin(self) -> None:
+        """Begin with the first of the jobs."""
+        self._run(tr("Writing {name}"), self._prepare, self._prepared)
+
+    def _prepare(self, progress: Progress) -> tuple[Ready, list[Path]]:
+        ready = self._make()
+        progress("writing", 0.05)
+        return ready, [] if ready.draw else self._write(ready, None, progress)
+
+    def _prepared(self, found: object) -> None:
+        ready, files = cast(tuple[Ready, list[Path]], found)
+        if ready.draw is None:
+            self._done(ready, files)
+            return
+        words, jobs = tr("Drawing {name}").format(name=self.path.name), self._window.jobs
+        self._job = jobs.run_pieces(
+            words, ready.draw(), partial(self._drawn, ready), self._failed, waited=True
+        )
+
+    def _drawn(self, ready: Ready, pictures: Any) -> None:
+        write = partial(self._write, ready, pictures)
+        self._run(tr("Writing {name}"), write, lambda files: self._done(ready, cast(list[Path], files)))
+
+    def _write(self, ready: Ready, pictures: Any, progress: Progress) -> list[Path]:
+        return ready.write(self.path, pictures, progress) or [self.path]
+
+    def _run(self, words: str, work: Any, done: Any) -> None:
+        said = words.format(name=self.path.name)
+        self._job = self._window.jobs.run(said, work, done, self._failed, waited=True)
+
+    def _failed(self, error: Exception) -> None:
+        self._window.desk.show_failure(error, self._about)
+
+    def _done(self, ready: Ready, files: list[Path]) -> None:
+        first, last = files[0].name, files[-1].name
+        name = first if len(files) == 1 else tr("{first} to {last}").format(first=first, last=last)
+        said = tr("{name} written, {how}.") if ready.how else tr("{name} written.")
+        self._window.desk.show_written(self._about, said.format(name=name, how=ready.how), str(files[0]))

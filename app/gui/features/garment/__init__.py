@@ -1,0 +1,1 @@
+"""Bands, elastics, tension and contact pressure."""

@@ -1,0 +1,80 @@
+"""The desk of the garment: the cut list of a body that rests, shown, copied, written to a file."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+
+from app.gui.features.garment.panel import GarmentPanel
+from app.gui.widgets.table_export import copy_table, save_table
+from app.i18n.catalog import number, say, tr
+from app.presenters.convergence import doubt_of
+from app.presenters.cut_list import as_table, garment_view
+from app.presenters.cut_list_views import GarmentView
+from core.errors import LineError
+from core.garment.cut_list import cut_list
+from core.pipeline.live_solver import Frame
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+
+class GarmentDesk(QObject):
+    """Fills the cut list where it is seen, once a run rests: while the body moves there is nothing to cut."""
+
+    def __init__(self, window: MainWindow, panel: GarmentPanel) -> None:
+        super().__init__(window)
+        self._window, self._panel = window, panel
+        self._frame: Frame | None = None
+        self._shown: Frame | None = None
+        panel.opened.connect(self.refresh)
+        panel.selected.connect(window.desk.select_line)
+        panel.lines_asked.connect(lambda: window.inspector.open("lines"))
+        panel.tissue.entered.connect(self._set_tissue)
+        panel.copy_asked.connect(lambda: copy_table(window, self._as_table()))
+        panel.table_asked.connect(
+            lambda: save_table(window, self._as_table(), tr("Save the cut list"), "cut-list")
+        )
+
+    def follow(self, frame: Frame) -> None:
+        """Show the pieces of a frame, or that those shown are of a former one."""
+        self._frame = frame
+        if self._panel.isVisible():
+            self.refresh()
+
+    def forget(self) -> None:
+        """Let go of the list of a document that has gone: its rows are none of the next one's."""
+        self._shown = None
+
+    def refresh(self) -> None:
+        """Bring the list up to date."""
+        frame = self._frame
+        if frame is None or frame is self._shown:
+            return
+        rests = self._window.is_settled()
+        if rests or self._shown is None:
+            self._show(frame)
+        if rests:
+            self._shown = frame
+        else:
+            self._panel.set_stale()
+
+    def _show(self, frame: Frame) -> None:
+        try:
+            cuts = cut_list(frame.stages, frame.control_points)
+        except LineError as problem:
+            self._panel.set_view(GarmentView(()), say(problem.message))
+        else:
+            self._panel.set_view(garment_view(frame, cuts), doubt_of(frame))
+
+    def _set_tissue(self, stiffness: float) -> None:
+        said = tr("Tissue {value} N/m").format(value=number(stiffness, 0))
+        self._window.session.change({"tissue_stiffness": stiffness}, said)
+
+    def _as_table(self) -> list[list[str]]:
+        frame = self._shown
+        if frame is None:
+            return []
+        cuts = cut_list(frame.stages, frame.control_points)
+        return as_table(frame, cuts, self._window.pressure_desk.shown)

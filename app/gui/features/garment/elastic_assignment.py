@@ -1,0 +1,158 @@
+"""The desk of elastics: lines are made of one, as one undo step, with the lift before and after."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+from PySide6.QtCore import QObject
+
+from app.gui.features.garment.elastic_offer import Asked, ElasticOffer
+from app.gui.session.jobs import Job
+from app.i18n.catalog import number, tr
+from app.presenters.bust_shift import up_words
+from app.presenters.elastic_options import title_of
+from app.presenters.lines import row_title
+from core.document.design import Design
+from core.document.elastic import Elastic
+from core.garment.elastic_options import KEEP_FIT, ElasticOption, Outcome
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+LIFT_TOLD = 0.2
+"""From so much on it is told that the bust points stand lower or higher than before [mm]."""
+
+
+class ElasticChoice(QObject):
+    """Makes lines of elastics, as one undo step.
+
+    The length of a line is then that of its elastic unstretched; see ``core.garment.elastic_options`` for what
+    is kept. What was asked for goes with the design it was asked of: another document, variant or an undo
+    lets go of it.
+    """
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window, self._session = window, window.session
+        self.offer = ElasticOffer(window, self._use)
+        self._job: Job | None = None
+        self._asked: Design | None = None
+        self._variant, self._index = "", 0
+        window.garment.elastic_asked.connect(self.show)
+        window.lines.elastic_asked.connect(self.show)
+        window.garment.all_asked.connect(self.show_all)
+        window.garment.stretched.connect(self.stretch)
+        self._session.opened.connect(lambda *_: self._let_go())
+        self._session.undo_stack.indexChanged.connect(self._follow)
+
+    def show(self, name: str) -> None:
+        """Offer elastics for a line and its linked partner."""
+        design = self._session.design
+        if design is not None:
+            self._open(design.linked(name), design.traits_of(name).elastic)
+
+    def show_all(self) -> None:
+        """Offer elastics for all lines of the cut list: active ones, and bands on points that do not move."""
+        frame, design = self._session.frame, self._session.design
+        if frame is not None and design is not None:
+            still = {line.name for line in frame.stages.model.lines if not line.constrains}
+            names = tuple(sorted(design.worn() | still))
+            made = {design.traits_of(name).elastic for name in names}
+            self._open(names, made.pop() if len(made) == 1 else None)
+
+    def choose(self, names: tuple[str, ...], elastic: Elastic | None) -> None:
+        """Make lines of an elastic, or of nothing in particular, as soon as its effect is computed."""
+        frame, design = self._session.frame, self._session.design
+        if frame is None or design is None:
+            return
+        self._window.jobs.cancel(self._job)
+        self._asked, self._variant = design, self._shown_variant()
+        asked, mode = Asked(frame, design, names), self.offer.mode
+        self._job = self._window.jobs.run(
+            tr("Computing the cut length…"),
+            lambda progress: asked.option(elastic, mode),
+            lambda option: self._take(asked, elastic, cast(ElasticOption, option)),
+            self._window.desk.show_failure,
+            waited=True,
+        )
+
+    def stretch(self, name: str, share: float) -> None:
+        """Stretch the elastic of a line on points that do not move by ``share`` [1]."""
+        design = self._session.design
+        if design is None:
+            return
+        words = tr("{line} stretched by {percent} %")
+        said = words.format(line=row_title(name, design), percent=number(100.0 * share))
+        self._session.edit(lambda before: before.with_linked(name, 1.0 / (1.0 + share)), said)
+
+    def _open(self, names: tuple[str, ...], chosen: str | None) -> None:
+        frame, design = self._session.frame, self._session.design
+        if frame is not None and design is not None:
+            self.offer.open(Asked(frame, design, names), chosen)
+
+    def _shown_variant(self) -> str:
+        return self._session.document.shown if self._session.document is not None else ""
+
+    def _let_go(self) -> None:
+        self._window.jobs.cancel(self._job)
+        self.offer.close()
+
+    def _follow(self, index: int) -> None:
+        """Let go of what is looked for once another variant is shown, or what it was asked of is undone."""
+        undone = index < self._index and self._session.design is not self._asked
+        self._index = index
+        if undone or self._shown_variant() != self._variant:
+            self._window.jobs.cancel(self._job)
+
+    def _take(self, asked: Asked, elastic: Elastic | None, option: ElasticOption) -> None:
+        if option.outcome is not None or self._session.design is not asked.design:
+            self._use(asked, option.outcome, elastic)
+        elif option.problem is not None:
+            self._window.desk.show_failure(option.problem)
+
+    def _use(self, asked: Asked, outcome: Outcome | None, elastic: Elastic | None) -> None:
+        """Make the lines of an elastic, and show what became of the lift where the fit is kept.
+
+        What was computed of a design that was edited meanwhile is computed again.
+        """
+        now = self._session.design
+        if now is None:
+            return
+        if now is not asked.design or outcome is None:
+            gone = {each.name for each in asked.design.own_lines} - {each.name for each in now.own_lines}
+            names = tuple(name for name in asked.names if name not in gone)
+            if names:
+                self.choose(names, elastic)
+            return
+        if _is_made(asked, outcome, elastic):
+            return
+        words = tr("{line} made of {elastic}") if elastic else tr("{line} without an elastic")
+        text = words.format(line=asked.title(), elastic=title_of(elastic))
+        self._session.edit(lambda _: outcome.design, text)
+        if self._session.design is outcome.design and self._reshapes(asked):
+            tone = "ok" if abs(outcome.lift - asked.lift) < LIFT_TOLD else "warn"
+            words = _told(asked.lift, outcome.lift, bool(elastic))
+            self._window.notices.show_notice(tone, tr("{text}.").format(text=text), words)
+
+    def _reshapes(self, asked: Asked) -> bool:
+        """Return whether an elastic changes how the lines act, with the fit kept."""
+        if self.offer.mode != KEEP_FIT or asked.design.line_hold == "held":
+            return False
+        moving = {line.name for line in asked.frame.stages.model.lines if line.constrains}
+        return bool(moving & asked.design.worn() & set(asked.names))
+
+
+def _is_made(asked: Asked, outcome: Outcome, elastic: Elastic | None) -> bool:
+    """Return whether the lines are made of the elastic already, so that a search would only add noise."""
+    made = {each.name: each for each in asked.design.elastics}
+    alike = all(made.get(asked.design.traits_of(name).elastic) == elastic for name in asked.names)
+    return alike and outcome.design.worn() == asked.design.worn()
+
+
+def _told(before: float, after: float, cut: bool) -> str:
+    """Return in a sentence what stayed and what did not."""
+    if abs(after - before) < LIFT_TOLD:
+        same = tr("Cut to reach the same length; the lift stays.")
+        return same if cut else tr("Set to reach the same length; the lift stays.")
+    words = tr("Bust point height changed from {before} to {after}; adjust the length if needed.")
+    return words.format(before=up_words(before), after=up_words(after))

@@ -1,0 +1,193 @@
+"""The offer of elastics for some lines: the effect of each is computed in jobs while the chooser is open."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, cast
+
+from PySide6.QtCore import QObject
+
+from app.gui.features.garment.elastic_chooser import ChoiceView, ElasticChooser
+from app.gui.features.garment.elastic_list import Entry, elastic_entries
+from app.gui.session.jobs import Job
+from app.i18n.catalog import joined, say, tr
+from app.presenters.elastic_options import advice_view, choice_view, mode_titles, mode_words
+from app.presenters.lines import row_title
+from core.document.design import Design
+from core.document.elastic import Elastic
+from core.garment.elastic_options import KEEP_FIT, ElasticOption, Outcome, elastic_option, outcome_of
+from core.pipeline.build import Stages, build
+from core.pipeline.live_solver import Frame
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+Use = Callable[["Asked", Outcome, Elastic | None], None]
+"""Takes an outcome for the lines that it was asked for."""
+
+
+@dataclass
+class Asked:
+    """The lines ``names`` of a ``design`` for which an elastic is chosen; computed in other threads."""
+
+    frame: Frame
+    design: Design
+    names: tuple[str, ...]
+
+    @cached_property
+    def stages(self) -> Stages:
+        """The stages of the design."""
+        frame, design = self.frame, self.design
+        return frame.stages if frame.stages.design is design else build(design, frame.stages)
+
+    @cached_property
+    def lift(self) -> float:
+        """The lift before an elastic is chosen [mm]. Raises LineError if nothing balances."""
+        return outcome_of(self.stages).lift
+
+    def option(self, elastic: Elastic | None, mode: str) -> ElasticOption:
+        """Return what an elastic does. Raises LineError if nothing balances before."""
+        assert self.lift is not None  # here, and not in the window's thread
+        return elastic_option(self.stages, self.names, elastic, mode)
+
+    def title(self) -> str:
+        """Return what the lines are called together."""
+        one = set(self.names) <= set(self.design.linked(self.names[0]))
+        return row_title(self.names[0], self.design) if one else tr("All lines")
+
+
+@dataclass
+class _Offer:
+    """What is asked, the elastics to choose from, and what is known of them by mode and place."""
+
+    asked: Asked
+    entries: list[Entry]
+    known: dict[str, dict[int, ElasticOption]] = field(default_factory=dict)
+
+    def known_in(self, mode: str) -> dict[int, ElasticOption]:
+        return self.known.setdefault(mode, {})
+
+    def missing(self, modes: tuple[str, ...]) -> tuple[str, int] | None:
+        """Return which mode and place is computed next."""
+        places = ((mode, at) for mode in modes for at in range(len(self.entries)))
+        return next(((mode, at) for mode, at in places if at not in self.known_in(mode)), None)
+
+
+class ElasticOffer(QObject):
+    """Opens the chooser and fills it; ``use`` takes what is chosen in it."""
+
+    def __init__(self, window: MainWindow, use: Use) -> None:
+        super().__init__(window)
+        self._window, self._use_outcome = window, use
+        self.mode = KEEP_FIT
+        self.chooser: ElasticChooser | None = None
+        self._offer: _Offer | None = None
+        self._job: Job | None = None
+
+    def open(self, asked: Asked, chosen: str | None) -> None:
+        """Open the chooser, the elastic called ``chosen`` marked: empty for none, None for several."""
+        design = asked.design
+        entries, problems = elastic_entries(design.elastics)
+        self._offer = _Offer(asked, entries)
+        modes = mode_titles() if design.line_hold == "spring" else []
+        title = tr("Elastic for {line}").format(line=asked.title())
+        chooser = self.chooser = ElasticChooser(self._window, title, modes)
+        chooser.mode_asked.connect(self.set_mode)
+        chooser.marked.connect(lambda _: self._advise())
+        chooser.chosen.connect(self._use)
+        chooser.elastics_asked.connect(self._leave_for_library)
+        chooser.finished.connect(self._closed)
+        chooser.set_problems(joined(f"{say(each.message)} {say(each.hint)}".strip() for each in problems))
+        self.set_mode(self.mode)
+        made = {each.name: each for each in design.elastics}
+        places = [at for at, (_, each) in enumerate(entries) if each == made.get(chosen or "")]
+        chooser.set_current(places[0] if places and chosen is not None else -1)
+        chooser.open()
+        self._fill()
+
+    def close(self) -> None:
+        """Close the chooser: what it was opened for has gone."""
+        if self.chooser is not None:
+            self.chooser.reject()
+
+    def set_mode(self, mode: str) -> None:
+        """Choose what is kept: one of ``core.garment.elastic_options.MODES``."""
+        self.mode = mode
+        if self.chooser is not None and self._offer is not None:
+            self.chooser.set_mode(mode, mode_words(mode, self._offer.asked.design))
+            self.chooser.set_rows([self._view(at) for at in range(len(self._offer.entries))])
+            self._advise()
+
+    def _view(self, at: int) -> ChoiceView:
+        assert self._offer is not None
+        known, asked = self._offer.known_in(self.mode), self._offer.asked
+        rigid = known[0].outcome if 0 in known else None
+        return choice_view(self._offer.entries[at][0], known.get(at), rigid, asked.names, asked.design)
+
+    def _advise(self) -> None:
+        offer, chooser = self._offer, self.chooser
+        if offer is not None and chooser is not None:
+            titles = [title for title, _ in offer.entries]
+            known = offer.known_in(self.mode)
+            chooser.set_advice(
+                advice_view(chooser.current, known, titles, offer.asked.names, offer.asked.design)
+            )
+
+    def _fill(self) -> None:
+        """Compute what is not known yet, one elastic after the other; those of the mode shown come first."""
+        offer = self._offer
+        held = offer is not None and offer.asked.design.line_hold == "held"
+        missing = offer.missing((self.mode,) if held else _from(self.mode)) if offer is not None else None
+        if offer is None or missing is None:
+            return
+        (mode, at), asked = missing, offer.asked
+        elastic = offer.entries[at][1]
+        self._job = self._window.jobs.run(
+            tr("Computing elastics…"),
+            lambda progress: asked.option(elastic, mode),
+            lambda option: self._take(offer, mode, at, cast(ElasticOption, option)),
+            self._fail,
+        )
+
+    def _take(self, offer: _Offer, mode: str, at: int, option: ElasticOption) -> None:
+        """Show an option, unless the chooser is closed or was opened for another design meanwhile."""
+        if offer is not self._offer or self.chooser is None:
+            return
+        if self._window.session.design is not offer.asked.design:
+            self.close()
+            return
+        offer.known_in(mode)[at] = option
+        if mode == self.mode:
+            self.chooser.set_row(at, self._view(at))
+            if len(offer.known_in(mode)) == len(offer.entries) or at in (0, self.chooser.current):
+                self._advise()
+        self._fill()
+
+    def _fail(self, error: Exception) -> None:
+        self.close()
+        self._window.desk.show_failure(error)
+
+    def _use(self, at: int, limited: bool) -> None:
+        """Take the option at a place, at its limit if that is wished for."""
+        offer = self._offer
+        option = offer.known_in(self.mode).get(at) if offer is not None else None
+        outcome = None if option is None else option.closest if limited else option.outcome
+        if offer is None or option is None or outcome is None:
+            return
+        self.close()
+        self._use_outcome(offer.asked, outcome, option.elastic)
+
+    def _leave_for_library(self) -> None:
+        self.close()
+        self._window.garment.elastics_asked.emit()
+
+    def _closed(self) -> None:
+        self._window.jobs.cancel(self._job)
+        self.chooser = self._offer = self._job = None
+
+
+def _from(mode: str) -> tuple[str, ...]:
+    """Return the modes, this one first."""
+    return (mode, *(name for name, _ in mode_titles() if name != mode))

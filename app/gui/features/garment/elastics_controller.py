@@ -1,0 +1,155 @@
+"""The desk of the elastics there are: shown, brought in from tables, taken away."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+
+from app.gui.features.garment.elastics_dialog import ElasticsSheet
+from app.gui.widgets.file_dialogs import ask_save, ask_table
+from app.gui.widgets.message_box import ask
+from app.i18n.catalog import tr
+from app.i18n.lengths import length
+from app.presenters.elastics import elastic_views
+from core.document.elastic import Elastic
+from core.document.storage.project_file import safe_name
+from core.errors import UserError
+from core.garment.elastic_library import (
+    ALLOWANCE,
+    built_in,
+    library,
+    own_elastics,
+    read_elastic,
+    remove_elastic,
+    save_elastic,
+    told_allowance,
+    write_elastic,
+    write_template,
+)
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+
+class ElasticsDesk(QObject):
+    """Shows the sheet of elastics, and does what is asked for there; refusals stand in the sheet."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        do = window.actions_
+        do.rule("lines")
+        said = tr("See the elastics there are, bring in your own, take them away")
+        do.add("lines", tr("Elastics…"), tip=said, do=self.show)
+        said = tr("See how long to cut each worn line, of what, and how far it is stretched")
+        do.add("lines", tr("Cut list"), tip=said, do=self._show_cuts, of_document=True)
+        window.garment.elastics_asked.connect(self.show)
+        self.sheet: ElasticsSheet | None = None
+
+    def show(self) -> None:
+        """Show the elastics there are."""
+        self.sheet = sheet = ElasticsSheet(self._window)
+        sheet.finished.connect(self._forget)
+        sheet.import_asked.connect(self.bring_in)
+        sheet.export_asked.connect(self.hand_on)
+        sheet.template_asked.connect(self.save_template)
+        sheet.delete_asked.connect(self.take_away)
+        self._fill()
+        sheet.open()
+
+    def bring_in(self) -> None:
+        """Ask for a table of the designer's own and keep its elastic."""
+        sheet = self.sheet
+        path = ask_table(sheet or self._window, tr("Import an elastic"))
+        if not path or sheet is None:
+            return
+        try:
+            elastic = _beside_ours(read_elastic(Path(path)))
+            taken = elastic.name in {each.name for each in own_elastics()[0]}
+            question = tr("There is an elastic {name} of yours already. Replace it?").format(
+                name=elastic.name
+            )
+            if taken and ask(sheet, question, "", [("replace", tr("Replace"))]) != "replace":
+                return
+            save_elastic(elastic)
+            seams = "" if told_allowance(Path(path)) else _assumed()
+        except UserError as problem:
+            sheet.notices.clear()
+            sheet.notices.show_notice("bad", problem.message, problem.hint, lasting=True)
+            return
+        sheet.notices.clear()
+        said = tr("{name} is one of your elastics now.").format(name=elastic.name)
+        sheet.notices.show_notice("ok", said, seams, lasting=bool(seams))
+        self._fill(elastic.name)
+
+    def hand_on(self, name: str) -> None:
+        """Ask for a place and write an elastic as a table."""
+        design = self._window.session.design
+        known = {each.name: each for each in (*(design.elastics if design else ()), *library().values())}
+        title = tr("Export an elastic")
+        self._write(title, name, lambda path: write_elastic(path, known[name]), "")
+
+    def save_template(self) -> None:
+        """Ask for a place and write a table to fill in."""
+        hint = tr("Fill in what you measure, then import it.")
+        self._write(tr("Save a template"), "elastic", write_template, hint)
+
+    def _write(self, title: str, name: str, write: Callable[[Path], None], hint: str) -> None:
+        sheet = self.sheet
+        path = ask_save(sheet or self._window, title, f"{safe_name(name)}.csv", "CSV (*.csv)", ".csv")
+        if not path or sheet is None:
+            return
+        sheet.notices.clear()
+        try:
+            write(Path(path))
+        except UserError as problem:
+            sheet.notices.show_notice("bad", problem.message, problem.hint, lasting=True)
+        else:
+            sheet.notices.show_notice("ok", tr("{name} written.").format(name=Path(path).name), hint)
+
+    def take_away(self, name: str) -> None:
+        """Ask, and take one of the designer's own away."""
+        sheet = self.sheet
+        question = tr("Delete the elastic {name}?").format(name=name)
+        said = tr("Its table is removed from your folder. Projects that use it keep its curve.")
+        if sheet is None or ask(sheet, question, said, [("delete", tr("Delete"))]) != "delete":
+            return
+        try:
+            remove_elastic(name)
+        except UserError as problem:
+            sheet.notices.show_notice("bad", problem.message, problem.hint, lasting=True)
+        self._fill()
+
+    def _fill(self, marked: str = "") -> None:
+        sheet, design = self.sheet, self._window.session.design
+        if sheet is None:
+            return
+        own, problems = own_elastics()
+        sheet.set_elastics(elastic_views(own, built_in(), design.elastics if design else ()), marked)
+        for problem in problems:
+            sheet.notices.show_notice("warn", problem.message, problem.hint, lasting=True)
+
+    def _show_cuts(self) -> None:
+        self._window.desk.go_to("lines")
+        self._window.inspector.open("garment")
+        self._window.layout_.enter()
+
+    def _forget(self) -> None:
+        self.sheet = None
+
+
+def _assumed() -> str:
+    """Return what goes into every length to cut though no table told it."""
+    words = tr("Its table tells no allowance for seams: {length} go into every length to cut.")
+    return words.format(length=length(ALLOWANCE, 0))
+
+
+def _beside_ours(elastic: Elastic) -> Elastic:
+    """Return an elastic under a name that none of ours has: in lists they could not be told apart."""
+    if elastic.name not in {each.name for each in built_in()}:
+        return elastic
+    return replace(elastic, name=tr("{name}, own").format(name=elastic.name))

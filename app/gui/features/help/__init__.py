@@ -1,0 +1,1 @@
+"""Command palette, user guide, about, faults."""

@@ -1,0 +1,109 @@
+"""What the window does when Busk itself fails: the design is kept aside, and one calm question asked."""
+
+from __future__ import annotations
+
+import logging
+import sys
+import threading
+import traceback
+from collections import Counter
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Qt, Signal
+
+from app.gui.features.help.about import as_text
+from app.gui.features.help.crash_dialog import FaultSheet
+from app.gui.features.help.system_info import machine_facts
+from app.gui.widgets.notification_bar import REFUSED
+from app.i18n.catalog import tr
+from core.errors import UserError, as_exception
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+_LOGGED = 3  # times that one fault is written to the log
+_TOLD = 5  # different faults that are asked about in a session
+
+
+class Rescue(QObject):
+    """Hears of faults in slots, events and threads while a window is open.
+
+    One fault may come again sixty times a second: it is told once, and written down a few times. Of a
+    UserError, which says itself what to do, a notice tells.
+    """
+
+    _fell = Signal(object, str)
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._seen: Counter[str] = Counter()
+        self.sheet: FaultSheet | None = None
+        self._hooks = sys.excepthook, threading.excepthook
+        sys.excepthook, threading.excepthook = self._note, self._note_in_thread
+        # The fault may have come in a thread, or while something was being painted: it is told afterwards.
+        self._fell.connect(self._tell, Qt.ConnectionType.QueuedConnection)
+        window.session.opened.connect(self._tell_anew)
+
+    def close(self) -> None:
+        """Hear of faults no longer."""
+        sys.excepthook, threading.excepthook = self._hooks
+
+    def note(self, fault: Exception) -> None:
+        """Hear of a fault that somebody else has caught."""
+        self._note(type(fault), fault, fault.__traceback__)
+
+    def _note(self, kind: type[BaseException], fault: BaseException, trace: TracebackType | None, /) -> None:
+        if not issubclass(kind, Exception):
+            self._hooks[0](kind, fault, trace)
+            return
+        where = traceback.extract_tb(trace)[-1:]
+        name = f"{kind.__name__} {where[0].filename}:{where[0].lineno}" if where else kind.__name__
+        self._seen[name] += 1
+        if self._seen[name] <= _LOGGED:
+            self._hooks[0](kind, fault, trace)
+        if self._seen[name] == 1 and len(self._seen) <= _TOLD:
+            self._fell.emit(fault, "".join(traceback.format_exception(kind, fault, trace)))
+
+    def _note_in_thread(self, args: threading.ExceptHookArgs, /) -> None:
+        fault = as_exception(args.exc_value or RuntimeError())  # SystemExit would pass in silence
+        self._note(type(fault), fault, args.exc_traceback)
+
+    def _tell(self, fault: Exception, trace: str) -> None:
+        """Keep the design aside, then say what happened; a second fault joins the first."""
+        if isinstance(fault, UserError):
+            notices = self._window.notices
+            notices.show_notice("bad", fault.message, fault.hint, lasting=True, details=trace, about=REFUSED)
+            return
+        if self.sheet is not None:
+            self.sheet.add_details(trace)
+            return
+        sheet = self.sheet = FaultSheet(self._window, self._keep_aside(), trace, self._about_machine())
+        sheet.quit_asked.connect(self._window.close)
+        sheet.finished.connect(self._forget)
+        sheet.open()
+
+    def _tell_anew(self) -> None:
+        """Let notices come again: those that stood there went with the document before."""
+        for name in [name for name in self._seen if name.startswith(UserError.__name__)]:
+            del self._seen[name]
+
+    def _keep_aside(self) -> str:
+        """Return where the design has been kept, or an empty text."""
+        try:
+            return self._window.rescue()
+        except Exception:
+            # Whatever is broken here, the question must still be asked.
+            logging.exception("the design could not be kept aside")
+            return ""
+
+    def _about_machine(self) -> str:
+        try:
+            return as_text(machine_facts(self._window))
+        except Exception:
+            logging.exception("the machine could not be looked at")
+            return tr("not known")
+
+    def _forget(self) -> None:
+        self.sheet = None

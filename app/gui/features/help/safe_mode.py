@@ -1,0 +1,53 @@
+"""What the window says and does when the 3D view is painted without OpenGL in the window."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, QTimer
+
+from app.gui.viewport.opengl import graphics_work, spare_graphics, try_graphics
+from app.i18n.catalog import tr
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+_DRAWN_FOR = 1000
+"""Milliseconds after which a window that is made, or a view that is drawn, has shown that it can be."""
+
+
+class SafeMode(QObject):
+    """Says once why the view is drawn safely; ``why`` is what ``begin_graphics`` answered."""
+
+    def __init__(self, window: MainWindow, why: str) -> None:
+        super().__init__(window)
+        self._window, self._why = window, why
+        # While the start page waits, or a scan is read, nothing is drawn: an end then is not its fault.
+        self._clock = QTimer(self, interval=_DRAWN_FOR, singleShot=True)
+        self._clock.timeout.connect(self._stop)
+        self._drawn = False
+        if not why:
+            self._clock.start()
+        window.session.opened.connect(self._show_opened)
+
+    def _show_opened(self) -> None:
+        self._window.session.opened.disconnect(self._show_opened)
+        if not self._why:
+            if not self._clock.isActive():
+                try_graphics()
+            self._drawn = True
+            self._clock.start()
+            return
+        said = {
+            "asked": tr("Safe mode: the 3D view is painted without the graphics driver."),
+            "failed": tr("Safe mode, because Busk has twice ended before the 3D view was drawn."),
+        }
+        hint = tr("All else works as ever, the view more slowly.")
+        act = (tr("Normal next time"), graphics_work) if self._why == "failed" else None
+        self._window.notices.show_notice("warn", said[self._why], hint, [act] if act else (), lasting=True)
+
+    def _stop(self) -> None:
+        if self._drawn:
+            graphics_work()
+        else:
+            spare_graphics()

@@ -1,0 +1,55 @@
+"""The user guide: where it lies, which page fits what is being done, and how it is shown."""
+
+from __future__ import annotations
+
+from importlib import resources
+from pathlib import Path
+
+from app.gui.session.open_external import open_outside
+from app.gui.widgets.notification_bar import NoticeBar
+from app.i18n.catalog import language, tr
+
+PAGES = {
+    "scan": ("guide#opening-a-scan", "ja/screens#四つの手順"),
+    "landmarks": ("guide#correcting-landmarks", "ja/screens#四つの手順"),
+    "lines": ("screens#lines", "ja/screens#ライン"),
+    "model": ("method", "ja/screens#ライン"),
+    "garment": ("sewing", "ja/screens#裁断"),
+    "result": ("measures", "ja/screens#寸法"),
+    "report": ("report", "ja/screens#補整シート"),
+}
+"""What is being done in the window, and where the guide speaks of it, in English and in Japanese."""
+
+FIRST = "first"
+
+
+def guide_folder() -> Path:
+    """Return where the built guide lies, beside the resources; where that is a link, what it leads to.
+
+    A browser that is kept in a box of its own may see ``/usr/share/doc`` and not the folder of the program.
+    """
+    return (Path(str(resources.files("resources"))).parent / "site").resolve()
+
+
+def fitting_page(at: str) -> str:
+    """Return where the guide speaks of what is being done, a key of ``PAGES``, in the window's language."""
+    english, japanese = PAGES.get(at, ("index", "ja/index"))
+    return japanese if language() == "ja" else english
+
+
+def first_page() -> str:
+    """Return the page for somebody who is here for the first time."""
+    return f"ja/{FIRST}" if language() == "ja" else FIRST
+
+
+def show_page(page: str, notices: NoticeBar) -> None:
+    """Show a page of the guide in the browser, from ``#`` a heading on; where that fails, say where it is."""
+    name, _, heading = page.partition("#")
+    path = guide_folder() / f"{name}.html"
+    if path.is_file() and open_outside(path, heading):
+        return
+    if path.is_file():
+        hint = tr("Open this file in a browser: {file}").format(file=path)
+    else:
+        hint = tr("It is not built here. In a checkout of Busk, 'make docs' builds it.")
+    notices.show_notice("info", tr("The user guide cannot be opened here."), hint, lasting=True)

@@ -1,0 +1,1 @@
+"""Landmarks: list, placement, warnings."""

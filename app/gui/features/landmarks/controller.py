@@ -1,0 +1,264 @@
+"""What the window does about landmarks: where they were found, where pins are put, how the model follows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import reduce
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QEvent, QObject, QSettings, Qt, QTimer
+from PySide6.QtGui import QCursor, QKeyEvent
+
+from app.gui.theme.stylesheet import tone_of
+from app.gui.widgets.tooltip import show_tip
+from app.i18n.catalog import joined, say, tr
+from app.i18n.lengths import arrow_step
+from app.presenters.scan import kind_of, landmark_title, landmark_views, other_side, spot_of
+from core.document.design import Design
+from core.geometry.mesh import Points
+from core.landmarks.manual import in_file, mirrored, nearest_skin
+from core.landmarks.warnings import ESSENTIAL, first_doubt, landmark_doubts
+from core.pipeline.build import Stages, StuckError
+from core.pipeline.live_solver import Frame
+from core.scan.body import Body
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+LINKED = "landmarks/linked"
+"""The setting of the window that both sides are placed together."""
+
+ARROWS = {
+    Qt.Key.Key_Left: (-1, 0),
+    Qt.Key.Key_Right: (1, 0),
+    Qt.Key.Key_Up: (0, 1),
+    Qt.Key.Key_Down: (0, -1),
+}
+"""Which way each arrow key moves a pin over the picture, right and up."""
+
+_DOUBT = "landmarks"  # what a notice of uncertain landmarks is about
+
+PAUSE = 800
+"""Milliseconds without a key after which a pin that was moved by keys is put down."""
+
+
+class LandmarkDesk(QObject):
+    """Brings landmarks to the panel and the pins, and what is done to these to the session.
+
+    A pin that is carried, by the pointer or by keys, is previewed: the model is fitted again with its newest
+    place. Putting it down is one undo step, with its mirror image if both sides are linked.
+    """
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._session = window.session
+        self._carried: dict[str, Points] = {}
+        self._refused = False
+        self._middle = 0.0
+        self._pause = QTimer(self, interval=PAUSE, singleShot=True)
+        self._pause.timeout.connect(self.put_down)
+        window.landmarks.link.setChecked(bool(QSettings().value(LINKED, False, bool)))
+        window.view.viewport.watch_keys(self)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+        """Move the selected pin by the arrow keys, while the view has them; Enter puts it down."""
+        if event.type() != QEvent.Type.KeyPress or not isinstance(event, QKeyEvent):
+            return False
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self._carried:
+            self.put_down()
+            return True
+        right, up = ARROWS.get(Qt.Key(event.key()), (0, 0))
+        far = arrow_step(bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier))
+        return bool(right or up) and self.nudge(far * right, far * up)
+
+    # -- the session speaks
+
+    def show_found(self, stages: Stages) -> None:
+        """Show what was found on a body."""
+        window, said = self._window, landmark_doubts(stages.landmarks)
+        views = landmark_views(stages.landmarks.points, window.view.pins.accepted)
+        window.landmarks.set_landmarks(views, said)
+        weak = sum(view.weak for view in views)
+        window.rail.set_state("landmarks", "look" if weak or said else "done", weak)
+        if not (weak or said):
+            window.notices.withdraw(_DOUBT)
+
+    def show_unclear(self, stages: Stages) -> None:
+        """Say which of the landmarks that the control mesh hangs on could hardly be seen."""
+        self._carried = {}
+        self._window.view.pins.drop_back()
+        marks = [mark for mark in stages.landmarks.points.values() if kind_of(mark.name) in ESSENTIAL]
+        worst = min(marks, key=lambda mark: mark.confidence)
+        if tone_of(worst.confidence) == "bad" or stages.landmarks.warnings:
+            said, *more = landmark_doubts(stages.landmarks)
+            spoken_of = first_doubt(stages.landmarks)
+            actions = [(tr("Look at it"), lambda: self._look_at(spoken_of))]
+            if stages.landmarks.size_doubted:
+                actions.insert(0, (tr("Check unit"), lambda: self._window.desk.go_to("scan")))
+            if up := stages.landmarks.upright:
+                actions.insert(0, (tr("Stand upright"), lambda: self._stand_upright(up)))
+            self._window.notices.show_notice(
+                "warn", said, joined(map(say, more)), actions, lasting=True, about=_DOUBT
+            )
+
+    def show_stuck(self, stuck: StuckError) -> None:
+        """Show what was found on a scan that cannot go on."""
+        refused = stuck.kind == "refused"
+        self._carried = {}
+        views = landmark_views(stuck.landmarks)
+        self._window.landmarks.set_landmarks(views, [stuck.message], placing=not refused)
+        self._window.rail.set_state("landmarks", "missing" if refused else "look")
+
+    def follow(self, frame: Frame) -> None:
+        """Let pins that were put down stand where the landmarks are, once these are found."""
+        if not self._carried and frame.stages.design is self._session.design:
+            self._window.view.pins.drop_back()
+
+    def _stand_upright(self, up: str) -> None:
+        self._window.notices.withdraw(_DOUBT)
+        self._window.scan_desk.stand_upright(up)
+
+    def _look_at(self, landmark: str) -> None:
+        self._window.desk.go_to("landmarks")
+        self._window.desk.select_landmark(landmark)
+
+    # -- a pin is carried
+
+    @property
+    def carries(self) -> bool:
+        """Whether a pin is off its place and not put down yet."""
+        return bool(self._carried)
+
+    def take(self, name: str) -> None:
+        """Take hold of a pin."""
+        self.put_down()
+        self._refused = False
+        self._window.desk.select_landmark(name)
+
+    def carry(self, name: str, place: Points) -> None:
+        """Carry a pin to a place of the body at rest, shape (3,) [mm], and let the model follow."""
+        if self._refused:
+            return
+        frame = self._session.frame
+        if not self._carried and frame is not None:
+            self._middle = frame.stages.moving.middle
+        self._carried = {name: place}
+        partner = other_side(name) if self._window.landmarks.link.isChecked() else ""
+        if partner and frame is not None and not self._window.scan_desk.stuck:
+            self._carried[partner] = mirrored(frame.stages.body.calm, place, self._middle)
+        self._window.view.pins.carry(self._carried)
+        self._window.actions_.cancel.setEnabled(True)
+        if self._session.design is not None and not self._window.scan_desk.stuck:
+            self._session.preview(self._placed(self._session.design))
+
+    def nudge(self, right: float, up: float) -> bool:
+        """Carry the selected pin over the skin by so much of the picture [mm]; tells whether there is one."""
+        pins, view = self._window.view.pins, self._window.view.viewport.scene.view
+        name, place = pins.chosen()
+        body = self._body()
+        if place is None or body is None:
+            return False
+        self._refused = False
+        self.carry(name, nearest_skin(body.calm, place + right * view.axes[0] + up * view.axes[1]))
+        self._pause.start()
+        return True
+
+    def put_down(self, name: str = "") -> None:
+        """Keep where pins were carried, as one undo step; a stuck scan is tried again with them."""
+        self._pause.stop()
+        if not self._carried:
+            return
+        design, stuck = self._session.design, self._window.scan_desk.stuck
+        first, *others = self._carried
+        text = tr("{name} placed on both sides") if others else tr("{name} placed")
+        text = text.format(name=landmark_title(kind_of(first) if others else first))
+        if stuck:
+            again, self._carried = self._placed(stuck.design), {}
+            self._session.open_design(again)
+        elif design is not None:
+            after, self._carried = self._placed(design), {}
+            self._session.edit(lambda _: after, text)
+        self._window.job_desk.show()
+
+    def let_go(self) -> bool:
+        """Bring carried pins back to where they were; returns whether there were any."""
+        if not self._carried:
+            return False
+        self._pause.stop()
+        self._carried, self._refused = {}, True
+        self._window.view.pins.drop_back()
+        self._session.cancel_preview()
+        self._window.job_desk.show()
+        return True
+
+    # -- the user asks
+
+    def put_pin(self, name: str) -> None:
+        """Give a landmark that was not found a pin to move."""
+        self._window.view.pins.put(name)
+        self.move_by_keys()
+
+    def move_by_keys(self) -> None:
+        """Let the arrow keys move the selected pin."""
+        self._window.view.viewport.setFocus()
+
+    def confirm(self, names: Sequence[str]) -> None:
+        """Keep landmarks where they are: the designer has looked at them.
+
+        What a hand placed is kept already; that it contradicts its rule is not said again in this window.
+        """
+        frame = self._session.frame
+        if frame is None or self._session.design is None:
+            return
+        marks = frame.stages.landmarks.points
+        self._window.view.pins.accepted.update(spot_of(marks[name]) for name in names if marks[name].by_hand)
+        names = [name for name in names if not marks[name].by_hand]
+        if not names:
+            self.show_found(frame.stages)
+            self._window.view.pins.set_landmarks(dict(marks))
+            return
+        self._carried = {name: frame.stages.landmarks.position(name) for name in names}
+        after, self._carried = self._placed(self._session.design), {}
+        text = tr("{name} confirmed").format(name=landmark_title(names[0]))
+        self._session.edit(lambda _: after, text if len(names) == 1 else tr("Landmarks confirmed"))
+
+    def reset(self, names: Sequence[str]) -> None:
+        """Let landmarks be found again."""
+        stuck = self._window.scan_desk.stuck
+        if stuck:
+            again = reduce(lambda design, name: design.with_placed(name, None), names, stuck.design)
+            self._session.open_design(again)
+            return
+        text = tr("{name} found again").format(name=landmark_title(names[0]))
+        self._session.reset_landmarks(names, text if len(names) == 1 else tr("Landmarks found again"))
+
+    def link(self, linked: bool) -> None:
+        """Place both sides together from now on, or each alone."""
+        QSettings().setValue(LINKED, linked)
+
+    def hover(self, name: str) -> None:
+        """Draw what a landmark was read from; an empty name ends it."""
+        self._window.view.pins.hover(name)
+
+    def hover_pin(self, name: str) -> None:
+        """Tell the rule of the landmark under the pointer, and draw what it was read from."""
+        self.hover(name)
+        row = self._window.landmarks.rows.get(name)
+        words = "" if row is None or self._carried else f"{row.view.title}\n{row.view.words()}"
+        show_tip(QCursor.pos(), words, self._window.view.viewport)
+
+    # -- inside
+
+    def _body(self) -> Body | None:
+        stuck, frame = self._window.scan_desk.stuck, self._session.frame
+        return stuck.body if stuck else frame.stages.body if frame is not None else None
+
+    def _placed(self, design: Design) -> Design:
+        """Return a design with the carried pins where they are."""
+        body = self._body()
+        assert body is not None
+        places: Mapping[str, tuple[float, float, float]] = {
+            name: in_file(place, body.pose.file_to_mm) for name, place in self._carried.items()
+        }
+        return reduce(lambda each, name: each.with_placed(name, places[name]), places, design)

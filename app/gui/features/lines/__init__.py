@@ -1,0 +1,1 @@
+"""Constraining lines: list, sliders, drawing, paths."""

@@ -1,0 +1,70 @@
+"""The line maker: lines of the designer's own are added, ready made or point by point, and removed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+
+from app.gui.features.lines.path_dialog import ask_own_line
+from app.gui.widgets.menu import Menu, pull_down
+from app.i18n.catalog import tr
+from app.presenters.lines import LINE_COLOURS, line_title, pair_title
+from core.control_mesh.template import read_template
+from core.document.line_notation import ready_made
+from core.document.lines import OwnLine
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+
+class LineMaker(QObject):
+    """Brings wishes for own lines to the session, and selects the line that has come."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self.menu = Menu(window)
+
+    def show_menu(self) -> None:
+        """Offer what can be added, and no more, under the button that asks for it."""
+        do = self._window.actions_
+        if not self.menu.actions():
+            self.menu.addActions([do.draw_line, do.own_line])
+            self.menu.addSeparator()
+            self.menu.addActions(list(do.add_lines.values()))
+        pull_down(self.menu, self._window.lines.head.add)
+
+    def add(self, kind: str) -> None:
+        """Add a pair of ready-made lines of a kind; one that is there stays as it is, and is selected."""
+        design = self._window.session.design
+        if design is None:
+            return
+        pair = ready_made(read_template(design.template))[kind]
+        present = {line.name for line in design.own_lines}
+        missing = tuple(line for line in pair if line.name not in present)
+        if missing:
+            self.take(missing)
+        else:
+            self._window.desk.go_to("lines")
+            self._window.desk.select_line(pair[0].name)
+
+    def ask(self) -> None:
+        """Let a line be drawn, and add it."""
+        session = self._window.session
+        if session.design is not None:
+            names = {*LINE_COLOURS, *(line.name for line in session.design.own_lines)}
+            line = ask_own_line(self._window, read_template(session.design.template), names)
+            if line is not None:
+                self.take((line,))
+
+    def take(self, lines: tuple[OwnLine, ...]) -> None:
+        """Add lines, and select the first."""
+        session = self._window.session
+        if session.design is None:
+            return
+        first = lines[0].name
+        title = pair_title(first, session.design) if len(lines) > 1 else line_title(first, session.design)
+        session.add_own_lines(lines, tr("{line} added").format(line=title))
+        self._window.desk.go_to("lines")
+        self._window.desk.select_line(lines[0].name)

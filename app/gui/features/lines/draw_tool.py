@@ -1,0 +1,294 @@
+"""A line is drawn on the body, from click to click over the skin; it keeps its curve or snaps to points."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import QObject, QPointF, QSignalBlocker
+
+from app.gui.features.lines.drawing_base import Sketching
+from app.gui.features.lines.path_tool import led
+from app.gui.session.jobs import Job
+from app.i18n.catalog import tr
+from app.i18n.lengths import length
+from app.presenters.lines import LINE_COLOURS, kind_of, line_colours, row_title
+from core.control_mesh.path_snapping import Snapped, snap
+from core.control_mesh.template import read_template
+from core.document.free_lines import FreeCurve, free_curve
+from core.document.line_notation import cells_of, mirror_image
+from core.document.lines import OwnLine
+from core.errors import UserError
+from core.geometry.geodesic import SkinWays
+from core.geometry.mesh import Points
+from core.scan.body import Body
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+_REACH = 12.0  # how near to the first point a click closes the line [px]
+_WIDE = 25.0  # a line further off than this is told to lie outside the control mesh [mm]
+
+
+class LineDrawing(QObject):
+    """Draws own lines: ``begin``, clicks, Enter, and Enter again to keep the line that is proposed."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._sketching = Sketching(window, self)
+        self._ways: tuple[Body, SkinWays] | None = None
+        self._job: Job | None = None
+        self._job_body: Body | None = None
+        self._places: list[Points] = []
+        self._curve: list[Points] = []
+        self._found: Snapped | FreeCurve | None = None
+        self._wanted: tuple[list[Points], bool] = ([], False)
+        self._again: OwnLine | None = None
+        hand, card = self._sketching.hand, self._sketching.card
+        hand.clicked.connect(self._click)
+        hand.hovered.connect(self._hover)
+        hand.asked.connect(lambda what: {"keep": self.go_on, "back": self.back, "leave": self.leave}[what]())
+        card.kept.connect(self.go_on)
+        card.back.connect(self.back)
+        card.left.connect(self.leave)
+        card.moved.connect(self._move)
+        card.snap.toggled.connect(self._choose)
+        self._sketching.lost.connect(self.leave)
+
+    @property
+    def at_work(self) -> bool:
+        """Whether a line is being drawn."""
+        return self._sketching.at_work
+
+    def begin(self) -> None:
+        """Let a line be drawn; until the skin is ready for it clicks are joined straight."""
+        self._begin(None)
+
+    def begin_again(self, line: OwnLine) -> None:
+        """Let the course of a line be drawn anew; it keeps all else."""
+        self._begin(line)
+
+    def _begin(self, again: OwnLine | None) -> None:
+        frame = self._sketching.frame
+        if frame is None:
+            return
+        self._window.desk.go_to("lines")
+        self._places, self._curve, self._found, self._again = [], [], None, again
+        self._prepare(frame.stages.body)
+        self._sketching.begin(frame)
+        self._show()
+
+    def back(self) -> None:
+        """Take the last step back: the line that is proposed, or the last point."""
+        if self._found is not None:
+            self._found = None
+        elif self._places:
+            self._places.pop()
+            del self._curve[max(len(self._places) - 1, 0) :]
+        self._show()
+
+    def leave(self) -> None:
+        """Draw no longer; nothing is kept."""
+        self._places, self._curve, self._found, self._again = [], [], None, None
+        self._sketching.end()
+
+    def go_on(self) -> None:
+        """Propose the line that was drawn, or keep the one that is proposed."""
+        if self._found is None:
+            self._propose(closed=False)
+        else:
+            self._keep(self._found)
+
+    def _prepare(self, body: Body) -> None:
+        """Make the skin of a body ready, unless it is or a job is at it that nobody cancelled."""
+        if self._ways is not None and self._ways[0] is not body:
+            self._ways = None
+        jobs = self._window.jobs
+        if self._ways is None and (self._job not in jobs.at_work() or self._job_body is not body):
+            jobs.cancel(self._job)
+            self._job_body = body
+            self._job = jobs.run(
+                tr("Preparing the skin for drawing"),
+                lambda _: SkinWays(body.mesh),
+                lambda ways: self._take_ways(body, ways),
+                self._window.session.failed.emit,
+            )
+
+    def _take_ways(self, body: Body, ways: object) -> None:
+        assert isinstance(ways, SkinWays)
+        frame = self._window.session.frame
+        if frame is None or frame.stages.body is not body:
+            return
+        self._ways = body, ways
+        self._curve = [self._way(*ends) for ends in zip(self._places, self._places[1:], strict=False)]
+        if self._sketching.at_work:
+            self._show()
+
+    def _click(self, at: QPointF) -> None:
+        if self._found is not None:
+            return
+        if self._closes(at):
+            self._propose(closed=True)
+            return
+        place = self._window.view.viewport.skin_at(at)
+        if place is None:
+            return
+        if self._places:
+            self._curve.append(self._way(self._places[-1], place))
+        self._places.append(place)
+        self._show()
+
+    def _hover(self, at: QPointF) -> None:
+        """Show how the line would go on to the pointer."""
+        if self._found is not None or not self._places:
+            return
+        place = self._places[0] if self._closes(at) else self._window.view.viewport.skin_at(at)
+        if place is not None:
+            self._draw([*self._curve, self._way(self._places[-1], place)])
+
+    def _closes(self, at: QPointF) -> bool:
+        return len(self._places) > 2 and self._sketching.nearest(np.array(self._places[:1]), at, _REACH) == 0
+
+    def _way(self, start: Points, end: Points) -> Points:
+        if self._ways is None:
+            return np.stack([start, end])
+        try:
+            return self._ways[1].way(start, end)
+        except UserError as problem:
+            self._window.session.failed.emit(problem)
+            return np.stack([start, end])
+
+    def _propose(self, closed: bool) -> None:
+        """Propose the line that was drawn; nothing changes if there is none."""
+        if not self._curve:
+            return
+        last = [self._way(self._places[-1], self._places[0])] if closed else []
+        self._wanted = [*self._curve, *last], closed
+        if self._fit():
+            self._curve += last
+        self._show()
+
+    def _fit(self, pulling: bool = False) -> bool:
+        """Fit a line to what was drawn, as it is or to control points, and tell whether there is one.
+
+        ``pulling`` wants one through control points that can move.
+        """
+        frame = self._window.session.frame
+        if frame is None:
+            return False
+        control, (pieces, closed) = frame.stages.control, self._wanted
+        try:
+            if self._sketching.card.snap.isChecked():
+                curve = np.concatenate(pieces)
+                self._found = snap(control, curve[:-1] if closed else curve, closed, pulling=pulling)
+            else:
+                self._found = free_curve(frame.stages.body.mesh, control, pieces, closed)
+        except UserError as problem:
+            self._window.session.failed.emit(problem)
+            return False
+        return True
+
+    def _move(self) -> None:
+        """Let what was drawn snap to the nearest control points that can pull."""
+        if self._found is not None:
+            with QSignalBlocker(self._sketching.card.snap):
+                self._sketching.card.snap.setChecked(True)
+            self._fit(pulling=True)
+            self._show()
+
+    def _choose(self) -> None:
+        """Fit what was drawn anew, as it was chosen."""
+        if self._found is not None:
+            self._fit()
+        self._show()
+
+    def _keep(self, found: Snapped | FreeCurve) -> None:
+        """Add the line, and its mirror image if that is wished and another line; or give one its course."""
+        session, card, again = self._window.session, self._sketching.card, self._again
+        design = session.design
+        if design is None:
+            return
+        points, places = (found.path, ()) if isinstance(found, Snapped) else ((), found.places)
+        if again is not None:
+            over = again.over_shoulder and not found.closed
+            after = OwnLine(again.name, points, found.closed, places, over)
+            self.leave()
+            text = tr("{line} led elsewhere").format(line=row_title(again.name, design))
+            session.edit(lambda before: led(before, again, after), text)
+            return
+        template = read_template(design.template)
+        taken = {*LINE_COLOURS, *(kind_of(line.name) for line in design.own_lines)}
+        name = next(f"line {count}" for count in range(1, 1000) if f"line {count}" not in taken)
+        lines: tuple[OwnLine, ...] = (OwnLine(name, points, found.closed, places),)
+        other = mirror_image(lines[0], template, name)
+        if card.both.isChecked() and set(other.points + other.places) != set(points + places):
+            left = sum(column for _, column in cells_of(lines[0], template)) > 0.0
+            pair = (lines[0], other) if left else (other, lines[0])
+            sides = zip(("left", "right"), pair, strict=True)
+            lines = tuple(replace(line, name=f"{name} {side}") for side, line in sides)
+        self.leave()
+        self._window.line_maker.take(lines)
+
+    # -- what is seen
+
+    def _show(self) -> None:
+        card, found, design = self._sketching.card, self._found, self._window.session.design
+        card.both.setVisible(found is not None and self._again is None)
+        card.keep.setText(tr("Keep line") if found else tr("Done"))
+        card.keep.setEnabled(found is not None or len(self._places) > 1)
+        card.undo.setEnabled(bool(self._places))
+        card.move_.setVisible(found is not None and not found.pulls)
+        if found is not None:
+            keys = tr("Enter: keep · Backspace: draw on · Esc: leave")
+            card.say(tr("Keep this line?"), "\n".join(_fit_words(found)), keys)
+        else:
+            what = tr(
+                "Click on the body: the line follows the skin from click to click. A drag turns the body."
+                " Off the breasts a line is only measured."
+            )
+            keys = tr(
+                "Enter or double click: done · first point: close it · Backspace: one back · Esc: leave"
+            )
+            title = tr("Draw a line")
+            if self._again is not None and design is not None:
+                title = tr("Path of {line}").format(line=row_title(self._again.name, design))
+            card.say(title, what, keys)
+        self._draw(self._curve)
+
+    def _colour(self) -> str:
+        """Return the colour that the line has or will have."""
+        design = self._window.session.design
+        names = [line.name for line in design.own_lines] if design is not None else []
+        if self._again is not None:
+            return line_colours(names, design)[self._again.name]
+        return line_colours([*names, "new"])["new"]
+
+    def _draw(self, curve: list[Points]) -> None:
+        frame, found = self._window.session.frame, self._found
+        path = np.empty((0, 3))
+        if isinstance(found, FreeCurve):
+            path = found.shown
+        elif found is not None and frame is not None:
+            corners = [*found.path, *found.path[:1] * found.closed]
+            path = self._sketching.laid(frame.stages.control.mesh.vertices[corners])
+        drawn = np.concatenate(curve) if curve else np.empty((0, 3))
+        points = np.array(self._places).reshape(-1, 3) if found is None else np.empty((0, 3))
+        self._sketching.draw(drawn, path, points, self._colour())
+
+
+def _fit_words(found: Snapped | FreeCurve) -> list[str]:
+    """Return how a line lies to what was drawn, and what it does not do."""
+    if isinstance(found, FreeCurve):
+        said = [tr("Deviation from the drawn curve: up to {length}.").format(length=length(found.off))]
+        if found.cut:
+            said.append(tr("The part outside the control mesh was left out: the body is fixed there."))
+    else:
+        what = tr("It follows the control mesh, off what you drew by up to {length}.")
+        if found.off > _WIDE:
+            what = tr("It can follow the control mesh only: off what you drew by up to {length}.")
+        said = [what.format(length=length(found.off, 0))]
+    if not found.pulls:
+        said.append(tr("No point of it can move, so it is only measured and pulls nothing."))
+    return said

@@ -1,0 +1,133 @@
+"""What drawing a line and leading one elsewhere share: the hand, the sketch on the body, and the card."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import QObject, QPointF, Signal
+
+from app.gui.features.lines.draw_card import DrawCard
+from app.gui.viewport.drawing_tool import Hand
+from app.rendering.ribbon_mesh import Surface
+from core.control_mesh.fit import ControlMesh
+from core.geometry.mesh import Points
+from core.pipeline.live_solver import Frame
+from core.scan.body import Body
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+    from app.rendering.sketch_actor import Sketch
+
+_PIECES = 8  # pieces that the path from one control point to the next is laid on the skin with
+
+
+class Sketching(QObject):
+    """Takes places on the body at rest [mm], and draws them where they are on the shown one.
+
+    ``lost`` tells that what was begun is on another body or control mesh than is shown, and is to end.
+    """
+
+    lost = Signal()
+
+    def __init__(self, window: MainWindow, owner: QObject) -> None:
+        super().__init__(owner)
+        self._window = window
+        viewport = window.view.viewport
+        canvas = viewport.overlay.parentWidget()
+        assert canvas is not None
+        self.hand = Hand(viewport, canvas)
+        self.card = DrawCard(window.view)
+        window.view.place(self.card, "bottom-left")  # beside the body: lines go over its middle
+        self._sketch: Sketch | None = None
+        self._surface: tuple[Body, Surface] | None = None
+        self._drawn: tuple[Points, Points, Points, str] | None = None
+        self._control: ControlMesh | None = None
+        window.session.frame_ready.connect(self._follow)
+        viewport.view_changed.connect(self._look)
+        window.session.design_changed.connect(self._check)
+
+    @property
+    def at_work(self) -> bool:
+        """Whether something is being drawn."""
+        return self.hand.at_work
+
+    @property
+    def frame(self) -> Frame | None:
+        """What is shown, if it is of the present design's control mesh."""
+        frame, design = self._window.session.frame, self._window.session.design
+        same = frame is not None and design is not None and frame.stages.design.template == design.template
+        return frame if same else None
+
+    def begin(self, frame: Frame) -> None:
+        """Take the pointer, and show the card."""
+        self._control = frame.stages.control
+        self.hand.begin()
+        self.card.show()
+
+    def end(self) -> None:
+        """Give the pointer back, and take everything away."""
+        if self.at_work:
+            self.hand.end()
+            self.card.hide()
+            self._drawn = self._control = None
+            if self._sketch is not None:
+                self._sketch.clear()
+            self._window.view.viewport.request_draw()
+
+    def draw(self, curve: Points, path: Points, points: Points, colour: str) -> None:
+        """Draw a curve (k, 3), a path (p, 3) in ``colour`` and points (n, 3) to hold; each may be empty."""
+        self._drawn = curve, path, points, colour
+        scene = self._window.view.viewport.scene
+        if self._sketch is None:
+            from app.rendering.sketch_actor import Sketch  # noqa: PLC0415 (brings VTK along)
+
+            self._sketch = Sketch(scene.plotter)
+        there = [scene.carried(part) if len(part) else part for part in (curve, path, points)]
+        self._sketch.show(there[0], there[1], there[2], colour)
+        self._sketch.look_from(scene.view)
+        self._window.view.viewport.request_draw()
+
+    def laid(self, corners: Points) -> Points:
+        """Return the way through control points, shape (c, 3), on the skin at rest, shape (k, 3) [mm]."""
+        frame = self._window.session.frame
+        if frame is None or len(corners) < 2:
+            return corners
+        body = frame.stages.body
+        if self._surface is None or self._surface[0] is not body:
+            self._surface = body, Surface(body.mesh)
+        part = np.arange(_PIECES)[:, None] / _PIECES
+        pieces = [start + part * (end - start) for start, end in pairwise(corners)]
+        return self._surface[1].lay(np.concatenate([*pieces, corners[-1:]]))[0]
+
+    def nearest(self, points: Points, at: QPointF, reach: float) -> int:
+        """Return which of ``points`` (n, 3) is seen nearest to a pixel, -1 if none within ``reach`` [px].
+
+        Points behind the body are not seen.
+        """
+        scene, overlay = self._window.view.viewport.scene, self._window.view.viewport.overlay
+        shown = scene.carried(points)
+        spots = scene.view.to_picture(shown, overlay.width(), overlay.height())
+        away = np.hypot(spots[:, 0] - at.x(), spots[:, 1] - at.y())
+        for place in np.argsort(away):
+            if away[place] > reach:
+                break
+            if not scene.hidden(shown[place]):
+                return int(place)
+        return -1
+
+    def _look(self) -> None:
+        if self.at_work and self._sketch is not None:
+            self._sketch.look_from(self._window.view.viewport.scene.view)
+
+    def _check(self, _: object) -> None:
+        """Let go once the control mesh is another: there its points have other numbers and places."""
+        if self.at_work and (self.frame is None or self.frame.stages.control is not self._control):
+            self.lost.emit()
+
+    def _follow(self, _: object) -> None:
+        """Stay on the body while it moves."""
+        self._check(_)
+        if self.at_work and self._drawn is not None:
+            self.draw(*self._drawn)

@@ -1,0 +1,157 @@
+"""What the window does about limits: how far each line can go is worked out beside window and solver."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from app.gui.features.lines.slider_groove import SHORTEST
+from app.gui.session.jobs import Job
+from app.i18n.catalog import tr
+from app.presenters.lines import Shown
+from core.analysis.length_limits.zones import Leeway, leeway_of
+from core.document.design import Design
+from core.mechanics.constraint_lines import Line
+from core.pipeline.build import Stages
+from core.pipeline.live_solver import Frame
+from core.progress import Cancelled, Progress
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+KEPT = 400
+"""Leeways that are kept, so that undone steps and other variants show theirs at once."""
+
+HAND_RESTS = 120
+"""Milliseconds without a new frame of a drag after which the other lines' leeways are worth working out."""
+
+Key = tuple[Design, str, bool]
+
+
+class LimitsDesk(QObject):
+    """Has the leeways of each design worked out as soon as it is built, and gives them to the lines.
+
+    The line in hand comes first. What a line's leeway hangs on is the rest of the design: moving the line
+    itself leaves it as it is. One job does all lines; whatever is edited meanwhile ends it.
+    """
+
+    _found = Signal(object, object, object)
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._known: dict[Key, Leeway | None] = {}
+        self._last: dict[str, Leeway] = {}
+        self._shown: tuple[Design | None, Mapping[str, Shown]] = None, {}
+        self._frame: Frame | None = None
+        self._job: Job | None = None
+        self._rests = QTimer(self, interval=HAND_RESTS, singleShot=True)
+        self._rests.timeout.connect(self._begin)
+        # Told in the job's thread, heard in the window's.
+        self._found.connect(self._keep)
+
+    def leeways(self, frame: Frame) -> Mapping[str, Shown]:
+        """Return how far a frame's lines can go; those of the last design, as stale, till new ones come."""
+        design, (shown, leeways) = frame.stages.design, self._shown
+        if design is shown:
+            return leeways
+        lines = [line.name for line in frame.stages.model.lines if line.constrains]
+        keys = {name: _key(design, name) for name in lines}
+        found = {name: self._known.get(key) for name, key in keys.items()}
+        self._last |= {name: known for name, known in found.items() if known is not None}
+        told: dict[str, Shown] = {}
+        for name, known in found.items():
+            if known is not None:
+                told[name] = known, False
+            elif name in self._last and keys[name] not in self._known:
+                told[name] = self._last[name], True
+        self._shown = design, told
+        return told
+
+    def follow(self, frame: Frame) -> None:
+        """Work on the design of a frame at once; of one that is still in the hand, when the hand rests."""
+        before, self._frame = self._frame, frame
+        design = frame.stages.design
+        if before is not None and frame.stages.body is not before.stages.body:
+            self._last, self._shown = {}, (None, {})
+        if before is not None and before.stages.design is design:
+            return
+        self._let_go()
+        if design is self._window.session.design:
+            self._begin()
+        else:
+            self._rests.start()
+
+    def _begin(self) -> None:
+        """Begin with all lines whose leeways are not known."""
+        self._let_go()
+        frame = self._frame
+        if frame is None:
+            return
+        stages = frame.stages
+        design = stages.design
+        rows = [line.name for line in self._in_order(stages) if line.name == min(design.linked(line.name))]
+        keys = [key for key in (_key(design, name) for name in rows) if key not in self._known]
+        if keys:
+            self._job = self._window.jobs.run(
+                tr("Finding how far lines can go"), partial(self._work, stages, keys), self._done
+            )
+
+    def _in_order(self, stages: Stages) -> Sequence[Line]:
+        """Return the lines, those first that are in hand or under the pointer."""
+        selected = self._window.view.selected_line
+        hovered = {
+            name for row in self._window.lines.rows.values() if row.underMouse() for name in row.view.names
+        }
+        lines = (line for line in stages.model.lines if line.constrains)
+        return sorted(lines, key=lambda line: (line.name != selected, line.name not in hovered))
+
+    def _work(self, stages: Stages, keys: Sequence[Key], progress: Progress) -> None:
+        """Work out one line after the other, in the job's thread; each is told as soon as it is known."""
+        for at, key in enumerate(keys):
+            hear = partial(_part, progress, at / len(keys))
+            try:
+                leeway = leeway_of(stages, key[1], hear, through=key[2])
+            except Cancelled:
+                raise
+            except Exception:  # the others may have theirs
+                logging.exception("the leeway of %s was not found", key[1])
+                leeway = None
+            hear("", 0.0)
+            self._found.emit(stages, key, leeway)
+
+    def _keep(self, stages: Stages, key: Key, leeway: Leeway | None) -> None:
+        self._known[key] = leeway
+        while len(self._known) > KEPT:
+            del self._known[next(iter(self._known))]
+        if self._frame is not None and stages.body is self._frame.stages.body:
+            self._shown = None, {}
+            self._window.lines_desk.show_rows()
+
+    def _done(self, _: object) -> None:
+        self._job = None
+
+    def _let_go(self) -> None:
+        """Let go of work on a design that is no longer shown."""
+        self._rests.stop()
+        self._window.jobs.cancel(self._job)
+        self._job = None
+
+
+def _part(progress: Progress, begun: float, what: str, share: float) -> None:
+    progress(what, begun)
+
+
+def _key(design: Design, name: str) -> Key:
+    """Return what the leeway of a line hangs on: all that its answers do, but its own length.
+
+    Of that only whether it is so short that its slider reaches far into what may be red.
+    """
+    both = design.linked(name)
+    others = tuple(line for line in design.lines if line.name not in both)
+    return replace(design, lines=others, volume="exact"), name, design.ratio(name) < SHORTEST

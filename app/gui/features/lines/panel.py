@@ -1,0 +1,220 @@
+"""The list of constraining lines, where each is set shorter or longer."""
+
+# ruff: noqa: D102, N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QKeyEvent, QShowEvent
+from PySide6.QtWidgets import QApplication, QFrame, QScrollArea, QVBoxLayout, QWidget
+
+from app.gui.features.lines.header import LineHead
+from app.gui.features.lines.row import LineRow, LineView
+from app.gui.widgets.basic import EmptyState, sentence
+from app.i18n.catalog import tr
+from app.i18n.lengths import length_unit
+
+__all__ = ["LineView", "LinesPanel"]
+
+
+def keys_in_words() -> list[tuple[str, str]]:
+    """Return what the keys do in the list and on a slider that no menu has, ready to read."""
+    return [
+        ("↑ ↓", tr("The line above or below")),
+        ("← →, - +", tr("Shorter or longer by 0.1 %, with Shift 1 %, with Alt 0.01 %")),
+        ("Backspace", tr("Back to the length at rest")),
+        ("Enter", tr("Type the length in percent, Tab: in {unit}").format(unit=length_unit())),
+        ("Esc", tr("Put back what is being dragged")),
+    ]
+
+
+def _no_lines() -> tuple[str, str]:
+    return tr("No lines yet"), tr("They appear once the control mesh lies on the body.")
+
+
+class _Area(QScrollArea):
+    """An area that leaves the keys to the list: arrows go from line to line."""
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        event.ignore()
+
+
+class LinesPanel(QWidget):
+    """All lines, one row each, a linked pair in one; lengths in the signals are shares of those at rest [1].
+
+    Signals name a line, a pair by its left one; ``decided`` carries one of its traits and the value,
+    ``elastic_asked`` one whose elastic is to be chosen; ``opened`` when the list comes to be seen.
+    """
+
+    opened = Signal()
+
+    length_previewed = Signal(str, float)
+    length_committed = Signal(str, float)
+    drag_cancelled = Signal(str)
+    selected = Signal(str)
+    visibility_changed = Signal(str, bool)
+    decided = Signal(str, str, object)
+    removed = Signal(str)
+    path_asked = Signal(str)
+    elastic_asked = Signal(str)
+    draw_asked = Signal()
+    add_asked = Signal()
+    presets_asked = Signal()
+    reset_all = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.rows: dict[str, LineRow] = {}
+        self._selected: str | None = None
+        self._of: dict[str, str] = {}
+        self._bereft = False
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        self.head = LineHead()
+        self.head.reset_asked.connect(self.reset_all)
+        self.head.draw_asked.connect(self.draw_asked)
+        self.head.add_asked.connect(self.add_asked)
+        self.head.presets_asked.connect(self.presets_asked)
+        column.addWidget(self.head)
+        self._empty = EmptyState("lines", *_no_lines())
+        frame = QVBoxLayout()
+        frame.setContentsMargins(14, 4, 14, 0)
+        frame.addWidget(self._empty)
+        frame.addStretch(1)
+        column.addLayout(frame)
+        column.addWidget(self._scroll_area(), 1)
+        self.set_lines([])
+
+    def set_lines(self, lines: Sequence[LineView]) -> None:
+        """Show these lines; rows stay the same widgets while names and order stay, even during a drag."""
+        if [view.name for view in lines] != list(self.rows):
+            self._rebuild(lines)
+        self._of = {name: view.name for view in lines for name in view.names}
+        for view in lines:
+            self.rows[view.name].show_view(view)
+        if self._bereft and self.rows:
+            # What had the keyboard is gone: it goes on in the line that is selected now.
+            row = self.rows.get(self._selected or "") or next(iter(self.rows.values()))
+            row.take_focus(Qt.FocusReason.OtherFocusReason)
+        self._bereft = False
+        self._empty.setVisible(not lines)
+        for tool in (self.head.presets, self.head.add, self.head.draw):
+            tool.setEnabled(bool(lines))
+        self._reach.setVisible(bool(lines))
+        self._scroll.setVisible(bool(lines))
+        self.head.reset.setEnabled(any(view.settable and view.ratio != 1.0 for view in lines))
+
+    def show_opening(self, name: str) -> None:
+        """Say in the place of lines that a document is being opened; an empty name: that there are none."""
+        if name:
+            hint = tr("The lines appear once the control mesh has been fitted.")
+            self._empty.show_words(tr("Opening {name}…").format(name=name), hint)
+        else:
+            self._empty.show_words(*_no_lines())
+
+    def select(self, name: str | None) -> None:
+        """Open the row of a line and close the others; nothing is emitted."""
+        self._selected = self._of.get(name or "", name)
+        for each, row in self.rows.items():
+            row.set_open(each == self._selected)
+        if self._selected in self.rows:
+            self._scroll.ensureWidgetVisible(self.rows[self._selected], 0, 8)
+
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        self.opened.emit()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        step = {Qt.Key.Key_Up: -1, Qt.Key.Key_Down: 1}.get(Qt.Key(event.key()))
+        row = self.rows.get(self._selected or "")
+        if step is not None and self.rows:
+            self._step(step)
+        elif (
+            event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and row is not None and row.slider.hasFocus()
+        ):
+            row.percent.setFocus(Qt.FocusReason.ShortcutFocusReason)
+        else:
+            super().keyPressEvent(event)
+
+    def do(self, what: str) -> None:
+        """Do with the selected line what can be done: hide, lock, link, split, rename, remove."""
+        row = self.rows.get(self._selected or "")
+        if row is None:
+            return
+        view = row.view
+        if what == "hide":
+            self.visibility_changed.emit(view.name, not view.visible)
+        elif what == "lock":
+            self.decided.emit(view.name, "locked", not view.locked)
+        elif what == "link" and (view.partner or view.splits):
+            self.decided.emit(view.name, "linked", not (view.sides or view.splits))
+        elif what == "split" and view.splits:
+            self.decided.emit(view.name, "linked", False)
+        elif what == "rename":
+            row.title.begin()
+        elif what == "remove" and view.own:
+            self.removed.emit(view.name)
+
+    def _scroll_area(self) -> QScrollArea:
+        inside = QWidget()
+        inside.setProperty("scrolled", "true")
+        self._list = QVBoxLayout(inside)
+        self._list.setContentsMargins(8, 0, 8, 12)
+        self._list.setSpacing(2)
+        # Lasting, and before anybody looks for a waist to lock.
+        said = tr("Lines lie on the control mesh, under-bust to armpits: waist, hip and shoulders have none.")
+        self._reach = sentence(said, "caption")
+        self._reach.setContentsMargins(10, 10, 10, 0)
+        self._list.addWidget(self._reach)
+        self._list.addStretch(1)
+        self._scroll = _Area()
+        self._scroll.setWidgetResizable(True)
+        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
+        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._scroll.setWidget(inside)
+        return self._scroll
+
+    def _rebuild(self, lines: Sequence[LineView]) -> None:
+        """Make the rows anew; those of lines that stay are kept, one of them may be in the user's hand."""
+        names = [view.name for view in lines]
+        for name, row in self.rows.items():
+            self._list.removeWidget(row)
+            if name not in names:
+                if row.slider.isSliderDown():
+                    self.drag_cancelled.emit(name)
+                has = QApplication.focusWidget()
+                self._bereft = self._bereft or (has is not None and (has is row or row.isAncestorOf(has)))
+                row.deleteLater()
+        former, self.rows = self.rows, {}
+        for place, view in enumerate(lines):
+            row = self.rows[view.name] = former.get(view.name) or LineRow(view)
+            self._list.insertWidget(place, row)
+            if view.name not in former:
+                self._connect(view.name, row)
+        self.select(self._selected if self._selected in self.rows else None)
+
+    def _connect(self, name: str, row: LineRow) -> None:
+        row.previewed.connect(lambda ratio: self.length_previewed.emit(name, ratio))
+        row.committed.connect(lambda ratio: self.length_committed.emit(name, ratio))
+        row.cancelled.connect(lambda: self.drag_cancelled.emit(name))
+        row.pressed.connect(lambda: self._choose(name))
+        row.removed.connect(lambda: self.removed.emit(name))
+        row.decided.connect(lambda trait, value: self.decided.emit(name, trait, value))
+        row.path_asked.connect(lambda: self.path_asked.emit(name))
+        row.elastic_asked.connect(lambda: self.elastic_asked.emit(name))
+        row.visibility_changed.connect(lambda visible: self.visibility_changed.emit(name, visible))
+
+    def _choose(self, name: str) -> None:
+        if name != self._selected:
+            self.select(name)
+            self.selected.emit(name)
+
+    def _step(self, step: int) -> None:
+        names = list(self.rows)
+        here = names.index(self._selected) if self._selected in names else -1 if step > 0 else len(names)
+        name = names[min(max(here + step, 0), len(names) - 1)]
+        self._choose(name)
+        self.rows[name].take_focus(Qt.FocusReason.OtherFocusReason)

@@ -1,0 +1,175 @@
+"""An own line is led through other control points: points are dragged, put at its ends, taken out."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import QObject, QPointF
+
+from app.gui.features.lines.drawing_base import Sketching
+from app.i18n.catalog import tr
+from app.presenters.lines import line_colours, row_title
+from core.control_mesh.template import read_template
+from core.document.design import Design
+from core.document.line_notation import mirror_image
+from core.document.lines import OwnLine, partner_of
+from core.errors import UserError
+from core.geometry.mesh import Points
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+_REACH = 16.0  # how near to a control point a click means it [px]
+
+
+def led(design: Design, line: OwnLine, after: OwnLine) -> Design:
+    """Return the design with an own line led elsewhere, and a linked partner that mirrors it likewise."""
+    template, partner = read_template(design.template), partner_of(line.name)
+    changed = design.with_own_line(after)
+    mirrors = mirror_image(line, template, partner) in design.own_lines if partner else False
+    if mirrors and len(design.linked(line.name)) > 1:
+        changed = changed.with_own_line(mirror_image(after, template, partner))
+    return changed
+
+
+class LineRouting(QObject):
+    """Edits the path of one own line; a linked partner that mirrors it is led likewise."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._sketching = Sketching(window, self)
+        self._line: OwnLine | None = None
+        self._steps: list[tuple[int, ...]] = []
+        self._held, self._mesh_shown = -1, False
+        hand, card = self._sketching.hand, self._sketching.card
+        hand.grabs = self._grab
+        hand.clicked.connect(self._click)
+        hand.dragged.connect(lambda at: self._drag(at, keep=False))
+        hand.dropped.connect(lambda at: self._drag(at, keep=True))
+        hand.asked.connect(lambda what: {"keep": self.keep, "back": self.back, "leave": self.leave}[what]())
+        card.kept.connect(self.keep)
+        card.back.connect(self.back)
+        card.left.connect(self.leave)
+        self._sketching.lost.connect(self.leave)
+        window.session.design_changed.connect(self._check)
+
+    @property
+    def at_work(self) -> bool:
+        """Whether a path is being edited."""
+        return self._sketching.at_work
+
+    def begin(self, name: str) -> None:
+        """Let the path of an own line be edited."""
+        design, frame = self._window.session.design, self._sketching.frame
+        own = {line.name: line for line in design.own_lines} if design is not None else {}
+        if name not in own or frame is None:
+            return
+        if own[name].free:  # it has no control points to be led through
+            self._window.line_drawing.begin_again(own[name])
+            return
+        self._line, self._steps = own[name], [own[name].points]
+        self._window.desk.go_to("lines")
+        self._window.desk.select_line(name)
+        self._mesh_shown = self._window.view.tools.actions_by_name["control-mesh"].isChecked()
+        self._window.view.set_layer("control-mesh", True)
+        self._sketching.card.both.hide()
+        self._sketching.begin(frame)
+        self._show()
+
+    def back(self) -> None:
+        """Take the last change of the path back."""
+        if len(self._steps) > 1:
+            self._steps.pop()
+            self._show()
+
+    def leave(self) -> None:
+        """Edit no longer; nothing is kept."""
+        if self._sketching.at_work:
+            self._window.view.set_layer("control-mesh", self._mesh_shown)
+        self._sketching.end()
+
+    def keep(self) -> None:
+        """Let the line take the new path, as one undo step."""
+        session, line, path = self._window.session, self._line, self._steps[-1]
+        design = session.design
+        if line is None or design is None:
+            return
+        self.leave()
+        if path != line.points:
+            text = tr("{line} led elsewhere").format(line=row_title(line.name, design))
+            session.edit(lambda before: led(before, line, replace(line, points=path)), text)
+
+    def _check(self, design: Design) -> None:
+        """Leave the line once it is no longer the one that was begun with: it was undone, or removed."""
+        if self._line not in design.own_lines:
+            self.leave()
+
+    # -- the hand
+
+    def _points(self) -> Points:
+        frame = self._window.session.frame
+        return np.empty((0, 3)) if frame is None else frame.stages.control.mesh.vertices
+
+    def _grab(self, at: QPointF) -> bool:
+        path = self._steps[-1]
+        self._held = self._sketching.nearest(self._points()[list(path)], at, _REACH)
+        return self._held >= 0
+
+    def _drag(self, at: QPointF, keep: bool) -> None:
+        """Let the held point of the path stand at the control point under the pointer."""
+        point, path = self._sketching.nearest(self._points(), at, 3.0 * _REACH), self._steps[-1]
+        if point == path[self._held] and keep:
+            self._take_away(self._held)  # it was not dragged but clicked
+        elif point >= 0:
+            self._try((*path[: self._held], point, *path[self._held + 1 :]), keep)
+
+    def _click(self, at: QPointF) -> None:
+        """Go on to a control point from the nearer end of the path."""
+        point, path, points = (
+            self._sketching.nearest(self._points(), at, _REACH),
+            self._steps[-1],
+            self._points(),
+        )
+        if point < 0:
+            return
+        to_start, to_end = (np.linalg.norm(points[point] - points[end]) for end in (path[0], path[-1]))
+        self._try((point, *path) if to_start < to_end else (*path, point), keep=True)
+
+    def _take_away(self, place: int) -> None:
+        path = self._steps[-1]
+        self._try((*path[:place], *path[place + 1 :]), keep=True)
+
+    def _try(self, path: tuple[int, ...], keep: bool) -> None:
+        """Show a path, and go on with it, if a line can take it."""
+        assert self._line is not None
+        try:
+            OwnLine(self._line.name, path, self._line.closed)
+        except UserError:
+            self._show()
+            return
+        if keep:
+            self._steps.append(path)
+        self._show(path)
+
+    def _show(self, path: tuple[int, ...] = ()) -> None:
+        path, line, design = path or self._steps[-1], self._line, self._window.session.design
+        if line is None or design is None:
+            return
+        card = self._sketching.card
+        card.keep.setText(tr("Keep path"))
+        card.keep.setEnabled(path != line.points)
+        card.undo.setEnabled(len(self._steps) > 1)
+        what = tr(
+            "Drag a point of the line to another control point. Click beside an end to go on there,"
+            " on a point to take it out."
+        )
+        keys = tr("Enter: keep · Backspace: one back · Esc: leave")
+        card.say(tr("Path of {line}").format(line=row_title(line.name, design)), what, keys)
+        corners = self._points()[[*path, *path[:1] * line.closed]]
+        colour = line_colours([each.name for each in design.own_lines], design)[line.name]
+        self._sketching.draw(
+            np.empty((0, 3)), self._sketching.laid(corners), self._points()[list(path)], colour
+        )

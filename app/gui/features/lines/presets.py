@@ -1,0 +1,140 @@
+"""The desk of presets: named sets of lines are worn, and the lines of a design are kept as one."""
+
+from __future__ import annotations
+
+from functools import partial
+from itertools import chain, count
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+
+from app.gui.widgets.menu import pull_down
+from app.gui.widgets.message_box import ask, ask_name
+from app.gui.widgets.tooltip import set_tip
+from app.i18n.catalog import listed, say, tr
+from app.presenters.lines import row_title
+from core.document.design import Design
+from core.document.lines import LONGEST_TITLE
+from core.document.presets import (
+    Preset,
+    built_in,
+    is_worn,
+    own_file,
+    own_presets,
+    preset_from,
+    save_preset,
+    with_preset,
+)
+from core.errors import UserError
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+
+class PresetDesk(QObject):
+    """Fills the menu of presets, each time anew: files may have come."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._known: tuple[Preset, ...] = ()
+        self._menu = window.actions_.submenu("lines", "presets", tr("Presets"))
+        self._menu.aboutToShow.connect(self.fill)
+        # Not at the start: a designer's files are no reason to come up late, or not at all.
+        window.session.opened.connect(self._fill_and_show)
+        window.session.design_changed.connect(self.show_worn)
+
+    def fill(self) -> None:
+        """List our presets, one's own, those that cannot be read, and how to keep one."""
+        menu = self._menu
+        menu.clear()
+        opened = self._window.session.design is not None
+        own, problems = own_presets()
+        self._known = (*built_in(), *own)
+        for group in (built_in(), own):
+            for preset in group:
+                action = menu.addAction(say(preset.title), partial(self.wear, preset))
+                set_tip(action, say(preset.leaves_out) if preset.leaves_out else "")
+                action.setEnabled(opened)
+            menu.addSeparator()
+        for problem in problems:
+            action = menu.addAction(say(problem.message))
+            set_tip(action, say(problem.hint))
+            action.setEnabled(False)
+        menu.addAction(tr("Save lines as preset…"), self.ask).setEnabled(opened)
+
+    def show_menu(self) -> None:
+        """Offer the presets over the list of lines."""
+        pull_down(self._menu, self._window.lines.head.presets)
+
+    def _fill_and_show(self, _: object) -> None:
+        self.fill()
+        if self._window.session.design is not None:
+            self.show_worn(self._window.session.design)
+
+    def show_worn(self, design: Design) -> None:
+        """Say over the list which preset is worn, and what it leaves out."""
+        worn = next((each for each in self._known if _goes(each, design) and is_worn(design, each)), None)
+        leaves_out = say(worn.leaves_out) if worn is not None and worn.leaves_out else ""
+        self._window.lines.head.show_preset(say(worn.title) if worn is not None else "", leaves_out)
+
+    def wear(self, preset: Preset) -> None:
+        """Wear the lines of a preset in place of the present ones; say what it leaves out."""
+        session = self._window.session
+        before = session.design
+        if before is None:
+            return
+        step, title = session.undo_stack.index(), say(preset.title)
+        session.edit(lambda design: with_preset(design, preset), tr("Preset {name}").format(name=title))
+        self._window.desk.go_to("lines")
+        if session.design is None or session.design is before:
+            return
+        led = _led_anew(before, session.design)
+        if led:
+            said = tr("Led as in the preset {name}: {lines}").format(name=title, lines=led)
+            undo = tr("Undo"), partial(session.undo_stack.setIndex, step)
+            self._window.notices.show_notice("info", said, say(preset.leaves_out), [undo])
+
+    def ask(self) -> None:
+        """Ask for a name, and keep the present lines as a preset."""
+        # Not the name of the project: a set of lines is for more than one customer.
+        taken, name = {preset.title for preset in own_presets()[0]}, tr("My lines")
+        names = chain([name], (f"{name} {number}" for number in count(2)))
+        offered = next(each for each in names if each not in taken)
+        while title := ask_name(
+            self._window, tr("Save lines as preset"), tr("Name of the preset"), offered, LONGEST_TITLE
+        ):
+            if not own_file(title).exists() or self._may_replace(title):
+                self.save(title)
+                return
+            offered = title
+
+    def _may_replace(self, title: str) -> bool:
+        """Ask whether the preset of that name may go; without an answer the name is asked for again."""
+        question = tr("Replace the preset {name}?").format(name=title)
+        said = tr("There is one of that name already. Its lines will be lost.")
+        return ask(self._window, question, said, [("replace", tr("Replace"))]) == "replace"
+
+    def save(self, title: str) -> None:
+        """Keep the present lines as a preset."""
+        session = self._window.session
+        if session.design is None:
+            return
+        try:
+            path = save_preset(preset_from(session.design, title))
+        except UserError as problem:
+            self._window.desk.show_failure(problem, "preset")
+            return
+        self._window.notices.withdraw("preset")
+        self._window.notices.show_notice("ok", tr("Preset {name} saved.").format(name=title), str(path))
+
+
+def _goes(preset: Preset, design: Design) -> bool:
+    return preset.template in ("", design.template)
+
+
+def _led_anew(before: Design, after: Design) -> str:
+    """Return the titles of the lines that were led by hand and are led otherwise now."""
+    courses = {line.name: line for line in before.own_lines}
+    names = [line.name for line in after.own_lines if courses.get(line.name, line) != line]
+    return listed(dict.fromkeys(row_title(name, after) for name in names))

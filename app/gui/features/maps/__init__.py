@@ -1,0 +1,1 @@
+"""Coloured maps on the body."""

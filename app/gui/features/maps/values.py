@@ -1,0 +1,74 @@
+"""What maps say of the bodies that are seen: the session's own, and variants beside it."""
+
+from __future__ import annotations
+
+from weakref import WeakKeyDictionary
+
+from app.gui.features.garment.pressure_controller import PressureDesk
+from app.gui.features.maps.band_coloring import BandValues, pressures_on, pulls_on
+from app.gui.features.scan_comparison.controller import WornDesk
+from app.gui.features.symmetry.controller import EvenDesk
+from app.gui.viewport.body_view import BodyView
+from app.gui.viewport.comparison import Beside
+from app.i18n.catalog import tr
+from app.presenters.body_state import BodyNow
+from app.presenters.maps import pressure_note
+from core.garment.pressure_list import PressList
+from core.geometry.mesh import Floats
+from core.pipeline.live_solver import Frame
+
+
+class MapValues:
+    """Reads maps off the bodies that ``beside`` shows; ``now`` is the session's own, once there is one."""
+
+    def __init__(self, beside: Beside, pressure: PressureDesk, even: EvenDesk, worn: WornDesk) -> None:
+        self._beside, self._pressure, self._even, self._worn = beside, pressure, even, worn
+        self.now: BodyNow | None = None
+        self._others: WeakKeyDictionary[BodyView, BodyNow] = WeakKeyDictionary()
+        self._pressed: WeakKeyDictionary[BodyNow, PressList | None] = WeakKeyDictionary()
+
+    def take(self, frame: Frame) -> bool:
+        """Follow a frame of the session; returns whether it is of another body or fit than the last one."""
+        if self.now is not None and self.now.is_of(frame):
+            self.now.follow(frame)
+            return False
+        self.now = BodyNow(frame)
+        return True
+
+    def now_of(self, view: BodyView) -> BodyNow | None:
+        """Return what is read off one of the bodies."""
+        if view in self._beside.live or view.frame is None:
+            return self.now
+        now = self._others.get(view)
+        if now is None or now.frame is not view.frame:
+            now = self._others[view] = BodyNow(view.frame)
+        return now
+
+    def on_skin(self, name: str, now: BodyNow) -> Floats:
+        """Return the values of a map on the skin of one of the bodies, at its ``rows`` (k,) [mm, %]."""
+        return self._worn.values(now.frame) if name == "worn" else now.values(name)
+
+    def skin_note(self, name: str, frame: Frame, after: bool) -> str:
+        """Return what is to be said first of a map on the skin, or nothing."""
+        if name == "sides":
+            return self._even.note(frame, after)
+        return self._worn.note(frame) if name == "worn" else ""
+
+    def on_bands(self, name: str, view: BodyView) -> BandValues:
+        """Return the values of a map on the bands of one of the bodies, or those of its former shape."""
+        bands, now = view.viewport.scene.bands, self.now_of(view)
+        if now is None:
+            return BandValues({})
+        if name == "pull":
+            return pulls_on(bands, now.pulls())
+        known = self._pressure.of(now.frame)
+        self._pressed[now] = listed = known or self._pressed.get(now)
+        return pressures_on(bands, listed.worn if listed else {}, stale=known is None)
+
+    def note(self, name: str, shown: BandValues) -> str:
+        """Return what is to be said first of a map on the session's own bands, or nothing."""
+        if name == "pressure":
+            listed = None if self.now is None else self._pressed.get(self.now)
+            missing = "" if self.now is None else self._pressure.missing(self.now.frame)
+            return missing or pressure_note(listed, shown.stale)
+        return "" if shown.values else tr("No worn line pulls like a spring.")

@@ -1,0 +1,193 @@
+"""The desk of the table of measures: worked out where it is seen, copied, written to a file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, cast
+
+from PySide6.QtCore import QObject
+
+from app.gui.features.measurements.panel import ResultPanel
+from app.gui.session.jobs import Job
+from app.gui.session.settings import wish, wish_for
+from app.gui.widgets.table_export import copy_table, save_table
+from app.i18n.catalog import tr
+from app.i18n.lengths import length
+from app.presenters.convergence import doubt_of
+from app.presenters.measurement_views import MeasureView
+from app.presenters.measurements import as_table, measure_views, measured_views
+from app.presenters.sizes import size_views
+from app.presenters.solver_faults import not_computed
+from app.presenters.uncertainty import spread_views
+from core.geometry.mesh import Points
+from core.measurements.definitions import Measure
+from core.measurements.table import Measures, before_after
+from core.measurements.uncertain_value import Spread
+from core.pipeline.live_solver import Frame
+from core.scan.body import Body
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+
+class MeasuresDesk(QObject):
+    """Fills the panel of measures: what the model says with every frame, the body once the run rests."""
+
+    def __init__(self, window: MainWindow, panel: ResultPanel) -> None:
+        super().__init__(window)
+        self._window, self._panel = window, panel
+        self._frame: Frame | None = None
+        self._asked: Frame | None = None
+        self._body: Body | None = None
+        self._job: Job | None = None
+        self._rest: Measures | None = None
+        self._worn: Measures | None = None
+        self._sized: Spread | None = None  # what the sizes shown were told with
+        self._tried: tuple[Measure, Measure] | None = None
+        self._views: list[MeasureView] = []  # what was measured, without what it may be off by
+        panel.marked.connect(self._show_mark)
+        panel.framed.connect(self._look_at)
+        panel.opened.connect(self.refresh)
+        window.view.compared.connect(self._show_mark)
+        panel.copy_asked.connect(lambda: copy_table(window, self._as_table()))
+        panel.table_asked.connect(
+            lambda: save_table(window, self._as_table(), tr("Save the table of measures"), "measures")
+        )
+        panel.sizes.chosen.connect(self._choose)
+        panel.sizes.allowed.connect(self._allow)
+
+    def show_frame(self, frame: Frame) -> None:
+        """Show the measures of a frame."""
+        self._frame = frame
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Bring the table up to date, if it is seen; unseen it would cost each frame the same."""
+        if self._frame is not None and self._panel.isVisible():
+            self._panel.set_rows(self._spread(measure_views(self._frame)), doubt_of(self._frame))
+            self._measure(self._frame)
+
+    def show_spread(self) -> None:
+        """Show beside what is known how far it may be off."""
+        if self._frame is None or not self._panel.isVisible():
+            return
+        self._panel.set_rows(self._spread(measure_views(self._frame)), doubt_of(self._frame))
+        if self._sized is not self._sure:
+            self._show_sizes()
+        if self._panel.measured:
+            stale = self._panel.stale
+            self._panel.set_measured(self._spread(self._views))
+            self._panel.set_stale(stale)
+
+    def _spread(self, views: Sequence[MeasureView]) -> list[MeasureView]:
+        return spread_views(views, *self._window.spread_desk.shown)
+
+    def _measure(self, frame: Frame) -> None:
+        """Measure the body of a frame beside the window, once it rests."""
+        window = self._window
+        if self._asked is frame:
+            return
+        window.jobs.cancel(self._job)
+        self._job = self._asked = None
+        if not self._panel.measured or self._body is not frame.stages.body:
+            self._body = frame.stages.body
+            self._rest = self._worn = None
+            self._show_sizes()
+            self._panel.set_measured([], self._waiting())
+        self._panel.set_stale(True)
+        self._show_mark()
+        if window.is_at_rest():
+            self._asked = frame
+            self._job = window.jobs.run(
+                tr("Measuring the body"),
+                lambda progress: before_after(frame.stages, frame.control_points),
+                self._show_measured,
+                self._fail,
+                left=self._leave_off,
+            )
+
+    def _waiting(self) -> str:
+        """Return why nothing is measured yet."""
+        if self._window.session.failure is not None:
+            return not_computed()
+        if self._window.is_at_rest():
+            return tr("Measuring the body")
+        return tr("The body is measured as soon as the run rests.")
+
+    def _show_measured(self, found: object) -> None:
+        self._rest, self._worn = cast(tuple[Measures, Measures], found)
+        frame = self._asked
+        assert frame is not None  # a job that was let go of does not come here
+        self._views = measured_views(self._rest, self._worn, frame.stages.design.own_measures)
+        self._panel.set_measured(self._spread(self._views))
+        self._show_sizes()
+        self._show_mark()
+
+    def _fail(self, error: Exception) -> None:
+        self._window.desk.show_failure(error)
+        self._give_up(tr("The body could not be measured."))
+
+    def _leave_off(self) -> None:
+        self._window.desk.show_left(tr("Measuring the body"))
+        self._give_up(tr("Stopped: the body is measured when this list is shown again."))
+
+    def _give_up(self, why: str) -> None:
+        """Be ready to be asked again; what was measured before stays, as of a former shape."""
+        self._job = self._asked = None
+        if not self._panel.measured:
+            self._panel.set_measured([], why)
+
+    def try_out(self, found: tuple[Measure, Measure] | None) -> None:
+        """Draw a measure that is being made, before and after, on the body instead of the marked one."""
+        if found is not self._tried:
+            self._tried = found
+            self._show_mark()
+
+    def _show_mark(self) -> None:
+        """Draw the marked measure on the body, on each that is seen; while it moves it is not there."""
+        rest, worn = (() if self._panel.stale else self._curves(found) for found in (self._rest, self._worn))
+        if self._tried is not None:
+            rest, worn = (found.curves for found in self._tried)
+        for body in self._window.view.beside.live:
+            if body.body is None:
+                continue
+            trace = body.viewport.scene.measure
+            if rest or worn or trace.shown:
+                trace.show_both(rest, worn)
+                body.viewport.request_draw()
+
+    def _look_at(self) -> None:
+        viewport = self._window.view.viewport
+        if viewport.shows_body and viewport.scene.measure.shown:
+            viewport.frame_points(viewport.scene.measure.points)
+
+    def _curves(self, found: Measures | None) -> tuple[Points, ...]:
+        measure = found.get(self._panel.mark) if found else None
+        return measure.curves if measure else ()
+
+    def _choose(self, system: str) -> None:
+        wish_for("size_system", system)
+        self._show_sizes()
+
+    def _allow(self, mm: float) -> None:
+        said = tr("Worn tight: {length} off the under-bust").format(length=length(mm))
+        self._window.session.change({"worn_tight_mm": mm}, said)
+        self._show_sizes()
+
+    def _show_sizes(self) -> None:
+        design = self._window.session.design
+        allowance = design.worn_tight_mm if design else 0.0
+        self._sized = self._sure
+        views, why = size_views(self._rest, allowance, self._sized) if self._rest else ([], "")
+        self._panel.sizes.set_sizes(views, wish("size_system"), allowance, why)
+
+    @property
+    def _sure(self) -> Spread | None:
+        """How far the girths of the shown body may be off, once all of it is known."""
+        spread, faint = self._window.spread_desk.shown
+        return None if faint else spread
+
+    def _as_table(self) -> list[list[str]]:
+        # What was measured on a former body is no measure of this one.
+        measured = () if self._panel.stale else self._panel.measured
+        return as_table([*measured, *self._panel.rows], self._panel.doubt)

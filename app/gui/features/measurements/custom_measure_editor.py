@@ -1,0 +1,213 @@
+"""Where a measure of one's own is made or changed: its kind, where it is taken, what it measures now."""
+
+# ruff: noqa: N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from PySide6.QtCore import QEvent, Qt, Signal
+from PySide6.QtGui import QKeyEvent
+from PySide6.QtWidgets import QAbstractButton, QFormLayout, QHBoxLayout, QLineEdit, QVBoxLayout, QWidget
+
+from app.gui.theme.stylesheet import font, label, set_tag
+from app.gui.widgets.basic import Segment, ToolButton, button, hairline, sentence
+from app.gui.widgets.landmark_combo import MarkField
+from app.gui.widgets.tooltip import set_tip
+from app.gui.widgets.value_edit import FigureField
+from app.i18n.catalog import tr
+from core.document.custom_measures import FURTHEST, LONGEST_NAME
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A measure that is being made: as long as no place is chosen for an end, that is empty.
+
+    A girth lies ``level`` [mm] above the landmark ``at``, or above the lowest point of the scan if that is
+    empty. An empty ``name`` leaves it to Busk.
+    """
+
+    name: str = ""
+    kind: str = "straight"
+    ends: tuple[str, str] = ("", "")
+    at: str = ""
+    level: float = 0.0
+
+    def picked(self, mark: str) -> Draft:
+        """Return it with a landmark that was clicked: the next end, or given up if it was one already."""
+        if self.kind == "girth":
+            return replace(self, at=mark, level=self.level if self.at else 0.0)
+        start, end = self.ends
+        if mark in self.ends:
+            return replace(self, ends=("" if start == mark else start, "" if end == mark else end))
+        return replace(self, ends=(mark, end) if not start else (start, mark))
+
+    def stepped_back(self) -> Draft:
+        """Return it without the landmark that was chosen last."""
+        if self.kind == "girth":
+            return replace(self, at="", level=0.0)
+        start, end = self.ends
+        return replace(self, ends=(start, "") if end else ("", ""))
+
+    @property
+    def marks(self) -> tuple[str, ...]:
+        """The landmarks it is taken at so far."""
+        return tuple(mark for mark in ((self.at,) if self.kind == "girth" else self.ends) if mark)
+
+
+class MeasureEditor(QWidget):
+    """A form for one measure; ``changed`` whenever its ``draft`` is another one.
+
+    ``kept`` and ``left`` when it is to be kept, or not; ``removed`` when the one that is changed is to go.
+    """
+
+    changed = Signal()
+    kept = Signal()
+    left = Signal()
+    removed = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.draft = Draft()
+        self._title, self._hint = label("", "heading"), sentence()
+        self.name = QLineEdit()
+        self.name.setMaxLength(LONGEST_NAME)
+        self.name.setMinimumHeight(28)
+        self.name.setAccessibleName(tr("Name of the measure"))
+        set_tip(self.name, tr("What it is called in the table and in files"))
+        self.name.textEdited.connect(lambda text: self._set(name=text.strip()))
+        kinds = (("straight", tr("Straight")), ("skin", tr("Over the skin")), ("girth", tr("Girth")))
+        self.kind = Segment(kinds, small=True, wide=True)
+        set_tip(self.kind, tr("Straight through the air, along the skin, or round with a level tape"))
+        self.kind.chosen.connect(lambda kind: self._set(kind=kind))
+        self.start, self.end = MarkField(tr("From")), MarkField(tr("To"))
+        self.at = MarkField(tr("Level of"), tr("a height"))
+        self.start.chosen.connect(lambda mark: self._set(ends=(mark, self._other(mark, 1))))
+        self.end.chosen.connect(lambda mark: self._set(ends=(self._other(mark, 0), mark)))
+        self.at.chosen.connect(lambda mark: self._set(at=mark, level=0.0))
+        self.level = FigureField("mm", tr("How far above"), widest="−2,999.9")
+        self.level.entered.connect(self._set_level)
+        self.value, self.said = label("", "hero", tabular=True), sentence("", "secondary")
+        self.doubt = sentence("", "secondary")
+        set_tag(self.doubt, "tone", "warn")
+        column = QVBoxLayout(self)
+        column.setContentsMargins(14, 8, 14, 12)
+        column.setSpacing(10)
+        for part in (self._make_head(), self.name, self.kind, self._hint, self._make_places(), hairline()):
+            column.addWidget(part)
+        column.addWidget(self.value)
+        column.addWidget(self.said)
+        column.addWidget(self.doubt)
+        column.addStretch(1)
+        column.addWidget(self._make_foot())
+
+    def begin(self, draft: Draft, marks: Mapping[str, str], former: str = "") -> None:
+        """Begin with a draft; ``marks`` are the landmarks to choose from, ``former`` what is changed."""
+        for field in (self.start, self.end, self.at):
+            field.set_marks(marks)
+        self._title.setText(tr("Change a measure") if former else tr("A measure of your own"))
+        self.keep.setText(tr("Keep") if former else tr("Add"))
+        self.delete.setVisible(bool(former))
+        self.name.setText(draft.name)
+        self.show_draft(draft)
+
+    def show_draft(self, draft: Draft) -> None:
+        """Show another draft, and tell."""
+        self.draft = draft
+        girth = draft.kind == "girth"
+        self.kind.set_choice(draft.kind)
+        for row, shown in ((0, not girth), (1, not girth), (2, girth), (3, girth)):
+            self._places.setRowVisible(row, shown)
+        self.start.show_mark(draft.ends[0])
+        self.end.show_mark(draft.ends[1])
+        self.at.show_mark(draft.at)
+        self.level.set_unit("mm", 0 if draft.level.is_integer() else 1, bool(draft.at))
+        self.level.show_value(draft.level)
+        ends = tr("Click two landmarks on the body, or choose them here.")
+        level = tr("Click a landmark on the body, or anywhere on the skin: the tape lies level there.")
+        self._hint.setText(level if girth else ends)
+        self.changed.emit()
+
+    def set_height(self, mm: float) -> None:
+        """Let a girth lie so high above the lowest point of the scan."""
+        self._set(at="", level=float(mm))
+
+    def show_value(self, value: str, said: str, doubt: str, suggested: str) -> None:
+        """Show what it measures, what is said of it and what is doubtful; without a value it is not kept.
+
+        ``suggested`` is the name that it gets if none is typed.
+        """
+        for part, words in ((self.value, value), (self.said, said), (self.doubt, doubt)):
+            part.setText(words)
+            part.setVisible(bool(words))
+        self.name.setPlaceholderText(suggested or tr("Name"))
+        self.keep.setEnabled(bool(value))
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Keep it by Enter, unless that presses a button; leave it by Esc."""
+        enter = event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter)
+        if enter and self.keep.isEnabled() and not isinstance(self.focusWidget(), QAbstractButton):
+            self.kept.emit()
+        elif event.key() == Qt.Key.Key_Escape:
+            self.left.emit()
+        else:
+            super().keyPressEvent(event)
+
+    def event(self, event: QEvent) -> bool:
+        """Take Esc before it ends work in hand: what it measures is worked out all the time."""
+        wanted = isinstance(event, QKeyEvent) and event.key() == Qt.Key.Key_Escape
+        if not wanted or event.type() != QEvent.Type.ShortcutOverride:
+            return super().event(event)
+        event.accept()
+        return True
+
+    def _set(self, **changes: object) -> None:
+        self.show_draft(replace(self.draft, **changes))  # type: ignore[arg-type]
+
+    def _set_level(self, mm: float) -> None:
+        self._set(level=min(max(mm, 1.0 - FURTHEST), FURTHEST - 1.0))
+
+    def _other(self, mark: str, place: int) -> str:
+        """Return the other end; one landmark cannot be both."""
+        other = self.draft.ends[place]
+        return "" if other == mark else other
+
+    def _make_head(self) -> QWidget:
+        head = QWidget()
+        row = QHBoxLayout(head)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.addWidget(self._title, 1)
+        close = ToolButton("x", tr("Leave without a change (Esc)"), size=14, room=26)
+        close.clicked.connect(self.left)
+        row.addWidget(close)
+        return head
+
+    def _make_places(self) -> QWidget:
+        holder = QWidget()
+        self._places = QFormLayout(holder)
+        self._places.setContentsMargins(0, 0, 0, 0)
+        self._places.setVerticalSpacing(6)
+        self._places.setLabelAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
+        self._places.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
+        for field in (self.start, self.end, self.at, self.level):
+            words = label(field.accessibleName(), "secondary")
+            words.setMinimumHeight(28)
+            self._places.addRow(words, field)
+        self.level.setFont(font("body", tabular=True))
+        return holder
+
+    def _make_foot(self) -> QWidget:
+        foot = QWidget()
+        row = QHBoxLayout(foot)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(8)
+        self.delete, cancel = button(tr("Delete"), "quiet"), button(tr("Cancel"), "quiet")
+        self.keep = button(tr("Add"), "primary")
+        self.delete.clicked.connect(self.removed)
+        cancel.clicked.connect(self.left)
+        self.keep.clicked.connect(self.kept)
+        row.addWidget(self.delete)
+        row.addStretch(1)
+        row.addWidget(cancel)
+        row.addWidget(self.keep)
+        return foot

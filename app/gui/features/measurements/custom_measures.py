@@ -1,0 +1,198 @@
+"""The desk of one's own measures: made by clicks on landmarks or from lists, changed, and removed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, cast
+
+from PySide6.QtCore import QObject, QPointF
+
+from app.gui.features.measurements.custom_measure_editor import Draft
+from app.gui.features.measurements.panel import ResultPanel
+from app.gui.session.jobs import Job
+from app.gui.viewport.drawing_tool import Hand
+from app.i18n.catalog import say, tr
+from app.presenters.custom_measures import draft_of, measure_of, said_of, suggested_name
+from app.presenters.scan import landmark_title
+from core.document.custom_measures import OwnMeasure
+from core.errors import UserError
+from core.landmarks.types import NAMES
+from core.measurements.custom import OWN
+from core.measurements.definitions import Measure
+from core.measurements.table import own_before_after
+from core.pipeline.live_solver import Frame
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+
+class OwnMeasuresDesk(QObject):
+    """Brings what is chosen in the view and in the form together, and shows on the body what it measures."""
+
+    def __init__(self, window: MainWindow, panel: ResultPanel) -> None:
+        super().__init__(window)
+        self._window, self._panel, self._form = window, panel, panel.editor
+        viewport = window.view.viewport
+        canvas = viewport.overlay.parentWidget()
+        assert canvas is not None
+        self._hand = Hand(viewport, canvas)
+        self._hand.grabs = self._grab
+        self._hand.clicked.connect(self._click)
+        self._hand.dropped.connect(lambda _: self._form.show_draft(self._form.draft.picked(self._held)))
+        self._hand.asked.connect(self._answer)
+        self._held: str = ""
+        self._former: str = ""
+        self._banded = True
+        self._titles: Mapping[str, str] = {}
+        self._job: Job | None = None
+        self._asked: tuple[Frame, OwnMeasure] | None = None  # whatever the measure is called
+        self._form.changed.connect(self._follow)
+        self._form.kept.connect(self.keep)
+        self._form.left.connect(self.leave)
+        self._form.removed.connect(lambda: self.remove(OWN + self._former))
+        panel.adding.connect(self.begin)
+        panel.changing.connect(lambda key: self.begin(key.removeprefix(OWN)))
+        panel.removing.connect(self.remove)
+        window.session.frame_ready.connect(self._follow)
+        window.session.opened.connect(lambda *_: self.leave())
+        said = tr("Measure between two landmarks, or round the body at a height")
+        do = window.actions_
+        do.rule("edit")
+        self.action = do.add("edit", tr("Add a measure…"), tip=said, do=self.begin, of_document=True)
+
+    @property
+    def at_work(self) -> bool:
+        """Whether a measure is being made or changed."""
+        return self._panel.editing
+
+    def begin(self, former: str = "") -> None:
+        """Make a measure, or change the ``former`` one of that name."""
+        frame, design = self._window.session.frame, self._window.session.design
+        if frame is None or design is None:
+            return
+        for drawing in (self._window.line_drawing, self._window.line_routing):
+            drawing.leave()
+        self._window.desk.go_to("result")
+        known = next((each for each in design.own_measures if each.name == former), None)
+        self._former = former if known else ""
+        points = frame.stages.landmarks.points
+        self._titles = {name: landmark_title(name) for name in NAMES if name in points}
+        self._asked = None
+        self._panel.unmark()
+        if not self.at_work:
+            self._banded = self._window.view.viewport.scene.is_visible("bands")
+            self._window.view.set_layer("bands", False)  # they would cover what is shown
+        self._panel.set_editing(True)
+        self._hand.begin()
+        self._form.begin(draft_of(known) if known else Draft(), self._titles, self._former)
+        self._form.name.setFocus()
+
+    def leave(self) -> None:
+        """Make none any more."""
+        if not self.at_work:
+            return
+        self._window.jobs.cancel(self._job)
+        self._job = self._asked = None
+        self._hand.end()
+        self._panel.set_editing(False)
+        self._window.view.pins.offer(None)
+        self._window.view.set_layer("bands", self._banded)
+        self._window.measures_desk.try_out(None)
+
+    def keep(self) -> None:
+        """Add the measure, or put it in the place of the one that was changed, as one step."""
+        wished, former = self._wished(), self._former
+        if wished is None:
+            return
+        text = tr("Measure changed: {name}") if former else tr("Measure added: {name}")
+        self.leave()
+        self._window.session.edit(
+            lambda design: design.with_own_measure(wished, former), text.format(name=wished.name)
+        )
+        self._panel.select(OWN + wished.name)
+
+    def remove(self, key: str) -> None:
+        """Remove one's own measure of this key, as one step."""
+        name = key.removeprefix(OWN)
+        self.leave()
+        self._panel.unmark()
+        text = tr("Measure deleted: {name}").format(name=name)
+        self._window.session.edit(lambda design: design.without_own_measure(name), text)
+
+    # -- the view speaks
+
+    def _grab(self, at: QPointF) -> bool:
+        """Hold a pin rather than let the view carry it off; where it is let go it is chosen."""
+        self._held = self._window.view.viewport.overlay.chosen_at(at)
+        return bool(self._held)
+
+    def _click(self, at: QPointF) -> None:
+        """Take the height of the skin that is clicked."""
+        frame, place = self._window.session.frame, self._window.view.viewport.skin_at(at)
+        if frame is not None and place is not None and self._form.draft.kind == "girth":
+            self._form.set_height(round(float(place[2]) - float(frame.stages.body.mesh.vertices[:, 2].min())))
+
+    def _answer(self, what: str) -> None:
+        if what == "leave":
+            self.leave()
+        elif what == "back":
+            self._form.show_draft(self._form.draft.stepped_back())
+        elif self._form.keep.isEnabled():
+            self.keep()
+
+    # -- what it measures
+
+    def _follow(self, _: object = None) -> None:
+        """Show the chosen landmarks, and measure beside the window what is wished for."""
+        frame = self._window.session.frame
+        if not self.at_work or frame is None:
+            return
+        self._window.view.pins.offer(self._form.draft.marks)
+        try:
+            wished = self._wished()
+        except UserError as refusal:
+            self._show(None, say(refusal.message))
+            return
+        if wished is None:
+            self._show(None)
+        elif not self._window.is_at_rest():
+            self._show(None, tr("The body is measured as soon as the run rests."))
+        elif (frame, replace(wished, name="?")) != self._asked:
+            self._begin_measuring(frame, replace(wished, name="?"))
+
+    def _begin_measuring(self, frame: Frame, wished: OwnMeasure) -> None:
+        self._window.jobs.cancel(self._job)
+        self._asked = frame, wished
+        self._form.show_value("", "", "", self._suggested())  # the former one is of another measure
+        self._job = self._window.jobs.run(
+            tr("Measuring the body"),
+            lambda progress: own_before_after(frame.stages, frame.control_points, wished),
+            lambda found: self._show(cast(tuple[Measure, Measure], found)),
+            self._fail,
+            left=lambda: self._show(None, tr("Stopped: change something to measure again.")),
+        )
+
+    def _fail(self, error: Exception) -> None:
+        self._window.desk.show_failure(error)
+        self._show(None, tr("The body could not be measured."))
+
+    def _show(self, found: tuple[Measure, Measure] | None, why: str = "") -> None:
+        """Show what was measured, or why nothing is."""
+        if found is None:
+            self._window.jobs.cancel(self._job)
+            self._job = self._asked = None
+        value, said, doubt = said_of(*found) if found else ("", "", why)
+        self._form.show_value(value, said, doubt, self._suggested())
+        self._window.measures_desk.try_out(found)
+
+    def _suggested(self) -> str:
+        return suggested_name(self._form.draft, self._titles)
+
+    def _wished(self) -> OwnMeasure | None:
+        """Return what is wished for, None while places are missing. Raises UserError for what cannot be."""
+        frame, design = self._window.session.frame, self._window.session.design
+        if frame is None or design is None:
+            return None
+        taken = {each.name for each in design.own_measures} - {self._former}
+        return measure_of(self._form.draft, self._suggested(), taken)

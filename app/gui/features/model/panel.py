@@ -1,0 +1,131 @@
+"""How the model works: every choice in plain words, out of the designer's way until it is asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+
+from app.gui.theme.stylesheet import label, set_tag
+from app.gui.widgets.basic import button, hairline, sentence
+from app.gui.widgets.navigation_row import DOOR_HEIGHT, Door, page_head
+from app.gui.widgets.option_field import AmountField, Field, field_of
+from app.gui.widgets.tooltip import set_tip
+from app.i18n.catalog import colon, number, tr
+from app.presenters.model_options import Setting, consequences, defaults, groups, summary
+
+
+class ModelPanel(QWidget):
+    """All settings of the model. ``changed`` tells fields of the design with the name of the step."""
+
+    changed = Signal(object, str)
+    left = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.fields: dict[str, Field] = {}
+        self._rows: dict[str, QWidget] = {}
+        self._present: dict[str, Any] = defaults()
+        self._reset = button(tr("Reset to defaults"), "quiet")
+        self._reset.clicked.connect(lambda: self.changed.emit(defaults(), tr("Model reset to defaults")))
+        self._limit = sentence("", "caption")
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addLayout(page_head(tr("How the model works"), tr("Back to the lines"), self.left))
+        column.addWidget(self._scroll_area(), 1)
+        column.addWidget(self._foot())
+        self.set_values(self._present)
+
+    def set_values(self, present: Mapping[str, Any]) -> None:
+        """Show these values of the fields of the design; nothing is emitted."""
+        self._present = {key: present[key] for key in defaults()}
+        for key, field in self.fields.items():
+            field.show_value(self._present[key])
+        self._rows["prestress"].setVisible(self._present["member_law"] == "prestressed")
+        self._reset.setEnabled(self._present != defaults())
+
+    def set_gain(self, gain: float, limit: float) -> None:
+        """Show the conventional gain in force and the limit from which on it vibrates at rest."""
+        field = self.fields["gain"]
+        assert isinstance(field, AmountField)
+        field.edit.setPlaceholderText(number(gain, 2))
+        above = gain > limit
+        said = (
+            tr("Above {limit} it vibrates: this is too much.") if above else tr("It vibrates above {limit}.")
+        )
+        self._limit.setText(said.format(limit=number(limit, 2)))
+        set_tag(self._limit, "tone", "warn" if above else "")
+
+    def _foot(self) -> QWidget:
+        foot = QWidget()
+        foot.setFixedHeight(DOOR_HEIGHT)
+        column = QVBoxLayout(foot)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addWidget(hairline())
+        row = QHBoxLayout()
+        row.setContentsMargins(6, 0, 10, 0)
+        row.addWidget(self._reset)
+        row.addStretch(1)
+        column.addLayout(row, 1)
+        return foot
+
+    def _scroll_area(self) -> QScrollArea:
+        inside = QWidget()
+        inside.setProperty("scrolled", "true")
+        column = QVBoxLayout(inside)
+        column.setContentsMargins(18, 2, 18, 16)
+        column.setSpacing(9)
+        for place, (title, settings) in enumerate(groups()):
+            if place:
+                column.addSpacing(5)
+                column.addWidget(hairline())
+                column.addSpacing(5)
+            column.addWidget(label(title, "name"))
+            for setting in settings:
+                self._rows[setting.key] = self._row(setting)
+                column.addWidget(self._rows[setting.key])
+        column.addWidget(self._limit)
+        column.addStretch(1)
+        area = QScrollArea()
+        area.setAccessibleName(tr("How the model works"))
+        area.setWidgetResizable(True)
+        area.setFrameShape(QFrame.Shape.NoFrame)
+        area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        area.setWidget(inside)
+        return area
+
+    def _row(self, setting: Setting) -> QWidget:
+        field = field_of(setting)
+        field.chosen.connect(lambda value: self._choose(setting, value))
+        self.fields[setting.key] = field
+        title = label(setting.title, "secondary")
+        for each in (title, field):
+            set_tip(each, setting.tip)
+        field.describe(setting.title, setting.tip)
+        row = QWidget()
+        line = QHBoxLayout(row)
+        line.setContentsMargins(0, 0, 0, 0)
+        line.addWidget(title)
+        line.addStretch(1)
+        line.addWidget(field)
+        return row
+
+    def _choose(self, setting: Setting, value: Any) -> None:
+        if value != self._present[setting.key]:
+            changes = consequences(setting.key, value, self._present)
+            self.changed.emit(changes, f"{setting.title}{colon()}{setting.words(value)}")
+
+
+class ModelDoor(Door):
+    """The way to the settings from under the lines: what is chosen, in a line."""
+
+    def __init__(self) -> None:
+        super().__init__(tr("How the model works"))
+
+    def set_values(self, present: Mapping[str, Any]) -> None:
+        """Say what is chosen."""
+        self.show_words(summary(present))

@@ -1,0 +1,1 @@
+"""Start page, recent files, autosave, recovery."""

@@ -1,0 +1,127 @@
+"""What is there to be had back: documents of windows that did not close in order, and former versions."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QEvent, QObject
+from PySide6.QtGui import QImage
+
+from app.gui.features.project.backups_dialog import ask_backup
+from app.gui.features.project.recent_files import day_of
+from app.gui.features.project.recovery_card import RecoveryCard, RecoveryView
+from app.gui.widgets.loss_dialogs import may_discard
+from app.i18n.catalog import tr
+from core.document.storage.project_file import open_project
+from core.document.storage.recovery import Kept, Recovery, left_behind
+from core.errors import UserError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from app.gui.main_window import MainWindow
+
+
+class RecoveryDesk(QObject):
+    """Offers what was left behind, the newest first; what is neither restored nor discarded stays."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._offers: list[tuple[Kept, Recovery]] = []
+        self._broken: list[Path] = []
+        self._at_start = True
+        self.card = RecoveryCard(window)
+        self.card.restore.connect(self.restore)
+        self.card.discard.connect(self.discard)
+        self.card.later.connect(self.close)
+        window.installEventFilter(self)
+        said = tr("Have a former version of a project back")
+        window.actions_.add("file", tr("Open a backup…"), tip=said, do=self.open_backup)
+
+    def look(self) -> None:
+        """Look for what was left behind, at the start."""
+        # Nobody has chosen what the window opens with.
+        self._at_start = self._window.pages.currentWidget() is not self._window.start_desk.page
+        self._window.lines_page.currentChanged.connect(lambda _: self._give_way())
+        self._offers, self._broken = left_behind()
+        self._tell_broken()
+        self._offer()
+
+    def restore(self) -> None:
+        """Open the document that is offered, unsaved as it was."""
+        if self._window.desk.may_leave():
+            self._window.session.restore(self._offers[0][0])
+
+    def show_opened(self) -> None:
+        """Go on in the folder of a document that was restored: it is safe there all the time.
+
+        Who opens something else instead is not to have the offer in the way any longer.
+        """
+        # What is opened at the start takes the notices of before away.
+        self._tell_broken()
+        self._broken = []
+        if self._offers and self._window.session.document is self._offers[0][0].document:
+            self._window.keeping_desk.adopt(self._offers.pop(0)[1])
+            self._offer()
+        elif self._offers and not self._at_start:
+            self.close()
+            said = tr("What was not saved is offered again at the next start.")
+            self._window.notices.show_notice("info", said)
+        self._at_start = False
+
+    def discard(self) -> None:
+        """Remove what is offered, if that is meant."""
+        if may_discard(self._window, self._offers[0][0].name):
+            self._offers.pop(0)[1].end()
+            self._offer()
+
+    def open_backup(self) -> None:
+        """Ask for a former version and open it, unsaved, in the place of the project."""
+        backup = ask_backup(self._window, self._window.session.path)
+        if backup is None or not self._window.desk.may_leave():
+            return
+        try:
+            document = open_project(backup.path)
+        except UserError as error:
+            self._window.desk.show_failure(error)
+            return
+        self._window.session.open_document(document, backup.project, unsaved=True)
+
+    def close(self) -> None:
+        """Leave what was not decided to the next start."""
+        while self._offers:
+            self._offers.pop()[1].let_go()
+        self.card.hide()
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+        """Keep the card in its place at the head of the window."""
+        if watched is self._window and event.type() == QEvent.Type.Resize:
+            self._place()
+        return False
+
+    def _give_way(self) -> None:
+        """Keep the card off handles that are dragged while targets are set; the offer comes back after it."""
+        self.card.setVisible(bool(self._offers) and not self._window.ask_desk.is_open)
+        self.card.raise_()
+
+    def _tell_broken(self) -> None:
+        for folder in self._broken:
+            sentence = tr("What was kept of an earlier session cannot be read.")
+            hint = tr("It was put aside in {folder}.").format(folder=folder)
+            self._window.notices.show_notice("warn", sentence, hint, lasting=True)
+
+    def _offer(self) -> None:
+        if not self._offers:
+            self.card.hide()
+            return
+        kept, _ = self._offers[0]
+        picture = QImage.fromData(kept.picture) if kept.picture else QImage()
+        day = day_of(kept.time, time.time())
+        shown = None if picture.isNull() else picture
+        self.card.offer(RecoveryView(kept.name, day, shown, len(self._offers) - 1))
+        self._place()
+
+    def _place(self) -> None:
+        self.card.move((self._window.width() - self.card.width()) // 2, 48)

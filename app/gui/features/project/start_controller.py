@@ -1,0 +1,134 @@
+"""The start page at work: when it is shown, what its cards do, and files that are dropped on the window."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QEvent, QObject, Qt
+from PySide6.QtGui import QDragEnterEvent
+
+from app.gui.features.project.drop_zone import DropVeil
+from app.gui.features.project.recent_files import forget_file, project_views, remember_file
+from app.gui.features.project.start_page import StartPage
+from app.gui.tour import Tour
+from app.gui.widgets.file_dialogs import ask_open
+from app.i18n.catalog import tr
+from app.presenters.samples import FIRST_SAMPLE, LIFTING_LINE, SAMPLES, lifted_sample, sample_path
+from core.document.storage.recovery import recovery_folder
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+
+class StartDesk(QObject):
+    """Puts the start page in the place of the work, and the work back once a file is being opened."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self.page = StartPage()
+        self.tour = Tour(window)
+        self.veil = DropVeil(window)
+        window.pages.addWidget(self.page)
+        window.pages.currentChanged.connect(self._dress)
+        self._step = ""
+        window.installEventFilter(self)
+        said = tr("Begin with a scan, or go on with what was open before")
+        window.actions_.add("file", tr("Start page"), "Ctrl+Shift+N", said, do=self.show_page)
+        window.actions_.add(
+            "help", tr("Tour"), tip=tr("Show the main parts of the window, step by step"), do=self.take_tour
+        )
+
+    def show_page(self) -> None:
+        """Show the start page; what is open stays as it is."""
+        window = self._window
+        if self.tour.place >= 0:
+            self.tour.end()
+        self.page.set_document(window.session.name if window.session.frame is not None else "")
+        self.page.set_projects(project_views())
+        window.pages.setCurrentWidget(self.page)
+        self.page.zone.choose.setFocus()
+
+    def leave_page(self) -> None:
+        """Show the work again."""
+        if self._window.pages.currentWidget() is self.page:
+            self._window.layout_.show_work()
+            self._window.layout_.enter()
+
+    def _dress(self) -> None:
+        """Light no step and offer no variants where the page hides what they are about."""
+        rail, at_start = self._window.rail, self._window.pages.currentWidget() is self.page
+        self._window.variant_desk.set_shown(not at_start)
+        if at_start:
+            self._step = rail.current()
+            rail.set_current("")
+        elif not rail.current():
+            rail.set_current(self._step)
+
+    def show_work(self, what: str, _share: float) -> None:
+        """Leave the page as soon as a body is being read: its progress is shown beside the view."""
+        if what:
+            self.leave_page()
+
+    def show_failure(self) -> None:
+        """Come back where there is nothing else to show; the notice stands above the page."""
+        if self._window.session.frame is None and self._window.scan_desk.stuck is None:
+            self.show_page()
+        else:
+            self.leave_page()
+
+    def show_opened(self) -> None:
+        """Remember what was opened, unless it is a sample."""
+        self.leave_page()
+        session = self._window.session
+        if session.path is not None:
+            remember_file(str(session.path))
+            return
+        if session.design in [lifted_sample(name) for name in SAMPLES]:
+            # As soon as the view has framed the body that is new to it.
+            session.frame_ready.connect(self._show_lift, Qt.ConnectionType.SingleShotConnection)
+        scan = session.design.scan if session.design is not None else None
+        # A scan that was kept aside goes with its folder.
+        passing = (sample_path("").parent, recovery_folder())
+        if scan is not None and not scan.member and not {*Path(scan.path).parents} & {*passing}:
+            remember_file(scan.path)
+
+    def _show_lift(self) -> None:
+        """Show from near by what the band of a sample does, against the original body."""
+        view = self._window.view
+        self._window.desk.select_line(LIFTING_LINE)
+        view.set_layer("ghost", True)
+        view.viewport.frame_points(view.viewport.scene.bands.spine(LIFTING_LINE)[0])
+
+    def take_tour(self) -> None:
+        """Lead through the window, on what is open or else on the sample."""
+        window = self._window
+        if window.session.frame is None:
+            window.desk.open_sample(FIRST_SAMPLE)
+            self.tour.begin_when_settled()
+        else:
+            self.leave_page()
+            self.tour.begin()
+
+    def locate(self, path: str) -> None:
+        """Ask where a file that is gone has moved to, and open it there."""
+        found = ask_open(self._window)
+        if found:
+            forget_file(path)
+            self._window.desk.open_file(found)
+
+    def forget(self, path: str) -> None:
+        """Take a file off the list."""
+        forget_file(path)
+        self.page.set_projects(project_views())
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+        """Say over the whole window what letting go of a file will do."""
+        if isinstance(event, QDragEnterEvent) and event.type() == QEvent.Type.DragEnter:
+            files = [url.fileName() for url in event.mimeData().urls() if url.isLocalFile()]
+            if files:
+                self.veil.show_for(files[0])
+        elif event.type() in (QEvent.Type.DragLeave, QEvent.Type.Drop):
+            self.veil.hide()
+        return False

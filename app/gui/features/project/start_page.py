@@ -1,0 +1,251 @@
+"""The page that the window starts on: a scan to begin with on the left, what was open before on the right."""
+
+# ruff: noqa: D102, N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import QEvent, QObject, QSize, Qt, Signal
+from PySide6.QtGui import QAction, QKeyEvent, QResizeEvent
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLineEdit, QScrollArea, QVBoxLayout, QWidget
+
+from app.gui.features.project.drop_zone import DropZone
+from app.gui.features.project.project_card import HEIGHT, WIDTH, ProjectCard, ProjectView
+from app.gui.theme.icons import icon
+from app.gui.theme.stylesheet import label, set_tag, tokens_of
+from app.gui.widgets.basic import EmptyState, IconLabel, button, hairline, sentence
+from app.gui.widgets.tooltip import set_tip
+from app.i18n.catalog import tr
+from app.presenters.samples import SAMPLES
+
+_LEFT, _LEFT_IF_NARROW, _NARROW = 400, 340, 1150
+_APART = 16
+_MARGIN = 32
+_SEARCH_FROM = 5  # fewer cards are seen at a glance
+
+
+class StartPage(QWidget):
+    """Asks for a file to open; ``left`` when the open document is wanted back.
+
+    ``project_chosen``, ``locate_asked`` and ``forget_asked`` carry the path of a card, ``sample_asked`` the
+    name of a sample body.
+    """
+
+    open_asked = Signal()
+    sample_asked = Signal(str)
+    tour_asked = Signal()
+    guide_asked = Signal()
+    project_chosen = Signal(str)
+    locate_asked = Signal(str)
+    forget_asked = Signal(str)
+    left = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(0)
+        self.search = self._search_field()
+        for part, stretch in ((self._begin(), 0), (hairline(vertical=True), 0), (self._recent(), 1)):
+            row.addWidget(part, stretch)
+
+    def set_projects(self, projects: Sequence[ProjectView]) -> None:
+        """Show these files, the last one first."""
+        self.shelf.set_projects(projects)
+        self.search.clear()
+        self.search.setVisible(len(projects) >= _SEARCH_FROM)
+        self._nothing.setVisible(not projects)
+
+    def set_document(self, name: str) -> None:
+        """Offer the way back to the open document, if there is one."""
+        self.back.setText(tr("Back to {name}").format(name=name))
+        self.back.setVisible(bool(name))
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() == Qt.Key.Key_Escape and not self.back.isHidden():
+            self.left.emit()
+        else:
+            super().keyPressEvent(event)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        # In the smallest window three cards fit beside each other.
+        self._side.setFixedWidth(_LEFT if self.width() >= _NARROW else _LEFT_IF_NARROW)
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange:
+            self._dress_search()
+
+    def _begin(self) -> QWidget:
+        """Return the left side."""
+        side = self._side = QWidget()
+        column = QVBoxLayout(side)
+        column.setContentsMargins(_MARGIN, 28, _MARGIN, 24)
+        column.setSpacing(8)
+        heading = label(tr("New from a scan"), "page")
+        heading.setMinimumHeight(self.search.height())
+        column.addWidget(heading)
+        column.addSpacing(8)
+        self.zone = DropZone()
+        self.zone.asked.connect(self.open_asked)
+        column.addWidget(self.zone)
+        column.addSpacing(16)
+        column.addWidget(label(tr("Or look at a sample"), "secondary"))
+        column.addLayout(self._samples())
+        tour = button(tr("Take the tour"))
+        tour.clicked.connect(self.tour_asked)
+        column.addWidget(tour)
+        guide = button(tr("First customer in ten minutes"), "quiet")
+        set_tip(guide, tr("In the user guide, which opens in the browser"))
+        guide.clicked.connect(self.guide_asked)
+        column.addWidget(guide)
+        column.addStretch(1)
+        self.back = button("", "secondary")
+        set_tip(self.back, tr("Back to what is open  Esc"))
+        self.back.clicked.connect(self.left)
+        self.back.hide()
+        column.addWidget(self.back)
+        column.addSpacing(8)
+        private = QHBoxLayout()
+        private.setSpacing(10)
+        private.addWidget(IconLabel("shield", "text_caption", 18), alignment=Qt.AlignmentFlag.AlignTop)
+        private.addWidget(
+            sentence(tr("Scans stay on this computer. Busk has no network code."), "caption"), 1
+        )
+        column.addLayout(private)
+        return side
+
+    def _samples(self) -> QHBoxLayout:
+        samples = QHBoxLayout()
+        samples.setSpacing(8)
+        for name, title in SAMPLES.items():
+            each = button(tr(title))
+            each.clicked.connect(lambda _=False, chosen=name: self.sample_asked.emit(chosen))
+            samples.addWidget(each, 1)
+        return samples
+
+    def _recent(self) -> QWidget:
+        """Return the right side."""
+        side = QWidget()
+        column = QVBoxLayout(side)
+        column.setContentsMargins(0, 28, 0, 0)
+        column.setSpacing(0)
+        head = QHBoxLayout()
+        head.setContentsMargins(_MARGIN, 0, _MARGIN, 0)
+        head.addWidget(label(tr("Recent"), "page"))
+        head.addStretch(1)
+        head.addWidget(self.search)
+        column.addLayout(head)
+        column.addSpacing(16)
+        self._nothing = EmptyState(
+            "folder-open", tr("Nothing yet"), tr("Scans and projects that you open stand here with pictures.")
+        )
+        self._nothing.setFixedWidth(2 * WIDTH + _APART)
+        empty = QHBoxLayout()
+        empty.setContentsMargins(_MARGIN, 0, _MARGIN, 0)
+        empty.addWidget(self._nothing)
+        empty.addStretch(1)
+        column.addLayout(empty)
+        self.shelf = _Shelf(self)
+        self.search.textChanged.connect(self.shelf.show_only)
+        scroll = QScrollArea()
+        scroll.setWidgetResizable(True)
+        scroll.setFrameShape(QFrame.Shape.NoFrame)
+        scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        set_tag(self.shelf, "scrolled", "true")
+        scroll.setWidget(self.shelf)
+        self._scroll = scroll
+        column.addWidget(scroll, 1)
+        return side
+
+    def reveal(self, card: QWidget) -> None:
+        """Scroll to a card."""
+        self._scroll.ensureWidgetVisible(card, 0, _APART)
+
+    def _search_field(self) -> QLineEdit:
+        search = QLineEdit()
+        search.setPlaceholderText(tr("Search"))
+        search.setAccessibleName(tr("Search the recent files"))
+        set_tip(search, tr("Show only files with these letters in their names"))
+        search.setClearButtonEnabled(True)
+        search.setFixedSize(220, 30)
+        self._glass = QAction(self)
+        search.addAction(self._glass, QLineEdit.ActionPosition.LeadingPosition)
+        self._dress_search()
+        return search
+
+    def _dress_search(self) -> None:
+        self._glass.setIcon(icon("search", tokens_of(self).text_caption, 16))
+
+
+class _Shelf(QWidget):
+    """Cards in as many columns as there is room for."""
+
+    def __init__(self, page: StartPage) -> None:
+        super().__init__()
+        self._page = page
+        self.cards: list[ProjectCard] = []
+
+    def set_projects(self, projects: Sequence[ProjectView]) -> None:
+        """Show these files instead of those before."""
+        for card in self.cards:
+            card.hide()
+            card.deleteLater()
+        self.cards = [ProjectCard(each) for each in projects]
+        for card in self.cards:
+            card.setParent(self)
+            card.opened.connect(self._page.project_chosen)
+            card.located.connect(self._page.locate_asked)
+            card.forgotten.connect(self._page.forget_asked)
+            card.installEventFilter(self)
+            card.show()
+        self._place()
+
+    def show_only(self, letters: str) -> None:
+        """Show only files with these letters in their names."""
+        for card in self.cards:
+            card.setHidden(letters.strip().lower() not in card.view.name.lower())
+        self._place()
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.FocusIn and isinstance(watched, QWidget):
+            self._page.reveal(watched)
+        if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.KeyPress:
+            return self._step(watched, event.key())
+        return False
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        self._place()
+
+    def sizeHint(self) -> QSize:
+        return QSize(WIDTH + 2 * _MARGIN, self.minimumHeight())
+
+    def _columns(self) -> int:
+        return max(1, (self.width() - 2 * _MARGIN + _APART) // (WIDTH + _APART))
+
+    def _shown(self) -> list[ProjectCard]:
+        return [card for card in self.cards if not card.isHidden()]
+
+    def _place(self) -> None:
+        columns, shown = self._columns(), self._shown()
+        for place, card in enumerate(shown):
+            row, column = divmod(place, columns)
+            card.move(_MARGIN + column * (WIDTH + _APART), row * (HEIGHT + _APART))
+        rows = -(-len(shown) // columns)
+        self.setMinimumHeight(rows * (HEIGHT + _APART) + _APART if rows else 0)
+
+    def _step(self, watched: QObject, key: int) -> bool:
+        """Go to the card beside, above or below with the arrow keys."""
+        steps = {
+            Qt.Key.Key_Left: -1,
+            Qt.Key.Key_Right: 1,
+            Qt.Key.Key_Up: -self._columns(),
+            Qt.Key.Key_Down: self._columns(),
+        }
+        shown = self._shown()
+        if key not in steps or watched not in shown:
+            return False
+        place = shown.index(watched) + steps[Qt.Key(key)]
+        if 0 <= place < len(shown):
+            shown[place].setFocus(Qt.FocusReason.TabFocusReason)
+        return True

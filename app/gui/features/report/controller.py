@@ -1,0 +1,300 @@
+"""The sheet to work from in the window: made beside it as soon as the run rests, shown, saved, printed."""
+
+from __future__ import annotations
+
+import datetime
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+from PySide6.QtCore import QMarginsF, QObject
+from PySide6.QtGui import QImage, QPageLayout, QPageSize, QPainter
+from PySide6.QtPrintSupport import QPrintDialog, QPrinter
+
+from app.gui.features.report.page import ReportPage
+from app.gui.session.jobs import Job
+from app.gui.session.settings import wish
+from app.gui.widgets.file_dialogs import ask_save
+from app.i18n.catalog import language, say, tr
+from app.presenters.lines import line_colours
+from app.rendering.ambient_occlusion import bake_occlusion
+from app.report.document import Handout
+from app.report.pages import Pages, pages_of
+from app.report.painter import UNITS
+from app.report.pdf import write_pdf
+from core.errors import ProjectError, UserError
+from core.export.csv_cells import ENCODING
+from core.export.report_data import Heading, Sheet, sheet_of
+from core.export.report_data_file import sheet_csv, sheet_json
+from core.files.atomic_write import write_text
+from core.geometry.mesh import Floats
+from core.pipeline.converged import settled_frame
+from core.pipeline.live_solver import Frame
+from core.progress import Progress
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+STILL = 0.005
+"""Control points that moved less are where they were [mm]: a run at rest that goes on moves so far."""
+
+
+class ReportDesk(QObject):
+    """Puts the sheet in the place of the work; while it is seen it follows the design."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self.page = ReportPage()
+        self.pages: Pages | None = None
+        self.handout: Handout | None = None
+        self._frame: Frame | None = None  # the one that the sheet is of
+        self._asked: Frame | None = None  # the one that a sheet is being made of
+        self._job: Job | None = None
+        self._refused = ""  # why there is no sheet of the frame that was asked for
+        self._language = ""
+        self._laid: tuple[Handout | None, str] = (None, "")
+        self._whole: Frame | None = None  # its figures are of
+        self._occlusion: tuple[object, Floats] | None = None
+        window.pages.addWidget(self.page)
+        said = tr("Sizes, lengths to cut, measures, pressures and pictures on paper: look, save, print")
+        do = window.actions_
+        self.action = do.add("file", tr("Report…"), "Ctrl+P", said, do=self.open, of_document=True)
+        window.top.add_primary(self.action)
+        self.page.left.connect(self.leave)
+        self.page.named.connect(self._name)
+        self.page.language_chosen.connect(self._speak)
+        self.page.wanted.connect(self._give)
+
+    # -- what is asked
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the sheet stands in the place of the work."""
+        return self._window.pages.currentWidget() is self.page
+
+    def open(self) -> None:
+        """Show the sheet of the design that is shown."""
+        self._language = self._language or language()
+        self._window.pages.setCurrentWidget(self.page)
+        self.page.paper.setFocus()
+        self.follow()
+
+    def leave(self) -> None:
+        """Show the work again."""
+        if self.is_open:
+            self._window.jobs.cancel(self._job)
+            self._job, self._asked, self._refused = None, None, ""
+            self._window.layout_.show_work()
+            self._window.layout_.enter()
+
+    def forget(self) -> None:
+        """Let go of the sheet of a document that has gone: nobody is to see it under the next one."""
+        document = self._window.session.document
+        # Before the page hides: a name that was being typed is not that of the next customer.
+        self.page.customer.setText(document.customer if document is not None else "")
+        self._window.jobs.cancel(self._job)
+        self._frame = self._asked = self._job = self.handout = self.pages = self._occlusion = None
+        self._laid = None, ""
+        self.page.show_pages(None)
+        self.leave()
+
+    def _name(self, customer: str) -> None:
+        design = self._window.session.design
+        if design is None or design.customer == customer:
+            return
+        said = tr("Customer {name}").format(name=customer) if customer else tr("No customer")
+        self._window.session.change({"customer": customer}, said)
+        if self.handout is not None:
+            self._take(self.handout)  # at once: it may be given away with the next word
+
+    def _speak(self, code: str) -> None:
+        self._language = code
+        self._show()
+
+    # -- what is shown
+
+    def follow(self) -> None:
+        """Bring the sheet up to date, if it is seen: its heading at once, its figures once the run rests."""
+        window, frame = self._window, self._window.session.frame
+        if frame is None or not self.is_open:
+            return
+        if self._is_of(frame):
+            if self.handout is not None:
+                self._take(self.handout)
+            return
+        if self._asked is not None and _alike(self._asked, frame):
+            return
+        window.jobs.cancel(self._job)
+        self._job, self._asked, self._refused = None, None, ""
+        self._show()
+        if window.is_settled():
+            self._make(frame)
+
+    def _is_of(self, frame: Frame) -> bool:
+        if self._frame is None or self.handout is None or self._asked is not None:
+            return False
+        former, now = self.handout.sheet.heading, self._heading()
+        sizes_alike = (former.system, former.allowance_mm) == (now.system, now.allowance_mm)
+        return sizes_alike and self._window.is_settled() and _alike(self._frame, frame)
+
+    def _make(self, frame: Frame) -> None:
+        """Work out the sheet beside the window, then draw its pictures piece by piece."""
+        window, heading = self._window, self._heading()
+        self._asked = frame
+        body, known = frame.stages.body, self._occlusion
+
+        def work(progress: Progress) -> tuple[Sheet, Frame, Floats]:
+            # From rest, as the command line and who opens the project again: turns that went on from a former
+            # design end a hair beside, and would be plotted as if the garment began there.
+            design = frame.stages.design
+            whole = settled_frame(design, frame.stages, lambda what, share: progress(what, 0.1 * share))
+            sheet = sheet_of(whole, whole.tracks.get(design.volume, ()), heading, progress)
+            baked = known[1] if known is not None and known[0] is body else bake_occlusion(body.mesh)
+            return sheet, whole, baked
+
+        def draw(found: object) -> None:
+            from app.report.images import shots  # noqa: PLC0415 (brings VTK along)
+
+            sheet, whole, baked = cast(tuple[Sheet, Frame, Floats], found)
+            self._occlusion, self._whole = (body, baked), whole
+            finish, left = partial(done, Handout(sheet, {}, self._colours(frame))), self._leave_off
+            drawing, pieces = tr("Drawing the pictures of the sheet"), shots(whole, baked)
+            self._job = window.jobs.run_pieces(drawing, pieces, finish, lambda _: finish({}), left=left)
+
+        def done(plain: Handout, pictures: Mapping[str, QImage]) -> None:
+            self._frame, self._asked, self._job = frame, None, None
+            self._take(replace(plain, pictures=pictures))
+
+        self._job = window.jobs.run(tr("Making the sheet"), work, draw, self._fail, left=self._leave_off)
+
+    def _leave_off(self) -> None:
+        self._job = self._asked = None
+        self._refused = tr("Stopped: the sheet is made when you open it again.")
+        self._show()
+
+    def _fail(self, error: Exception) -> None:
+        self._job = None
+        if isinstance(error, UserError):
+            self._refused = f"{say(error.message)} {say(error.hint)}"
+        else:
+            self._window.desk.show_failure(error)
+            self._refused = tr("The sheet could not be made.")
+        self._show()
+
+    def _take(self, handout: Handout) -> None:
+        """Show a sheet under its present heading; its sizes are those that it was made with."""
+        made, spread = handout.sheet.heading, self._window.spread_desk.on_sheet
+        heading = replace(self._heading(), system=made.system, allowance_mm=made.allowance_mm)
+        sheet = replace(spread(handout.sheet, self._frame, self._whole), heading=heading)
+        self.handout = replace(handout, sheet=sheet)
+        self._show()
+
+    def _show(self) -> None:
+        """Show the sheet as far as it is known, and what is under way."""
+        design, frame = self._window.session.design, self._window.session.frame
+        stale = frame is None or not self._is_of(frame)
+        if self._laid != (self.handout, self._language):
+            # Not with every frame of a run: it takes as long as some of them.
+            self._laid = self.handout, self._language
+            self.pages = pages_of(self.handout, self._language) if self.handout is not None else None
+        words = (self._refused or self._waits_for()) if stale else ""
+        self.page.show_choices(design.customer if design else "", self._language)
+        self.page.show_pages(self.pages, words, stale=stale)
+
+    def _waits_for(self) -> str:
+        """Return why there is no sheet yet."""
+        if self._window.session.failure is not None:
+            return tr("The shape could not be computed: there is no sheet of this design.")
+        if self._window.is_settled():
+            return tr("The sheet is being made.")
+        return self._window.ask_desk.around.first(tr("The sheet is made as soon as the run rests."))
+
+    def _heading(self) -> Heading:
+        document = self._window.session.document
+        assert document is not None
+        return Heading(
+            self._window.session.name,
+            datetime.date.today().isoformat(),
+            document.customer,
+            document.shown if len(document.designs) > 1 else "",
+            wish("size_system"),
+            document.design.worn_tight_mm,
+        )
+
+    def _colours(self, frame: Frame) -> dict[str, str]:
+        return line_colours([line.name for line in frame.stages.model.lines], frame.stages.design)
+
+    # -- what leaves the window
+
+    def _give(self, what: str) -> None:
+        data, table = self._save_data, self._save_table
+        {"pdf": self._save_pdf, "print": self._print, "json": data, "csv": table}[what]()
+
+    def _save_pdf(self) -> None:
+        pages = self.pages
+        if (path := self._asked_for(tr("Save the sheet"), ".pdf", "PDF (*.pdf)")) and pages is not None:
+            self._write(path, lambda: write_pdf(path, pages, self._window.session.name))
+
+    def _save_data(self) -> None:
+        self._save_text(tr("Save the data of the sheet"), ".json", "JSON (*.json)")
+
+    def _save_table(self) -> None:
+        self._save_text(tr("Save the figures of the sheet"), ".csv", "CSV (*.csv)")
+
+    def _save_text(self, title: str, ending: str, kinds: str) -> None:
+        path = self._asked_for(title, ending, kinds)
+        if not path or self.handout is None:
+            return
+        form, code = (sheet_csv, ENCODING) if ending == ".csv" else (sheet_json, "utf-8")
+        text = form(self.handout.sheet)
+        self._write(path, lambda: write_text(Path(path).absolute(), text, code))
+
+    def _asked_for(self, title: str, ending: str, kinds: str) -> str:
+        name = f"{self._window.session.name}-{tr('sheet')}{ending}"
+        return ask_save(self._window, title, name, kinds, ending)
+
+    def _write(self, path: str, write: Callable[[], None]) -> None:
+        try:
+            write()
+        except UserError as problem:
+            self._window.desk.show_failure(problem, "sheet")
+        else:
+            self._window.desk.show_written("sheet", tr("{name} written.").format(name=Path(path).name), path)
+
+    def _print(self) -> None:
+        pages = self.pages
+        printer = QPrinter(QPrinter.PrinterMode.HighResolution)
+        printer.setDocName(self._window.session.name)
+        size, upright = QPageSize(QPageSize.PageSizeId.A4), QPageLayout.Orientation.Portrait
+        printer.setPageLayout(QPageLayout(size, upright, QMarginsF(0, 0, 0, 0)))
+        printer.setFullPage(True)
+        if pages is None or not QPrintDialog(printer, self._window).exec():
+            return
+        painter = QPainter()
+        if not painter.begin(printer):
+            said = tr("The sheet could not be printed."), tr("Choose another printer.")
+            self._window.desk.show_failure(ProjectError(*said), "print")
+            return
+        wished = range(pages.count)
+        if printer.printRange() == QPrinter.PrintRange.PageRange:
+            wished = wished[max(printer.fromPage() - 1, 0) : printer.toPage() or None]
+        for page in wished:
+            if page != wished[0]:
+                printer.newPage()
+            painter.resetTransform()
+            scale = printer.resolution() / 25.4 / UNITS
+            painter.scale(scale, scale)
+            pages.paint(painter, page)
+        painter.end()
+        self._window.notices.withdraw("print")
+
+
+def _alike(one: Frame, other: Frame) -> bool:
+    """Whether two frames have one sheet: all but the customer is the same."""
+    designs = (replace(each.stages.design, customer="") for each in (one, other))
+    same = len(set(map(repr, designs))) == 1
+    return same and np.allclose(one.control_points, other.control_points, rtol=0.0, atol=STILL)

@@ -1,0 +1,1 @@
+"""Opening, orienting and editing a scan."""

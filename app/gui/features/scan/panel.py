@@ -1,0 +1,190 @@
+"""How the scan was understood: its unit, which way it stands, what was repaired; each can be said instead."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QScrollArea, QVBoxLayout, QWidget
+
+from app.gui.features.scan.edits import EditsView, ScanEditor
+from app.gui.features.scan.lean_editor import LeanEditor, LeanView
+from app.gui.theme.stylesheet import label, set_tag
+from app.gui.widgets.basic import EmptyState, Segment, button, hairline, sentence
+from app.gui.widgets.tooltip import set_tip
+from app.i18n.catalog import number, say, tr
+from app.presenters.scan_formats import KINDS
+
+UNITS = ("mm", "cm", "m", "inch")
+"""Units that a scan can be in."""
+
+AXES = tuple(f"{sign}{name}" for name in "xyz" for sign in "+-")
+"""Axes of a file, as a scan is told them."""
+
+
+@dataclass(frozen=True)
+class ScanView:
+    """What is shown of a scan: ``reason`` why this ``unit``; ``up`` and ``front`` are axes of the file.
+
+    ``notes`` are further sentences on it; ``told`` names what was not found but told: unit, up, front.
+    ``edits`` and ``lean`` are None for a scan that cannot be edited, as it is not upright.
+    """
+
+    file: str
+    unit: str
+    reason: str
+    sure: bool
+    up: str
+    front: str
+    triangles: int
+    repairs: tuple[str, ...]
+    notes: tuple[str, ...] = ()
+    told: frozenset[str] = frozenset()
+    edits: EditsView | None = None
+    coloured: bool = False
+    lean: LeanView | None = None
+
+
+class ScanPanel(QWidget):
+    """The facts of the scan; ``told`` with "unit", "up" or "front" and what it is, an empty key forgets all.
+
+    ``open_asked`` for another file; ``front_asked`` when the pictures are wanted. ``edits`` edits the scan,
+    ``lean`` its lean.
+    """
+
+    told = Signal(str, str)
+    open_asked = Signal()
+    front_asked = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        outer = QVBoxLayout(self)
+        outer.setContentsMargins(0, 0, 0, 0)
+        self._empty = EmptyState(
+            "folder-open",
+            tr("No scan yet"),
+            tr("Open a body scan, or drop one on the window: {kinds}.").format(kinds=KINDS),
+            tr("Open a scan…"),
+        )
+        self._empty.asked.connect(self.open_asked)
+        head = QVBoxLayout()
+        head.setContentsMargins(18, 14, 18, 8)
+        head.addWidget(label(tr("Scan"), "heading"))
+        head.addWidget(self._empty)
+        outer.addLayout(head)
+        outer.addWidget(self._facts(), 1)
+        outer.addStretch(0)
+        self.set_scan(None)
+
+    def set_scan(self, view: ScanView | None) -> None:
+        """Show the facts of a scan, or that there is none."""
+        self._empty.setVisible(view is None)
+        self._area.setVisible(view is not None)
+        if view is None:
+            return
+        self._file.setText(view.file)
+        words = tr("{count} triangles with colours") if view.coloured else tr("{count} triangles")
+        self._triangles.setText(words.format(count=number(view.triangles, 0)))
+        self.units.set_choice(view.unit)
+        self.ups.set_choice(view.up)
+        self.fronts.set_choice(view.front)
+        for axis in AXES:
+            self.fronts.button(axis).setEnabled(axis[1] != view.up[1])
+        self._reason.setText(re.sub(r"(?<!\S)-(?=[xyz])", "\N{MINUS SIGN}", say(view.reason)))
+        set_tag(self._reason, "tone", "" if view.sure else "warn")
+        self._forget.setVisible(bool(view.told))
+        self._notes.setText("\n".join(view.notes))
+        self._notes.setVisible(bool(view.notes))
+        done = [each for each in view.repairs if not _stays(each)]
+        self._repairs.setText(_listed(done) or tr("Nothing had to be repaired."))
+        self.lean.setEnabled(view.lean is not None)
+        self.lean.show_lean(view.lean or LeanView(0.0, 0.0))
+        self.edits.setVisible(view.edits is not None)
+        if view.edits is not None:
+            self.edits.show_edits(view.edits)
+
+    def _facts(self) -> QScrollArea:
+        inside = QWidget()
+        inside.setProperty("scrolled", "true")
+        column = QVBoxLayout(inside)
+        column.setContentsMargins(18, 0, 18, 14)
+        column.setSpacing(3)
+        self._file, self._triangles = sentence("", "name"), label("", "secondary")
+        self._notes, self._reason = sentence(), sentence()
+        self._repairs, self.edits, self.lean = sentence(), ScanEditor(), LeanEditor()
+        self._repairs.setTextFormat(Qt.TextFormat.RichText)
+        self.units = self._choices("unit", [(unit, tr(unit)) for unit in UNITS])
+        axes = [(axis, axis.replace("-", "\N{MINUS SIGN}")) for axis in AXES]
+        self.ups, self.fronts = self._choices("up", axes), self._choices("front", axes)
+        another = button(tr("Open another scan…"))
+        another.clicked.connect(self.open_asked)
+        for each in (self._file, self._triangles, self._notes):
+            column.addWidget(each)
+        self._group(column, tr("Unit of the file"), self.units)
+        self._group(column, tr("How the body stands in the file"), self._ways())
+        self._group(column, tr("Axis of the file that points up"), self.ups)
+        self._group(column, tr("Axis of the file that the chest faces"), self.fronts)
+        self._group(column, tr("Lean of the body in the file"), self.lean)
+        self._group(column, tr("Why"), self._reason)
+        column.addWidget(self.edits)
+        self._group(column, tr("Repairs"), self._repairs)
+        column.addSpacing(14)
+        column.addWidget(another, alignment=Qt.AlignmentFlag.AlignLeft)
+        column.addStretch(1)
+        self._area = QScrollArea()
+        self._area.setAccessibleName(tr("Scan"))
+        self._area.setWidgetResizable(True)
+        self._area.setFrameShape(QFrame.Shape.NoFrame)
+        self._area.setWidget(inside)
+        return self._area
+
+    def _choices(self, key: str, choices: list[tuple[str, str]]) -> Segment:
+        result = Segment(choices, small=True)
+        tips = {
+            "unit": tr("What a length of 1 in the file is; all measures follow from it"),
+            "up": tr("The axis of the file that points to the head"),
+            "front": tr("The axis of the file that the body faces"),
+        }
+        set_tip(result, tips[key])
+        result.chosen.connect(lambda value: self.told.emit(key, value))
+        return result
+
+    def _ways(self) -> QWidget:
+        """Return the buttons that ask by pictures, and that forget what was told."""
+        result = QWidget()
+        row = QHBoxLayout(result)
+        row.setContentsMargins(0, 3, 0, 0)
+        row.setSpacing(6)
+        self.pictures = button(tr("Choose by pictures…"))
+        self.pictures.clicked.connect(self.front_asked)
+        self._forget = button(tr("As found"), "quiet")
+        set_tip(self._forget, tr("Forget what was said of unit, up and front: find them again"))
+        self._forget.clicked.connect(lambda: self.told.emit("", ""))
+        for each in (self.pictures, self._forget):
+            row.addWidget(each)
+        row.addStretch(1)
+        return result
+
+    @staticmethod
+    def _group(column: QVBoxLayout, title: str, *widgets: QWidget) -> None:
+        column.addSpacing(9)
+        column.addWidget(hairline())
+        column.addSpacing(9)
+        column.addWidget(label(title, "caption"))
+        for each in widgets:
+            column.addWidget(each)
+            if not isinstance(each, QLabel):
+                column.addSpacing(5)
+
+
+def _stays(sentence: str) -> bool:
+    """Tell whether a sentence is on a hole that was left open, and not on a repair."""
+    return "stays open" in sentence or "stay open" in sentence
+
+
+def _listed(sentences: Sequence[str]) -> str:
+    """Return sentences one under the other, with a little room between them."""
+    return "".join(f'<p style="margin:0 0 4px 0">{escape(say(each))}</p>' for each in sentences)

@@ -1,0 +1,1 @@
+"""Comparison with a scan of the worn garment."""

@@ -1,0 +1,260 @@
+"""The desk of the worn scan: it is read, laid on the first, compared with what is shown, and learnt from."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+from PySide6.QtCore import QObject, Signal
+
+from app.gui.features.measurements.panel import ResultPanel
+from app.gui.features.scan_comparison.page import WornPage, WornView
+from app.gui.session.jobs import Job
+from app.gui.widgets.file_dialogs import ask_scan
+from app.gui.widgets.navigation_row import Door
+from app.i18n.catalog import tr
+from app.presenters import scan_comparison as words
+from core.analysis.calibration.api import CalibrationResult, Difference, Worn, calibrate, compare, read_worn
+from core.document.design import Design, ScanSource
+from core.geometry.mesh import Floats
+from core.pipeline.live_solver import Frame
+from core.scan.body import Body
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+MAP = "worn"
+"""The map Predicted less real."""
+
+_REFUSED = "the worn scan"  # what a refusal is about, which the next scan takes away
+
+
+class WornDesk(QObject):
+    """Keeps one worn scan of the body shown; ``compared`` says that there is another comparison, or none.
+
+    What was found is of one design alone, and goes with it; the scan goes with its body.
+    """
+
+    compared = Signal()
+
+    def __init__(self, window: MainWindow, panel: ResultPanel) -> None:
+        super().__init__(window)
+        self._window, self._panel = window, panel
+        self.page = WornPage()
+        self.door = Door(tr("Compare with a worn scan"))
+        panel.doors.addWidget(self.door)
+        self.worn: Worn | None = None
+        self._of: Body | None = None  # the body that a scan was chosen for
+        self._path, self._unit, self._thickness = "", "", 0.0
+        self._difference: tuple[Frame, Difference] | None = None
+        self._found: tuple[Design, CalibrationResult] | None = None
+        self._reading: Job | None = None
+        self._comparing: tuple[Job, Frame] | None = None
+        self._fitting: tuple[Job, Design] | None = None
+        self._connect()
+
+    def _connect(self) -> None:
+        said = tr("Predicted less real, from a scan of the same person with the garment on")
+        begin = tr("Compare with a worn scan…")
+        self._window.actions_.add("file", begin, tip=said, do=self.begin, of_document=True)
+        page = self.page
+        self.door.clicked.connect(lambda _: self.show_page())
+        page.asked.connect(self.choose)
+        page.left.connect(lambda: self._window.inspector.open("result"))
+        page.told.connect(self._tell_unit)
+        page.thickened.connect(self._thicken)
+        page.mapped.connect(lambda on: self._window.map_desk.choose(MAP if on else ""))
+        page.calibrated.connect(self.calibrate)
+        page.applied.connect(self.apply)
+
+    # -- what is asked
+
+    def begin(self) -> None:
+        """Open the page, and ask for a scan if there is none yet."""
+        self.show_page()
+        if self.worn is None:
+            self.choose()
+
+    def show_page(self) -> None:
+        """Show the page in the place of the measures."""
+        self._window.desk.go_to("result")
+        self._window.inspector.open("worn")
+        self._window.layout_.enter()
+        self.follow()
+
+    def choose(self) -> None:
+        """Ask for the worn scan and read it."""
+        if path := ask_scan(self._window, tr("Open a worn scan")):
+            self.read(path)
+
+    def read(self, path: str) -> None:
+        """Read a worn scan and lay it on the body shown; what was compared before stays until then."""
+        frame = self._window.session.frame
+        if frame is None:
+            return
+        self._window.jobs.cancel(self._reading)
+        self._path, self._of = path, frame.stages.body
+        self._window.notices.withdraw(_REFUSED)
+        source = ScanSource(path, unit=self._unit or None)
+        self._reading = self._window.jobs.run(
+            tr("Reading the worn scan"),
+            lambda progress: read_worn(frame.stages, source, progress),
+            lambda worn: self._take(cast(Worn, worn)),
+            lambda error: self._window.desk.show_failure(error, _REFUSED),
+            waited=True,
+        )
+
+    def calibrate(self) -> None:
+        """Find the numbers at which the prediction comes nearest, beside."""
+        frame, worn, thickness = self._window.session.frame, self.worn, self._thickness
+        if frame is None or worn is None or not self._window.is_settled():
+            return
+        design = frame.stages.design
+        job = self._window.jobs.run(
+            tr("Calibrating"),
+            lambda progress: calibrate(frame.stages, worn, thickness=thickness, progress=progress),
+            lambda found: self._take_found(design, cast(CalibrationResult, found)),
+            self._fail_to_fit,
+            waited=True,
+            left=self.follow,
+        )
+        self._fitting = job, design
+        self.follow()
+
+    def _fail_to_fit(self, error: Exception) -> None:
+        self._fitting = None
+        self._window.desk.show_failure(error)
+        self.follow()
+
+    def apply(self) -> None:
+        """Give the design the numbers that were found, as one undo step."""
+        if self._found is None or self._found[0] is not self._window.session.design:
+            return
+        found, self._found = self._found[1], None
+        said = tr("Calibrated on {file}").format(file=found.calibration.worn)
+        self._window.session.edit(lambda _: found.design, said)
+
+    def _tell_unit(self, unit: str) -> None:
+        self._unit = unit
+        if self._path:
+            self.read(self._path)
+
+    def _thicken(self, mm: float) -> None:
+        self._thickness = mm
+        self._begin_anew()
+        self.page.thickness.show_value(mm)
+        self.follow()
+
+    # -- what is known
+
+    def values(self, frame: Frame) -> Floats:
+        """Return predicted less real at ``moving.vertices`` of a frame, (r,) [mm]; no numbers if unknown."""
+        return words.map_values(self._known(frame), len(frame.stages.moving.vertices))
+
+    def note(self, frame: Frame) -> str:
+        """Return what the legend of the map says first, or nothing."""
+        return next(words.notes_of(self.worn, self._known(frame) is None), "")
+
+    def _known(self, frame: Frame) -> Difference | None:
+        """Return the comparison of a frame; if it is not known yet it is worked out beside."""
+        if self._difference is not None and _is_as(frame, self._difference[0]):
+            return self._difference[1]
+        asked = self._comparing is not None and _is_as(frame, self._comparing[1])
+        if self.worn is not None and self._of is frame.stages.body and self._rests(frame) and not asked:
+            self._compare(frame, self.worn)
+        return None
+
+    def _rests(self, frame: Frame) -> bool:
+        """Tell whether the shape shown has settled, though turns beside it may go on for seconds."""
+        session = self._window.session
+        of_now = frame is session.frame and frame.stages.design is session.design and session.is_answered
+        return of_now and (frame.verdict.motion == "settled" or not frame.at_work)
+
+    def _compare(self, frame: Frame, worn: Worn) -> None:
+        if self._comparing is not None:
+            self._window.jobs.cancel(self._comparing[0])
+        thickness = self._thickness
+        job = self._window.jobs.run(
+            tr("Comparing with the worn scan"),
+            lambda progress: compare(frame.stages, frame.control_points, worn, thickness),
+            lambda found: self._take_difference(frame, cast(Difference, found)),
+            self._window.desk.show_failure,
+        )
+        self._comparing = job, frame
+
+    def _take(self, worn: Worn) -> None:
+        self._reading, self.worn = None, worn
+        self._begin_anew()
+        self.follow()
+
+    def _begin_anew(self) -> None:
+        """Let go of all that was found, or is being looked for, with another scan or thickness."""
+        for begun in (self._comparing, self._fitting):
+            if begun is not None:
+                self._window.jobs.cancel(begun[0])
+        self._comparing = self._fitting = self._difference = self._found = None
+        self.compared.emit()
+
+    def _take_difference(self, frame: Frame, found: Difference) -> None:
+        self._comparing = None
+        self._difference = frame, found
+        self.follow()
+        self.compared.emit()
+
+    def _take_found(self, design: Design, found: CalibrationResult) -> None:
+        self._fitting = None
+        if design is self._window.session.design:
+            self._found = design, found
+        self.follow()
+
+    def follow(self) -> None:
+        """Bring page and door up to date with what is shown, and let go of what is of something else."""
+        frame, design = self._window.session.frame, self._window.session.design
+        if frame is None or design is None:
+            return
+        self._let_go(frame, design)
+        self.door.show_words(words.door_words(design.calibration, self.worn))
+        if not self.page.isVisible():
+            return
+        known = self._known(frame)
+        shown = known or (self._difference[1] if self._difference else None)
+        self.page.show_view(self._view(frame, design, shown, faint=known is None))
+        self.page.show_map(self._window.map_desk.name == MAP)
+
+    def _let_go(self, frame: Frame, design: Design) -> None:
+        if self._of is not None and frame.stages.body is not self._of:
+            self._window.jobs.cancel(self._reading)
+            self._reading = self.worn = self._of = None
+            self._path = ""
+            if self._window.map_desk.name == MAP:
+                self._window.map_desk.choose("")  # of a body that is gone
+            self._begin_anew()
+        if self._found is not None and self._found[0] is not design:
+            self._found = None
+        if self._fitting is not None and self._fitting[1] is not design:
+            self._window.jobs.cancel(self._fitting[0])
+            self._fitting = None
+
+    def _view(self, frame: Frame, design: Design, shown: Difference | None, *, faint: bool) -> WornView:
+        worn, found = self.worn, self._found[1] if self._found else None
+        at_work = self._fitting is not None and self._fitting[0].wanted
+        return WornView(
+            file=worn.name if worn else "",
+            lies=words.aligned_words(worn) if worn else "",
+            rows=words.figure_rows(shown) if shown else (),
+            bust=words.told_words(shown) if shown else "",
+            numbers=words.number_rows(found, design) if found else (),
+            surely=words.surely_words(found, design) if found else "",
+            kept=words.kept_words(found, design) if found else "",
+            better=words.better_words(found, design) if found else "",
+            record=words.record_words(design.calibration),
+            faint=faint,
+            ready=bool(worn) and self._window.is_settled() and not at_work and not faint,
+            helped=found is not None and found.helped,
+            doubtful=found is not None and found.weak,
+        )
+
+
+def _is_as(frame: Frame, other: Frame) -> bool:
+    """Tell whether two frames show the same shape: another may have come of turns beside it alone."""
+    same = frame.stages is other.stages
+    return same and bool((frame.control_points == other.control_points).all())

@@ -1,0 +1,233 @@
+"""A worn scan beside the prediction: how it lies, predicted less real, and the numbers that fit it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QScrollArea, QVBoxLayout, QWidget
+
+from app.gui.theme.stylesheet import font, label, set_tag
+from app.gui.widgets.basic import ElidedLabel, Segment, button, hairline, sentence
+from app.gui.widgets.navigation_row import page_head
+from app.gui.widgets.tooltip import set_tip
+from app.gui.widgets.value_edit import FigureField
+from app.i18n.catalog import tr
+from app.i18n.lengths import length_unit
+from core.analysis.calibration.api import THICKEST
+
+
+@dataclass(frozen=True)
+class FigureRow:
+    """Predicted less real of some skin, as it is written: mean, root of the mean square, 95 % [mm]."""
+
+    title: str
+    mean: str
+    rms: str
+    most: str
+
+
+@dataclass(frozen=True)
+class NumberRow:
+    """A number that was found, as it is written: before, after, its ±; and whether it is ``told`` well."""
+
+    title: str
+    before: str
+    after: str
+    plus_minus: str
+    told: bool = True
+
+
+@dataclass(frozen=True)
+class WornView:
+    """All that the page says; empty where there is nothing.
+
+    ``faint``: the comparison is of a former shape. ``ready``: the numbers can be sought. ``helped``: those
+    found can be applied, ``doubtful`` that this is not recommended, and ``surely`` says which are told well.
+    ``record`` is what the design keeps of a calibration.
+    """
+
+    file: str = ""
+    lies: str = ""
+    rows: tuple[FigureRow, ...] = ()
+    bust: str = ""
+    numbers: tuple[NumberRow, ...] = ()
+    surely: str = ""
+    kept: str = ""
+    better: str = ""
+    record: str = ""
+    faint: bool = False
+    ready: bool = False
+    helped: bool = False
+    doubtful: bool = False
+
+
+class WornPage(QWidget):
+    """``left`` goes back, ``asked`` wants a file, ``calibrated`` the numbers, ``applied`` takes them.
+
+    ``told`` carries the unit of the scan, empty for that which is guessed; ``thickened`` the cloth [mm],
+    ``mapped`` whether the map is to lie on the body.
+    """
+
+    left, asked, calibrated, applied = Signal(), Signal(), Signal(), Signal()
+    told, thickened, mapped = Signal(str), Signal(float), Signal(bool)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.view = WornView()
+        self._mapped = False
+        self.file, self.lies = ElidedLabel(), sentence("", "secondary")
+        self.file.setFont(font("name"))
+        self.unsure = sentence(
+            tr("± is 95 % of what noise of the scans makes; another posture or breath is not in it."),
+            "caption",
+        )
+        self.bust, self.kept, self.better = (sentence("", role) for role in ("secondary", "caption", "name"))
+        self.record, self.surely = sentence("", "secondary"), sentence("", "secondary")
+        self.choose = button(tr("Choose a worn scan…"))
+        self.unit = Segment(
+            (("", tr("Guessed")), ("mm", "mm"), ("cm", "cm"), ("m", "m"), ("inch", tr("inch"))),
+            True,
+            wide=True,
+        )
+        self.unit.set_choice("")
+        self.thickness = FigureField("mm", tr("Thickness of the cloth"), widest="20.0")
+        self.thickness.show_value(0.0)
+        self.look = button(tr("Show on the body"))
+        self.calibrate, self.apply = button(tr("Calibrate")), button(tr("Apply"), "primary")
+        self._figures, self._numbers = QGridLayout(), QGridLayout()
+        self._cells: list[QLabel] = []
+        self._lay()
+        self._connect()
+        self.show_view(self.view)
+
+    def _connect(self) -> None:
+        self.choose.clicked.connect(self.asked)
+        self.calibrate.clicked.connect(self.calibrated)
+        self.apply.clicked.connect(self.applied)
+        self.look.clicked.connect(lambda: self.mapped.emit(not self._mapped))
+        self.unit.chosen.connect(self._tell)
+        self.thickness.entered.connect(lambda mm: self.thickened.emit(min(max(mm, 0.0), THICKEST)))
+
+    def _tell(self, unit: str) -> None:
+        self.unit.set_choice(unit)
+        self.told.emit(unit)
+
+    def _lay(self) -> None:
+        inside = QWidget()
+        inside.setProperty("scrolled", "true")
+        column = QVBoxLayout(inside)
+        column.setContentsMargins(18, 4, 18, 16)
+        column.setSpacing(8)
+        said = tr("A scan of the same person with the garment on tells how near the prediction comes.")
+        column.addWidget(sentence(said))
+        column.addWidget(self.record)
+        for each in (self.file, self.lies):
+            column.addWidget(each)
+        column.addWidget(self.choose, 0, Qt.AlignmentFlag.AlignLeft)
+        column.addWidget(label(tr("Unit of the scan"), "secondary"))
+        column.addWidget(self.unit)  # under its title: beside it the page is wider than the inspector
+        column.addLayout(_row(tr("Thickness of the cloth"), self.thickness))
+        self._compared, self._found = QWidget(), QWidget()
+        self._lay_compared(QVBoxLayout(self._compared))
+        self._lay_found(QVBoxLayout(self._found))
+        column.addWidget(self._compared)
+        column.addWidget(self._found)
+        column.addStretch(1)
+        area = QScrollArea()
+        area.setAccessibleName(tr("Worn scan"))
+        area.setWidgetResizable(True)
+        area.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # not by a click on a button, which takes none itself
+        area.setFrameShape(QFrame.Shape.NoFrame)
+        area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        area.setWidget(inside)
+        outer = QVBoxLayout(self)
+        outer.setContentsMargins(0, 0, 0, 0)
+        outer.setSpacing(0)
+        outer.addLayout(page_head(tr("Worn scan"), tr("Back to the measures"), self.left))
+        outer.addWidget(area, 1)
+
+    def _lay_compared(self, column: QVBoxLayout) -> None:
+        column.setContentsMargins(0, 4, 0, 0)
+        column.setSpacing(6)
+        column.addWidget(hairline())
+        column.addWidget(label(f"{tr('Predicted less real')} [{length_unit()}]", "name"))
+        column.addLayout(self._figures)
+        column.addWidget(self.bust)
+        row = QHBoxLayout()
+        row.setSpacing(6)
+        row.addWidget(self.look)
+        row.addWidget(self.calibrate)
+        row.addStretch(1)
+        column.addLayout(row)
+        set_tip(
+            self.calibrate,
+            tr("Find the numbers of tissue and lines at which the prediction comes nearest to the worn scan"),
+        )
+
+    def _lay_found(self, column: QVBoxLayout) -> None:
+        column.setContentsMargins(0, 4, 0, 0)
+        column.setSpacing(6)
+        column.addWidget(hairline())
+        column.addWidget(self.better)
+        column.addLayout(self._numbers)
+        column.addWidget(self.surely)
+        column.addWidget(self.kept)
+        column.addWidget(self.unsure)
+        column.addWidget(sentence(tr("These numbers hold for this person and this garment."), "caption"))
+        column.addWidget(self.apply, 0, Qt.AlignmentFlag.AlignLeft)
+        for grid in (self._figures, self._numbers):
+            grid.setHorizontalSpacing(10)
+            grid.setVerticalSpacing(2)
+            grid.setColumnStretch(0, 1)
+
+    def show_view(self, view: WornView) -> None:
+        """Show what there is to say."""
+        self.view = view
+        texts = (self.file, view.file), (self.lies, view.lies), (self.bust, view.bust)
+        others = (self.kept, view.kept), (self.better, view.better), (self.record, view.record)
+        for part, text in (*texts, *others, (self.surely, view.surely)):
+            part.setText(text)
+            part.setVisible(bool(text))
+        self.choose.setText(tr("Choose another…") if view.file else tr("Choose a worn scan…"))
+        self._compared.setVisible(bool(view.rows))
+        self._found.setVisible(bool(view.better))
+        self.calibrate.setEnabled(view.ready)
+        self.apply.setVisible(view.helped)
+        set_tag(self.apply, "kind", "secondary" if view.doubtful else "primary")
+        self.unsure.setVisible(bool(view.numbers))
+        for cell in self._cells:
+            cell.deleteLater()
+        self._cells = []
+        rows = [(row.title, row.mean, row.rms, row.most) for row in view.rows]
+        self._fill(self._figures, ("", tr("Mean"), tr("rms"), "95 %"), rows, [view.faint] * len(rows))
+        rows = [(row.title, row.before, row.after, row.plus_minus) for row in view.numbers]
+        weak = [not row.told for row in view.numbers]
+        self._fill(self._numbers, ("", tr("As it is"), tr("Found"), "±"), rows, weak)
+
+    def show_map(self, on: bool) -> None:
+        """Tell by the button whether the map lies on the body."""
+        self._mapped = on
+        self.look.setText(tr("Hide the map") if on else tr("Show on the body"))
+
+    def _fill(
+        self, grid: QGridLayout, heads: Sequence[str], rows: Sequence[Sequence[str]], faint: Sequence[bool]
+    ) -> None:
+        right = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
+        for at, texts in enumerate((heads, *rows) if rows else ()):
+            for column, text in enumerate(texts):
+                cell = label(text, "caption" if at == 0 else "body", tabular=bool(column))
+                set_tag(cell, "tone", "faint" if at and faint[at - 1] else "")
+                if column:
+                    cell.setAlignment(right)
+                grid.addWidget(cell, at, column)
+                self._cells.append(cell)
+
+
+def _row(title: str, field: QWidget) -> QHBoxLayout:
+    row = QHBoxLayout()
+    row.addWidget(label(title, "secondary"))
+    row.addStretch(1)
+    row.addWidget(field)
+    return row

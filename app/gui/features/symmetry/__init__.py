@@ -1,0 +1,1 @@
+"""Left and right compared and balanced."""

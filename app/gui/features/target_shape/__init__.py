@@ -1,0 +1,1 @@
+"""Target shape: positions that the line lengths are computed for."""

@@ -1,0 +1,300 @@
+"""Ask for the result: wishes are met by lengths of lines, which are seen before they are taken."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, QTimer
+
+from app.gui.features.target_shape.card import AskCard
+from app.gui.features.target_shape.handles import AskHandles
+from app.gui.features.target_shape.linearization import AskGround
+from app.gui.features.target_shape.menu import AskMenu
+from app.gui.features.target_shape.presenter import is_as_wished, show_answer, wish_views
+from app.gui.features.target_shape.profile_tool import AskDrawing
+from app.gui.features.target_shape.surroundings import AskAround
+from app.gui.features.target_shape.targets import Wishes
+from app.gui.features.target_shape.targets_undo import AskSteps
+from app.gui.features.target_shape.view_state import AskBack
+from app.gui.features.target_shape.worker import Answer, AskWork, Question
+from app.gui.widgets.accessibility import announce
+from app.i18n.catalog import joined, say, tr
+from app.presenters.target_conflicts import inactive_words
+from app.presenters.target_shape import step_words
+from core.analysis.inverse_design.quantities import Goal
+from core.document.design import Design
+from core.errors import UserError
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+    from core.analysis.inverse_design.profile_curve import Drawn
+
+_RESTS = 150  # stillness of a hand after which the best lengths are looked for [ms]
+_SLOW = 400  # an answer that takes longer is worth a word [ms]
+
+
+class AskDesk(QObject):
+    """Opens the card by ``begin``; what is wished is answered while it is open, and previewed on the body.
+
+    A wish without a value is shown as it is, and not asked for.
+    """
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window, self._session = window, window.session
+        self.all_wishes = Wishes()
+        self.answer: Answer | None = None
+        self._apply_due = False
+        self.ground = AskGround(window.session)
+        self.work = AskWork(window.jobs, self)
+        self.work.answered.connect(self._take)
+        self.work.refused.connect(self._refuse)
+        self.work.nearer.connect(self._show_nearer)
+        self._rest = QTimer(self, interval=_RESTS, singleShot=True)
+        self._rest.timeout.connect(self.ask)
+        self._slow = QTimer(self, interval=_SLOW, singleShot=True)
+        self._slow.timeout.connect(self._show)
+        self.card = AskCard()
+        window.lines_page.addWidget(self.card)
+        self.handles = AskHandles(window, self)
+        self.drawing, self.around = AskDrawing(window, self), AskAround(window, self)
+        self.menu, self.back = AskMenu(window, self), AskBack(window, self)
+        self.steps = AskSteps(window, self)
+        self._connect()
+
+    def _connect(self) -> None:
+        window, card, session = self._window, self.card, self._session
+        said = tr("Say where the bust is to be; Busk finds the lengths of the worn lines")
+        do = window.actions_
+        do.rule("lines")
+        do.add("lines", tr("Ask for the result…"), "A", said, do=self.begin, of_document=True)
+        window.ask_door.clicked.connect(lambda _: self.begin())
+        card.entered.connect(self.wish)
+        card.removed.connect(self.drop)
+        card.add_asked.connect(self.menu.show)
+        card.hand_chosen.connect(self.drawing.choose)
+        card.applied.connect(self.apply)
+        card.left.connect(self.leave)
+        session.design_changed.connect(self._follow_design)
+        session.frame_ready.connect(lambda _: self.handles.follow())
+        session.opened.connect(lambda _: self._forget())
+        window.view.compared.connect(self.handles.follow)
+
+    # -- what is asked for
+
+    @property
+    def is_open(self) -> bool:
+        """Whether something is being asked for."""
+        return self._window.lines_page.currentWidget() is self.card
+
+    def begin(
+        self,
+        goals: Sequence[Goal] = (),
+        prepare: Callable[[Design], Design] | None = None,
+        said: str = "",
+        limit: float | None = None,
+    ) -> None:
+        """Open the card, with ``goals`` wished for already.
+
+        They are asked of what ``prepare`` makes of the design, which ``said`` tells; that is taken with them.
+        ``limit`` is that of pressure [kPa], see ``Wishes``; one that was switched off before stays off.
+        """
+        if self._session.frame is None or self._session.design is None:
+            return
+        if self.is_open:
+            self.leave()
+        self._window.line_drawing.leave()
+        self._window.line_routing.leave()
+        self._window.desk.go_to("lines")
+        limit = math.inf if math.isinf(self.all_wishes.most_kpa) else limit
+        self.all_wishes, self.answer, self._apply_due = replace(Wishes.of(goals), limit=limit), None, False
+        self.ground.begin(prepare, said)
+        self.back.remember()
+        self._window.lines_page.setCurrentWidget(self.card)
+        self.drawing.choose("bust")
+        self.steps.forget()
+        self.card.take_focus(next(iter(self.wishes), ""))
+
+    def wish(self, key: str, value: float) -> None:
+        """Wish for a figure [mm], or set the limit of pressure [kPa]."""
+        self.all_wishes.set(key, value)
+        self.steps.note()
+        self.ask()
+
+    def add(self, name: str) -> None:
+        """Show a figure as it is, so that it can be wished otherwise."""
+        self.wishes.setdefault(name, None)
+        self.ask()
+        self.card.take_focus(name)
+
+    def drop(self, key: str) -> None:
+        """Wish for a figure, or a profile, no longer."""
+        self.all_wishes.drop(key)
+        if self.handles.kind == "profile" and not self.drawn:
+            self.drawing.choose("bust")
+        else:
+            self.ask()
+        self.steps.note()
+
+    def wish_by_hand(self, wishes: dict[str, float | None], *, at_rest: bool) -> None:
+        """Take wishes that a hand has dragged to; while it is on its way the answers are quick ones."""
+        self.all_wishes.figures = wishes
+        self._rest.start()
+        self.ask(hurried=not at_rest)
+        if at_rest:
+            self.steps.note()
+
+    @property
+    def drawn(self) -> dict[str, Drawn]:
+        """The profiles that are drawn, by section."""
+        return self.all_wishes.drawn
+
+    @property
+    def wishes(self) -> dict[str, float | None]:
+        """The figures on the card; those without a value are not asked for."""
+        return self.all_wishes.figures
+
+    def goals(self) -> tuple[Goal, ...]:
+        """Return what is asked for."""
+        return self.all_wishes.goals(self.answer.now if self.answer is not None else {})
+
+    @property
+    def is_tried_on(self) -> bool:
+        """Whether what is seen is the answer, solved to the end, and not taken."""
+        frame, answer = self._session.frame, self.answer
+        if frame is None or answer is None or answer.reply is None or not self.is_open:
+            return False
+        return frame.stages.design is answer.reply.design and not frame.at_work
+
+    # -- how it ends
+
+    def apply(self) -> None:
+        """Take the lengths that are shown as one undo step, once they are those that were asked for."""
+        answer = self.answer
+        self._apply_due = self.work.at_work or self._rest.isActive()
+        if self._apply_due or answer is None or answer.reply is None:
+            return
+        design, words = answer.reply.design, step_words(self.all_wishes.asked, self.all_wishes.set_limit)
+        if self.ground.said:
+            words = " · ".join((self.ground.said, words))
+        self.end()
+        self._session.edit(lambda _: design, words)
+
+    def leave(self) -> None:
+        """Ask no longer; the body is as it was."""
+        if self.is_open:
+            self.end()
+            self._session.cancel_preview()
+
+    def end(self) -> None:
+        """Close the card, and let the shown body be what it is."""
+        self.card.drop_typed()
+        self._rest.stop()
+        self._slow.stop()
+        self.work.stop()
+        self.answer, self._apply_due = None, False
+        self.ground.leave()
+        if self.is_open:
+            self.back.go()
+        self._window.lines_page.setCurrentIndex(0)
+        self.handles.put_away()
+        self.steps.forget()
+        self._window.lines_desk.show_rows()  # their lengths may be those that were tried on
+
+    def _forget(self) -> None:
+        """Let another body begin with the usual limit."""
+        self.end()
+        self.all_wishes = Wishes()
+
+    # -- questions and answers
+
+    def ask(self, *, hurried: bool = False) -> None:
+        """Have what is wished now answered; ``hurried`` while a hand is on its way."""
+        frame, design = self._session.frame, self.ground.design
+        if not self.is_open or frame is None or design is None:
+            return
+        if not hurried:
+            self._rest.stop()
+        if self.ground.missing:
+            self.work.stop()
+            self.answer = None
+            self._session.cancel_preview()
+        else:
+            goals, told, limit = self.goals(), self.all_wishes.told, self.all_wishes.most_kpa
+            optional = self.ground.inactive if self.all_wishes.optional else ()
+            hurried = hurried and bool(goals)
+            self.work.ask(Question(design, frame.stages, goals, told, limit, hurried, optional))
+            self._slow.start()
+        self._show()
+
+    def _take(self, answer: Answer) -> None:
+        if not self.is_open or answer.question.design is not self.ground.design:
+            return
+        self.answer = answer
+        if not answer.question.goals and self.goals():  # only now it is known what is to stay
+            self.ask()
+            return
+        if answer.reply is not None and answer.reply.design != self._session.design:
+            self._session.preview(answer.reply.design)
+        else:
+            self._session.cancel_preview()
+        self._show()
+        if not self.work.at_work and not answer.question.hurried:
+            announce(self.card, self.card.answer.text())
+            due, self._apply_due = self._apply_due, False
+            if due and is_as_wished(self.all_wishes, answer):  # what is only near was not seen yet
+                self.apply()
+
+    def _show_nearer(self, question: Question, design: Design) -> None:
+        """Show the nearest so far on the body, while it is looked for elsewhere."""
+        if self.is_open and question.design is self.ground.design and self.work.is_at(question):
+            self._session.preview(design)
+
+    def _refuse(self, problem: Exception) -> None:
+        self._apply_due = False
+        if not self.is_open:
+            return
+        if not isinstance(problem, UserError):
+            self.leave()
+            self._session.failed.emit(problem)
+            return
+        self.answer = None
+        self._session.cancel_preview()
+        self._show()
+        said = joined((say(problem.message), say(problem.hint)))
+        self.card.show_answer(said, "warn")
+
+    def _follow_design(self, _: Design) -> None:
+        if self.is_open:
+            self.answer = None
+            self.steps.forget()
+            self.ground.follow()
+            self.ask()
+
+    # -- what is shown
+
+    def _show(self) -> None:
+        frame, design = self._session.frame, self.ground.design
+        if not self.is_open or frame is None or design is None:
+            return
+        missing = self.ground.missing
+        self.card.show_help(bool(missing), locked=not design.worn().isdisjoint(self.ground.moving))
+        if missing:
+            self.card.show_wishes([], missing)
+            self.card.show_answer()
+        else:
+            self.card.show_optional(inactive_words(design, self.ground.inactive), self.all_wishes.optional)
+            hint = self.drawing.hint()
+            self.card.show_wishes(list(wish_views(self.all_wishes, self.answer)), hint)
+            said = self.ground.said
+            show_answer(self.card, design, self.all_wishes, self.answer, apart=said, busy=self._busy())
+        self.handles.follow()
+
+    def _busy(self) -> str:
+        """Return how long an answer is being waited for: nothing, "soon" or "slow"."""
+        if not (self.work.at_work or self._rest.isActive()):
+            return ""
+        return "soon" if self._slow.isActive() or self._rest.isActive() else "slow"

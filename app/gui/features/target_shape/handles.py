@@ -1,0 +1,187 @@
+"""The handles on the body: what is wished for by hand while the result is asked for."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import QObject
+
+from app.gui.features.target_shape.profile_card import AskProfile
+from app.gui.viewport.target_handle import BustHandle
+from app.i18n.catalog import tr
+from app.presenters.bust_shift import bust_move
+from core.analysis.inverse_design.profile_curve import Drawn
+from core.geometry.mesh import Floats
+from core.pipeline.frame import Frame
+
+if TYPE_CHECKING:
+    from app.gui.features.target_shape.controller import AskDesk
+    from app.gui.main_window import MainWindow
+
+SIDES = ("left", "right")
+KINDS = {"bust": ("lift", "out"), "apex": ("apex lift", "apex out")}
+"""What the handles wish for, up and out, by what they are dragged at."""
+
+_ASIDE = 0.25  # of the way of a hand: less to the side of it is not meant [1]
+_STILL = 0.05  # no way at all; Shift drags in small steps [mm]
+_NAMES = {"left": lambda: tr("Left handle"), "right": lambda: tr("Right handle")}
+_FARTHEST = 80.0  # a bust point is not dragged further from where it is at rest [mm]
+
+
+class AskHandles(QObject):
+    """One handle a side in the main view; linked they wish for the mean of both, else for each side.
+
+    ``kind`` is what they are dragged at: "bust" points, "apex", the foremost places, or "profile": then there
+    are those of the drawn profiles instead.
+    """
+
+    def __init__(self, window: MainWindow, desk: AskDesk) -> None:
+        super().__init__(desk)
+        self._window, self._desk = window, desk
+        self.kind = "bust"
+        self.by_side: dict[str, BustHandle] = {}
+        self.profile = AskProfile(window.view.viewport, self)
+        self._before: tuple[dict[str, float | None], dict[str, Drawn]] | None = None
+        self._pulled: dict[str, float] = {}  # how far the hand has gone each way since it closed [mm]
+        self.profile.taken.connect(self._take_profile)
+        self.profile.pulled.connect(self._draw)
+        self.profile.dropped.connect(self._drop)
+
+    @property
+    def carries(self) -> bool:
+        """Whether a hand has hold of one."""
+        return self._before is not None
+
+    def let_go(self) -> bool:
+        """Bring the wishes back to what they were before a hand took hold; returns whether one had."""
+        before, self._before = self._before, None
+        if before is None:
+            return False
+        self._open_hands()
+        figures, drawn = before
+        for section, profile in drawn.items():
+            self._desk.drawing.draw(section, profile)
+        self._desk.wish_by_hand(figures, at_rest=True)
+        self._window.job_desk.show()
+        return True
+
+    def put_away(self) -> None:
+        """Show them no longer."""
+        self._before = None
+        for handle in self.by_side.values():
+            handle.put_away()
+        self.profile.put_away()
+
+    def follow(self) -> None:
+        """Stand where the bust points are wished on the shown body."""
+        frame, view = self._window.session.frame, self._window.view
+        if frame is None or not self._desk.is_open or not view.after or not self._desk.ground.asks:
+            self.put_away()
+            return
+        if self.kind == "profile":
+            for handle in self.by_side.values():
+                handle.put_away()
+            if not self.carries:
+                self._desk.drawing.follow(frame)
+            self.profile.follow(frame, self._desk.drawn)
+            return
+        self.profile.put_away()
+        if not self.by_side:
+            self._make()
+        watch = frame.stages.watch
+        feet = (watch.apex_places if self.kind == "apex" else watch.bust_points)(frame.control_points)
+        for side, foot in zip(SIDES, feet, strict=True):
+            self.by_side[side].show_at(foot + self._missing(frame, side), foot)
+
+    def _make(self) -> None:
+        for side in SIDES:
+            handle = BustHandle(self._window.view.viewport, side, _NAMES[side]())
+            handle.taken.connect(self._take)
+            handle.pulled.connect(partial(self._pull, side))
+            handle.dropped.connect(self._drop)
+            self.by_side[side] = handle
+
+    def _missing(self, frame: Frame, side: str) -> Floats:
+        """Return the way from the bust point of a side to where it is wished, (3,) [mm]."""
+        wishes = self._desk.wishes
+        up, out = (
+            next(
+                (
+                    value - _now(frame, name)
+                    for name in (f"{what} {side}", what)
+                    if (value := wishes.get(name)) is not None
+                ),
+                0.0,
+            )
+            for what in KINDS[self.kind]
+        )
+        return np.array([0.0, -out, up])
+
+    def _take(self) -> None:
+        if self._before is None:
+            self._before = dict(self._desk.wishes), dict(self._desk.drawn)
+            self._pulled = dict.fromkeys(KINDS.get(self.kind, ()), 0.0)
+            self._window.job_desk.show()
+
+    def _take_profile(self, section: str) -> None:
+        """Take the curve of a section; from elsewhere than its side a hand cannot tell out from across."""
+        drawing = self._desk.drawing
+        if drawing.is_from_side(section):
+            self._take()
+        else:
+            self._open_hands()
+            drawing.look_at(self._desk.drawn[section])
+
+    def _open_hands(self) -> None:
+        for handle in (*self.by_side.values(), *self.profile.all()):
+            handle.open_hand()
+
+    def _draw(self, section: str, handle: int, up: float, out: float) -> None:
+        """Go on with the curve of a section by a step of the hand at one of its handles [mm]."""
+        if self._before is not None:
+            self._desk.drawing.draw(section, self._desk.drawn[section].pulled(handle, up, out))
+            self._desk.wish_by_hand(dict(self._desk.wishes), at_rest=False)
+
+    def _pull(self, side: str, up: float, out: float) -> None:
+        """Go on with the wishes by a step of the hand [mm]."""
+        frame = self._window.session.frame
+        if frame is None or self._before is None:
+            return
+        wishes, linked = dict(self._desk.wishes), self._desk.card.link.isChecked()
+        for what, step in zip(KINDS[self.kind], (up, out), strict=True):
+            name = what if linked else f"{what} {side}"
+            self._pulled[what] += step
+            if wishes.get(name) is not None or self._is_meant(what):
+                value = wishes.get(name)
+                value = _now(frame, name) + self._pulled[what] if value is None else value + step
+                for other in (what, *(f"{what} {each}" for each in SIDES)):
+                    if other != name and (linked or other == what):
+                        wishes.pop(other, None)
+                wishes[name] = float(np.clip(value, -_FARTHEST, _FARTHEST))
+        self._desk.wish_by_hand(wishes, at_rest=False)
+
+    def _is_meant(self, what: str) -> bool:
+        """Tell whether the hand goes that way on purpose: a way that was free stays so if it does not."""
+        way = abs(self._pulled[what])
+        return way > _ASIDE * max(map(abs, self._pulled.values())) and way > _STILL
+
+    def _drop(self) -> None:
+        if self._before is not None:
+            self._before = None
+            self._desk.wish_by_hand(dict(self._desk.wishes), at_rest=True)
+            self._window.job_desk.show()
+
+
+def _now(frame: Frame, name: str) -> float:
+    """Return what a figure of the bust points or the foremost places is on the shown body [mm]."""
+    upward, side = "lift" in name, next((each for each in SIDES if name.endswith(each)), "")
+    if name.startswith("apex "):
+        places = (frame.control_points, frame.stages.control.mesh.vertices)
+        after, before = (frame.stages.watch.apexes(points) for points in places)
+        steps = (after - before)[:, 1] if upward else (before - after)[:, 0]
+        return float(steps[SIDES.index(side)] if side else steps.mean())
+    move = bust_move(frame)
+    step = {"": move.mean, "left": move.left, "right": move.right}[side]
+    return step.up if upward else step.forward

@@ -1,0 +1,61 @@
+"""Of which design the result is asked: the session's, or what is made of it first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from app.gui.session.session import Session
+from app.presenters.target_shape import missing_words
+from core.document.design import Design
+
+
+class AskGround:
+    """Holds the ``design`` that is asked, until ``leave``; ``said`` tells what was made of the session's."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._prepare: Callable[[Design], Design] | None = None
+        self.design: Design | None = None
+        self.said = ""
+
+    def begin(self, prepare: Callable[[Design], Design] | None, said: str) -> None:
+        """Ask of what ``prepare`` makes of the session's design."""
+        self._prepare, self.said = prepare, said if prepare is not None else ""
+        self.follow()
+
+    def follow(self) -> None:
+        """Ask of the session's design as it is now."""
+        design = self._session.design
+        self.design = design if design is None or self._prepare is None else self._prepare(design)
+
+    def leave(self) -> None:
+        """Ask of none any longer."""
+        self._prepare, self.design, self.said = None, None, ""
+
+    @property
+    def missing(self) -> str:
+        """What has to be done before anything can be asked, if there is something."""
+        # What is prepared is not in the frame yet; that its lines can move something is known.
+        if self._prepare is not None or self.design is None:
+            return ""
+        return missing_words(self.design, self.moving)
+
+    @property
+    def asks(self) -> bool:
+        """Whether there are lines that can be asked for anything."""
+        return self._session.frame is not None and self.design is not None and not self.missing
+
+    @property
+    def inactive(self) -> tuple[str, ...]:
+        """The lines that are off and could move the body."""
+        design = self.design
+        if design is None:
+            return ()
+        off = (name for name in self.moving if name not in design.worn())
+        return tuple(name for name in off if not design.traits_of(name).locked)
+
+    @property
+    def moving(self) -> list[str]:
+        """The lines that lie on points which move."""
+        frame = self._session.frame
+        return [] if frame is None else [line.name for line in frame.stages.model.lines if line.constrains]

@@ -1,0 +1,66 @@
+"""The menu of all that can be wished for while the result is asked for."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+from PySide6.QtWidgets import QMenu
+
+from app.gui.widgets.file_dialogs import ask_table
+from app.gui.widgets.menu import Menu, pull_down
+from app.i18n.catalog import tr
+from app.presenters.target_shape import figure_title, profile_title
+from core.analysis.inverse_design.balance_quantity import EVEN
+from core.analysis.inverse_design.girth_quantity import GIRTH
+
+if TYPE_CHECKING:
+    from app.gui.features.target_shape.controller import AskDesk
+    from app.gui.main_window import MainWindow
+
+_BOTH = ("lift", "out", "apex lift", "apex out", GIRTH)
+
+
+class AskMenu(QObject):
+    """Offers figures that are not wished for yet, and profiles from tables."""
+
+    def __init__(self, window: MainWindow, desk: AskDesk) -> None:
+        super().__init__(desk)
+        self._window, self._desk = window, desk
+        self.menu = Menu(window)
+
+    def show(self) -> None:
+        """Open the menu under its button."""
+        self.fill()
+        pull_down(self.menu, self._desk.card.add)
+
+    def fill(self) -> None:
+        """List what can be wished for besides what is."""
+        self.menu.clear()
+        self._offer(self.menu, _BOTH)
+        for side, title in (("left", tr("Left side alone")), ("right", tr("Right side alone"))):
+            names = tuple(f"{name} {side}" for name in _BOTH if name != GIRTH)
+            self._offer(self.menu.add_submenu(title), names)
+        self._offer(self.menu.add_submenu(tr("Left against right")), EVEN.names)
+        self.menu.addSeparator()
+        for side in ("left", "right"):
+            if f"profile {side}" not in self._desk.drawn:
+                self.menu.addAction(profile_title(side), partial(self._desk.drawing.begin, side))
+            words = tr("{profile} from a table…").format(profile=profile_title(side))
+            self.menu.addAction(words, partial(self.ask_profile, side))
+
+    def ask_profile(self, side: str) -> None:
+        """Ask for a table, and wish for the profile in it."""
+        path = ask_table(self._window, tr("Profile from a table"))
+        if path:
+            self._desk.drawing.take_table(side, path)
+
+    def _offer(self, menu: QMenu, names: tuple[str, ...]) -> None:
+        for name in names:
+            if name not in self._desk.wishes:
+                menu.addAction(figure_title(name), partial(self._add, name))
+
+    def _add(self, name: str) -> None:
+        """Show a figure as it is now, to be typed over."""
+        self._desk.add(name)

@@ -1,0 +1,101 @@
+"""What the card of wishes shows of them: values that are asked for, and what the others come to."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from app.gui.features.target_shape.card import AskCard
+from app.gui.features.target_shape.row import WishView
+from app.gui.features.target_shape.targets import PRESSURE, Wishes
+from app.gui.features.target_shape.worker import Answer
+from app.i18n.catalog import joined, listed, tr
+from app.presenters.symmetry import asks_to_be_even, evened_words
+from app.presenters.target_conflicts import conflict_words, switched_words, unlimited_words
+from app.presenters.target_shape import (
+    answer_words,
+    beside_words,
+    change_words,
+    figure_title,
+    is_met,
+    is_near,
+    is_signed,
+    kept_words,
+    off_words,
+    profile_title,
+)
+from app.presenters.target_values import pressure_words, result_words, value_words
+from core.analysis.inverse_design.quantities import Goal
+from core.document.design import Design
+from core.garment.pressure_limits import comfort
+
+if TYPE_CHECKING:
+    from core.analysis.inverse_design.solve import Reply
+
+
+def show_answer(
+    card: AskCard, design: Design, wishes: Wishes, answer: Answer | None, *, apart: str, busy: str
+) -> None:
+    """Show what came of wishes: ``busy`` is nothing, "soon" or "slow"; ``apart`` tells what is parted."""
+    locked = {traits.name for traits in design.traits if traits.locked}
+    note = joined([words for words in (apart, kept_words(design, locked)) if words])
+    goals = wishes.goals(answer.now if answer is not None else {})
+    if busy == "slow":
+        card.show_answer(tr("Working it out…"), note=note, can_apply=True)
+    elif answer is None or answer.reply is None or not goals:
+        card.show_answer(note=note, can_apply=bool(busy and goals))
+    else:
+        reply, asked = answer.reply, answer.question.goals
+        met = _is_met(wishes, reply, asked)
+        said = answer_words(reply, asked, wishes.only_limit, answer.now)
+        price, why = beside_words(asked, answer.now, answer.then), ""
+        conflicts, switched = conflict_words(answer.conflicts), switched_words(design, reply.design)
+        if asks_to_be_even(asked) and wishes.only_limit is None:
+            said, price, why = evened_words(reply, asked, answer.now, answer.then)
+            conflicts = ()  # that sentence names the price
+        free = "" if answer.unlimited is None else unlimited_words(answer.unlimited, asked, answer.now)
+        lines = listed(change_words(design, reply))
+        changes = "\n".join(filter(None, (free, why, lines, switched, *conflicts)))
+        tone = "ok" if met else "" if is_near(reply, asked) else "warn"
+        card.show_answer(said, tone, price, changes, note, can_apply=True)
+
+
+def is_as_wished(wishes: Wishes, answer: Answer) -> bool:
+    """Tell whether an answer is what is wished, as nearly as a tailor can tell or a hand draws."""
+    reply, asked = answer.reply, answer.question.goals
+    return reply is not None and (_is_met(wishes, reply, asked) or is_near(reply, asked))
+
+
+def _is_met(wishes: Wishes, reply: Reply, asked: Sequence[Goal]) -> bool:
+    return is_met(reply, asked) or (wishes.only_limit is not None and reply.agreed)
+
+
+def wish_views(wishes: Wishes, answer: Answer | None) -> Iterator[WishView]:
+    """Yield the rows of the card: each what it is now, what is asked for, what it comes to and its change."""
+    now = answer.now if answer is not None else {}
+    then = answer.then if answer is not None else {}
+    for name, value in wishes.figures.items():
+        signed, priority = is_signed(name), wishes.priorities.get(name, "normal")
+        before, result = value_words(now.get(name), signed), result_words(now, then, name)
+        yield WishView(name, figure_title(name), value, before, result, signed=signed, priority=priority)
+    for section, goals in wishes.curves.items():
+        reply = answer.reply if answer is not None else None
+        words = off_words(answer.question.goals, reply.reached, section) if answer and reply else ""
+        title, priority = profile_title(section.split()[1]), wishes.priorities.get(section, "normal")
+        asked = 0.0 if goals else None
+        yield WishView(section, title, asked, words, typed=False, priority=priority)
+    yield _pressure(wishes, answer)
+
+
+def _pressure(wishes: Wishes, answer: Answer | None) -> WishView:
+    presses = answer.presses if answer is not None else {}
+    reply = answer.reply if answer is not None else None
+    then = reply.pressure if reply is not None else {}
+    before, result = pressure_words(presses, then)
+    tone = "bad" if result and max(then.values()) >= comfort().red_kpa else ""
+    on = not math.isinf(wishes.most_kpa)
+    shown, title = wishes.most_kpa if on else None, tr("Pressure at most")
+    return WishView(
+        PRESSURE, title, shown, before, result, "kPa", signed=False, kept=True, priority="", on=on, tone=tone
+    )

@@ -1,0 +1,80 @@
+"""Profiles that are drawn on the body while the result is asked for."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Signal
+
+from app.gui.viewport.target_curve import WishCurve
+from app.gui.viewport.target_handle import BustHandle
+from app.i18n.catalog import tr
+from core.analysis.inverse_design.profile_curve import Drawn, in_space, outline
+from core.pipeline.frame import Frame
+
+if TYPE_CHECKING:
+    from app.gui.viewport.viewport import Viewport
+
+
+class AskProfile(QObject):
+    """One curve a section with its handles in a view.
+
+    ``taken`` and ``dropped`` when a hand closes and opens, ``taken`` with the section; ``pulled`` carries the
+    section, the number of the handle, and each step up and out [mm].
+    """
+
+    taken = Signal(str)
+    pulled = Signal(str, int, float, float)
+    dropped = Signal()
+
+    def __init__(self, viewport: Viewport, parent: QObject) -> None:
+        super().__init__(parent)
+        self._viewport = viewport
+        self._curves: dict[str, WishCurve] = {}
+        self.handles: dict[str, list[BustHandle]] = {}
+
+    def put_away(self) -> None:
+        """Show none any longer."""
+        for curve in self._curves.values():
+            curve.put_away()
+        for handle in self.all():
+            handle.put_away()
+
+    def all(self) -> list[BustHandle]:
+        """Return all handles, from below."""
+        return [handle for each in self.handles.values() for handle in each]
+
+    def follow(self, frame: Frame, drawn: dict[str, Drawn]) -> None:
+        """Show these profiles, by section, on the body of a frame."""
+        for gone in [each for each in self.handles if each not in drawn]:
+            self._remove(gone)
+        for section, profile in drawn.items():
+            if len(self.handles.get(section, ())) != len(profile.handles) or section not in self._curves:
+                self._remove(section)
+                self._make(section, profile)
+            stages = frame.stages
+            wished = in_space(stages, profile.section, profile.curve)
+            self._curves[section].show_curves(wished, outline(stages, profile, frame.control_points))
+            spots = in_space(stages, profile.section, profile.spots)
+            for handle, spot in zip(self.handles[section], spots, strict=True):
+                handle.show_at(spot, spot)
+
+    def _remove(self, section: str) -> None:
+        if section in self._curves:
+            self._curves.pop(section).deleteLater()
+        for handle in self.handles.pop(section, ()):
+            handle.put_away()
+            handle.deleteLater()
+
+    def _make(self, section: str, profile: Drawn) -> None:
+        side = profile.section
+        self._curves[section] = WishCurve(self._viewport, side)
+        self.handles[section] = []
+        for number in range(len(profile.handles)):
+            name = tr("Handle {number} of the profile, from below").format(number=number + 1)
+            handle = BustHandle(self._viewport, side, name, small=True)
+            handle.taken.connect(partial(self.taken.emit, section))
+            handle.pulled.connect(partial(self.pulled.emit, section, number))
+            handle.dropped.connect(self.dropped)
+            self.handles[section].append(handle)

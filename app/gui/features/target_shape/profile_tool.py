@@ -1,0 +1,167 @@
+"""What is dragged on the body while the result is asked for, and profiles that are drawn there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import QObject
+
+from app.gui.features.target_shape.handles import KINDS
+from app.i18n.catalog import tr
+from app.rendering.framing import box_of
+from core.errors import UserError
+
+if TYPE_CHECKING:
+    from app.gui.features.target_shape.controller import AskDesk
+    from app.gui.main_window import MainWindow
+    from core.analysis.inverse_design.profile_curve import Drawn
+    from core.geometry.mesh import Floats
+    from core.geometry.planar_curves import Plane
+    from core.pipeline.frame import Frame
+
+_BESIDE = 20.0  # what is seen above and below a profile [mm]
+_LEVEL = 0.05  # part of the way to the side from which on it is looked at from there [1]
+_THROUGH = 0.5  # a plane that is this near goes through the same place [mm]
+_SIDEWAYS = 0.8  # of a view from the side: what is seen from less of it is not drawn on [1]
+
+
+class AskDrawing(QObject):
+    """Chooses by ``choose`` what the handles drag; profiles begin with the skin as it is shown."""
+
+    def __init__(self, window: MainWindow, desk: AskDesk) -> None:
+        super().__init__(desk)
+        self._window, self._desk = window, desk
+
+    def choose(self, kind: str) -> None:
+        """Let the handles be those of the "bust" points, of the foremost places ("apex"), or of a "profile".
+
+        The figures that they drag are shown; those of the others go unless they are asked for.
+        """
+        desk = self._desk
+        if kind == "profile" and not desk.drawn:
+            self.begin(self._side())
+            return
+        if kind in KINDS:
+            for name in (name for names in KINDS.values() for name in names):
+                if desk.wishes.get(name) is None and name not in KINDS[kind]:
+                    desk.wishes.pop(name, None)
+            for name in KINDS[kind]:
+                if not any(each.startswith(name) for each in desk.wishes):
+                    desk.wishes[name] = None
+        self.turn_to(kind)
+        desk.steps.note()
+
+    def turn_to(self, kind: str) -> None:
+        """Let the handles be those of a kind, whatever is on the card."""
+        self._desk.handles.kind = kind
+        self._desk.card.show_hand(kind)
+        self._desk.ask()
+
+    def begin(self, side: str) -> None:
+        """Draw the profile through the bust point of a side, as it is now, to be dragged."""
+        from core.analysis.inverse_design.profile_curve import drawn  # noqa: PLC0415 (few ever ask)
+
+        frame, answer = self._window.session.frame, self._desk.answer
+        if frame is None:
+            return
+        reply = answer.reply if answer is not None else None
+        try:
+            profile = drawn(frame.stages, side, frame.control_points if reply is None else reply.points)
+        except UserError as problem:
+            self._window.desk.show_failure(problem)
+        else:
+            self._take(profile)
+
+    def take_table(self, side: str, path: str) -> None:
+        """Wish for the profile in a table through the bust point of a side."""
+        from core.analysis.inverse_design.profile_csv import read_profile  # noqa: PLC0415 (few ever ask)
+        from core.analysis.inverse_design.profile_curve import from_table  # noqa: PLC0415
+
+        frame = self._window.session.frame
+        if frame is None:
+            return
+        try:
+            profile = from_table(frame.stages, side, read_profile(path))
+            profile.goals(frame.stages)
+        except UserError as problem:
+            self._window.desk.show_failure(problem)
+        else:
+            self._take(profile)
+
+    def draw(self, section: str, profile: Drawn) -> None:
+        """Wish for a profile as it is drawn; where it cannot be, the one before stays."""
+        frame = self._window.session.frame
+        if frame is None:
+            return
+        try:
+            goals = profile.goals(frame.stages)
+        except UserError:
+            return
+        self._desk.all_wishes.set_curve(section, goals, profile)
+
+    def follow(self, frame: Frame) -> None:
+        """Let profiles that are free be those of the body of a frame."""
+        from core.analysis.inverse_design.profile_curve import drawn  # noqa: PLC0415 (few ever ask)
+
+        for section, profile in list(self._desk.drawn.items()):
+            if profile.is_free:
+                fresh = drawn(frame.stages, profile.section, frame.control_points)
+                self._desk.all_wishes.set_curve(section, (), fresh)
+
+    def in_plane(self, plane: Plane) -> dict[str, Sequence[Floats]]:
+        """Return the profiles that are wished in a plane, if any are, as flat places (k, 2) [mm]."""
+        from core.analysis.inverse_design.profile_curve import in_space  # noqa: PLC0415 (few ever ask)
+
+        frame, drawn = self._window.session.frame, self._desk.drawn.values()
+        if frame is None or not self._desk.is_open or plane.axis != "x":
+            return {}
+        wished = [in_space(frame.stages, p.section, p.curve) for p in drawn if not p.is_free]
+        found = [plane.flat(places) for places in wished if abs(places[0, 0] - plane.at) < _THROUGH]
+        return {"wished": found} if found else {}
+
+    def is_from_side(self, section: str) -> bool:
+        """Tell whether a profile is looked at from about its side: else up and out cannot be told by hand."""
+        across = self._window.view.viewport.view.axes[2][0]
+        return bool((across if self._desk.drawn[section].section == "left" else -across) > _SIDEWAYS)
+
+    def hint(self) -> str:
+        """Return what to do with the handles, as long as nothing was done."""
+        kind = self._desk.handles.kind
+        untouched = kind == "profile" and any(each.is_free for each in self._desk.drawn.values())
+        if self._desk.goals() and not untouched:
+            return ""
+        hints = {
+            "bust": tr("Type what it is to be, or drag the handle at the bust point."),
+            "apex": tr("Type what it is to be, or drag the handle at the foremost place."),
+            "profile": tr("Drag the curve on the body by its handles to where the skin is to be."),
+        }
+        return hints[kind]
+
+    def _take(self, profile: Drawn) -> None:
+        self.draw(f"profile {profile.section}", profile)
+        self.look_at(profile)
+        self.turn_to("profile")
+        self._desk.steps.note()
+
+    def _side(self) -> str:
+        return "right" if self._window.view.viewport.view.axes[2][0] < -_LEVEL else "left"
+
+    def look_at(self, profile: Drawn) -> None:
+        """Look at a profile from its side, and over the tools."""
+        from core.analysis.inverse_design.profile_curve import in_space  # noqa: PLC0415
+
+        view, viewport, frame = self._window.view, self._window.view.viewport, self._window.session.frame
+        if frame is None:
+            return
+        room, tools = max(viewport.height(), 1), view.floating.seen(view.tools).top()
+        covered = max(view.height() - tools, 0) if view.tools.isVisible() else 0
+        box = box_of(in_space(frame.stages, profile.section, profile.curve))
+        # As large as the part of the picture allows that the tools leave.
+        middle, half = box[2].mean(), 0.5 * (np.ptp(box[2]) + 2.0 * _BESIDE) * room / (room - covered)
+        box[2] = middle - half, middle + half
+        framed = viewport.view.named(profile.section).framing(box, viewport.width() / room)
+        # Seen in parallel the body's outline lies where the curve does, however near it is looked at.
+        self._desk.back.look(replace(framed.pan(0.0, -0.5 * covered, room), parallel=True))

@@ -1,0 +1,60 @@
+"""Where camera and keyboard were before the result was asked for: both go back when the card goes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Qt
+from PySide6.QtWidgets import QAbstractButton, QWidget
+
+from app.gui.viewport.target_handle import BustHandle
+from app.rendering.camera import View
+
+if TYPE_CHECKING:
+    from app.gui.features.target_shape.controller import AskDesk
+    from app.gui.main_window import MainWindow
+
+
+class AskBack(QObject):
+    """Leads the camera by ``look``, and brings it back by ``go`` unless a hand has turned it since."""
+
+    def __init__(self, window: MainWindow, desk: AskDesk) -> None:
+        super().__init__(desk)
+        self._window, self._desk = window, desk
+        self._keyboard: QWidget | None = None
+        self._own: View | None = None  # the view that somebody chose
+        self._led: View | None = None  # the one that was led to from there
+        self._parallel = False
+
+    def remember(self) -> None:
+        """Know where the keyboard is; the camera is known once it is led away."""
+        self._keyboard, self._own, self._led = self._window.focusWidget(), None, None
+
+    def look(self, view: View) -> None:
+        """Lead the camera to a view."""
+        heading = self._window.view.viewport.heading
+        if self._led is None:
+            self._parallel = heading.parallel
+        if heading != self._led:
+            self._own = heading
+        self._led = view
+        self._window.view.viewport.glide_to(view)
+
+    def go(self) -> None:
+        """Give camera and keyboard back, before the card goes."""
+        own, led, viewport = self._own, self._led, self._window.view.viewport
+        self._own = self._led = None
+        if own is not None and led is not None:
+            here = viewport.heading
+            # Of a view that a hand has turned since only the projection is not its own.
+            there = own if here == led else here
+            parallel = self._parallel if there.parallel == led.parallel else there.parallel
+            if (view := replace(there, parallel=parallel)) != here:
+                viewport.glide_to(view)
+        has, before = self._window.focusWidget(), self._keyboard
+        if has is None or self._desk.card.isAncestorOf(has) or isinstance(has, BustHandle):
+            # A button would be pressed by the next Enter, or a space that is meant to flip the body.
+            gone = before is None or isinstance(before, QAbstractButton) or not before.isVisible()
+            (viewport if gone or before is None else before).setFocus(Qt.FocusReason.OtherFocusReason)
+        self._keyboard = None

@@ -1,0 +1,52 @@
+"""What is said below the measures of how sure they are: what ± means, whence it comes, what is left out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from PySide6.QtWidgets import QVBoxLayout, QWidget
+
+from app.gui.theme.stylesheet import label, set_tag
+from app.gui.widgets.basic import hairline, sentence
+from app.gui.widgets.folded_list import folded_list
+from app.i18n.catalog import tr
+
+
+@dataclass(frozen=True)
+class SpreadView:
+    """What stands in the card: what ± means, or why there is none yet; what the other skin ``contact`` makes.
+
+    ``faint`` words are of a former shape. ``short`` stands at the head of the measures and leads here.
+    """
+
+    meaning: str
+    contact: str = ""
+    faint: bool = False
+    short: str = ""
+
+
+class SpreadCard(QWidget):
+    """What ± means, what another choice of the model makes, and two folds."""
+
+    def __init__(self, sources: tuple[str, ...], left_out: tuple[str, ...]) -> None:
+        super().__init__()
+        self.meaning, self.contact = sentence("", "caption"), sentence("", "caption")
+        column = QVBoxLayout(self)
+        column.setContentsMargins(4, 4, 4, 4)
+        column.setSpacing(4)
+        column.addWidget(hairline())
+        column.addWidget(label(tr("How sure these figures are"), "heading"))
+        column.addWidget(self.meaning)
+        column.addWidget(self.contact)
+        self.folds = [
+            folded_list(column, tr("Where the ± comes from"), sources),
+            folded_list(column, tr("What these figures leave out"), left_out),
+        ]
+        self.show_view(SpreadView(""))
+
+    def show_view(self, view: SpreadView) -> None:
+        """Show what is known of the ±."""
+        for words, text in ((self.meaning, view.meaning), (self.contact, view.contact)):
+            words.setText(text)
+            words.setVisible(bool(text))
+            set_tag(words, "tone", "faint" if view.faint else "")

@@ -1,0 +1,159 @@
+"""The history: every edit by name, and the results that are kept as long as the document is open."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Qt, QTimer
+from PySide6.QtGui import QImage
+
+from app.gui.features.variants.history_panel import HistoryPanel
+from app.gui.plots.status_chip import TONES
+from app.gui.widgets.thumbnail_list import PictureRow
+from app.i18n.catalog import colon, number, tr
+from app.presenters.bust_shift import bust_move, bust_sentence
+from app.presenters.convergence import is_result
+from core.document.design import Design
+from core.document.document import Document
+from core.export.solution_report import kept_volume
+from core.garment.assessment import PENDING
+from core.pipeline.frame import Frame
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+MOST = 30
+"""Results that are kept, the oldest go first."""
+
+_CALM = 400
+"""Milliseconds that a result has stood when its picture is taken: nobody is waiting for the window then."""
+
+_PICTURE = 160
+
+
+@dataclass(frozen=True, eq=False)
+class _Snapshot:
+    variant: str
+    design: Design
+    row: PictureRow
+
+    def within(self, document: Document) -> Document:
+        """Return the document gone back to this; beside other variants the body stays, it is theirs too."""
+        there = document.showing(self.variant)
+        if len(there.designs) == 1:
+            return there.with_design(self.design)
+        body = there.design
+        return there.with_design(replace(self.design, scan=body.scan, placed=body.placed))
+
+
+class HistoryDesk(QObject):
+    """Fills the history panel, and goes back to what is clicked there as one step of undo."""
+
+    def __init__(self, window: MainWindow, panel: HistoryPanel) -> None:
+        super().__init__(window)
+        self._window = window
+        self._session = window.session
+        self._panel = panel
+        self._snapshots: deque[_Snapshot] = deque(maxlen=MOST)
+        self._clock = QTimer(self, interval=_CALM, singleShot=True)
+        self._clock.timeout.connect(self._take)
+
+    def show_edits(self) -> None:
+        """Show the names of all edits, and which of them stand."""
+        stack = self._session.undo_stack
+        self._panel.set_edits([stack.text(place) for place in range(stack.count())], stack.index())
+
+    def jump(self, place: int) -> None:
+        """Let the first ``place`` edits stand."""
+        self._session.undo_stack.setIndex(place)
+
+    def show_opened(self) -> None:
+        """Begin anew with another document."""
+        self._snapshots.clear()
+        self.show_snapshots()
+        self.show_edits()
+
+    def note(self) -> None:
+        """Hear of a frame: what came of an edit is kept once the window is calm."""
+        if self._window.is_settled() and self._session.undo_stack.index() > 0 and not self._is_kept():
+            self._clock.start()
+
+    def show_snapshots(self) -> None:
+        """Show the results, the newest first."""
+        document = self._session.document
+        if document is None:
+            self._panel.set_snapshots([])
+            return
+        self._panel.set_snapshots(
+            [
+                replace(each.row, title=_title(each, document), present=each.within(document) == document)
+                for each in reversed(self._snapshots)
+            ]
+        )
+
+    def restore(self, place: int) -> None:
+        """Go back to a result, in the variant that it is of, as one edit."""
+        snapshot, document = self._snapshots[len(self._snapshots) - 1 - place], self._session.document
+        if document is not None:
+            said = tr("Back to: {edit}").format(edit=_title(snapshot, document))
+            self._session.go_back(snapshot.within(document), said)
+
+    def close(self) -> None:
+        """Stop the clock."""
+        self._clock.stop()
+
+    def _is_kept(self) -> bool:
+        document = self._session.document
+        return document is not None and any(
+            (each.variant, each.design) == (document.shown, document.design) for each in self._snapshots
+        )
+
+    def _take(self) -> None:
+        frame, stack, document = self._session.frame, self._session.undo_stack, self._session.document
+        if (
+            frame is None
+            or document is None
+            or not self._window.is_settled()
+            or self._is_kept()
+            or stack.index() == 0
+        ):
+            return
+        if not self._window.view.isVisible():
+            # The sheet lies over the body: its picture is taken once that is seen again.
+            self._clock.start()
+            return
+        overall = self._window.verdict_desk.of(frame)
+        if overall.level == PENDING:
+            self._clock.start()
+            return
+        row = PictureRow(
+            stack.text(stack.index() - 1),
+            time.strftime("%H:%M:%S"),
+            _figures(frame, overall.headline),
+            self._picture(),
+            mark=TONES[overall.level],
+        )
+        self._snapshots.append(_Snapshot(document.shown, frame.stages.design, row))
+        self.show_snapshots()
+
+    def _picture(self) -> QImage:
+        picture = self._window.view.viewport.picture(fine=False)
+        return picture.scaledToHeight(_PICTURE, Qt.TransformationMode.SmoothTransformation)
+
+
+def _title(snapshot: _Snapshot, document: Document) -> str:
+    """Return what led to a result, with its variant where there are several."""
+    several = len(document.designs) > 1 or snapshot.variant != document.shown
+    return f"{snapshot.variant}{colon()}{snapshot.row.title}" if several else snapshot.row.title
+
+
+def _figures(frame: Frame, headline: str) -> tuple[str, ...]:
+    """Return the verdict on a frame, where its bust points are and its volume error in words."""
+    if not is_result(frame):
+        return headline, tr("No result to sew for")
+    percent = number(kept_volume(frame)[0], 2, signed=True)
+    said = tr("{state}, volume {percent} %").format(percent=percent, state=headline)
+    return said, bust_sentence(bust_move(frame))

@@ -1,0 +1,287 @@
+"""Where the parts of the window stand: splitters, what is folded away, and sizes kept between sessions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QEvent, QObject, QSettings, Qt, QTimer
+from PySide6.QtWidgets import QApplication, QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
+
+from app.gui.notification_area import NoticePlace
+from app.gui.widgets.accessibility import announce
+from app.gui.widgets.basic import OverCard
+from app.gui.widgets.focus_chain import FocusRing, next_stop, stops
+from app.gui.widgets.splitter import Divider
+from app.gui.widgets.window_geometry import put_as_last
+from app.i18n.catalog import language, tr
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+NARROW, WIDE = 340, 364
+"""First width of the inspector in windows narrower and wider than 1400 pixels."""
+
+KEPT_AFTER = 1000
+"""Stillness after which the place of the window is remembered [ms]."""
+
+LOW, HIGH = 190, 184
+"""First height of the strip in windows lower and higher than 850 pixels."""
+
+TALLER = {"ja": 14}
+"""How much higher the strip is where the lines of a language are taller [px]."""
+
+
+class Layout(QObject):
+    """Places the parts: top bar, rail, the work beside it, status bar.
+
+    ``pages`` holds the work (view, strip and inspector) and whatever may take its place, such as the start.
+    """
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._width: int | None = None  # of the inspector and
+        self._height: int | None = None  # of the strip, once the user has chosen them
+        self._keeps = QTimer(window, interval=KEPT_AFTER, singleShot=True)
+        self._keeps.timeout.connect(self.keep)
+        self._restored = False
+        self._folded_as_low = False
+        self.pages = QStackedWidget()
+        self._across = Divider(Qt.Orientation.Horizontal, tr("Width of the inspector"))
+        self._down = Divider(Qt.Orientation.Vertical, tr("Height of the live plot"))
+        self._middle, self._right = QVBoxLayout(), QVBoxLayout()
+        self._ring = FocusRing(window)
+        self._build()
+        self._notices = NoticePlace(window, self.pages, self._across, self._right)
+        self._notices.carry()
+        self._across.splitterMoved.connect(self._note_width)
+        self._down.splitterMoved.connect(self._note_height)
+        window.strip.folded.connect(self._fit_strip)
+        window.view.viewport.addAction(window.actions_.alone)
+        window.installEventFilter(self)
+
+    def _build(self) -> None:
+        window, work, right, central = self._window, QWidget(), QWidget(), QWidget()
+        for column, holder in ((self._middle, work), (self._right, right)):
+            column.setContentsMargins(0, 0, 0, 0)
+            column.setSpacing(0)
+            holder.setLayout(column)
+        window.view.setMinimumSize(480, 300)
+        # Tab goes past the view, where it hides what lies around it: F6 and the pointer lead in.
+        window.view.viewport.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
+        window.view.viewport.setAccessibleName(tr("3D view"))
+        for splitter, parts in (
+            (self._down, (window.view, window.strip)),
+            (self._across, (work, window.inspector)),
+        ):
+            for stretch, part in zip((1, 0), parts, strict=True):
+                splitter.addWidget(part)
+                splitter.setStretchFactor(splitter.count() - 1, stretch)
+        self._middle.addWidget(self._down, 1)
+        self.pages.addWidget(self._across)
+        self._right.addWidget(self.pages, 1)
+        across, down = QHBoxLayout(), QVBoxLayout(central)
+        for row in (across, down):
+            row.setContentsMargins(0, 0, 0, 0)
+            row.setSpacing(0)
+        across.addWidget(window.rail)
+        across.addWidget(right, 1)
+        down.addWidget(window.top)
+        down.addLayout(across, 1)
+        down.addWidget(window.status)
+        window.setCentralWidget(central)
+
+    # -- what is shown
+
+    def show_work(self) -> None:
+        """Bring view, strip and inspector back, if another page has taken their place."""
+        self.pages.setCurrentWidget(self._across)
+
+    def show_inspector(self, shown: bool) -> None:
+        """Show or hide the inspector."""
+        self._window.inspector.setVisible(shown)
+        self._window.actions_.inspector.setChecked(shown)
+
+    def show_alone(self, alone: bool) -> None:
+        """Hide all but the view, or bring the rest back as it was."""
+        window = self._window
+        self.show_work()
+        for part in (window.rail, window.strip):
+            part.setVisible(not alone)
+        window.inspector.setVisible(not alone and window.actions_.inspector.isChecked())
+        window.actions_.alone.setChecked(alone)
+        window.view.viewport.setFocus()
+
+    def show_full_screen(self, full: bool) -> None:
+        """Let the window fill the screen, or let it be as it was."""
+        state, flag = self._window.windowState(), Qt.WindowState.WindowFullScreen
+        self._window.setWindowState(state | flag if full else state & ~flag)
+
+    def reset(self) -> None:
+        """Give everything its first size and place again."""
+        self._width = self._height = None
+        self.show_alone(False)
+        self.show_inspector(True)
+        self._window.strip.set_folded(False)
+        self.fit()
+
+    def next_pane(self) -> None:
+        """Let the keyboard go on in the next part of the window that takes it."""
+        panes, has = self._panes(), QApplication.focusWidget()
+        at = next((place for place, pane in enumerate(panes) if has and pane.isAncestorOf(has)), -1)
+        for pane in (panes[(at + step) % len(panes)] for step in range(1, len(panes) + 1)):
+            viewport = self._window.view.viewport
+            target = viewport if pane is self._window.view else next(iter(stops(pane)), None)
+            if target is not None:
+                target.setFocus(Qt.FocusReason.TabFocusReason)
+                if target is viewport:
+                    self._ring.show_round(target)
+                return
+
+    def next_stop(self, forward: bool) -> bool:
+        """Let the keyboard go on to the next field or button, through all panes; returns whether it did."""
+        return next_stop(self._stops(), forward)
+
+    def enter(self) -> None:
+        """Let the keyboard begin in the inspector: Tab goes on to what its panel has.
+
+        No button has the keyboard meanwhile, so the space bar still flips the body.
+        """
+        panel = self._window.inspector.panel()
+        if panel is not None and panel.isVisible() and not self._over():
+            panel.setFocus(Qt.FocusReason.OtherFocusReason)
+
+    def go_on_in(self, step: str) -> None:
+        """Go to a step by key: the keyboard goes on there, and a ring shows where."""
+        self._window.desk.go_to(step)
+        self.enter()
+        if self._window.inspector.isVisible():
+            self._ring.show_round(self._window.inspector)
+            announce(self._window.inspector, self._window.actions_.steps[step].text())
+
+    def give_up(self) -> bool:
+        """Let Esc take away what lies over the window or in the place of it; returns whether anything did."""
+        window, over = self._window, self._over()
+        if over:
+            over[-1].given_up.emit()
+        elif window.report_desk.is_open:
+            window.report_desk.leave()
+        elif window.ask_desk.is_open:
+            window.ask_desk.leave()
+        elif window.inspector.panel() is window.model:
+            window.model.left.emit()
+        elif window.inspector.panel() is window.worn_desk.page:
+            window.worn_desk.page.left.emit()
+        elif window.view.beside.way in ("wipe", "side"):
+            window.view.compare_by("after")
+        else:
+            return window.result.unmark()
+        return True
+
+    def _over(self) -> list[OverCard]:
+        """Return the cards that lie over the whole window."""
+        cards = self._window.findChildren(OverCard, options=Qt.FindChildOption.FindDirectChildrenOnly)
+        return [card for card in cards if card.isVisible()]
+
+    def _stops(self) -> list[QWidget]:
+        """Return what takes the keyboard, and before strip and inspector the line that gives them room."""
+        order: list[QWidget] = []
+        lines: dict[QWidget, QWidget] = {
+            self._window.strip: self._down.handle(1),
+            self._window.inspector: self._across.handle(1),
+        }
+        for pane in self._panes():
+            line = lines.get(pane)
+            fixed = pane is self._window.strip and self._window.strip.is_folded()
+            if line is not None and line.isVisible() and not fixed:
+                order.append(line)
+            for part in self._parts(pane):
+                order += stops(part)
+        return order
+
+    def _parts(self, pane: QWidget) -> list[QWidget]:
+        """Return what is read one after the other in a pane: on the view one floating panel at a time."""
+        if pane is not self._window.view:
+            return [pane]
+        apart = self._window.notices  # a pane of its own
+        parts = [e for e in pane.children() if isinstance(e, QWidget) and e.isVisible() and e is not apart]
+        return sorted(parts, key=lambda each: (each.y(), each.x()))
+
+    def _panes(self) -> list[QWidget]:
+        """Return the parts of the window in the order in which they are read."""
+        window, page = self._window, self.pages.currentWidget()
+        if page is None or page is self._across:
+            work = [window.notices, window.view, window.strip, window.inspector]
+        else:
+            work = [window.notices, page]
+        return [*self._over(), window.top, window.rail, *work]
+
+    # -- sizes
+
+    def fit(self) -> None:
+        """Give inspector and strip the sizes that the user chose, or those that suit the window's."""
+        window = self._window
+        width = self._width or (WIDE if window.width() >= 1400 else NARROW)
+        self._across.setSizes([max(sum(self._across.sizes()) - width, 1), width])
+        self._fit_strip(window.strip.is_folded())
+
+    def _fit_strip(self, folded: bool) -> None:
+        self._folded_as_low = self._folded_as_low and folded
+        first = (HIGH if self._window.height() >= 850 else LOW) + TALLER.get(language(), 0)
+        unfolded = self._height or first
+        height = self._window.strip.maximumHeight() if folded else unfolded
+        self._down.setSizes([max(sum(self._down.sizes()) - height, 1), height])
+
+    def _note_width(self) -> None:
+        self._width = self._window.inspector.width()
+
+    def _note_height(self) -> None:
+        if not self._window.strip.is_folded():
+            self._height = self._window.strip.height()
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+        """Follow the size of the window; a low one opens with its plots folded away."""
+        if watched is self._window and event.type() in (QEvent.Type.Resize, QEvent.Type.Move):
+            # Not at the end alone: a window that does not close in order has a place too.
+            self._keeps.start()
+            if event.type() == QEvent.Type.Resize:
+                self.fit()
+        elif watched is self._window and event.type() == QEvent.Type.Show and not event.spontaneous():
+            if self._window.height() < 740 and self._height is None:
+                self._window.strip.set_folded(True)
+                self._folded_as_low = True
+            self.fit()
+        return False
+
+    # -- between sessions
+
+    def restore(self) -> None:
+        """Put the window where it stood last, or on a screen that is there; ``keep`` is then due."""
+        settings, self._restored = QSettings(), True
+        put_as_last(self._window)
+        self._width = _number(settings.value("window/inspector"))
+        self._height = _number(settings.value("window/strip"))
+        if settings.value("window/folded") == "true":
+            self._window.strip.set_folded(True)
+        self.show_inspector(settings.value("window/inspector_shown") != "false")
+
+    def keep(self) -> None:
+        """Remember where the window stands, if it was put there from memory: pictures leave no trace."""
+        self._keeps.stop()
+        if not self._restored:
+            return
+        settings, do = QSettings(), self._window.actions_
+        settings.setValue("window/geometry", self._window.saveGeometry())
+        folded = self._window.strip.is_folded() and not self._folded_as_low  # in a higher window it is not
+        settings.setValue("window/folded", str(folded).lower())
+        settings.setValue("window/inspector_shown", str(do.inspector.isChecked()).lower())
+        for name, size in (("inspector", self._width), ("strip", self._height)):
+            if size is None:
+                settings.remove(f"window/{name}")
+            else:
+                settings.setValue(f"window/{name}", size)
+
+
+def _number(value: object) -> int | None:
+    text = str(value)
+    return int(text) if text.isdecimal() and 0 < int(text) < 2000 else None

@@ -1,0 +1,249 @@
+"""The main window: it makes the parts and puts them in their places."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QEvent, Qt
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QKeyEvent, QUndoGroup
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QApplication,
+    QMainWindow,
+    QStackedWidget,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.gui.actions import Actions
+from app.gui.document_controller import Desk
+from app.gui.features.diagnosis.controller import DoctorDesk
+from app.gui.features.diagnosis.step_badges import VerdictDesk
+from app.gui.features.export.controller import ExportDesk
+from app.gui.features.garment.controller import GarmentDesk
+from app.gui.features.garment.elastic_assignment import ElasticChoice
+from app.gui.features.garment.elastics_controller import ElasticsDesk
+from app.gui.features.garment.panel import GarmentPanel
+from app.gui.features.garment.pressure_controller import PressureDesk
+from app.gui.features.help.controller import HelpDesk
+from app.gui.features.help.crash_handler import Rescue
+from app.gui.features.help.safe_mode import SafeMode
+from app.gui.features.landmarks.controller import LandmarkDesk
+from app.gui.features.landmarks.panel import LandmarksPanel
+from app.gui.features.lines.add_lines import LineMaker
+from app.gui.features.lines.band_drag import BandPull
+from app.gui.features.lines.controller import LinesDesk
+from app.gui.features.lines.draw_tool import LineDrawing
+from app.gui.features.lines.limits_controller import LimitsDesk
+from app.gui.features.lines.panel import LinesPanel
+from app.gui.features.lines.path_tool import LineRouting
+from app.gui.features.lines.presets import PresetDesk
+from app.gui.features.maps.controller import MapDesk
+from app.gui.features.measurements.controller import MeasuresDesk
+from app.gui.features.measurements.custom_measures import OwnMeasuresDesk
+from app.gui.features.measurements.panel import ResultPanel
+from app.gui.features.model.panel import ModelDoor, ModelPanel
+from app.gui.features.preferences.controller import PreferencesDesk
+from app.gui.features.project.autosave import KeepingDesk
+from app.gui.features.project.opening import OpeningDesk
+from app.gui.features.project.recovery import RecoveryDesk
+from app.gui.features.project.start_controller import StartDesk
+from app.gui.features.report.controller import ReportDesk
+from app.gui.features.scan.controller import ScanDesk
+from app.gui.features.scan.panel import ScanPanel
+from app.gui.features.scan_comparison.controller import WornDesk
+from app.gui.features.sections.controller import SectionDesk
+from app.gui.features.symmetry.controller import EvenDesk
+from app.gui.features.target_shape.controller import AskDesk
+from app.gui.features.uncertainty.controller import SpreadDesk
+from app.gui.features.variants.controller import VariantDesk
+from app.gui.features.variants.history_controller import HistoryDesk
+from app.gui.features.variants.history_panel import HistoryPanel
+from app.gui.features.variants.panel import VariantsPanel
+from app.gui.features.variants.table import VariantFigures
+from app.gui.inspector import Inspector
+from app.gui.layout import Layout
+from app.gui.plots.controller import PlotDesk
+from app.gui.plots.convergence_panel import Strip
+from app.gui.progress_controller import JobDesk
+from app.gui.session.gc_control import Housekeeping
+from app.gui.session.jobs import Jobs
+from app.gui.session.session import Session
+from app.gui.status_bar import StatusBar
+from app.gui.step_navigation import Rail
+from app.gui.title_bar import TopBar
+from app.gui.viewport.controller import ViewDesk
+from app.gui.viewport.image_export import PictureDesk
+from app.gui.viewport.view_area import ViewArea
+from app.gui.widgets.basic import OverCard
+from app.gui.widgets.coach_mark import CoachMark
+from app.gui.widgets.first_paint import lay_out
+from app.gui.widgets.navigation_row import Door
+from app.gui.widgets.notification_bar import NoticeBar
+from app.gui.wiring import connect
+from app.i18n.catalog import tr
+
+
+class MainWindow(QMainWindow):
+    """The window of one session. It shows what the session says, and asks the session."""
+
+    def __init__(self, session: Session) -> None:
+        super().__init__()
+        self.session = session
+        session.setParent(self)
+        self.setWindowTitle("Busk")
+        self.setMinimumSize(1180, 700)
+        self.resize(1600, 1000)
+        self.setAcceptDrops(True)
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.jobs = Jobs(self)
+        self.view = ViewArea(self.jobs)
+        self.undo_group = QUndoGroup(self)  # what is asked for has steps of its own
+        self.undo_group.addStack(session.undo_stack)
+        self.undo_group.setActiveStack(session.undo_stack)
+        do = self.actions_ = Actions(self, self.undo_group, self.view.tool_actions)
+        self.top = TopBar(do.bar, do.undo, do.redo, do.export_any)
+        self.rail, self.notices, self.strip, self.status = Rail(), NoticeBar(), Strip(), StatusBar()
+        self.scan, self.landmarks = ScanPanel(), LandmarksPanel()
+        self.lines, self.result, self.garment = LinesPanel(), ResultPanel(), GarmentPanel()
+        self.model, self.door = ModelPanel(), ModelDoor()
+        self.ask_door = Door(
+            tr("Ask for the result"), tr("Say where the bust is to be; Busk finds the lengths")
+        )
+        self.history, self.variants, self.inspector = HistoryPanel(), VariantsPanel(), Inspector()
+        self.lines_page = QStackedWidget()  # the lines, or what is asked for in their place
+        self._fill_inspector()
+        self.layout_ = Layout(self)
+        self.pages = self.layout_.pages
+        self._make_desks()
+        connect(self)
+
+    def _make_desks(self) -> None:
+        self.job_desk, self.limits_desk = JobDesk(self), LimitsDesk(self)
+        self.landmark_desk, self.scan_desk = LandmarkDesk(self), ScanDesk(self)
+        self.desk, self.verdict_desk, self.doctor_desk = Desk(self), VerdictDesk(self), DoctorDesk(self)
+        self.keeping_desk, self.recovery_desk = KeepingDesk(self), RecoveryDesk(self)
+        self.history_desk, self.variant_desk = HistoryDesk(self, self.history), VariantDesk(self)
+        self.variant_figures = VariantFigures(self, self.variants)
+        self.measures_desk, self.spread_desk = MeasuresDesk(self, self.result), SpreadDesk(self, self.result)
+        self.own_measures_desk = OwnMeasuresDesk(self, self.result)
+        self.even_desk, self.worn_desk = EvenDesk(self, self.result), WornDesk(self, self.result)
+        self.inspector.add("worn", self.worn_desk.page)
+        self.pressure_desk = PressureDesk(self, self.garment)
+        self.map_desk, self.section_desk = MapDesk(self), SectionDesk(self)
+        self.start_desk, self.plot_desk = StartDesk(self), PlotDesk(self)
+        self.opening_desk = OpeningDesk(self)
+        self.picture_desk, self.export_desk = PictureDesk(self), ExportDesk(self)
+        self.report_desk = ReportDesk(self)
+        self.lines_desk, self.line_maker = LinesDesk(self), LineMaker(self)
+        self.line_drawing, self.line_routing = LineDrawing(self), LineRouting(self)
+        self.preset_desk, self.band_pull = PresetDesk(self), BandPull(self)
+        self.garment_desk, self.elastic_choice = GarmentDesk(self, self.garment), ElasticChoice(self)
+        self.elastics_desk, self.ask_desk = ElasticsDesk(self), AskDesk(self)
+        self.help = HelpDesk(self)
+        self.preferences = PreferencesDesk(self)
+        self.rescuer = Rescue(self)
+        self.view_desk = ViewDesk(self)
+        self.housekeeping = Housekeeping(self)
+
+    def _fill_inspector(self) -> None:
+        lines = QWidget()
+        column = QVBoxLayout(lines)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addWidget(self.lines, 1)
+        column.addWidget(self.ask_door)
+        column.addWidget(self.door)
+        lines.setFocusProxy(self.lines)
+        self.inspector.add("scan", self.scan)
+        self.inspector.add("landmarks", self.landmarks)
+        page = self.lines_page
+        page.currentChanged.connect(lambda at: page.setFocusProxy(page.widget(at) or lines))
+        page.addWidget(lines)
+        self.inspector.add("lines", self.lines_page, tr("Lines"))
+        self.inspector.add("result", self.result, tr("Measures"))
+        self.inspector.add("garment", self.garment, tr("Garment"))
+        self.inspector.add("variants", self.variants, tr("Variants"))
+        self.inspector.add("history", self.history, tr("History"))
+        self.inspector.add("model", self.model)
+
+    def is_settled(self) -> bool:
+        """Tell whether the session's design is solved to the end and shown."""
+        frame, session = self.session.frame, self.session
+        if frame is None or frame.stages.design is not session.design:
+            return False
+        return session.is_answered and not frame.at_work
+
+    def is_at_rest(self) -> bool:
+        """Tell whether what is shown is solved to the end: the session's design, or what is asked for."""
+        return self.is_settled() or self.ask_desk.is_tried_on
+
+    def tell_graphics(self, why: str) -> None:
+        """Say once why the view is drawn safely, if it is, and notice when it has been drawn."""
+        self.safe_mode = SafeMode(self, why)
+
+    def rescue(self) -> str:
+        """Keep the design aside after a fault; returns where, or an empty text if it was not kept."""
+        return self.keeping_desk.rescue()
+
+    def end(self) -> None:
+        """Close without a question; what is not saved stays where it is kept aside, for the next start."""
+        self.keeping_desk.leaves = True
+        self.close()
+
+    def focusNextPrevChild(self, next: bool) -> bool:  # noqa: N802
+        """Lead the keyboard in the order that eyes read, whenever the parts were made."""
+        return self.layout_.next_stop(next)
+
+    def event(self, event: QEvent) -> bool:
+        """Lay out what is to be painted; keep keys that are typed in a card from acting on the view."""
+        if event.type() == QEvent.Type.UpdateRequest:
+            lay_out()
+        if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.ShortcutOverride:
+            plain = event.modifiers() in (Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.KeypadModifier)
+            if plain and event.text().strip() and event.text().isprintable() and self._has_card():
+                event.accept()
+                return True
+        return super().event(event)
+
+    def _has_card(self) -> bool:
+        cards = self.findChildren(OverCard)
+        return any(card.isVisible() and not isinstance(card, CoachMark) for card in cards)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
+        """Press a button by Enter too; Esc takes away what lies over the work."""
+        has, key = QApplication.focusWidget(), event.key()
+        if key in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and isinstance(has, QAbstractButton):
+            has.click()
+        elif key != Qt.Key.Key_Escape or not self.layout_.give_up():
+            super().keyPressEvent(event)
+
+    def dragEnterEvent(self, event: QDragEnterEvent) -> None:  # noqa: N802
+        """Take files that are dragged onto the window."""
+        if any(url.isLocalFile() for url in event.mimeData().urls()):
+            event.acceptProposedAction()
+
+    def dropEvent(self, event: QDropEvent) -> None:  # noqa: N802
+        """Open a file that is dropped."""
+        files = [url.toLocalFile() for url in event.mimeData().urls() if url.isLocalFile()]
+        if files:
+            event.setDropAction(Qt.DropAction.CopyAction)
+            event.accept()
+            self.desk.open_file(files[0])
+
+    def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
+        """Ask about changes; then solver, background work and 3D view end before the window does."""
+        if not self.keeping_desk.leaves and not self.desk.may_leave():
+            event.ignore()
+            return
+        self.layout_.keep()
+        # The solver may be in the middle of reading a scan: nobody has to watch the window wait for it.
+        self.hide()
+        self.desk.close()
+        self.history_desk.close()
+        self.recovery_desk.close()
+        self.jobs.close()
+        self.session.close()
+        self.keeping_desk.close()
+        self.view.close_view()
+        self.housekeeping.close()
+        self.rescuer.close()
+        event.accept()

@@ -1,0 +1,294 @@
+"""The strip under the view: does the model come to rest, with which force, and how far it is."""
+
+# ruff: noqa: D102, N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Protocol
+
+from PySide6.QtCore import QEvent, QObject, QPoint, QSize, Qt, Signal
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QSizePolicy, QVBoxLayout, QWidget
+
+from app.gui.plots.canvas import Turns
+from app.gui.plots.legend import Entry, Legend, legend_entries, legend_width, run_title
+from app.gui.plots.live_plot import LivePlot
+from app.gui.plots.status_chip import VerdictChip, VerdictLine
+from app.gui.plots.volume_control_choice import control_segment
+from app.gui.theme.stylesheet import label
+from app.gui.widgets.basic import ToolButton, sentence
+from app.gui.widgets.menu import Menu
+from app.gui.widgets.tooltip import set_tip
+from app.i18n.catalog import tr
+from app.i18n.lengths import shown_value
+from app.presenters.curves import Curve, Event
+from app.presenters.plot_series import Exact, Track, error_quantities, height_quantities, tolerance_of
+
+_HIGH, _LOW, _FOLDED = 184, 150, 36
+
+
+class VerdictView(Protocol):
+    """Level and headline of the overall verdict, up to three (label, value) pairs, what to do; then the run's
+    state, with the time and effort it took, and whether it is still on its way.
+    """
+
+    @property
+    def level(self) -> str: ...
+    @property
+    def headline(self) -> str: ...
+    @property
+    def state(self) -> str: ...
+    @property
+    def numbers(self) -> list[tuple[str, str]]: ...
+    @property
+    def hint(self) -> str: ...
+    @property
+    def pace(self) -> str: ...
+    @property
+    def effort(self) -> str: ...
+    @property
+    def settling(self) -> bool: ...
+
+
+class Strip(QWidget):
+    """Verdict and method on the left, volume error and a height over the turns live beside it.
+
+    ``export_asked`` carries csv, png or svg; ``quantity_chosen`` the name of what a plot shows now;
+    ``why_asked`` wants to know more of a verdict that is no good.
+    """
+
+    control_chosen = Signal(str)
+    quantity_chosen = Signal(str)
+    export_asked = Signal(str)
+    folded = Signal(bool)
+    why_asked = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._state, self._settling = "stale", False
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
+        self.chip, self._small_chip = VerdictChip(), VerdictChip(small=True)
+        for chip in (self.chip, self._small_chip):
+            chip.clicked.connect(self.why_asked)
+        self.error_plot, self.height_plot = LivePlot(error_quantities()), LivePlot(height_quantities())
+        self._run: tuple[Mapping[str, Track], str, Exact | None] = ({}, "adaptive", None)
+        self._events: tuple[Event, ...] = ()
+        for plot, name in zip(self.plots, ("error", "height"), strict=True):
+            plot.setObjectName(name)
+            for other in self.plots:
+                plot.pointed.connect(other.point_at)
+                plot.zoomed.connect(other.show_turns)
+            plot.quantity_chosen.connect(self._draw_anew)
+            plot.quantity_chosen.connect(self.quantity_chosen)
+            plot.menu_asked.connect(self._show_menu)
+        self._entries: list[Entry] = []
+        self._legends = Legend(), Legend()  # beside the title of the first plot, or below both
+        self.error_plot.head.addWidget(self._legends[0])
+        for plot in self.plots:
+            plot.setMinimumWidth(120)  # a legend gives way, the plot does not
+            plot.installEventFilter(self)
+        self._body, self._line, self._turns = QWidget(), QWidget(), label("", "secondary", tabular=True)
+        self._build_body()
+        self._build_line()
+        self._build_menu()
+        outer = QVBoxLayout(self)
+        outer.setContentsMargins(0, 0, 0, 0)
+        outer.setSpacing(0)
+        outer.addWidget(self._body)
+        outer.addWidget(self._line)
+        self.set_folded(False)
+        self._show_emptiness(True)
+
+    def sizeHint(self) -> QSize:
+        return QSize(800, _FOLDED if self.is_folded() else _HIGH)
+
+    def set_run(self, tracks: Mapping[str, Track], main: str, exact: Exact | None) -> None:
+        """Draw the runs by control; ``main`` is the one on the body, and may be ``"exact"``."""
+        self._run = tracks, main, exact
+        self._draw(refit=not self._settling)
+        self._show_emptiness(exact is None and not any(len(track.turns) for track in tracks.values()))
+
+    def set_events(self, events: Sequence[Event]) -> None:
+        """Mark from now on where something was changed."""
+        self._events = tuple(events)
+        self._draw(refit=not self._settling)
+
+    def show_turns(self, turns: Turns | None) -> None:
+        """Show these turns in both plots, or all."""
+        for plot in self.plots:
+            plot.show_turns(turns)
+
+    @property
+    def plots(self) -> tuple[LivePlot, LivePlot]:
+        """Volume error and height."""
+        return self.error_plot, self.height_plot
+
+    @property
+    def legend(self) -> list[Entry]:
+        """The names of the curves as they are drawn."""
+        return self._entries
+
+    def _draw_anew(self) -> None:
+        self._draw(refit=True)
+
+    def _draw(self, refit: bool) -> None:
+        tracks, main, exact = self._run
+        strong = "warning" if self._state in ("vibrating", "diverging") else "main"
+        roles = {name: strong if name == main else "ghost" for name in tracks}
+        is_main, some = main == "exact", tracks.get(main) or next(iter(tracks.values()), None)
+        for plot in self.plots:
+            quantity = plot.quantity.name
+            scale = shown_value(1.0, "mm" if quantity.endswith("_mm") else "")
+            curves = [
+                Curve(track.turns, scale * getattr(track, quantity), roles[name], run_title(name))
+                for name, track in tracks.items()
+            ]
+            plot.set_curves(
+                curves,
+                None if exact is None else scale * getattr(exact, quantity),
+                exact_is_main=is_main,
+                tolerance=tolerance_of(quantity, some),
+                events=self._events,
+                refit=refit,
+            )
+        self._entries = legend_entries(roles, exact is not None, is_main)
+        self._share_legend()
+
+    def _share_legend(self) -> None:
+        """Name all curves in one place: beside the first plot's title, or below both if that is narrow."""
+        beside = legend_width(self._entries) <= self.error_plot.width() - self.error_plot.title.width() - 8
+        for legend, here in zip(self._legends, (beside, not beside), strict=True):
+            legend.show_entries(self._entries if here else [])
+            legend.setVisible(here)
+
+    def set_verdict(self, verdict: VerdictView) -> None:
+        """Show how the run stands; call it before ``set_run``, which takes its colour from it."""
+        self._state, self._settling = verdict.state, verdict.settling
+        self.chip.set_state(verdict.level, verdict.headline)
+        self._small_chip.set_state(verdict.level, verdict.headline)
+        self._turns.setText(verdict.pace)
+        set_tip(self._turns, verdict.effort)
+        pairs = verdict.numbers[: len(self._pairs)]
+        for place, (name, value) in enumerate(self._pairs):
+            pair = pairs[place] if place < len(pairs) else ("", "")
+            for each, text in zip((name, value), pair, strict=True):
+                each.setText(text)
+                each.setVisible(bool(text))
+        self._hint.setText(verdict.hint)
+        said = (f"{name} {value}" for name, value in pairs[:2])
+        self._said.show_parts((verdict.hint, *said, verdict.pace))  # what to do stands first
+
+    def set_control(self, control: str) -> None:
+        """Show which of the controls is on; nothing is emitted."""
+        self._segment.set_choice(control)
+
+    def is_folded(self) -> bool:
+        """Return whether only the verdict line is shown."""
+        return self._body.isHidden()
+
+    def set_folded(self, folded: bool) -> None:
+        """Fold the strip to the verdict line, or unfold it."""
+        self._body.setHidden(folded)
+        self._line.setHidden(not folded)
+        self.setMinimumHeight(_FOLDED if folded else _LOW)
+        self.setMaximumHeight(_FOLDED if folded else 320)
+        self.updateGeometry()
+        self.folded.emit(folded)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.Resize:
+            self._share_legend()
+        return False
+
+    def _build_body(self) -> None:
+        row = QHBoxLayout(self._body)
+        row.setContentsMargins(14, 7, 6, 7)
+        row.setSpacing(18)
+        row.addLayout(self._verdict())
+        self._nothing = sentence(tr("The plots fill while you drag a line."))
+        self._nothing.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        plots = QGridLayout()
+        plots.setHorizontalSpacing(18)
+        plots.setVerticalSpacing(0)
+        for column, plot in enumerate(self.plots):
+            plots.addWidget(plot, 0, column)
+            plots.setColumnStretch(column, 1)
+        plots.addWidget(self._legends[1], 1, 0, 1, 2, Qt.AlignmentFlag.AlignHCenter)
+        row.addLayout(plots, 2)
+        row.addWidget(self._nothing, 1)
+        row.addLayout(self._tools())
+
+    def _tools(self) -> QVBoxLayout:
+        """Return the buttons at the right edge; the window adds its own to them."""
+        self.tools = QVBoxLayout()
+        self.tools.setSpacing(2)
+        fold = ToolButton("caret-down", tr("Fold the plots away (Ctrl+J)"), size=14, room=26)
+        fold.clicked.connect(lambda: self.set_folded(True))
+        self.save = ToolButton("export", tr("Save what the plots show"), size=16, room=26)
+        self.save.clicked.connect(lambda: self._show_menu(self.save.mapToGlobal(self.save.rect().topLeft())))
+        for each in (fold, self.save):
+            self.tools.addWidget(each)
+        self.tools.addStretch(1)
+        return self.tools
+
+    def _show_menu(self, at: QPoint) -> None:
+        self.menu.exec(at)
+
+    def _build_menu(self) -> None:
+        self.menu = Menu(self)
+        for kind, text in (
+            ("csv", tr("Save the turns as a table (CSV)…")),
+            ("png", tr("Save the plots as a picture (PNG)…")),
+            ("svg", tr("Save the plots as a drawing (SVG)…")),
+        ):
+            self.menu.addAction(text, partial(self.export_asked.emit, kind))
+        self.menu.addSeparator()
+        self.menu.addAction(tr("Show all turns"), partial(self.show_turns, None))
+
+    def _verdict(self) -> QVBoxLayout:
+        column = QVBoxLayout()
+        column.setSpacing(0)
+        head = QHBoxLayout()
+        head.addWidget(self.chip)
+        head.addSpacing(10)
+        head.addStretch(1)
+        head.addWidget(self._turns)
+        column.addLayout(head)
+        column.addSpacing(4)
+        grid = QGridLayout()
+        grid.setHorizontalSpacing(12)
+        grid.setVerticalSpacing(2)
+        grid.setColumnStretch(1, 1)
+        self._pairs: list[tuple[QLabel, QLabel]] = []
+        for place in range(3):
+            name, value = label("", "secondary"), label("", "title", tabular=True)
+            grid.addWidget(name, place, 0)
+            grid.addWidget(value, place, 1)
+            self._pairs.append((name, value))
+        column.addLayout(grid)
+        self._hint = sentence("", "secondary")
+        self._hint.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        column.addSpacing(2)
+        column.addWidget(self._hint)
+        column.addSpacing(4)
+        column.addStretch(1)
+        self._segment = control_segment()
+        self._segment.chosen.connect(self.control_chosen)
+        column.addWidget(self._segment)
+        return column
+
+    def _build_line(self) -> None:
+        row = QHBoxLayout(self._line)
+        row.setContentsMargins(14, 4, 6, 4)
+        row.setSpacing(12)
+        self._said = VerdictLine()
+        unfold = ToolButton("caret-up", tr("Show the plots (Ctrl+J)"), size=14, room=26)
+        unfold.clicked.connect(lambda: self.set_folded(False))
+        row.addWidget(self._small_chip)
+        row.addWidget(self._said, 1)
+        row.addWidget(unfold)
+
+    def _show_emptiness(self, empty: bool) -> None:
+        self._nothing.setVisible(empty)
+        for each in (self.chip, self._small_chip, *self.plots):
+            each.setVisible(not empty)

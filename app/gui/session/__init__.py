@@ -1,0 +1,1 @@
+"""The open document, its solver, background jobs, settings."""

@@ -1,0 +1,38 @@
+"""The keys that parts of the window read themselves, which no menu has: each part says its own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from app.gui.features.help.command_palette import Command, plain
+from app.gui.features.landmarks import panel as landmarks
+from app.gui.features.lines import panel as lines
+from app.gui.features.measurements import table as measure_table
+from app.gui.features.project import project_card
+from app.gui.plots import canvas as plot_canvas
+from app.gui.viewport import drawing_tool as hand
+from app.gui.viewport import split_handle as wipe
+from app.gui.viewport.mouse_bindings import chosen_gestures, gestures_in_words
+from app.gui.widgets import inline_edit as typed_field
+from app.gui.widgets import splitter as divider
+from app.i18n.catalog import in_all_languages, tr
+
+
+def keys_of_parts() -> Iterator[Command]:
+    """Give each key with what it does and where, and what a hand does in the view."""
+    parts = (
+        (tr("In the view"), gestures_in_words(chosen_gestures())),
+        (tr("In the list of lines"), lines.keys_in_words()),
+        (tr("In a field"), typed_field.keys_in_words()),
+        (tr("While a line is drawn"), hand.keys_in_words()),
+        (tr("In the list of landmarks"), landmarks.keys_in_words()),
+        (tr("In the table of measures"), measure_table.keys_in_words()),
+        (tr("On the handle of the wipe"), wipe.keys_in_words()),
+        (tr("In the live plot"), plot_canvas.keys_in_words()),
+        (tr("Between two parts of the window"), divider.keys_in_words()),
+        (tr("On the start page"), project_card.keys_in_words()),
+    )
+    for where, keys in parts:
+        for key, what in keys:
+            words = (*in_all_languages(what), *in_all_languages(where), key)
+            yield Command(what, where, key, plain(" ".join(words)))

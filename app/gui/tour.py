@@ -1,0 +1,198 @@
+"""The tour through the window: from the lifted bust over steps, lines and verdict to the report."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import reduce
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QTimer
+from PySide6.QtWidgets import QWidget
+
+from app.gui.features.project.recent_files import end_first_start
+from app.gui.widgets.coach_mark import CoachMark
+from app.i18n.catalog import tr
+from app.presenters.bust_shift import bust_move, up_words
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+_SETTLED = 250
+"""Stillness of view and notices after which the card takes its place again [ms]."""
+
+
+@dataclass(frozen=True)
+class Stop:
+    """A stop of the tour: ``place`` is what its sentence is about, ``report`` whether it opens the report."""
+
+    title: str
+    words: str
+    place: Callable[[], QRect]
+    report: bool = False
+
+
+class Tour(QObject):
+    """Leads through its stops; the window can be used meanwhile. Where it ended counts as seen."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._place = -1
+        self.mark = CoachMark(window)
+        self.mark.went.connect(self._go)
+        self.mark.skipped.connect(self.end)
+        self._points = QTimer(self, interval=_SETTLED, singleShot=True)
+        self._points.timeout.connect(self._point)
+        window.view.viewport.view_changed.connect(self._points.start)
+
+    @property
+    def place(self) -> int:
+        """Which stop is shown, from 0; -1 while there is no tour."""
+        return self._place
+
+    def begin(self) -> None:
+        """Begin with the first stop."""
+        self._place = 0
+        for part in (self._window, self._window.notices):
+            part.installEventFilter(self)
+        self._show()
+
+    def begin_when_settled(self) -> None:
+        """Begin once the body that is being opened is in its finished state."""
+        self._window.session.frame_ready.connect(self._begin_if_settled)
+
+    def end(self) -> None:
+        """Go, and do not come again by itself."""
+        self._place = -1
+        for part in (self._window, self._window.notices):
+            part.removeEventFilter(self)
+        self.mark.leave()
+        self._window.layout_.enter()
+        end_first_start()
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+        """Stay beside what is spoken of when the window changes its size, and off the notices."""
+        if event.type() in (QEvent.Type.Resize, QEvent.Type.Move, QEvent.Type.Show, QEvent.Type.Hide):
+            QTimer.singleShot(0, self, self._point)
+        return False
+
+    def _begin_if_settled(self) -> None:
+        if self._window.is_settled():
+            self._window.session.frame_ready.disconnect(self._begin_if_settled)
+            self.begin()
+
+    def _go(self, step: int) -> None:
+        self._place = max(self._place + step, 0)
+        if self._place < len(self._stops()):
+            self._show()
+        else:
+            self.end()
+
+    def _show(self) -> None:
+        stops = self._stops()
+        stop = stops[self._place]
+        self._window.desk.go_to("lines")
+        self._window.strip.set_folded(False)
+        if stop.report:
+            self._window.report_desk.open()
+        self.mark.show_step(self._place, len(stops), stop.title, stop.words)
+        self._point()
+        self.mark.setFocus(Qt.FocusReason.OtherFocusReason)
+        # What was folded away a moment ago has its place only then.
+        QTimer.singleShot(0, self, self._point)
+
+    def _point(self) -> None:
+        if self._place >= 0:
+            # Not over the menus: they can be opened meanwhile, as all else can.
+            room = self._window.rect().adjusted(0, self._window.top.geometry().bottom() + 1, 0, 0)
+            self.mark.point_at(self._stops()[self._place].place(), room, self._clear())
+
+    def _stops(self) -> tuple[Stop, ...]:
+        return (*self._stops_beside_the_body(), *self._stops_of_the_result())
+
+    def _stops_beside_the_body(self) -> tuple[Stop, ...]:
+        window = self._window
+        frame = window.session.frame
+        assert frame is not None, "a tour is of a body"
+        return (
+            Stop(
+                tr("Before and after"),
+                tr(
+                    "Compared with the original body, the bust points are {move}. "
+                    "Press Space, or click Before and After, to switch between both."
+                ).format(move=up_words(bust_move(frame).mean.up)),
+                lambda: self._place_of(window.view.compare),
+            ),
+            Stop(
+                tr("Four steps"),
+                tr(
+                    "From the scan to the result: open any step at any time. "
+                    "For a scan of your own, drop its file on the window or press Ctrl+O."
+                ),
+                lambda: self._place_of(*window.rail.items.values()),
+            ),
+            Stop(
+                tr("Drag a line"),
+                tr(
+                    "Drag the round handle a little to the left: the line gets shorter and presses more. "
+                    "Below the body you see how far the bust moves. Ctrl+Z undoes it."
+                ),
+                lambda: self._place_of(window.lines.rows.get(window.view.selected_line, window.lines)),
+            ),
+        )
+
+    def _stops_of_the_result(self) -> tuple[Stop, ...]:
+        return (
+            Stop(
+                tr("Overall verdict"),
+                tr(
+                    "The worst result of all checks: convergence, skin strain, contact pressure and fit. "
+                    "Click it for reasons and fixes. Pressures are estimates, rather too high: "
+                    "check them on a sample garment."
+                ),
+                self._verdict_place,
+            ),
+            Stop(
+                tr("Fitting sheet"),
+                tr(
+                    "The verdict, the lift and what to cut, with pictures: print it or save it as a PDF. "
+                    "Esc returns to the body."
+                ),
+                lambda: self._place_of(self._window.report_desk.page.does["pdf"]),
+                report=True,
+            ),
+        )
+
+    # -- places on the window
+
+    def _clear(self) -> Sequence[QRect]:
+        """Return what the card must not cover."""
+        window = self._window
+        notices = [self._place_of(window.notices)] if window.notices.isVisible() else []
+        if window.report_desk.is_open:
+            page = window.report_desk.page
+            return [*notices, self._place_of(page.paper), *map(self._place_of, page.does.values())]
+        beside = [self._place_of(each) for each in (window.rail, window.inspector) if each.isVisible()]
+        return [*notices, *beside, self._bust_place(), self._verdict_place()]
+
+    def _place_of(self, *parts: QWidget) -> QRect:
+        places = [QRect(part.mapTo(self._window, QPoint(0, 0)), part.size()) for part in parts]
+        return reduce(QRect.united, places)
+
+    def _bust_place(self) -> QRect:
+        """Return where the part of the body that lines shape is seen."""
+        frame, viewport = self._window.session.frame, self._window.view.viewport
+        assert frame is not None, "a tour is of a body"
+        spots = viewport.scene.view.to_picture(frame.control_points, viewport.width(), viewport.height())
+        low, high = (QPoint(*map(int, each)) for each in (spots[:, :2].min(axis=0), spots[:, :2].max(axis=0)))
+        return (
+            QRect(low, high)
+            .translated(viewport.mapTo(self._window, QPoint(0, 0)))
+            .intersected(self._place_of(viewport))
+        )
+
+    def _verdict_place(self) -> QRect:
+        """Return where the verdict stands with its values and its first reason, beside the plots."""
+        strip = self._place_of(self._window.strip)
+        return strip.adjusted(0, 0, self._place_of(self._window.strip.plots[0]).left() - strip.right() - 1, 0)

@@ -1,0 +1,67 @@
+"""What the window does about the view itself: the body's material, what is framed, the space bar."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+
+from app.gui.session.settings import wish, wish_for
+from app.gui.viewport.compare_key import FlipKey
+from app.i18n.catalog import tr
+from app.presenters.maps import map_kinds
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+
+class ViewDesk(QObject):
+    """Adds to the menu of the view what has no button on it."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._view, self._maps = window.view, window.map_desk
+        do = window.actions_
+        FlipKey(window, do.flip, window.view, window.variant_desk.show_side_by_side)
+        said = tr("Come close to the selected line or landmark")
+        self.fit = do.add("view", tr("Fit the selection"), "F", said, do=self._view.frame_selection)
+        self._add_maps()
+        for name, title in (("variants", tr("Table of variants")), ("history", tr("History"))):
+            do.add("window", title, do=partial(self._open_tab, name), of_document=True)
+        do.submenu("view", "material", tr("Material"))
+        titles = {"clay": tr("Clay"), "plaster": tr("Plaster"), "graphite": tr("Graphite")}
+        self.materials = do.group("material", titles)
+        for name, action in self.materials.items():
+            action.triggered.connect(lambda _=False, name=name: self.choose_material(name))
+        self._show_material(wish("material"))
+
+    def _add_maps(self) -> None:
+        """List the maps: each can be asked for by its name."""
+        do = self._window.actions_
+        do.submenu("view", "maps", tr("Maps"))
+        titles = {"": tr("No map")} | {kind.name: kind.title for kind in map_kinds()}
+        self.maps = do.group("maps", titles)
+        for name, action in self.maps.items():
+            action.triggered.connect(lambda _=False, name=name: self._maps.choose(name))
+        self._maps.changed.connect(self._show_map)
+        self._show_map()
+
+    def _show_map(self) -> None:
+        self.maps[self._maps.name].setChecked(True)
+
+    def _open_tab(self, name: str) -> None:
+        self._window.desk.go_to("lines")
+        self._window.inspector.open(name)
+
+    def choose_material(self, name: str) -> None:
+        """Show the body in another material, now and in later sessions."""
+        wish_for("material", name)
+        self._show_material(name)
+
+    def _show_material(self, name: str) -> None:
+        name = name if name in self.materials else "clay"
+        self.materials[name].setChecked(True)
+        self._view.set_material(name)
+        self._maps.refresh()

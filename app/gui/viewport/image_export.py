@@ -1,0 +1,85 @@
+"""Pictures of the view for others: saved, copied, printed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, QRect, QSize, Qt
+from PySide6.QtGui import QGuiApplication, QImage, QPageLayout, QPainter
+from PySide6.QtPrintSupport import QPrintDialog, QPrinter
+
+from app.gui.session.project_thumbnail import png_of
+from app.gui.widgets.file_dialogs import ask_save
+from app.i18n.catalog import tr
+from core.errors import ProjectError, UserError
+from core.files.atomic_write import whole_file
+
+if TYPE_CHECKING:
+    from app.gui.main_window import MainWindow
+
+FINER = 2.0
+"""Pixels of a picture for each one of the screen, in both directions."""
+
+
+class PictureDesk(QObject):
+    """Adds to the menu of files what is done with a picture of what the view shows."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        do = window.actions_
+        do.rule("file")
+        said = tr("Put what the view shows on the clipboard, finer than the screen")
+        do.add("file", tr("Copy the picture"), "Ctrl+Shift+C", said, do=self.copy, of_document=True)
+        said = tr("Print what the view shows, on one page")
+        do.add("file", tr("Print the picture…"), tip=said, do=self.print_out, of_document=True)
+
+    def save(self) -> None:
+        """Ask for a place and write what the view shows."""
+        window = self._window
+        name = f"{window.session.name}.png"
+        path = ask_save(window, tr("Save a picture"), name, "PNG (*.png)", ".png")
+        if not path:
+            return
+        try:
+            with whole_file(Path(path).absolute()) as partial:
+                partial.write_bytes(png_of(self._picture()))
+        except UserError as problem:
+            window.desk.show_failure(problem, "picture")
+        else:
+            window.desk.show_written("picture", tr("{name} written.").format(name=Path(path).name), path)
+
+    def copy(self) -> None:
+        """Put what the view shows on the clipboard."""
+        QGuiApplication.clipboard().setImage(self._picture())
+        self._window.notices.show_notice("ok", tr("The picture is copied."))
+
+    def print_out(self) -> None:
+        """Ask for a printer and print what the view shows."""
+        printer = QPrinter(QPrinter.PrinterMode.HighResolution)
+        printer.setDocName(self._window.session.name)
+        printer.setPageOrientation(QPageLayout.Orientation.Landscape)
+        if not QPrintDialog(printer, self._window).exec():
+            return
+        picture, page = self._picture(), printer.pageLayout().paintRectPixels(printer.resolution())
+        painter = QPainter()
+        if not painter.begin(printer):
+            said = tr("The picture could not be printed."), tr("Choose another printer.")
+            self._window.desk.show_failure(ProjectError(*said), "print")
+            return
+        painter.drawImage(fitted(picture.size(), page.size()), picture)
+        painter.end()
+        self._window.notices.withdraw("print")
+
+    def _picture(self) -> QImage:
+        picture = self._window.view.picture(FINER)
+        # Other programs take its pixels for pixels.
+        picture.setDevicePixelRatio(1.0)
+        return picture
+
+
+def fitted(picture: QSize, page: QSize) -> QRect:
+    """Return where a picture lies on a page: as large as goes, in its middle across, at its head [px]."""
+    size = picture.scaled(page, Qt.AspectRatioMode.KeepAspectRatio)
+    return QRect((page.width() - size.width()) // 2, 0, size.width(), size.height())

@@ -1,0 +1,78 @@
+"""What the buttons and the wheel do in the 3D view, for hands that come from different programs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from PySide6.QtCore import Qt
+
+from app.gui.session.settings import wish
+from app.i18n.catalog import tr
+
+ORBIT, PAN, ZOOM = "orbit", "pan", "zoom"
+
+_LEFT, _MIDDLE, _RIGHT = Qt.MouseButton.LeftButton, Qt.MouseButton.MiddleButton, Qt.MouseButton.RightButton
+_NONE, _SHIFT, _CTRL = (
+    Qt.KeyboardModifier.NoModifier,
+    Qt.KeyboardModifier.ShiftModifier,
+    Qt.KeyboardModifier.ControlModifier,
+)
+_HELD = _SHIFT | _CTRL
+
+
+@dataclass(frozen=True)
+class Gestures:
+    """What a drag does by its button and the key held, and what the wheel does by the key held."""
+
+    drags: Mapping[tuple[Qt.MouseButton, Qt.KeyboardModifier], str]
+    wheel: Mapping[Qt.KeyboardModifier, str]
+
+    def of_drag(self, button: Qt.MouseButton, held: Qt.KeyboardModifier) -> str:
+        """Return orbit, pan or zoom, or an empty text where a drag does nothing."""
+        return self.drags.get((button, held & _HELD), "")
+
+    def of_wheel(self, held: Qt.KeyboardModifier) -> str:
+        """Return orbit, pan or zoom."""
+        return self.wheel.get(held & _HELD, ZOOM)
+
+
+_WITH_LEFT = {(_LEFT, _NONE): ORBIT, (_LEFT, _SHIFT): PAN, (_LEFT, _CTRL): ZOOM}
+
+PRESETS = {
+    "busk": Gestures({**_WITH_LEFT, (_MIDDLE, _NONE): PAN, (_RIGHT, _NONE): ZOOM}, {_NONE: ZOOM}),
+    "cad": Gestures(
+        {(_LEFT, _NONE): ORBIT, (_MIDDLE, _NONE): ORBIT, (_MIDDLE, _CTRL): PAN, (_MIDDLE, _SHIFT): ZOOM}
+        | {(_RIGHT, _NONE): PAN},
+        {_NONE: ZOOM},
+    ),
+    "blender": Gestures(
+        {(_LEFT, _NONE): ORBIT, (_MIDDLE, _NONE): ORBIT, (_MIDDLE, _SHIFT): PAN, (_MIDDLE, _CTRL): ZOOM},
+        {_NONE: ZOOM, _SHIFT: PAN},
+    ),
+    "trackpad": Gestures(_WITH_LEFT, {_NONE: ORBIT, _SHIFT: PAN, _CTRL: ZOOM}),
+}
+"""The presets by name."""
+
+
+def chosen_gestures() -> Gestures:
+    """Return the gestures of the preset that the user has wished for."""
+    return PRESETS.get(wish("mouse"), PRESETS["busk"])
+
+
+def gestures_in_words(gestures: Gestures) -> list[tuple[str, str]]:
+    """Return what a hand does in the view and what comes of it, ready to read."""
+    acts = {ORBIT: tr("Turn the body"), PAN: tr("Move the body"), ZOOM: tr("Closer or farther")}
+    buttons = {_LEFT: tr("Left drag"), _MIDDLE: tr("Middle drag"), _RIGHT: tr("Right drag")}
+    keys = {_NONE: "", _SHIFT: "Shift+", _CTRL: "Ctrl+"}
+    drags = [(keys[held] + buttons[button], acts[act]) for (button, held), act in gestures.drags.items()]
+    wheel = [(keys[held] + tr("Wheel"), acts[act]) for held, act in gestures.wheel.items()]
+    return [
+        *drags,
+        *wheel,
+        (tr("Double-click"), tr("Turn about this place")),
+        (tr("Click"), tr("Select a line by its band")),
+        (f"{tr('Left drag')} ↑ ↓", tr("Selected band: shorter, longer")),
+        (tr("Left drag"), tr("Handle of the section: move the plane")),
+        (f"Shift+{tr('Left drag')}", tr("Band or section in the hand: a tenth as far")),
+    ]

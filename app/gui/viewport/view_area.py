@@ -1,0 +1,274 @@
+"""The middle of the window: the 3D view and all that lies on it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from PySide6.QtCore import Signal
+from PySide6.QtGui import QAction, QImage, QPainter, QRegion, QResizeEvent
+from PySide6.QtWidgets import QVBoxLayout, QWidget
+
+from app.gui.plots.axes import load_curves
+from app.gui.session.jobs import Job, Jobs
+from app.gui.viewport.body_view import BodyView
+from app.gui.viewport.canvas import load_libraries
+from app.gui.viewport.comparison import Beside
+from app.gui.viewport.landmark_pins import PinBoard
+from app.gui.viewport.opening_cover import OpeningCover
+from app.gui.viewport.orientation_card import QuestionCard
+from app.gui.viewport.split_view import Panes
+from app.gui.viewport.toolbar import CompareTools, ViewTools
+from app.gui.viewport.viewport import Viewport
+from app.gui.widgets.basic import ToolButton
+from app.gui.widgets.overlay_layout import Floating
+from app.gui.widgets.progress_card import BusyCard
+from app.i18n.catalog import tr
+from app.rendering.ambient_occlusion import bake_occlusion
+from core.geometry.mesh import Floats
+from core.landmarks.types import Landmark
+from core.pipeline.live_solver import Frame
+from core.scan.body import Body
+
+
+class ViewArea(QWidget):
+    """Shows frames; ``is_shaded`` says whether the soft shadows of the body have been worked out.
+
+    ``viewport`` is the view that is always there; ``beside`` says what is seen beside it,
+    and ``compared`` that this has changed.
+    """
+
+    compared = Signal()
+
+    def __init__(self, jobs: Jobs) -> None:
+        super().__init__()
+        self._jobs = jobs
+        self._baking: Job | None = None
+        self.viewport = Viewport()
+        self.panes = Panes(self.viewport, self)
+        self.tools = ViewTools(self)
+        self.compare = CompareTools(self)
+        self.busy, self.question = BusyCard(self), QuestionCard(self)
+        self._main = BodyView(self.viewport)
+        self.beside = Beside(self._main, self.panes)
+        self.pins = PinBoard([self.viewport])
+        self._shades: tuple[Body, Floats] | None = None
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.panes)
+        self.cover = OpeningCover(self)
+        self.floating = Floating(self)
+        self._explaining: list[QWidget] = []
+        for panel, corner in (
+            (self.tools, "bottom"),
+            (self.busy, "bottom"),
+            (self.question, "bottom"),
+            (self.compare, "top-left"),
+        ):
+            panel.hide()
+            self.floating.place(panel, corner)
+        self.panes.obstacle = self.compare
+        self.viewport.set_view("three-quarter")
+        self.tools.set_view("three-quarter")
+        self.tools.set_shown("bands", True)
+        self.tools.set_shown("perspective", True)
+        self.viewport.view_changed.connect(self._show_view)
+
+    @property
+    def tool_actions(self) -> dict[str, QAction]:
+        """The actions of all tools, for the menus."""
+        return self.compare.actions_by_name | self.tools.actions_by_name
+
+    def prepare(self, done: Callable[[], None], failed: Callable[[Exception], None]) -> None:
+        """Load the 3D libraries in a passing thread and make the scene, before there is anything to show.
+
+        ``failed`` hears why they cannot be loaded.
+        """
+
+        def make(_: object) -> None:
+            self.viewport.make()
+            self._jobs.run(tr("Getting the plots ready"), lambda _: load_curves(), lambda _: None)
+            done()
+
+        words = tr("Getting the 3D view ready")
+        self._jobs.run(words, lambda _: load_libraries(), make, failed)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Keep the view covered while something is being opened."""
+        super().resizeEvent(event)
+        self.cover.resize(self.size())
+
+    # -- what is shown
+
+    def show_frame(self, frame: Frame) -> None:
+        """Bring all that is seen of the document up to date."""
+        first = frame.stages.body is not self._main.body
+        if first:
+            self.viewport.paint_later()
+        for body in self.beside.live:
+            body.show_frame(frame)
+        if first:
+            self._show_new(frame.stages.body)
+            self.viewport.frame_bust()
+        self.pins.set_landmarks(frame.stages.landmarks.points)
+
+    def show_stuck(self, body: Body, landmarks: Mapping[str, Landmark]) -> None:
+        """Show a body on which no control mesh lies, and what landmarks there are."""
+        first = self._main.body is None
+        self.compare_by("after")
+        self._main.show_body(body)
+        self._show_new(body)
+        if first:
+            self.viewport.frame_bust()
+        self.pins.set_landmarks(landmarks)
+
+    @property
+    def is_shaded(self) -> bool:
+        """Whether the soft shadows of the body have been worked out."""
+        return self._shades is not None
+
+    @property
+    def hidden_lines(self) -> frozenset[str]:
+        """The lines whose bands are not shown."""
+        return self._main.hidden_lines
+
+    @property
+    def selected_line(self) -> str:
+        """The line with a casing round it."""
+        return self._main.selected_line
+
+    def select_line(self, name: str) -> None:
+        """Put a casing round one line."""
+        for body in self.beside.bodies:
+            body.select_line(name)
+
+    def set_line_visible(self, name: str, visible: bool) -> None:
+        """Show or hide one line's band."""
+        hidden = self.hidden_lines - {name} if visible else self.hidden_lines | {name}
+        for body in self.beside.bodies:
+            body.hide_lines(hidden)
+
+    def set_layer(self, layer: str, shown: bool) -> None:
+        """Show or hide a layer, as its tool says."""
+        (self.compare if layer == "ghost" else self.tools).set_shown(layer, shown)
+        if layer == "perspective":
+            self.viewport.set_parallel(not shown)
+        elif layer == "landmarks":
+            self.pins.set_shown(shown)
+        else:
+            for body in self.beside.bodies:
+                body.set_layer(layer, shown)
+
+    def set_material(self, material: str) -> None:
+        """Paint the body as one of ``app.rendering.material.MATERIALS``."""
+        for body in self.beside.bodies:
+            body.viewport.set_material(material)
+
+    def frame_selection(self) -> None:
+        """Come close to the selected landmark, if it is shown, else to the selected line."""
+        _, place = self.pins.chosen()
+        bands = self.viewport.scene.bands
+        if place is not None:
+            self.viewport.frame_points(place[None])
+        elif self.selected_line in bands.names:
+            self.viewport.frame_points(bands.spine(self.selected_line)[0])
+
+    # -- before and after
+
+    @property
+    def after(self) -> bool:
+        """Whether the reshaped body is seen."""
+        return self.beside.way != "before"
+
+    def set_after(self, after: bool) -> None:
+        """Show the reshaped body alone, or the body at rest."""
+        self.compare_by("after" if after else "before")
+
+    def compare_by(self, way: str) -> None:
+        """Look at before and after in one of ``app.gui.viewport.comparison.WAYS``."""
+        self.beside.show(way)
+        self._beside_changed()
+
+    def show_variants(self, variants: Sequence[tuple[str, Frame | None]]) -> None:
+        """Show variants of the design side by side; the one without a frame is the one that is worked on."""
+        self.beside.show_variants(variants)
+        self._beside_changed()
+
+    def _beside_changed(self) -> None:
+        self.compare.set_way(self.beside.way)
+        self.pins.set_viewports([body.viewport for body in self.beside.live])
+        for body in self.beside.bodies[1:]:
+            self._shade_or_bake(body)
+        self.compared.emit()
+
+    # -- places, pictures, the end
+
+    def place(self, panel: QWidget, corner: str, explains: bool = False) -> None:
+        """Let a panel float in one of ``app.gui.widgets.overlay_layout.CORNERS``, over what is there already.
+
+        One that ``explains`` what is seen belongs to a picture of it, and yields to all others.
+        """
+        self.floating.place(panel, corner, yields=explains)
+        if explains:
+            self._explaining.append(panel)
+
+    def picture(self, finer: float = 2.0) -> QImage:
+        """Return what is seen, with so many times the pixels of the screen in both directions.
+
+        Of what floats over it only that is in the picture which explains it, such as the legend of a map.
+        """
+        self.viewport.make()
+        from app.gui.viewport.screenshot import fine_picture  # noqa: PLC0415 (brings VTK along)
+
+        picture = fine_picture(self.panes, finer)
+        painter = QPainter(picture)
+        for panel in self._explaining:
+            if not panel.isHidden():
+                # What closes it is for the hand.
+                tools = [tool for tool in panel.findChildren(ToolButton) if not tool.isHidden()]
+                for tool in tools:
+                    tool.hide()
+                panel.render(painter, panel.pos(), QRegion(), QWidget.RenderFlag.DrawChildren)
+                for tool in tools:
+                    tool.show()
+        painter.end()
+        return picture
+
+    def close_view(self) -> None:
+        """Give everything back, before the window goes."""
+        self.panes.close_views()
+
+    # -- inside
+
+    def _show_view(self) -> None:
+        """Mark the tools of the view that the camera is in; on its way there it stays marked."""
+        self.tools.set_shown("perspective", not self.viewport.view.parallel)
+        name = self.viewport.view.name
+        if name is not None or self.viewport.heading == self.viewport.view:
+            self.tools.set_view(name)
+
+    def _show_new(self, body: Body) -> None:
+        self.tools.actions_by_name["colours"].setEnabled(body.colours is not None)
+        for panel in (self.tools, self.compare):
+            panel.show()
+        self._shades = None
+        self._jobs.cancel(self._baking)
+        self._baking = self._bake(body)
+
+    def _bake(self, body: Body) -> Job:
+        return self._jobs.run(
+            tr("Shading the body"),
+            lambda progress: bake_occlusion(body.mesh, progress=progress),
+            lambda occlusion: self._shade(body, occlusion),
+        )
+
+    def _shade(self, body: Body, occlusion: Any) -> None:
+        if body is self._main.body:
+            self._shades = body, occlusion
+        for each in self.beside.bodies:
+            each.shade(body, occlusion)
+
+    def _shade_or_bake(self, beside: BodyView) -> None:
+        known = self._shades is not None and beside.shade(*self._shades)
+        if not known and beside.body is not None and beside.body is not self._main.body:
+            self._bake(beside.body)

@@ -1,0 +1,115 @@
+"""The house's dialog: a heading, what it is about, and buttons at its foot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QFontDatabase, QShowEvent
+from PySide6.QtWidgets import (
+    QApplication,
+    QDialog,
+    QHBoxLayout,
+    QPlainTextEdit,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.gui.theme.stylesheet import label
+from app.gui.widgets.basic import button, hairline
+from app.gui.widgets.focus_chain import next_stop, stops
+from app.i18n.catalog import tr
+
+
+class Sheet(QDialog):
+    """A dialog that goes when it is closed; ``body`` takes what it shows, ``foot`` its buttons.
+
+    A height of 0 in its size means as high as it needs.
+    """
+
+    def __init__(self, parent: QWidget | None, title: str, size: tuple[int, int] | None = None) -> None:
+        super().__init__(parent)
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setWindowTitle(title)
+        self.body, self.foot = QVBoxLayout(), QHBoxLayout()
+        self.body.setContentsMargins(20, 18, 20, 16)
+        self.body.setSpacing(10)
+        self.foot.setContentsMargins(20, 11, 20, 12)
+        self.foot.setSpacing(8)
+        self.foot.addStretch(1)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addLayout(self.body, 1)
+        column.addWidget(hairline())
+        column.addLayout(self.foot)
+        heading = label(title, "page")
+        heading.setWordWrap(True)
+        self.body.addWidget(heading)
+        self._size = size
+        self._before: QWidget | None = None
+        if size is not None:
+            self.setMinimumWidth(size[0])
+            self.resize(*size)
+
+    def add_button(self, text: str, do: Callable[[], object], kind: str = "secondary") -> QPushButton:
+        """Put one more button at the right of the foot; the primary one answers the Enter key."""
+        result = button(text, kind)
+        result.setAutoDefault(False)
+        result.setDefault(kind == "primary")
+        result.clicked.connect(lambda _=False: do())
+        self.foot.addWidget(result)
+        return result
+
+    def fit(self) -> None:
+        """Take the height that all the text needs at this width."""
+        column = self.layout()
+        assert column is not None
+        column.activate()
+        self.resize(self.width(), column.totalHeightForWidth(self.width()))
+
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802
+        """Be as high as needed, where no height was wished for."""
+        if self._size is not None and not self._size[1]:
+            self.fit()
+        if self._before is None and not event.spontaneous():
+            self._before = QApplication.focusWidget()
+            if self._before is not None:
+                self._before.destroyed.connect(self._forget)
+        super().showEvent(event)
+
+    def done(self, result: int) -> None:
+        """Go, and give the keyboard back to what had it before."""
+        super().done(result)
+        before = self._before
+        if before is not None and before.isVisible():
+            before.window().activateWindow()
+            before.setFocus(Qt.FocusReason.OtherFocusReason)
+
+    def _forget(self) -> None:
+        self._before = None
+
+    def focusNextPrevChild(self, next: bool) -> bool:  # noqa: N802
+        """Lead the keyboard in the order that eyes read, as in the window."""
+        return next_stop(stops(self), next)
+
+    def add_close(self) -> QPushButton:
+        """Put the button that closes the sheet at the foot."""
+        return self.add_button(tr("Close"), self.accept, "primary")
+
+
+def reading(text: str, name: str, *, code: bool = False) -> QPlainTextEdit:
+    """Return text to read and to copy, for ears called ``name``; ``code`` keeps its columns."""
+    result = QPlainTextEdit(text)
+    result.setReadOnly(True)
+    result.setAccessibleName(name)
+    result.setTabChangesFocus(True)
+    result.setTextInteractionFlags(
+        Qt.TextInteractionFlag.TextSelectableByMouse | Qt.TextInteractionFlag.TextSelectableByKeyboard
+    )
+    if code:
+        type_ = QFontDatabase.systemFont(QFontDatabase.SystemFont.FixedFont)
+        type_.setPixelSize(12)
+        result.setFont(type_)
+    return result

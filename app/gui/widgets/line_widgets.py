@@ -1,0 +1,247 @@
+"""Small parts of a line's row: the chip in its colour, its name, its stiffness, the palette."""
+
+# ruff: noqa: D102, N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+from PySide6.QtCore import QRectF, QSize, Qt, Signal
+from PySide6.QtGui import (
+    QColor,
+    QIcon,
+    QKeyEvent,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QPen,
+    QPixmap,
+    QResizeEvent,
+)
+from PySide6.QtWidgets import QLineEdit, QSizePolicy, QWidget
+
+from app.gui.theme.stylesheet import font, tokens_of
+from app.gui.widgets.basic import ElidedLabel
+from app.gui.widgets.inline_edit import TypedField, read_figure
+from app.gui.widgets.menu import Menu
+from app.gui.widgets.tooltip import set_tip
+from app.i18n.catalog import number, tr
+from app.rendering.palette import LINE_COLORS
+from core.document.lines import LONGEST_TITLE
+from core.mechanics.options import RANGES
+
+
+class LineChip(QWidget):
+    """The colour of a line and, by its height, the width of its band; an outline only while it is hidden."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._color, self._width, self._filled = "", 12.0, True
+        self.setFixedSize(QSize(14, 18))
+
+    def show_line(self, color: str, width_mm: float, filled: bool) -> None:
+        """Show a line's colour and the width of its band, filled or as an outline."""
+        if (color, width_mm, filled) != (self._color, self._width, self._filled):
+            self._color, self._width, self._filled = color, width_mm, filled
+            self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        rim = QColor("#FFFFFF")
+        rim.setAlpha(97 if tokens_of(self).dark else 0)
+        outline = QColor(self._color).lighter(150) if tokens_of(self).dark else QColor(self._color)
+        painter.setPen(QPen(rim, 1) if self._filled else QPen(outline, 1.5))
+        painter.setBrush(QColor(self._color) if self._filled else Qt.BrushStyle.NoBrush)
+        high = min(max(self._width / 2.0, 4.0), 16.0)
+        round_ = min(3.0, high / 2.0)
+        painter.drawRoundedRect(QRectF(0.75, (18.0 - high) / 2.0, 12.5, high), round_, round_)
+
+
+class SideMark(QWidget):
+    """The side of a line that is set apart from its partner: a letter in a small frame."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._letter = ""
+        self.setFixedSize(QSize(17, 16))
+        set_tip(self, tr("Set apart: left and right have lengths of their own"))
+
+    def show_side(self, side: str) -> None:
+        """Show "left" or "right"; anything else is no side, and nothing is shown."""
+        self._letter = {"left": tr("L"), "right": tr("R")}.get(side, "")
+        self.setAccessibleName({"left": tr("left"), "right": tr("right")}.get(side, ""))
+        self.setVisible(bool(self._letter))
+        self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        tokens, painter = tokens_of(self), QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(QColor(tokens.control))
+        painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 4, 4)
+        painter.setPen(QColor(tokens.text))
+        painter.setFont(font("caption"))
+        painter.drawText(self.rect(), Qt.AlignmentFlag.AlignCenter, self._letter)
+
+
+LEAST = 32
+"""Room that a title keeps where there is little [px]."""
+
+
+class LineTitle(ElidedLabel):
+    """The name of a line, where there is no room for it its beginning; ``renamed`` when another was typed.
+
+    A double click, or ``begin``, opens it for typing; ``left`` when that is over.
+    """
+
+    renamed = Signal(str)
+    left = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setFont(font("name"))
+        self.setProperty("role", "name")
+        self.setMinimumWidth(LEAST)
+        self.setSizePolicy(QSizePolicy.Policy.Maximum, QSizePolicy.Policy.Preferred)
+        self._editor = _Editor(self)
+        self._editor.hide()
+        self._editor.editingFinished.connect(self._end)
+        self._editor.left.connect(self._leave)
+
+    def begin(self) -> None:
+        """Let another name be typed."""
+        self._editor.setText(self.text())
+        self._fit()
+        self._editor.show()
+        self._editor.selectAll()
+        self._editor.setFocus(Qt.FocusReason.OtherFocusReason)
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
+        self.begin()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit()
+
+    def _fit(self) -> None:
+        """Lay the editor over the row's head: a long name needs more room than it has while it stands."""
+        row = self.parentWidget()
+        if row is not None:
+            self._editor.setParent(row)
+            self._editor.setGeometry(self.x() - 7, self.y() + (self.height() - 26) // 2, 170, 26)
+
+    def _end(self) -> None:
+        if self._editor.isHidden():
+            return
+        self._leave()
+        title = self._editor.text().strip()
+        if title != self.text():
+            self.renamed.emit(title)
+
+    def _leave(self) -> None:
+        was_there = self._editor.hasFocus()
+        self._editor.hide()
+        if was_there:
+            self.left.emit()
+
+
+class _Editor(QLineEdit):
+    """A line's name while it is typed; ``left`` at Esc."""
+
+    left = Signal()
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setMaxLength(LONGEST_TITLE)
+        self.setAccessibleName(tr("Name of the line"))
+        set_tip(self, tr("Enter keeps the name, Esc the old one; nothing typed brings the usual name back."))
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() == Qt.Key.Key_Escape:
+            self.left.emit()
+            return
+        super().keyPressEvent(event)
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            event.accept()  # the list would open the length for typing
+
+
+class StiffnessField(TypedField):
+    """The stiffness of one line; nothing typed means: as the model. ``entered`` carries a number or None."""
+
+    entered = Signal(object)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._stiffness: float | None = None
+        self.setFont(font("body", tabular=True))
+        self.setFixedWidth(104)
+        low, high = RANGES["line_stiffness"]
+        tip = tr(
+            "Stiffness of this line, {low} to {high} times that of the skin at a point;"
+            " leave it empty to have it as the model."
+        )
+        set_tip(self, tip.format(low=low, high=number(high, 0)))
+        self.name_line("")
+
+    def name_line(self, title: str) -> None:
+        """Tell ears whose stiffness this is."""
+        self.setAccessibleName(tr("{line}: stiffness").format(line=title or tr("Line")))
+
+    def show_stiffness(self, own: float | None, usual: float) -> None:
+        """Show a line's own stiffness [1], or faintly the usual one."""
+        self.setPlaceholderText(tr("model: {value}").format(value=_plain(usual)))
+        self._stiffness = own
+        self._follow()
+
+    def _words(self) -> str:
+        return "" if self._stiffness is None else _plain(self._stiffness)
+
+    def _read(self, text: str) -> float | None:
+        plain, (low, high) = text.strip().replace(",", "."), RANGES["line_stiffness"]
+        stiffness = (read_figure(plain) or 0.0) if plain else None
+        if stiffness is not None and not low <= stiffness <= high:
+            said = tr("A stiffness goes from {low} to {high}; left empty it is that of the model.")
+            raise ValueError(said.format(low=low, high=number(high, 0)))
+        return stiffness
+
+    def _take(self, value: float | None) -> None:
+        if value != self._stiffness:
+            self._stiffness = value
+            self.entered.emit(value)
+
+
+def _plain(value: float) -> str:
+    return f"{value:g}"
+
+
+class PaletteMenu(Menu):
+    """The colours that a line can have; ``chosen`` carries one, or an empty text for the usual one."""
+
+    chosen = Signal(str)
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        names = (
+            tr("Plum"),
+            tr("Rose"),
+            tr("Petrol"),
+            tr("Wine"),
+            tr("Amber"),
+            tr("Lavender"),
+            tr("Sky"),
+            tr("Olive"),
+            tr("Rust"),
+        )
+        for colour, name in zip(LINE_COLORS, names, strict=True):
+            self.addAction(_swatch(colour), name, lambda colour=colour: self.chosen.emit(colour))
+        self.addSeparator()
+        self.addAction(tr("The usual colour"), lambda: self.chosen.emit(""))
+
+
+def _swatch(colour: str) -> QIcon:
+    picture = QPixmap(32, 32)
+    picture.fill(Qt.GlobalColor.transparent)
+    painter = QPainter(picture)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QColor(colour))
+    painter.drawRoundedRect(QRectF(3, 6, 26, 20), 5, 5)
+    painter.end()
+    return QIcon(picture)

@@ -1,0 +1,191 @@
+"""Where one setting is shown and chosen: two answers side by side, a menu, or a number."""
+
+# ruff: noqa: D102, N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+from typing import Any
+
+from PySide6.QtCore import QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QAction, QActionGroup, QKeyEvent, QPainter, QPaintEvent
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSizePolicy, QWidget
+
+from app.gui.theme.icons import paint_icon
+from app.gui.theme.stylesheet import font, tokens_of
+from app.gui.widgets.basic import Segment
+from app.gui.widgets.inline_edit import TypedField, read_figure
+from app.gui.widgets.menu import Menu
+from app.gui.widgets.tooltip import set_tip
+from app.i18n.catalog import number, tr
+from app.presenters.model_options import Amount, Choice, Setting
+
+
+class Field(QWidget):
+    """Where one setting is shown and chosen; ``chosen`` tells the new value."""
+
+    chosen = Signal(object)
+
+    def show_value(self, value: Any) -> None:
+        """Show a value; nothing is emitted."""
+        raise NotImplementedError
+
+    def describe(self, title: str, tip: str) -> None:
+        """Tell those who do not see the title what this is."""
+        set_tip(self, tip)
+        self._inside.setAccessibleName(title)
+        self._inside.setAccessibleDescription(tip)
+
+    def hold(self, widget: QWidget) -> None:
+        """Put the widget that does it inside, and let it have the focus."""
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.addWidget(widget)
+        self._inside = widget
+        self.setFocusProxy(widget)
+        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+
+
+class SegmentField(Field):
+    """Two short answers side by side."""
+
+    def __init__(self, choice: Choice) -> None:
+        super().__init__()
+        self._values = {str(place): value for place, (value, _) in enumerate(choice.options)}
+        titles = (words for _, words in choice.options)
+        self.segment = Segment(tuple(zip(self._values, titles, strict=True)), small=True)
+        self.segment.chosen.connect(lambda name: self.chosen.emit(self._values[name]))
+        self.hold(self.segment)
+
+    def show_value(self, value: Any) -> None:
+        names = [name for name, each in self._values.items() if each == value]
+        self.segment.set_choice(names[0] if names else list(self._values)[-1])
+
+
+class MenuField(Field):
+    """Several answers: the one that is on, the others in a menu."""
+
+    def __init__(self, choice: Choice) -> None:
+        super().__init__()
+        self._choice = choice
+        self._menu = Menu(self)
+        group = QActionGroup(self._menu)
+        self.actions_by_value: dict[Any, QAction] = {}
+        for value, words in choice.options:
+            action = group.addAction(words)
+            action.setCheckable(True)
+            action.triggered.connect(lambda _=False, chosen=value: self.chosen.emit(chosen))
+            self._menu.addAction(action)
+            self.actions_by_value[value] = action
+        self._button = PullDown()
+        self._button.clicked.connect(self._open)
+        self.hold(self._button)
+
+    def show_value(self, value: Any) -> None:
+        self.actions_by_value[value].setChecked(True)
+        self._button.setText(self._choice.words(value))
+
+    def sizeHint(self) -> QSize:
+        wide = self._button.fontMetrics().horizontalAdvance
+        return QSize(max(wide(words) for _, words in self._choice.options) + 42, 30)
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    def _open(self) -> None:
+        self._menu.popup(self._button.mapToGlobal(self._button.rect().bottomLeft()))
+
+
+class PullDown(QPushButton):
+    """A button that opens a menu."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setFont(font("body"))
+        self.setProperty("kind", "pull")
+        self.setCursor(Qt.CursorShape.PointingHandCursor)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() == Qt.Key.Key_Down:
+            self.click()  # a button of Qt would go on to the next one
+        else:
+            super().keyPressEvent(event)
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        super().paintEvent(event)
+        place = QRectF(self.width() - 24, self.height() / 2 - 6, 12, 12)
+        paint_icon(QPainter(self), "caret-down", tokens_of(self).text_quiet, place)
+
+
+class AmountField(Field):
+    """A number with its unit; left empty it is chosen by Busk, where that may be."""
+
+    def __init__(self, amount: Amount) -> None:
+        super().__init__()
+        self.edit = AmountEdit(amount)
+        self.edit.entered.connect(self.chosen)
+        self.hold(self.edit)
+
+    def describe(self, title: str, tip: str) -> None:
+        self.edit.tip = tip
+        super().describe(title, tip)
+
+    def show_value(self, value: Any) -> None:
+        self.edit.show_value(value)
+
+
+class AmountEdit(TypedField):
+    """The number itself; ``entered`` carries another one that was typed, or None for none."""
+
+    entered = Signal(object)
+
+    def __init__(self, amount: Amount) -> None:
+        super().__init__(amount.unit)
+        self.tip = ""
+        self._amount = amount
+        self._value: float | None = None
+        self.setFont(font("body", tabular=True))
+        self.setAlignment(_RIGHT)
+        room = self.fontMetrics().horizontalAdvance(amount.unit) + 6 if amount.unit else 0
+        self.setTextMargins(0, 0, room, 0)
+        self.setFixedSize(QSize(86, 26))
+
+    def show_value(self, value: float | None) -> None:
+        """Show a value, whatever is being typed."""
+        self._value = value
+        self._show()
+
+    def _words(self) -> str:
+        return "" if self._value is None else self._plain(self._value)
+
+    def _read(self, text: str) -> float | None:
+        if not text.strip() and self._amount.key == "gain":
+            return None
+        figure, (low, high) = read_figure(text), self._amount.limits
+        if figure is None:
+            raise ValueError(tr("“{text}” is no number.").format(text=text))
+        if not low <= figure / self._amount.scale <= high:
+            said = tr("It goes from {low} to {high}{unit}.")
+            unit = f" {self._amount.unit}" if self._amount.unit else ""
+            raise ValueError(said.format(low=self._plain(low), high=self._plain(high), unit=unit))
+        return figure / self._amount.scale
+
+    def _take(self, value: float | None) -> None:
+        # What is shown follows once it is taken: a choice may ask for more, or be refused.
+        if value != self._value:
+            self.entered.emit(value)
+
+    def _refuse(self, why: str) -> None:
+        super()._refuse(why)
+        self.setAccessibleDescription(why or self.tip)
+
+    def _plain(self, value: float) -> str:
+        return number(self._amount.scale * value, self._amount.digits).replace(",", "")
+
+
+def field_of(setting: Setting) -> Field:
+    """Return the field that suits a setting."""
+    if isinstance(setting, Amount):
+        return AmountField(setting)
+    return SegmentField(setting) if len(setting.options) == 2 else MenuField(setting)
+
+
+_RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter

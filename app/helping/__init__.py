@@ -1,1 +1,0 @@
-"""Helping: help, preferences, the tour, safe mode, facts about the machine."""

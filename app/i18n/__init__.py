@@ -1,0 +1,1 @@
+"""Translated texts, number and length formats, search terms. Without Qt."""

@@ -1,1 +1,0 @@
-"""Keeping: nothing is lost: recent files, recovery, backups, history, variants."""

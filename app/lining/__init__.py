@@ -1,1 +1,0 @@
-"""Lining: what the window does about lines: the list, drawing, routing, presets, limits."""

@@ -1,0 +1,83 @@
+"""The overall verdict in words: the one headline of window, sheet and command line, with its reasons."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from app.i18n.catalog import colon, joined, say, tr
+from app.presenters.cut_list import told
+from core.document.design import Design
+from core.garment.assessment import BAD, CAUTION, GOOD, PENDING, Assessment, Finding
+
+IDLE = "idle"
+"""The level of a design without an active line, as long as nothing else is wrong: there is no result yet."""
+
+
+@dataclass(frozen=True)
+class AssessmentView:
+    """An overall verdict: ``level`` is IDLE or one of ``core.garment.assessment.LEVELS``, ``headline`` its words.
+
+    ``reasons`` are ranked, the worst first: what is wrong, and what to do, which may be empty.
+    ``waiting`` names what is being computed, or is empty.
+    """
+
+    level: str
+    headline: str
+    reasons: tuple[tuple[str, str], ...] = ()
+    waiting: str = ""
+
+    @property
+    def first(self) -> str:
+        """What is being computed, else the first reason with what to do."""
+        return self.waiting or (joined(self.reasons[0]) if self.reasons else "")
+
+
+def headline(level: str) -> str:
+    """Return the words for a level."""
+    return {
+        GOOD: tr("No problems found"),
+        PENDING: tr("Computing…"),
+        CAUTION: tr("Check before use"),
+        BAD: tr("Do not use"),
+        IDLE: tr("No active lines"),
+    }[level]
+
+
+def tone(level: str) -> str:
+    """Return the tone of a notice about a design of a level."""
+    return {GOOD: "ok", CAUTION: "warn", BAD: "bad"}.get(level, "info")
+
+
+def assessment_view(
+    assessment: Assessment, design: Design | None = None, titles: Mapping[str, str] | None = None
+) -> AssessmentView:
+    """Return an assessment in words, with lines and elastics as they are called in a ``design``, if any.
+
+    Where that is not known, ``titles`` are those of lines by name.
+    """
+    level = IDLE if assessment.level == GOOD and not assessment.active else assessment.level
+    reasons = tuple(
+        (told(each.message, design) if design else say(_titled(each, titles or {})), say(each.action))
+        for each in assessment.findings
+    )
+    waiting = {"convergence": tr("Converging…"), "pressure": tr("Computing contact pressure…")}
+    return AssessmentView(
+        level, headline(level), reasons, waiting.get(assessment.pending, "") if level == PENDING else ""
+    )
+
+
+def _titled(finding: Finding, titles: Mapping[str, str]) -> str:
+    """Return the message of a finding with the title of its line in place of its name."""
+    name = finding.lines[0] if finding.lines else ""
+    starts = bool(name) and finding.message.startswith(f"{name} ")
+    return titles.get(name, name) + finding.message.removeprefix(name) if starts else finding.message
+
+
+def assessment_lines(assessment: Assessment, design: Design) -> list[str]:
+    """Return an assessment as lines of plain text: the headline, then each reason with what to do."""
+    view = assessment_view(assessment, design)
+    return [
+        f"{tr('Verdict')}{colon()}{view.headline}",
+        *(f"  {joined(reason)}" for reason in view.reasons),
+    ]

@@ -1,0 +1,126 @@
+"""How far the bust points went from where they are on the body before: the one answer of the whole window."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.i18n.catalog import listed, tr
+from app.i18n.lengths import length_number, length_unit
+from app.presenters.measurement_views import length_off
+from core.geometry.mesh import Floats
+from core.measurements.uncertain_value import LIFT, OUT, Spread
+from core.mechanics.iteration import Marks
+from core.pipeline.frame import Frame
+from core.pipeline.observables import Tapes
+
+APART = 1.0
+"""From so much on the moves of left and right are told apart [mm]."""
+
+
+@dataclass(frozen=True)
+class BustStep:
+    """How far a bust point went up and forward [mm]; down and back where it is negative."""
+
+    up: float
+    forward: float
+
+
+@dataclass(frozen=True)
+class BustMove:
+    """The moves of both bust points, against the body before."""
+
+    left: BustStep
+    right: BustStep
+
+    @property
+    def mean(self) -> BustStep:
+        """The mean of both: what is told, and what the plot ends at."""
+        return BustStep(0.5 * (self.left.up + self.right.up), 0.5 * (self.left.forward + self.right.forward))
+
+    @property
+    def differs(self) -> bool:
+        """Whether left and right are so far apart that the mean alone would hide it."""
+        up, forward = self.left.up - self.right.up, self.left.forward - self.right.forward
+        return max(abs(up), abs(forward)) > APART
+
+
+def bust_move(frame: Frame) -> BustMove:
+    """Return how far the bust points of a frame are from where they are on the body before."""
+    return move_between(frame.stages.rest_marks, frame.marks)
+
+
+def bust_girths(frame: Frame) -> tuple[float, float]:
+    """Return the girth at the level of the bust points on the original and on the reshaped body [mm]."""
+    stages, rest = frame.stages, frame.stages.rest_marks
+    binding, moving = stages.binding, stages.moving
+    height = 0.5 * (rest.nipple_left_z + rest.nipple_right_z)
+    places = binding.operator.added(binding.change(frame.control_points), moving.rest)
+    (before,) = Tapes(moving, [height])(moving.rest)
+    (after,) = Tapes(moving, [height + bust_move(frame).mean.up])(places)
+    return float(before), float(after)
+
+
+def move_between(rest: Marks, now: Marks) -> BustMove:
+    """Return how far the bust points went between two states of a body."""
+    return BustMove(
+        BustStep(now.nipple_left_z - rest.nipple_left_z, now.nipple_left_out - rest.nipple_left_out),
+        BustStep(now.nipple_right_z - rest.nipple_right_z, now.nipple_right_out - rest.nipple_right_out),
+    )
+
+
+def ups(rest: Marks, left: Floats, right: Floats) -> Floats:
+    """Return the mean move up of many turns, (n,) [mm], from the heights of both bust points, each (n,)."""
+    return 0.5 * ((left - rest.nipple_left_z) + (right - rest.nipple_right_z))
+
+
+Offs = tuple[float | None, float | None]
+"""How far a move up and one forward may be off [mm], None where that is not known."""
+
+UNKNOWN: Offs = (None, None)
+
+
+def offs_of(spread: Spread | None, side: str = "") -> Offs:
+    """Return how far the move of the bust point of a ``side`` may be off, or the mean of both."""
+    if spread is None:
+        return UNKNOWN
+    up, out = (spread.plus_minus(" ".join(filter(None, (kind, side)))) for kind in (LIFT, OUT))
+    return up, out
+
+
+def step_words(step: BustStep, offs: Offs = UNKNOWN) -> str:
+    """Return a move in words: "3.9 mm up, 2.1 mm forward", or "3.9 ± 0.4 mm up" where that is known."""
+    return listed((up_words(step.up, offs[0]), forward_words(step.forward, offs[1])))
+
+
+def up_words(up: float, off: float | None = None) -> str:
+    """Return a move up or down in words [mm]."""
+    return (tr("{length} down") if round(up, 1) < 0.0 else tr("{length} up")).format(length=_sized(up, off))
+
+
+def forward_words(forward: float, off: float | None = None) -> str:
+    """Return a move forward or back in words [mm]."""
+    back = round(forward, 1) < 0.0
+    return (tr("{length} back") if back else tr("{length} forward")).format(length=_sized(forward, off))
+
+
+def _sized(move: float, off: float | None) -> str:
+    # What belongs together is not parted at the end of a line.
+    told = [length_number(abs(move)), *([] if off is None else [length_off(off)])]
+    return " ".join(told).replace(" ", "\N{NO-BREAK SPACE}") + f" {length_unit()}"
+
+
+def sides_words(move: BustMove) -> tuple[str, str]:
+    """Return the moves of left and right in words: that part of them which differs more, up or forward."""
+    left, right = move.left, move.right
+    if abs(left.up - right.up) >= abs(left.forward - right.forward):
+        return up_words(left.up), up_words(right.up)
+    return forward_words(left.forward), forward_words(right.forward)
+
+
+def bust_sentence(move: BustMove, offs: Offs = UNKNOWN) -> str:
+    """Return a move in one line, with both sides where they differ; ``offs`` are those of the mean."""
+    said = tr("Bust point {way}").format(way=step_words(move.mean, offs))
+    if not move.differs:
+        return said
+    left, right = sides_words(move)
+    return tr("{said} (left {left}, right {right})").format(said=said, left=left, right=right)

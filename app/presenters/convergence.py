@@ -1,0 +1,162 @@
+"""What the window says of how a run stands: one word, the figures that matter then, and what to do."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.gui.plots.status_chip import state_title
+from app.i18n.catalog import number, tr
+from app.i18n.lengths import length, length_number
+from app.presenters.assessment import AssessmentView
+from app.presenters.bust_shift import bust_move, sides_words, step_words, ups
+from core.export.solution_report import kept_volume
+from core.garment.pressure_list import PressList
+from core.mechanics.mesh_quality import Condition
+from core.pipeline.live_solver import Frame
+
+_WATCHED = 24  # turns over which a swing is measured
+_STEADY = 5e-4  # a swing that changes by less a turn stays as large as it is [1]
+
+
+@dataclass(frozen=True)
+class StripVerdict:
+    """What the strip shows: ``level`` and ``headline`` of the overall verdict, and the ``state`` of the run.
+
+    ``effort`` says what the ``pace`` took.
+    """
+
+    level: str
+    headline: str
+    state: str
+    numbers: list[tuple[str, str]]
+    hint: str
+    pace: str
+    effort: str
+    settling: bool
+
+
+def state_of(frame: Frame) -> str:
+    """Return the word for a frame: its verdict's, but skin that strains beyond what is calm is told too."""
+    return frame.verdict.told
+
+
+def is_result(frame: Frame) -> bool:
+    """Return whether the figures of a frame can be worked with, or will be when it has settled."""
+    return frame.verdict.sound
+
+
+def strip_verdict(
+    frame: Frame,
+    overall: AssessmentView,
+    girths: tuple[float, float] | None = None,
+    pressed: PressList | None = None,
+) -> StripVerdict:
+    """Return how a frame stands under its ``overall`` verdict, with the values that matter then.
+
+    ``girths`` at the bust points before and after [mm], and contact pressures, as far as they are known.
+    """
+    state, seconds = state_of(frame), tr("{seconds} s").format(seconds=number(frame.seconds))
+    return StripVerdict(
+        overall.level,
+        overall.headline,
+        state,
+        _figures(frame, girths, pressed),
+        overall.first,
+        tr("{state} · {seconds}").format(state=state_title(state), seconds=seconds),
+        _effort(frame),
+        frame.verdict.motion == "settling",
+    )
+
+
+def doubt_of(frame: Frame) -> str:
+    """Return why the figures of a frame are no result, or nothing."""
+    if is_result(frame):
+        return ""
+    state = state_title(state_of(frame))
+    return tr("{state}: these figures are no result to sew for.").format(state=state)
+
+
+def swing_mm(frame: Frame) -> tuple[float, float]:
+    """Return the middle of the height that the bust points swing about, and half of how far [mm]."""
+    rows = frame.tracks.get(frame.stages.design.volume, ())[-_WATCHED:]
+    marks = [row.marks for row in rows if row.marks is not None]
+    heights = np.array([(each.nipple_left_z, each.nipple_right_z) for each in marks]).reshape(-1, 2)
+    up = ups(frame.stages.rest_marks, *heights.T)
+    if not len(up):
+        return 0.0, 0.0
+    return 0.5 * float(up.max() + up.min()), 0.5 * float(np.ptp(up))
+
+
+def plain_sentence(frame: Frame) -> str:
+    """Return what it means that a run swings or runs away, or that a shape is no body; else nothing."""
+    return {
+        "vibrating": tr("The calculation does not come to rest: the bust point swings by ±{swing}."),
+        "diverging": tr("The calculation runs away: the body is shown as it was before."),
+        "folded": tr("The skin folds over: this is no body any more."),
+        "overstrained": tr("Skin pressed or stretched by over 30 %: no shape to sew for."),
+    }.get(frame.verdict.state, "").format(swing=length(swing_mm(frame)[1]))
+
+
+def _effort(frame: Frame) -> str:
+    """Return how many rounds it took, or steps to the exact answer."""
+    exact, turns = frame.stages.design.volume == "exact", frame.verdict.turns
+    if exact and turns == 1:
+        return tr("Worked out in one Newton step")
+    text = (
+        tr("Worked out in {turns} Newton steps")
+        if exact
+        else tr("Worked out in {turns} turns: in each, every control point goes once to its own balance")
+    )
+    return text.format(turns=number(turns, 0))
+
+
+def _figures(
+    frame: Frame, girths: tuple[float, float] | None, pressed: PressList | None
+) -> list[tuple[str, str]]:
+    verdict, state = frame.verdict, state_of(frame)
+    if state == "diverging":
+        return []  # the figures would be those of the body shown, as it was before
+    if state == "vibrating":
+        return _swing_figures(frame)
+    error, ml = kept_volume(frame)
+    kept = (tr("Volume error"), f"{number(error, 2, signed=True)} % · {number(ml, 1, signed=True)} ml")
+    if verdict.condition and state == "folded":
+        return [kept, (tr("Turned skin"), f"{number(verdict.condition.largest_turn, 0)}°")]
+    if verdict.condition and state == "overstrained":
+        return [kept, (tr("Skin"), _strain(verdict.condition))]
+    move = bust_move(frame)
+    told = [(tr("Bust point"), step_words(move.mean))]
+    if girths is not None:
+        change = f"{length_number(girths[0])} → {length(girths[1])}"
+        told.append((tr("Bust girth"), change))
+    hardest = None if pressed is None else pressed.hardest
+    if hardest is not None and hardest.max_kpa is not None:
+        told.append((tr("Highest pressure"), f"{number(hardest.max_kpa)} kPa"))
+    elif move.differs:
+        told.append((tr("Left · right"), " · ".join(sides_words(move))))
+    return [*told, kept]
+
+
+def _swing_figures(frame: Frame) -> list[tuple[str, str]]:
+    verdict, (middle, swing) = frame.verdict, swing_mm(frame)
+    growth = verdict.growth - 1.0
+    grows = tr("grows") if growth > _STEADY else tr("fades") if growth < -_STEADY else tr("stays as large")
+    percent = f"{number(100.0 * verdict.error, 2)} ± {number(100.0 * verdict.amplitude, 2)} %"
+    return [
+        (tr("Volume error"), percent),
+        (tr("Bust point"), f"{length_number(middle, signed=True)} ± {length(swing)}"),
+        (tr("The swing"), grows),
+    ]
+
+
+def _strain(condition: Condition) -> str:
+    """Return how far the skin is pressed together and stretched at the worst places."""
+    return _percents(100.0 * (condition.shortest - 1.0), 100.0 * (condition.longest - 1.0))
+
+
+def _percents(pressed: float, stretched: float) -> str:
+    return tr("{pressed} to {stretched} %").format(
+        pressed=number(pressed, 0, signed=True), stretched=number(stretched, 0, signed=True)
+    )

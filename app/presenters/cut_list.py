@@ -1,0 +1,109 @@
+"""What the window says of the cut list: pieces, notes, and the list as plain cells."""
+
+from __future__ import annotations
+
+from app.i18n.catalog import joined, number, say, tr
+from app.i18n.lengths import length_number
+from app.presenters.cut_list_views import CutView, GarmentView
+from app.presenters.lines import line_colours, line_title, titled
+from app.rendering.band import band_width
+from core.document.design import Design
+from core.garment.cut_list import CutList, CutRow
+from core.garment.pressure_list import PressList
+from core.pipeline.live_solver import Frame
+
+
+def garment_view(frame: Frame, cuts: CutList) -> GarmentView:
+    """Return the pieces of a frame in the order of the list of lines."""
+    design = frame.stages.design
+    colours = line_colours((line.name for line in frame.stages.model.lines), design)
+    pieces = {row.line: row for row in cuts.rows}
+    still = {line.name for line in frame.stages.model.lines if not line.constrains}
+    views = [
+        _view(pieces[name], design, colour, name in still) if name in pieces else _off(name, design, colour)
+        for name, colour in colours.items()
+        if name in pieces or name in still
+    ]
+    return GarmentView(
+        tuple(views),
+        tuple(told(note, design) for note in cuts.notes) if pieces else (),
+        design.tissue_stiffness,
+        worn=bool(pieces),
+        bare=not any(row.elastic for row in cuts.rows),
+    )
+
+
+def told(sentence: str, design: Design, unit: str = "") -> str:
+    """Return what the core says of lines and elastics in the words of the window; ``unit`` as in ``say``."""
+    for name in sorted((each.name for each in design.elastics), key=len, reverse=True):
+        sentence = sentence.replace(name, say(name, unit))
+    return say(titled(sentence, design), unit)
+
+
+def as_table(frame: Frame, cuts: CutList, pressed: PressList | None) -> list[list[str]]:
+    """Return the cut list as plain cells, with a heading, in the order of the list of lines.
+
+    ``pressed`` is what the lines press with, if that is known of this frame. Lengths are in mm, as in files.
+    """
+    heading = [
+        tr("Line"),
+        tr("Elastic"),
+        tr("Width mm"),
+        tr("Cut mm"),
+        tr("Stretch %"),
+        tr("Tension N"),
+        tr("Largest pressure kPa"),
+        tr("Front on the body mm"),
+        tr("Whole on the body mm"),
+        tr("Allowance mm"),
+        tr("Estimate"),
+        tr("Note"),
+    ]
+    design = frame.stages.design
+    order = list(line_colours((line.name for line in frame.stages.model.lines), design))
+    rows = sorted(cuts.rows, key=lambda row: order.index(row.line))
+    most = {row.line: row.max_kpa for row in pressed.rows} if pressed is not None else {}
+    return [heading, *(_cells(row, most.get(row.line), design) for row in rows)]
+
+
+def _off(name: str, design: Design, color: str) -> CutView:
+    """Return what is said of a band that could be cut though no line pulls there."""
+    notes = (tr("On the rib cage: it moves nothing, but it can be cut."),)
+    elastic = say(design.traits_of(name).elastic)
+    return CutView(name, line_title(name, design), color, band_width(name, design), elastic, notes=notes)
+
+
+def _view(row: CutRow, design: Design, color: str, still: bool) -> CutView:
+    set_here = still and row.elongation is not None and design.line_hold == "spring"
+    return CutView(
+        row.line,
+        line_title(row.line, design),
+        color,
+        band_width(row.line, design),
+        say(row.elastic),
+        "" if row.cut_mm is None else length_number(row.cut_mm, 0),
+        "" if row.elongation is None else f"{number(100.0 * row.elongation, 0, signed=True)} %",
+        "" if row.tension_n is None else number(row.tension_n, 1),
+        tuple(told(note, design) for note in row.notes if row.elastic),
+        100.0 * row.elongation if set_here and row.elongation is not None else None,
+        row.front_only,
+        row.far,
+    )
+
+
+def _cells(row: CutRow, kpa: float | None, design: Design) -> list[str]:
+    stretch = None if row.elongation is None else 100.0 * row.elongation
+    figures = (
+        row.width_mm,
+        row.cut_mm,
+        stretch,
+        row.tension_n,
+        kpa,
+        row.reached_front_mm,
+        row.reached_whole_mm,
+        row.allowance_mm,
+    )
+    written = ["" if each is None else f"{each:.1f}" for each in figures]
+    notes = joined(told(note, design, "mm") for note in row.notes)
+    estimate = tr("yes") if row.estimate else tr("no")
+    return [line_title(row.line, design), say(row.elastic, "mm"), *written, estimate, notes]

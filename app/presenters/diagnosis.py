@@ -1,0 +1,284 @@
+"""What the window says of a diagnosis: one sentence, the word on the button, and all figures behind it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from app.gui.plots.status_chip import state_title
+from app.i18n.catalog import joined, listed, number, tr
+from app.i18n.lengths import length
+from app.presenters.assessment import assessment_view
+from app.presenters.lines import line_title, row_title
+from core.analysis.diagnosis.candidate_changes import Change
+from core.analysis.diagnosis.diagnose import Diagnosis
+from core.analysis.diagnosis.fix import Cure
+from core.analysis.diagnosis.opposing_constraints import Pull
+from core.garment.assessment import BAD, Assessment, Finding
+
+BUTTONS = 2
+"""Fixes that have a button at most."""
+
+_ROOM = 56  # letters on the buttons of a notice in the narrowest window
+_SEEN = 0.05  # mm that a bust point swings by at least where its swing is worth a word
+_STEADY = 5e-4  # a swing that changes by less a turn stays as large as it is [1]
+
+
+def sentence(found: Diagnosis, swing: float) -> str:
+    """Return what is wrong in one sentence, with what fights if any pair stands out.
+
+    ``swing`` [mm] is how far the bust point swings to either side.
+    """
+    worst = found.fight.worst
+    if worst is None:
+        return _plain(found, swing)
+    words = {
+        "vibrating": tr(
+            "{one} and {other} pull against each other: the bust point swings by ±{swing} every {period} "
+            "turns."
+        ),
+        "volume": tr(
+            "{one} and {other} pull against each other: the volume swings by ±{percent} % every {period} "
+            "turns."
+        ),
+        "diverging": tr("{one} and {other} pull against each other until the calculation runs away."),
+        "folded": tr("{one} and {other} pull against each other until the skin folds over."),
+        "overstrained": tr(
+            "{one} and {other} pull against each other: skin is pressed or stretched by over 30 %."
+        ),
+        "strained": tr(
+            "{one} and {other} pull against each other: skin is pressed or stretched by over 20 %."
+        ),
+        "settling": tr("{one} and {other} pull against each other: the calculation comes to no rest."),
+        "unreachable": tr("{one} and {other} pull against each other: no balance is found."),
+    }
+    one, other = (_name(found, pull) for pull in (worst.one, worst.other))
+    what = "volume" if found.complaint == "vibrating" and swing < _SEEN else found.complaint
+    percent = number(100.0 * found.verdict.amplitude, 2)
+    values = {"swing": length(swing), "percent": percent, "period": _period(found)}
+    return words[what].format(one=one, other=other, **values)
+
+
+def _plain(found: Diagnosis, swing: float) -> str:
+    words = {
+        "vibrating": tr("The calculation does not come to rest: the bust point swings by ±{swing}."),
+        "diverging": tr("The calculation runs away: the body is shown as it was before."),
+        "folded": tr("The skin folds over: this is no body any more."),
+        "overstrained": tr("Skin pressed or stretched by over 30 %: no shape to sew for."),
+        "strained": tr("Skin is pressed or stretched by over 20 %."),
+        "settling": tr("The calculation has come to no rest yet."),
+        "unreachable": tr("No balance is found with the lines at these lengths."),
+    }
+    return words[found.complaint].format(swing=length(swing))
+
+
+def hint(found: Diagnosis) -> str:
+    """Return what leads to the buttons, or what there is to do where there are none."""
+    if found.fixes:
+        return _leading(found)
+    said = [tr("No change of one line, of the gain or of the model was found that ends it.")]
+    if found.locked:
+        titles = listed(line_title(name, found.stages.design) for name in found.locked)
+        said.append(tr("Locked lines stay as they are: {lines}.").format(lines=titles))
+    return joined(said)
+
+
+def _leading(found: Diagnosis) -> str:
+    """Return what the changes on the buttons leave to be checked: all of them were tried."""
+    first, *others = (_left(cure) for cure in shown_fixes(found))
+    if others:
+        return tr("Tried: the first leaves {one}, the second {other}.").format(one=first, other=others[0])
+    if not found.fixes[0].remains:
+        return tr("Tried, and it ends this:")
+    return tr("Tried, it leaves {what}:").format(what=first)
+
+
+def shown_fixes(found: Diagnosis) -> tuple[Cure, ...]:
+    """Return the fixes that have a button: the best, and the next if a narrow window has room."""
+    best = found.fixes[:BUTTONS]
+    return best if sum(_wide(change_words(found, cure.change)) for cure in best) <= _ROOM else best[:1]
+
+
+def _wide(words: str) -> int:
+    """Return about how wide words are, in Latin letters."""
+    return sum(2 if letter > "\u2e80" else 1 for letter in words)
+
+
+def _left(cure: Cure) -> str:
+    return listed(dict.fromkeys(_topic(each) for each in cure.remains)) or tr("no problems")
+
+
+def _topic(finding: Finding) -> str:
+    """Return what a finding is about in a word or two."""
+    return {
+        "convergence": tr("no convergence"),
+        "shape": tr("strained skin"),
+        "band": tr("a slack or overstretched band"),
+        "pressure": tr("high pressure") if finding.level == BAD else tr("snug pressure"),
+    }[finding.topic]
+
+
+def change_words(found: Diagnosis, change: Change) -> str:
+    """Return what a change does, as an undo step is called."""
+    choice = {
+        ("volume", "adaptive"): tr("Use Adaptive"),
+        ("volume", "exact"): tr("Use Exact"),
+        ("line_force", "implicit"): tr("Let lines act in step"),
+        ("line_hold", "spring"): tr("Let lines spring back"),
+    }.get(change.setting, "")
+    design, what = found.stages.design, ""
+    if "gain" in (change.kind, change.setting[0]) and change.design.gain is not None:
+        choice = tr("Lower the gain to {gain}").format(gain=number(change.design.gain, 2))
+    if change.kind == "length":
+        ratio = change.design.ratio(change.lines[0])
+        values = {
+            "line": row_title(change.lines[0], design),
+            "length": length(abs(found.longer_mm(change))),
+            "percent": number(100.0 * ratio),
+        }
+        longer = ratio > design.ratio(change.lines[0])
+        what = tr("Lengthen {line} by {length}") if longer else tr("Shorten {line} by {length}")
+        if found.complaint == "unreachable":  # that length is nowhere to be seen
+            what = tr("Set {line} to {percent} %")
+        what = what.format(**values)
+    elif change.kind == "together":
+        what = tr("Bring all lines up to {length} nearer to 100 %")
+        what = what.format(length=length(found.moves_mm(change), 0))
+    elif change.kind == "width":
+        what = tr("Widen {line} to {length}")
+        width = change.design.traits_of(change.lines[0]).width
+        what = what.format(line=row_title(change.lines[0], design), length=length(width or 0.0, 0))
+    elif change.kind == "off":
+        what = tr("Take {line} off").format(line=row_title(change.lines[0], design))
+    return listed((choice, what[:1].lower() + what[1:])) if choice and what else choice or what
+
+
+def details(found: Diagnosis) -> str:
+    """Return all figures, a line each: what fights and what ends it stand first."""
+    pair = [_pair(found)] if found.complaint else []
+    return "\n".join([*pair, *_changes(found), *_run(found), *_forces(found)])
+
+
+def _pair(found: Diagnosis) -> str:
+    worst = found.fight.worst
+    if worst is None:
+        return tr("No two of them stand out as pulling against each other.")
+    words = tr("{one} and {other}: {angle}° apart in what they do to the skin")
+    one, other = (_name(found, pull) for pull in (worst.one, worst.other))
+    return words.format(one=one, other=other, angle=number(worst.angle, 0))
+
+
+def _run(found: Diagnosis) -> Iterator[str]:
+    verdict = found.verdict
+    if verdict.period:
+        words = tr("Swings every {period} turns, volume by ±{percent} %; {grows}")
+        percent = number(100.0 * verdict.amplitude, 2)
+        yield words.format(period=_period(found), percent=percent, grows=_growth(verdict.growth))
+    if found.onset is not None and 1.0 + _STEADY < found.onset < float("inf"):
+        words = tr("A small swing grows by {percent} % a turn")
+        yield words.format(percent=number(100.0 * (found.onset - 1.0)))
+    if found.bears is not None:
+        words = tr("Gain {gain}: {percent} % of the {most} that this shape bears")
+        share = number(100.0 * found.stages.gain / found.bears, 0)
+        yield words.format(gain=number(found.stages.gain, 2), percent=share, most=number(found.bears, 2))
+
+
+def _growth(growth: float) -> str:
+    percent = number(100.0 * abs(growth - 1.0))
+    if growth - 1.0 > _STEADY:
+        return tr("grows by {percent} % a turn").format(percent=percent)
+    if growth - 1.0 < -_STEADY:
+        return tr("fades by {percent} % a turn").format(percent=percent)
+    return tr("stays as large")
+
+
+def _forces(found: Diagnosis) -> Iterator[str]:
+    fight = found.fight
+    if fight.share < 1.0:
+        words = tr("Forces in the last balance, {percent} % of the way from rest to these lengths:")
+        yield words.format(percent=number(100.0 * fight.share, 0))
+    elif fight.pulls:
+        yield tr("Forces in the balance at these lengths, on the tissue that is assumed:")
+    for pull in fight.pulls:
+        yield "  " + _force(found, pull)
+    if fight.pulls:
+        yield "  " + tr("The skin itself: {newtons} N").format(newtons=number(fight.skin))
+        yield "  " + tr("Forces at all points added up: what a line pulls with along itself is in Garment.")
+
+
+def _force(found: Diagnosis, pull: Pull) -> str:
+    name, newtons = _name(found, pull), number(pull.newtons)
+    if pull.lines:
+        words = tr("{name}: {newtons} N, {angle}° to the volume")
+        return words.format(name=name, newtons=newtons, angle=number(pull.to_volume, 0))
+    name = name[:1].upper() + name[1:]
+    if pull.sides is None:
+        return tr("{name}: {newtons} N").format(name=name, newtons=newtons)
+    left, right = (number(side) for side in pull.sides)
+    words = tr("{name}: {newtons} N (left {left}, right {right})")
+    return words.format(name=name, newtons=newtons, left=left, right=right)
+
+
+def _changes(found: Diagnosis) -> Iterator[str]:
+    if found.fixes:
+        yield tr("Fixes, each tried from rest and on from here, the best first:")
+    for place, cure in enumerate(found.fixes, start=1):
+        view = assessment_view(Assessment(cure.remains), cure.change.design)
+        said = joined((tr("{headline}.").format(headline=view.headline), *(each for each, _ in view.reasons)))
+        change = change_words(found, cure.change)
+        yield "  " + tr("{place}. {change}: {what}").format(place=place, change=change, what=said)
+        if cure.choice_ends:
+            yield "     " + _parts(cure)
+        if cure.change.kind == "together":
+            after = cure.change.design
+            lengths = (
+                tr("{line} {percent} %").format(
+                    line=line_title(name, after), percent=number(100.0 * after.ratio(name))
+                )
+                for name in cure.change.lines
+            )
+            yield "     " + listed(lengths)
+    if found.nearest is not None:
+        words = tr("Nearest: {change}; it ends as “{state}”")
+        said = change_words(found, found.nearest.change)
+        yield words.format(change=said, state=state_title(found.nearest.left))
+
+
+def _parts(cure: Cure) -> str:
+    """Return which part of a double change ends what; ``cure`` knows how each did alone."""
+    if _trouble(cure.choice_ends) == _trouble(cure.lengths_end):
+        words = tr("Neither is enough alone: it would still end as “{state}”")
+        return words.format(state=state_title(cure.choice_ends))
+    choice = {
+        "gain": tr("The gain"),
+        "volume": tr("The control"),
+        "line_force": tr("The force in step"),
+        "line_hold": tr("Springing back"),
+    }[cure.change.setting[0]]
+    length = tr("the lengths") if cure.change.kind == "together" else tr("the length")
+    words = tr("{choice} ends {one}, {length} {other}")
+    troubles = {"one": _trouble(cure.choice_ends), "other": _trouble(cure.lengths_end)}
+    return words.format(choice=choice, length=length, **troubles)
+
+
+def _trouble(complaint: str) -> str:
+    """Return what is wrong as a thing that something can end."""
+    words = {
+        "vibrating": tr("the swing"),
+        "diverging": tr("the running away"),
+        "settling": tr("the long settling"),
+        "folded": tr("the fold"),
+        "unreachable": tr("the lack of a balance"),
+    }
+    return words.get(complaint, tr("the strain"))
+
+
+def _name(found: Diagnosis, pull: Pull) -> str:
+    if not pull.lines:
+        return tr("the volume")
+    title = row_title if len(pull.lines) > 1 else line_title
+    return title(pull.lines[0], found.stages.design)
+
+
+def _period(found: Diagnosis) -> str:
+    period = found.verdict.period
+    return number(period, 0 if abs(period - round(period)) < 0.05 else 1)

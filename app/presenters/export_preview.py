@@ -1,0 +1,276 @@
+"""What can be exported, checked and made ready: what will be in a file, and how to write it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from app.i18n.catalog import listed, number, say, tr
+from app.i18n.lengths import length
+from app.presenters.export_request import Manner, Outcome
+from app.presenters.measurement_names import measure_title
+from core import __version__
+from core.errors import UserError
+from core.export.band_geometry import (
+    BACK,
+    CENTRE,
+    EDGE,
+    LEFT,
+    LOWER,
+    SEAM,
+    SEWN,
+    SHOULDER,
+    SIDE_SEAM,
+    UPPER,
+    strips,
+    worn_curves,
+)
+from core.export.drawings import CURVE_FORMATS, STRIP_FORMATS, drawing_kind, write_curves, write_strips
+from core.export.measurement_files import (
+    LENGTHS_ALONE,
+    MeasuresSheet,
+    measures_kind,
+    seamly_names,
+    write_measures,
+)
+from core.export.mesh import FORMATS, kind_of, write_control_points, write_mesh
+from core.export.solution_report import write_turns
+from core.export.units_and_axes import Space, space_of
+from core.geometry.mesh import Mesh
+from core.progress import Pieces, Progress, part_of
+
+if TYPE_CHECKING:
+    from app.rendering.offscreen import Studio
+    from app.rendering.turntable import Turntable
+
+USUAL_UNIT = "cm"
+"""The unit of measures in a file, if none is told."""
+
+CONTROL_FORMATS = (*FORMATS, "csv")
+"""A control mesh can also be a table of its points."""
+
+Write = Callable[[Path, Any, Progress], list[Path] | None]
+
+
+@dataclass(frozen=True, eq=False)
+class Ready:
+    """A file that can be written: what will be in it, and how, in words.
+
+    ``draw``, if there is any, comes first: it belongs to the window's thread, and what it returns is for
+    ``write``, which any thread may call; that returns the files, if they are not just the one it was told.
+    Both raise UserError or Cancelled.
+    """
+
+    contents: str
+    how: str
+    write: Write
+    draw: Callable[[], Pieces[Any]] | None = None
+
+
+def make_ready(what: str, path: str | Path, outcome: Outcome, manner: Manner) -> Ready:
+    """Work out what will be in a file of that name. Raises UserError if it cannot be written so.
+
+    ``what`` is a word of ``WAYS``.
+    """
+    check(what, path, manner)
+    return WAYS[what][1](str(path), outcome, manner)
+
+
+def check(what: str, path: str | Path, manner: Manner) -> None:
+    """Raise UserError if no file of that name can be written in that manner, whatever is in it."""
+    Space(manner.unit or "mm", manner.axes or "z-up")
+    WAYS[what][0](str(path), manner)
+
+
+def _mesh_kind(path: str, manner: Manner) -> None:
+    kind_of(path)
+
+
+def _control_kind(path: str, manner: Manner) -> None:
+    if not path.lower().endswith(".csv"):
+        kind_of(path)
+
+
+def _turntable_kind(path: str, manner: Manner) -> None:
+    from app.rendering.turntable import turntable_kind  # noqa: PLC0415 (brings VTK along)
+
+    turntable_kind(path)
+    _turntable_of(manner)
+
+
+def _picture_kind(path: str, manner: Manner) -> None:
+    from app.rendering.offscreen import picture_kind  # noqa: PLC0415 (brings VTK along)
+
+    picture_kind(path)
+
+
+def _table_kind(path: str, manner: Manner) -> None:
+    if not path.lower().endswith(".csv"):
+        raise UserError("A table is a .csv file.", "Choose a name that ends in .csv.")
+
+
+def _in_space(space: Space) -> str:
+    axes = {"z-up": tr("z-up"), "y-up": tr("y-up"), "z-up-front-y": tr("z-up-front-y")}[space.axes]
+    return tr("in {unit}, {axes}").format(unit=_unit_words(space.unit), axes=axes)
+
+
+def _unit_words(unit: str) -> str:
+    return tr("inches") if unit == "in" else unit
+
+
+def _body(path: str, outcome: Outcome, manner: Manner) -> Ready:
+    return _mesh(path, outcome.body(manner.before), manner)
+
+
+def _control(path: str, outcome: Outcome, manner: Manner) -> Ready:
+    points = outcome.points(manner.before)
+    control = outcome.stages.control
+    if not path.lower().endswith(".csv"):
+        return _mesh(path, control.mesh.moved(points), manner)
+    told = tr("{count} control points").format(count=number(len(points), 0))
+    return Ready(told, _in_space(Space()), lambda at, _, hear: write_control_points(at, control, points))
+
+
+def _mesh(path: str, mesh: Mesh, manner: Manner) -> Ready:
+    space = space_of(kind_of(path), manner.unit, manner.axes)
+    told = tr("{points} points, {triangles} triangles").format(
+        points=number(len(mesh.vertices), 0), triangles=number(len(mesh.faces), 0)
+    )
+    return Ready(told, _in_space(space), lambda at, _, hear: write_mesh(at, mesh, hear, space))
+
+
+def _lines(path: str, outcome: Outcome, manner: Manner) -> Ready:
+    curves = worn_curves(outcome.stages, outcome.points(manner.before), *outcome.looks)
+    space = space_of(drawing_kind(path, CURVE_FORMATS), manner.unit, manner.axes)
+    told = listed(f"{curve.title} {length(curve.length)}" for curve in curves)
+    return Ready(told, _in_space(space), lambda at, _, hear: write_curves(at, curves, space))
+
+
+def _flat(path: str, outcome: Outcome, manner: Manner) -> Ready:
+    drawn = strips(outcome.stages, outcome.control_points, *outcome.looks)
+    told = listed(f"{each.title} {length(each.length)}" for each in drawn)
+    heading = f"Busk {__version__} · {outcome.whose}"
+    return Ready(told, "1:1", lambda at, _, hear: write_strips(at, drawn, heading, _strip_words))
+
+
+def _strip_words(text: str) -> str:
+    """Return what stands on a strip in the language in use; files keep millimetres."""
+    marks = {
+        SIDE_SEAM: tr("right side, seam"),
+        CENTRE: tr("centre front"),
+        LEFT: tr("left side"),
+        BACK: tr("centre back"),
+        SEAM: tr("seam"),
+        UPPER: tr("upper end"),
+        LOWER: tr("lower end"),
+        EDGE: tr("upper edge"),
+        SHOULDER: tr("shoulder"),
+        SEWN: tr("back, at the under-bust band"),
+    }
+    return marks.get(text) or say(text, "mm")
+
+
+def _measures(path: str, outcome: Outcome, manner: Manner) -> Ready:
+    when, unit = "before" if manner.before else "after", manner.unit or USUAL_UNIT
+    rows = [row for row in outcome.measures if row[when] is not None]
+    titles = {row["key"]: measure_title(row) for row in rows}
+    values = {row["key"]: (float(row[when]), str(row["unit"])) for row in rows}
+    unsure = listed(titles[row["key"]] for row in rows if row["estimate"])
+    note = f"Busk {__version__}, {outcome.design.scan.name}, {'at rest' if manner.before else 'reshaped'}."
+    note += f" Estimates: {unsure}." if unsure else ""
+    sheet = MeasuresSheet(values, unit, titles, note)
+    told = tr("{count} measures at rest") if manner.before else tr("{count} measures as reshaped")
+    how = tr("in {unit}").format(unit=_unit_words(unit))
+    # Files for pattern programs hold lengths alone, each by its name there.
+    kind = measures_kind(path, unit)
+    count = len(seamly_names(sheet.lengths) if kind in LENGTHS_ALONE else values)
+    return Ready(told.format(count=count), how, lambda at, _, hear: write_measures(at, sheet))
+
+
+def _turns(path: str, outcome: Outcome, manner: Manner) -> Ready:
+    records = outcome.records
+    told = tr("Turns: {count}").format(count=number(len(records), 0))
+    return Ready(told, "", lambda at, _, hear: write_turns(at, records, outcome.stages))
+
+
+def _picture(path: str, outcome: Outcome, manner: Manner) -> Ready:
+    def draw() -> Pieces[Any]:
+        with _studio(outcome, manner) as studio:
+            yield from part_of(studio.set_up(), 0.0, 0.0)
+            if isinstance(manner.view, str):
+                studio.stand_back(manner.size, manner.view)
+            else:
+                studio.scene.look_from(manner.view)
+            studio.scene.before(manner.before)
+            studio.scene.set_visible("bands", manner.bands)
+            studio.scene.set_visible("floor", not manner.clear)
+            return (yield from studio.shot(manner.size))
+
+    def write(at: Path, drawn: Any, hear: Progress) -> None:
+        from app.rendering.offscreen import write_picture  # noqa: PLC0415 (brings VTK along)
+
+        write_picture(at, drawn, manner.dark, manner.clear, hear)
+
+    _ = outcome.occlusion  # it takes a while, and any thread will do
+    told = tr("{width} × {height} pixels")
+    return Ready(told.format(width=manner.size[0], height=manner.size[1]), "", write, draw)
+
+
+def _turntable(path: str, outcome: Outcome, manner: Manner) -> Ready:
+    turntable = _turntable_of(manner)
+
+    def draw() -> Pieces[Any]:
+        from app.rendering.turntable import turn_round  # noqa: PLC0415 (brings VTK along)
+
+        with _studio(outcome, manner) as studio:
+            yield from part_of(studio.set_up(), 0.0, 0.0)
+            return (yield from turn_round(studio, turntable))
+
+    def write(at: Path, drawn: Any, hear: Progress) -> list[Path]:
+        from app.rendering.turntable import write_turntable  # noqa: PLC0415 (brings VTK along)
+
+        return write_turntable(at, drawn, turntable, hear)
+
+    _ = outcome.occlusion
+    told = tr("{count} pictures in {seconds} s")
+    return Ready(told.format(count=manner.frames, seconds=f"{manner.seconds:g}"), "", write, draw)
+
+
+def _turntable_of(manner: Manner) -> Turntable:
+    from app.rendering.turntable import Turntable  # noqa: PLC0415 (brings VTK along)
+
+    labels = tr("before"), tr("after")
+    return Turntable(manner.frames, manner.size, manner.seconds, manner.dark, manner.beside, labels)
+
+
+@contextmanager
+def _studio(outcome: Outcome, manner: Manner) -> Iterator[Studio]:
+    from app.presenters.status import bands  # noqa: PLC0415 (brings Qt along)
+    from app.rendering.offscreen import Studio  # noqa: PLC0415 (brings VTK along)
+
+    shown = bands(outcome.stages, outcome.hidden)
+    with Studio(
+        outcome.stages,
+        outcome.control_points,
+        shown,
+        outcome.occlusion,
+        dark=manner.dark,
+        material=outcome.material,
+    ) as studio:
+        yield studio
+
+
+WAYS: dict[str, tuple[Callable[[str, Manner], object], Callable[[str, Outcome, Manner], Ready]]] = {
+    "body": (_mesh_kind, _body),
+    "control": (_control_kind, _control),
+    "lines": (lambda path, _: drawing_kind(path, CURVE_FORMATS), _lines),
+    "flat": (lambda path, _: drawing_kind(path, STRIP_FORMATS), _flat),
+    "measures": (lambda path, manner: measures_kind(path, manner.unit or USUAL_UNIT), _measures),
+    "picture": (_picture_kind, _picture),
+    "turntable": (_turntable_kind, _turntable),
+    "turns": (_table_kind, _turns),
+}
+"""What can be exported: how a name is checked, and how the file is made ready."""

@@ -1,0 +1,153 @@
+"""What is said of the leeway of a line: the zone of a length, its number and its reason."""
+
+from __future__ import annotations
+
+from app.i18n.catalog import number, tr
+from core.analysis.length_limits.zones import AMBER, GREEN, RED, SLACK, Leeway, Reason, Zone
+from core.garment.pressure_limits import comfort
+from core.mechanics.constraint_lines import RATIO_LIMITS
+
+KEY_ORDER = GREEN, AMBER, RED, SLACK
+"""In which order the kinds of zones are explained."""
+
+_TONES = {AMBER: "warn", RED: "bad"}
+_SHORT = 28  # letters that have room in one line
+
+
+def tone_at(leeway: Leeway | None, ratio: float) -> str:
+    """Return how a set length [1] stands: "bad" in the red, "warn" in the amber, else nothing."""
+    return _TONES.get(leeway.at(ratio).tone, "") if leeway is not None else ""
+
+
+def key(leeway: Leeway) -> dict[str, str]:
+    """Return what zones of each tone mean and from where to where they go, of those that the line has.
+
+    Of all that is red it is what comes first, and where it folds if that is known.
+    """
+    told = {tone: _in_key(leeway, tone) for tone in KEY_ORDER}
+    return {tone: _glued(_upper(_in_a_row(words))) for tone, words in told.items() if words}
+
+
+def _in_a_row(words: list[str]) -> str:
+    """Return words with dots between; short ones stay in one piece, so that no line begins with a number."""
+    whole = [each.replace(" ", "\N{NO-BREAK SPACE}") if len(each) <= _SHORT else each for each in words]
+    return " \N{MIDDLE DOT} ".join(whole if len(words) > 1 else words)
+
+
+def _in_key(leeway: Leeway, tone: str) -> list[str]:
+    zones = [zone for zone in leeway.zones if zone.tone == tone]
+    if tone == GREEN:
+        valid = tr("valid shape") if leeway.pressure_known else tr("valid shape (without pressure)")
+        return [_range(valid, zone.short, zone.long) for zone in zones]
+    reasons = sorted({reason for zone in zones for reason in _told(zone)}, key=lambda each: -each.long)
+    if tone == RED:  # what is worse lies below
+        red = [reason for zone in zones for reason in _told(zone)]
+        folds = [reason for reason in red[1:] if reason.why in ("folded", "inverted")]
+        return [placed(reason) for reason in (*red[:1], *folds[:1])]
+    return [placed(reason) for reason in reasons]
+
+
+def hint(leeway: Leeway, ratio: float) -> str:
+    """Return what is told where the pointer rests: the zone of a length [1], and why it is one.
+
+    Where a reason holds for just the lengths of the zone, these are told once.
+    """
+    zone = leeway.at(ratio)
+    near = _beside(leeway, zone) if zone.tone == GREEN else (zone,)
+    reasons = dict.fromkeys(reason for each in near for reason in _told(each))
+    alike = any((each.short, each.long) == (zone.short, zone.long) for each in reasons)
+    lines = [] if alike or zone.tone == SLACK else [_range(_name(zone), zone.short, zone.long)]
+    explained = tr("{reason}: {meaning}.")
+    lines += [explained.format(reason=_upper(placed(each)), meaning=meaning(each)) for each in reasons]
+    if zone.tone == GREEN and not leeway.pressure_known:
+        lines.append(tr("Pressure is not looked at: it is made of no elastic."))
+    return "\n".join(_glued(line) for line in lines)
+
+
+def length_tip(short: float, long: float) -> str:
+    """Return what a slider from ``short`` to ``long`` [1] means, and its keys."""
+    said = tr("Length of the front part, {short} to {long} % of its rest.\n← → 0.1 %, Shift 1 %, Alt 0.01 %")
+    return said.format(short=number(100.0 * short, 0), long=number(100.0 * long, 0))
+
+
+def refusal(leeway: Leeway | None) -> str:
+    """Return why a hand meets resistance, empty if there is nothing red below."""
+    reasons = _told(leeway.zones[0]) if leeway is not None and leeway.zones[0].tone == RED else ()
+    return tr("Not this short: {reason}.").format(reason=placed(reasons[0])) if reasons else ""
+
+
+def placed(reason: Reason) -> str:
+    """Return a reason in a few words, and the lengths that it holds for."""
+    words = {
+        "strained": tr("strained"),
+        "vibrating": tr("would vibrate"),
+        "restless": tr("turns never rest"),
+        "pressing": tr("presses too much"),
+        "slack": tr("slack"),
+        "overstrained": tr("overstrained"),
+        "folded": tr("folds"),
+        "inverted": tr("inside out"),
+        "stretched": tr("beyond the table of its elastic"),
+        "unreachable": tr("cannot be reached"),
+    }[reason.why]
+    if reason.always:
+        return tr("{what} by the other lines, whatever this one does").format(what=words)
+    where = _range(words, reason.short, reason.long)
+    return tr("{where} (by the other lines)").format(where=where) if _of_others(reason) else where
+
+
+def meaning(reason: Reason) -> str:
+    """Return what a reason means, with the number at which it begins."""
+    return {
+        "strained": tr("skin is stretched or pressed together by more than 20 % somewhere"),
+        "vibrating": tr("turns with the conventional force do not come to rest"),
+        "restless": tr("lines act one turn late and are too stiff for that; choose in step, or softer lines"),
+        "pressing": tr("its band presses with more than {kpa} kPa somewhere").format(
+            kpa=number(comfort().red_kpa, 0)
+        ),
+        "slack": tr("it would have to push, which no band can"),
+        "overstrained": tr("skin is stretched or pressed together by more than 30 % somewhere"),
+        "folded": tr("a triangle of the control mesh turns to its side"),
+        "inverted": tr("a triangle of the control mesh shows its back"),
+        "stretched": tr("nothing is known of the elastic there"),
+        "unreachable": tr("no balance is found there"),
+    }[reason.why]
+
+
+def _told(zone: Zone) -> tuple[Reason, ...]:
+    """Return the reasons that make a zone what it is."""
+    return tuple(reason for reason in zone.reasons if reason.tone == zone.tone)
+
+
+def _beside(leeway: Leeway, zone: Zone) -> tuple[Zone, ...]:
+    """Return the zones beside one, the shorter first."""
+    at = leeway.zones.index(zone)
+    return (*leeway.zones[max(at - 1, 0) : at], *leeway.zones[at + 1 : at + 2])
+
+
+def _of_others(reason: Reason) -> bool:
+    return reason.others and reason.tone != SLACK
+
+
+def _name(zone: Zone) -> str:
+    return {GREEN: tr("Green"), AMBER: tr("Amber"), RED: tr("Red")}[zone.tone]
+
+
+def _range(what: str, short: float, long: float) -> str:
+    low, high = RATIO_LIMITS
+    figures = {"short": number(100.0 * short), "long": number(100.0 * long)}
+    if short <= low and long >= high:
+        return tr("{what} at any length").format(what=what)
+    if short <= low:
+        return tr("{what} below {long} %").format(what=what, **figures)
+    if long >= high:
+        return tr("{what} above {short} %").format(what=what, **figures)
+    return tr("{what} from {short} to {long} %").format(what=what, **figures)
+
+
+def _glued(words: str) -> str:
+    return words.replace(" %", "\N{NO-BREAK SPACE}%")
+
+
+def _upper(words: str) -> str:
+    return words[:1].upper() + words[1:]

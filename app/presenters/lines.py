@@ -1,0 +1,226 @@
+"""What the window says about lines: titles, colours, widths and the rows of the list."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import replace
+from functools import cache
+
+from app.i18n.catalog import listed, say, tr
+from app.i18n.lengths import length
+from app.presenters.lines_views import LineView, SideView
+from app.rendering.band import band_width
+from app.rendering.palette import LINE_COLORS
+from core.analysis.length_limits.zones import Leeway
+from core.control_mesh.embedding import embed
+from core.control_mesh.straps import Tail
+from core.control_mesh.template import Template, read_template
+from core.document.design import Design
+from core.document.lines import partner_of
+from core.document.split_lines import can_split, is_split
+from core.mechanics.constraint_lines import Line
+from core.pipeline.live_solver import Frame
+
+LINE_COLOURS = {"full-bust": "#0A5F73", "mid-bust": "#E5536B", "under-bust": "#5A3F94"}
+"""Colours of the template's lines in both themes, told apart by the colour-blind; top line first."""
+
+OWN_COLOURS = ("#E2A32F", "#6FA3F5", "#7A1F2E", "#A9ABC9", "#8C8B2C", "#C2571A")
+"""Colours of own lines, one after the other; a pair of lines for both sides shares one."""
+
+Shown = tuple[Leeway, bool]
+"""How far a line can go, and whether that was of the design before."""
+
+PALETTE = LINE_COLORS
+"""The colours that a line can be given."""
+
+
+def line_title(name: str, design: Design | None = None) -> str:
+    """Return a line's name in the window's language, or the title that ``design`` gives it."""
+    own = design.traits_of(name).title if design else ""
+    if own:
+        side = _side(name)
+        return listed((own, side)) if side else own
+    titles = {
+        "full-bust": tr("Full bust"),
+        "mid-bust": tr("Mid-bust"),
+        "under-bust": tr("Under-bust"),
+        "strap left": tr("Strap left"),
+        "strap right": tr("Strap right"),
+        "sling left": tr("Sling left"),
+        "sling right": tr("Sling right"),
+        "oblique left": tr("Oblique left"),
+        "oblique right": tr("Oblique right"),
+        "ring left": tr("Ring left"),
+        "ring right": tr("Ring right"),
+    }
+    kind, side = kind_of(name), _side(name)
+    kind = titles.get(kind) or _generated(kind)
+    usual = listed((kind, side)) if side else kind
+    return titles.get(name, usual[:1].upper() + usual[1:])
+
+
+def _generated(name: str) -> str:
+    """Return a name as the program gives it to a drawn line, such as "line 1", in the window's language."""
+    word, _, number = name.partition(" ")
+    return tr("line {number}").format(number=number) if word == "line" and number.isdecimal() else name
+
+
+def pair_title(name: str, design: Design) -> str:
+    """Return what a line and its linked partner are called together."""
+    kind = kind_of(name)
+    titles = {
+        "strap": tr("Straps"),
+        "sling": tr("Slings"),
+        "oblique": tr("Obliques"),
+        "ring": tr("Rings"),
+        **({kind: line_title(kind)} if kind in LINE_COLOURS else {}),
+    }
+    if kind == "strap" and not all(each.over_shoulder for each in design.own_lines if each.name == name):
+        titles[kind] = tr("Upper-chest straps")
+    return design.traits_of(name).title or titles.get(kind, kind[:1].upper() + kind[1:])
+
+
+def row_title(name: str, design: Design) -> str:
+    """Return what the row of a line is called: that of its pair if it is linked."""
+    return pair_title(name, design) if len(design.linked(name)) > 1 else line_title(name, design)
+
+
+def told_title(name: str, design: Design) -> str:
+    """Return what the row of a line is called where others follow: "Mid-bust (left)", "Straps"."""
+    side = _side(name)
+    if not side or len(design.linked(name)) > 1:
+        return row_title(name, design)
+    kind = kind_of(name)
+    titles = {"strap": tr("Strap"), "sling": tr("Sling"), "oblique": tr("Oblique"), "ring": tr("Ring")}
+    line = design.traits_of(name).title or titles.get(kind) or line_title(kind)
+    return tr("{line} ({side})").format(line=line, side=side)
+
+
+def titled(said: str, design: Design | None) -> str:
+    """Return what the core says with the titles that the designer gave in place of names.
+
+    A line of the template that a sentence begins with is called as in the list, too.
+    """
+    if design is None:
+        return said
+    own = {each.name for each in design.traits if each.title}
+    for name in sorted(own | set(LINE_COLOURS), key=len, reverse=True):
+        title = line_title(name, design).replace("\\", r"\\")
+        whole = rf"{re.escape(name)}(?![\w-])"
+        said = re.sub(f"^{whole}", title[:1].upper() + title[1:], said)
+        said = re.sub(rf"(?<![\w-]){whole}", title, said) if name in own else said
+    return said
+
+
+def kind_of(name: str) -> str:
+    """Return the name of a line without its side."""
+    return name.removesuffix(" left").removesuffix(" right")
+
+
+def _side(name: str) -> str:
+    return {" left": tr("left"), "right": tr("right")}.get(name[-5:], "") if partner_of(name) else ""
+
+
+def line_colours(names: Iterable[str], design: Design | None = None) -> dict[str, str]:
+    """Return the colours of these lines in the order of the list: those of the template, top line first.
+
+    The halves of a line that was split keep its colour.
+    """
+    given = list(names)
+    halves = {name: LINE_COLOURS[kind_of(name)] for name in given if kind_of(name) in LINE_COLOURS}
+    own = [name for name in given if name not in halves]
+    kinds = list(dict.fromkeys(kind_of(name) for name in own))
+    order = list(LINE_COLOURS)
+    colours = {name: halves[name] for name in sorted(halves, key=lambda each: order.index(kind_of(each)))}
+    colours |= {name: OWN_COLOURS[kinds.index(kind_of(name)) % len(OWN_COLOURS)] for name in own}
+    if design is None:
+        return colours
+    return {name: design.traits_of(name).colour or colour for name, colour in colours.items()}
+
+
+def line_views(
+    design: Design, frame: Frame, hidden: Collection[str], leeways: Mapping[str, Shown] | None = None
+) -> list[LineView]:
+    """Return the rows of the list, top line first, then own lines; a linked pair is one row."""
+    lines = {line.name: line for line in frame.stages.model.lines}
+    rows = []
+    for name, colour in line_colours(lines, design).items():
+        pair = tuple(each for each in sorted(design.linked(name)) if each in lines)
+        if name == pair[0]:
+            view = _view(design, frame, [lines[each] for each in pair], colour)
+            leeway, stale = (leeways or {}).get(name, (None, False))
+            visible = not set(pair) <= set(hidden)
+            # Of a line that lies under its own halves no length is worth trying.
+            leeway = None if view.parted else leeway
+            rows.append(replace(view, visible=visible, leeway=leeway, stale=stale))
+    return rows
+
+
+def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineView:
+    """Return the row of a line, or of a linked pair whose lengths are the mean of both."""
+    name, traits = lines[0].name, design.traits_of(lines[0].name)
+    tail = frame.stages.tails.get(name)
+    own = {each.name for each in design.own_lines}
+    sides = [SideView(_side(line.name), line.rest_length, frame.lengths[line.name]) for line in lines]
+    partner = partner_of(name) if partner_of(name) in own else ""
+    return LineView(
+        name,
+        row_title(name, design),
+        colour,
+        design.ratio(name),
+        sum(side.rest_mm for side in sides) / len(sides),
+        sum(frame.lengths[line.name] for line in lines) / len(lines),
+        any(line.constrains for line in lines),
+        True,
+        sum(line.whole_length for line in lines) / len(lines),
+        name in own,
+        partner=partner,
+        sides=tuple(sides) if len(sides) > 1 else (),
+        locked=traits.locked,
+        own_title=traits.title,
+        width_mm=band_width(name, design),
+        stiffness=traits.stiffness,
+        usual_stiffness=design.line_stiffness,
+        apart=name.rsplit(" ", 1)[-1] if partner and len(lines) == 1 else "",
+        pair_title=pair_title(name, design),
+        elastic=say(traits.elastic),
+        splits=not partner and can_split(design, _template(design.template), name),
+        parted=is_split(design, name),
+        strap="" if tail is None else _strap_words(tail),
+        over_shoulder=_over_shoulder(design, frame, name),
+    )
+
+
+def _over_shoulder(design: Design, frame: Frame, name: str) -> bool | None:
+    """Return whether a line runs over the shoulder, None for one that cannot.
+
+    It can where its upper end is on the fixed body above the bust.
+    """
+    own = next((each for each in design.own_lines if each.name == name), None)
+    if own is None or own.closed:
+        return None
+    if own.over_shoulder:
+        return True
+    control, bust_level = frame.stages.control, frame.stages.landmarks.bust_level
+    if own.free:
+        ends = embed(control.grid, (own.places[0], own.places[-1])).weights[[0, -1]]
+        heights, held = ends @ control.mesh.vertices[:, 2], ends @ control.fixed > 1.0 - 1e-9
+    else:
+        points = [own.points[0], own.points[-1]]
+        heights, held = control.mesh.vertices[points, 2], control.fixed[points]
+    upper = int(heights.argmax())
+    return False if held[upper] and heights[upper] > bust_level else None
+
+
+def _strap_words(tail: Tail) -> str:
+    """Return where a strap goes on from its upper end, or why it does not."""
+    if tail.problem:
+        return tr("{why} It ends on the upper chest.").format(why=say(tail.problem))
+    words = tr("Over the shoulder to the under-bust band at the back; {length} of it on the fixed body")
+    return words.format(length=length(tail.length, 0))
+
+
+@cache
+def _template(name: str) -> Template:
+    return read_template(name)

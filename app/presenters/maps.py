@@ -1,0 +1,177 @@
+"""What the window says of maps and sections: kinds, colours, ranges and figures, as plain values."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.gui.features.maps.legend import MapKind
+from app.i18n.catalog import number, tr
+from app.i18n.lengths import length, shown_value
+from app.presenters.bust_shift import BustMove, BustStep, bust_sentence, forward_words, offs_of, step_words
+from app.presenters.pressure import limit_marks
+from app.rendering.palette import MAP_AMOUNT, MAP_LESS, MAP_MORE
+from app.rendering.vertex_colors import Ramp
+from core.garment.pressure import mmhg
+from core.garment.pressure_limits import comfort
+from core.garment.pressure_list import PressList
+from core.geometry.mesh import Floats
+from core.measurements.uncertain_value import Spread
+
+LINE_MAPS = ("pull", "pressure")
+"""Maps that lie on the bands."""
+
+MAPS = ("displacement", "strain", "sides", "worn", *LINE_MAPS)
+"""Maps in the order in which a key goes through them, the first one first seen."""
+
+BOTH_WAYS = ("displacement", "sides", "worn")
+"""Maps whose values go both ways from zero, all of them lengths."""
+
+_LEAST = {"sides": 5.0, "worn": 5.0, "pressure": 5.0}  # no map shows less [mm, kPa]; both limits are seen
+_ROUND = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+
+
+def map_kinds() -> list[MapKind]:
+    """Return the maps that can be chosen, in words."""
+    return [*_skin_maps(), *_line_maps()]
+
+
+def _skin_maps() -> list[MapKind]:
+    return [
+        MapKind(
+            "displacement",
+            tr("Displacement"),
+            "mm",
+            tr("How far the skin moved along its normal at rest: outward (+) or inward (−)."),
+            tr("+ outward  − inward"),
+            both_ways=True,
+        ),
+        MapKind(
+            "strain",
+            tr("Strain"),
+            "%",
+            tr(
+                "Largest strain of the control mesh, stretched or pressed together: the principal strain of "
+                "its triangles, averaged at each control point and carried to the skin between them."
+            ),
+            tr("of the control mesh"),
+        ),
+        MapKind(
+            "sides",
+            tr("Left and right"),
+            "mm",
+            tr(
+                "How far each side stands out beyond the other one, mirrored. The mirror stands where the "
+                "trunk without the breasts matches best."
+            ),
+            tr("+ stands out more than the other side"),
+            both_ways=True,
+        ),
+        MapKind(
+            "worn",
+            tr("Predicted less real"),
+            "mm",
+            tr("How far the predicted skin stands before (+) or behind (−) that of the worn scan."),
+            tr("+ predicted further out than real"),
+            both_ways=True,
+        ),
+    ]
+
+
+def _line_maps() -> list[MapKind]:
+    return [
+        MapKind(
+            "pull",
+            tr("Pull of lines"),
+            "%",
+            tr(
+                "How strongly each part of the worn lines pulls, in % of the strongest part. Newtons stand "
+                "in the cut list."
+            ),
+            tr("of the strongest part"),
+            digits=0,
+        ),
+        MapKind(
+            "pressure",
+            tr("Contact pressure"),
+            "kPa",
+            _pressure_tip(),
+            tr("An estimate, rather high. Dashed: over hollows."),
+            marks=limit_marks(),
+        ),
+    ]
+
+
+def _pressure_tip() -> str:
+    limits = comfort()
+    amber, red = (
+        f"{number(kpa, 0)} kPa ({number(mmhg(kpa), 0)} mmHg)" for kpa in (limits.amber_kpa, limits.red_kpa)
+    )
+    return tr(
+        "What the worn bands press the skin with: their pull over their width and the radius that they bend "
+        "with. 1 kPa is 7.5 mmHg. Marked: snug from {amber}, too tight from {red}. An estimate: tissue gives "
+        "way, and sensors read less."
+    ).format(amber=amber, red=red)
+
+
+def pressure_note(listed: PressList | None, stale: bool) -> str:
+    """Return what is to be said under the legend of pressure before all; ``stale`` is of a former shape."""
+    if listed is None:
+        return tr("Worked out as soon as the run rests.")
+    if stale:
+        return tr("Of the former shape: worked out again as soon as the run rests.")
+    if not listed.worn:
+        return tr("No worn line presses whose tension is known.")
+    return ""
+
+
+def bridge_words(off: float) -> str:
+    """Return what is said of a place at which a band goes straight over a hollow, ``off`` the skin [mm]."""
+    return tr("bridges, {length} off").format(length=length(off, 0))
+
+
+def ramp_of(name: str, low: float, high: float, clay: str) -> Ramp:
+    """Return the colours of a map between two values; zero is the colour "#rrggbb" of the body's material."""
+    if name in BOTH_WAYS:
+        return Ramp((*MAP_LESS, clay, *MAP_MORE), low, high, clay)
+    return Ramp((clay, *MAP_AMOUNT), low, high, clay)
+
+
+def automatic_range(name: str, values: Floats) -> tuple[float, float]:
+    """Return the range that holds all values, up to a round number; at least one worth a look."""
+    if name == "pull":
+        return 0.0, 100.0
+    seen = np.abs(values[np.isfinite(values)])
+    one = 1.0 / shown_value(1.0, "mm" if name in BOTH_WAYS else "")  # of the unit in which it is written
+    high = one * rounded_up(max(float(seen.max(initial=0.0)), _LEAST.get(name, 1.0)) / one)
+    return (-high, high) if name in BOTH_WAYS else (0.0, high)
+
+
+def rounded_up(value: float) -> float:
+    """Return the next round number that is not below ``value`` > 0."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return next(unit * power for unit in _ROUND if unit * power >= value * (1.0 - 1e-9))
+
+
+def section_words(axis: str, side: str, move: BustMove, spread: Spread | None = None) -> str:
+    """Return how far the bust points went, in words; a plane across x has that of its ``side`` alone."""
+    if axis != "x":
+        return bust_sentence(move, offs_of(spread))
+    offs = offs_of(spread, side)
+    if side == "left":
+        return tr("Bust point left {way}").format(way=step_words(move.left, offs))
+    return tr("Bust point right {way}").format(way=step_words(move.right, offs))
+
+
+def sides_words(axis: str, pairs: Sequence[tuple[Floats, Floats]]) -> str:
+    """Return how far the foremost places of two sides are apart, in words; a pair is (other, this) [mm]."""
+    steps = [this - other for other, this in pairs]
+    if axis == "x" and len(steps) == 1:
+        way = step_words(BustStep(float(steps[0][1]), float(steps[0][0])))
+        return tr("Foremost place, against the other side: {way}").format(way=way)
+    if axis == "z" and len(steps) == 2:
+        way = forward_words(-float(steps[0][1]))
+        return tr("Foremost place left, against right: {way}").format(way=way)
+    return ""

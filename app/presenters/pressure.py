@@ -1,0 +1,159 @@
+"""What the window says of contact pressure: lights and limits, figures and places, as plain values."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from app.gui.features.garment.pressure_card import TONES, LightLimits, PressureSummary
+from app.i18n.catalog import joined, language, listed, number, say, tr
+from app.i18n.lengths import length
+from app.presenters.cut_list_views import PressureView
+from app.presenters.lines import line_colours, line_title, titled
+from app.presenters.lines_views import LineView
+from core.document.design import Design
+from core.garment.assessment import UNKNOWN_PRESSURE
+from core.garment.pressure import LEFT_OUT, NOT_FOR_STRAPS, mmhg
+from core.garment.pressure_limits import AMBER, GREEN, RED, comfort
+from core.garment.pressure_list import PressList, PressRow
+
+
+def light_word(light: str) -> str:
+    """Return in a word what "green", "amber" or "red" means."""
+    return {GREEN: tr("gentle"), AMBER: tr("snug"), RED: tr("too tight")}[light]
+
+
+def light_limits() -> LightLimits:
+    """Return the limits of the light in words."""
+    limits, colon = comfort(), "：" if language() == "ja" else ": "
+    told = [f"{each.named(language())}{colon}{each.words.told(language())}" for each in limits.sources]
+    doubts = [words.told(language()) for words in limits.doubts]
+    return LightLimits(
+        limits.amber_kpa,
+        limits.red_kpa,
+        (light_word(GREEN), light_word(AMBER), light_word(RED)),
+        limits.sources[0].named(language()),
+        (*doubts, *told),
+        tuple(say(each) for each in LEFT_OUT),
+    )
+
+
+def limit_marks() -> tuple[tuple[float, str, str], ...]:
+    """Return the limits as marks on a legend: pressure [kPa], tone and word."""
+    limits = comfort()
+    marks = (limits.amber_kpa, AMBER), (limits.red_kpa, RED)
+    return tuple((kpa, TONES[light], light_word(light)) for kpa, light in marks)
+
+
+def pressure_views(listed: PressList, design: Design, stale: bool) -> dict[str, PressureView]:
+    """Return what each line presses with, by line; figures of a former shape are ``stale`` and no light."""
+    return {row.line: _view(row, design, stale) for row in listed.rows}
+
+
+def _view(row: PressRow, design: Design, stale: bool) -> PressureView:
+    notes = [say(titled(note, design)) for note in row.notes]
+    if row.max_kpa is None:
+        return PressureView("", "", "", "\n".join(notes))
+    light = "" if stale else row.light
+    word = light_word(row.light) if light else ""
+    told = [*_figures(row), *notes, comfort().says(row.max_kpa).told(language())]
+    return PressureView(number(row.max_kpa), light, word, "\n".join(told), stale)
+
+
+def pressed_view(view: LineView, listed: PressList | None) -> LineView:
+    """Return the row of a line with what it presses with, if that is known; of a pair the larger one."""
+    known = () if listed is None else listed.rows
+    rows = [row for row in known if row.line in view.names and row.max_kpa is not None]
+    if not rows:
+        return view
+    most = max(rows, key=lambda row: row.max_kpa or 0.0)
+    words = f"{number(most.max_kpa or 0.0)} kPa · {light_word(most.light)}"
+    return replace(view, pressed=words, tone=TONES[most.light])
+
+
+def _unmeant(row: PressRow) -> list[str]:
+    """Return that the limits were set for other bands, of a line of which that holds."""
+    return [say(note) for note in row.notes if note == NOT_FOR_STRAPS]
+
+
+def _figures(row: PressRow) -> list[str]:
+    assert row.max_kpa is not None
+    assert row.mean_kpa is not None
+    most = tr("Largest {kpa}").format(kpa=kpa_words(row.max_kpa))
+    mean = tr("Mean where it lies on the skin {kpa}").format(kpa=kpa_words(row.mean_kpa))
+    force = tr("Presses on the skin with {force} N in all").format(force=number(row.force_n or 0.0))
+    where = listed((most, place_words(row))) if row.where else most
+    return [where, mean, force]
+
+
+def kpa_words(kpa: float) -> str:
+    """Return a pressure in kPa and in mmHg."""
+    return f"{number(kpa)} kPa · {number(mmhg(kpa), 0)} mmHg"
+
+
+def side_words(where: str) -> str:
+    """Return which side of the body is meant by one of ``core.garment.body_location``."""
+    return {
+        "front": tr("front"),
+        "front left": tr("front left"),
+        "left side": tr("left side"),
+        "back left": tr("back left"),
+        "back": tr("back"),
+        "back right": tr("back right"),
+        "right side": tr("right side"),
+        "front right": tr("front right"),
+        "left shoulder": tr("left shoulder"),
+        "right shoulder": tr("right shoulder"),
+    }[where]
+
+
+def place_words(row: PressRow) -> str:
+    """Return where a line presses most, in words."""
+    height = length(row.height_mm or 0.0, 0)
+    words = tr("{side}, {length} above the lowest point of the scan")
+    return words.format(side=side_words(row.where), length=height)
+
+
+def unknown_pressure() -> str:
+    """Return that the pressures of a shape were not computed, and what to do."""
+    return joined((say(UNKNOWN_PRESSURE.message), say(UNKNOWN_PRESSURE.action)))
+
+
+def pressure_summary(listed: PressList | None, design: Design, doubt: str = "") -> PressureSummary:
+    """Return what all bands press with together; None is not known yet, or no result as ``doubt`` says."""
+    if listed is None:
+        return _nothing(doubt or tr("Worked out as soon as the run rests."))
+    most = listed.hardest
+    if most is None or most.max_kpa is None:
+        return _nothing(tr("No worn line presses whose tension is known."))
+    colours = line_colours([row.line for row in listed.rows], design)
+    marks = tuple(
+        (line_title(row.line, design), colours[row.line], row.max_kpa)
+        for row in listed.rows
+        if row.max_kpa is not None
+    )
+    place = tr("{line}, {side}").format(line=line_title(most.line, design), side=side_words(most.where))
+    look = tr("Look at it, with the map of pressure")
+    return PressureSummary(
+        kpa_words(most.max_kpa),
+        most.light,
+        light_word(most.light),
+        place,
+        f"{place_words(most)}\n{look}",
+        joined((comfort().says(most.max_kpa).told(language()), *_unmeant(most))),
+        total_words(listed),
+        marks,
+    )
+
+
+def total_words(listed: PressList) -> str:
+    """Return the total force of all bands on the skin in words: of those whose tension is known."""
+    if listed.force_n is None:
+        return tr("Total force on the skin unknown")
+    words = tr("Total force of all bands on the skin: {force} N")
+    if not listed.complete:
+        words = tr("Total force on the skin of the bands with known tension: {force} N")
+    return words.format(force=number(listed.force_n, 1))
+
+
+def _nothing(why: str) -> PressureSummary:
+    return PressureSummary("", "", "", "", "", why, "", ())

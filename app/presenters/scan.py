@@ -1,0 +1,183 @@
+"""What the window says about a scan and its landmarks: plain values for the panels."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+
+from app.gui.features.landmarks.row import LandmarkView
+from app.gui.features.scan.edits import EditsView, HoleView
+from app.gui.features.scan.lean_editor import LeanView
+from app.gui.features.scan.panel import ScanView
+from app.i18n.catalog import say, tr
+from app.i18n.lengths import length
+from core.document.design import ScanSource
+from core.geometry.mesh import Points
+from core.landmarks.types import CERTAIN, NAMES, Landmark, Landmarks
+from core.landmarks.warnings import ESSENTIAL, edit_doubts
+from core.scan.body import Body
+from core.scan.orientation.lean_angles import lean_angles
+from core.scan.repair.holes import NAMED, hole_sentence, hole_sentences
+
+GROUPS = {
+    "bust_point": "bust",
+    "lowest": "bust",
+    "fold": "under",
+    "root_inner": "under",
+    "root_outer": "under",
+}
+"""The group of each kind of landmark in the list; all others are further ones."""
+
+PINNED = ("bust_point", "lowest", "fold")
+"""The kinds of landmarks that always have a pin at the Landmarks step."""
+
+
+Spot = tuple[str, tuple[float, ...]]
+"""A landmark's name and where it lies, to a tenth of a millimetre."""
+
+
+def spot_of(mark: Landmark) -> Spot:
+    """Return by what a landmark is known again once all of them have been found anew."""
+    return mark.name, tuple(mark.position.round(1).tolist())
+
+
+def kind_of(name: str) -> str:
+    """Return a landmark's name without its side."""
+    return name.removesuffix("_left").removesuffix("_right")
+
+
+def landmark_title(name: str) -> str:
+    """Return a landmark's name in the window's language."""
+    titles = {
+        "bust_point": tr("Bust point"),
+        "fold": tr("Under-bust fold"),
+        "lowest": tr("Lowest point"),
+        "root_inner": tr("Inner breast root"),
+        "root_outer": tr("Outer breast root"),
+        "front_centre": tr("Centre front, bust"),
+        "front_centre_underbust": tr("Centre front, under-bust"),
+        "back_centre": tr("Centre back, bust"),
+        "back_centre_underbust": tr("Centre back, under-bust"),
+        "side": tr("Side"),
+        "armpit": tr("Armpit"),
+        "waist_front": tr("Waist, front"),
+        "hip_front": tr("Hip, front"),
+        "neck_front": tr("Neck, front"),
+        "neck_back": tr("Neck, back"),
+    }
+    kind = kind_of(name)
+    sides = {"_left": tr("{name} left"), "_right": tr("{name} right")}
+    return sides.get(name[len(kind) :], "{name}").format(name=titles.get(kind, kind.replace("_", " ")))
+
+
+def other_side(name: str) -> str:
+    """Return the same landmark of the other side, or an empty text if it has no side."""
+    for side, other in (("_left", "_right"), ("_right", "_left")):
+        if name.endswith(side):
+            return name.removesuffix(side) + other
+    return ""
+
+
+def landmark_views(points: Mapping[str, Landmark], accepted: Collection[Spot] = ()) -> list[LandmarkView]:
+    """Return the rows of the list of landmarks, those of the bust first; the absent ones are among them.
+
+    What is ``accepted`` need not be looked at again.
+    """
+    order = list(GROUPS)
+    known = sorted(
+        NAMES, key=lambda name: order.index(kind_of(name)) if kind_of(name) in order else len(order)
+    )
+    return [landmark_view(name, points.get(name), accepted) for name in known]
+
+
+def landmark_view(name: str, mark: Landmark | None, accepted: Collection[Spot] = ()) -> LandmarkView:
+    """Return what is shown of a landmark, ``mark`` if it was found: in the list and on its pin alike."""
+    title, group = landmark_title(name), GROUPS.get(kind_of(name), "further")
+    if mark is None:
+        return LandmarkView(name, title, 0.0, tr("The scan does not show it."), group, absent=True)
+    unsure = kind_of(name) in ESSENTIAL and not mark.by_hand and mark.confidence < CERTAIN
+    weak = unsure or (mark.off > 0.0 and spot_of(mark) not in accepted)
+    traced, off = len(mark.evidence) > 0, mark.off
+    return LandmarkView(
+        name, title, mark.confidence, mark.rule, group, mark.by_hand, weak=weak, traced=traced, off_mm=off
+    )
+
+
+def scan_view(
+    source: ScanSource, body: Body, upright: bool = True, landmarks: Landmarks | None = None
+) -> ScanView:
+    """Return the facts of the scan; one that is not ``upright`` cannot be edited."""
+    pose = body.pose
+    return ScanView(
+        source.name,
+        pose.unit,
+        pose.reason,
+        pose.sure,
+        pose.up,
+        pose.front,
+        len(body.mesh.faces),
+        body.repairs,
+        _notes(body),
+        frozenset(key for key in ("unit", "up", "front") if getattr(source, key) is not None),
+        _edits_view(source, body) if upright else None,
+        body.colours is not None,
+        LeanView(*lean_angles(pose), landmarks.upright if landmarks else "") if upright else None,
+    )
+
+
+def _edits_view(source: ScanSource, body: Body) -> EditsView:
+    """Return the edits of a scan, with those of its open holes that are listed."""
+    rows, (low, high) = body.holes[:NAMED], body.heights
+    holes = [HoleView(say(hole_sentence(body.mesh, hole)), _place(hole.centre)) for hole in rows]
+    more = [say(each) for each in hole_sentences(body.mesh, body.holes)[NAMED:]]
+    return EditsView(source.edits, high - low, tuple(holes), "".join(more))
+
+
+def _place(centre: Points) -> tuple[float, float, float]:
+    x, y, z = centre.round(1).tolist()
+    return x, y, z
+
+
+def _notes(body: Body) -> tuple[str, ...]:
+    """Return what else is to be known of a body: its edits, and on what copy of its skin it is measured."""
+    return (*map(say, edit_doubts(body)), *_copy_notes(body))
+
+
+def _copy_notes(body: Body) -> tuple[str, ...]:
+    if body.calm is body.mesh:
+        return ()
+    if len(body.calm.faces) != len(body.mesh.faces):
+        return (tr("It is so fine that a thinned copy is measured."),)
+    return (tr("It is noisy, by {noise}: a smoothed copy is measured.").format(noise=length(body.noise)),)
+
+
+def work_words(what: str) -> str:
+    """Return what is said of the work in hand; nothing for what takes no time."""
+    words = {
+        "read scan": tr("Reading the scan"),
+        "reading": tr("Reading the scan"),
+        "repairing": tr("Repairing the scan"),
+        "closing holes": tr("Repairing the scan"),
+        "rebuilding the surface": tr("Laying a skin through the points"),
+        "finding up and front": tr("Finding up and front"),
+        "calming the skin": tr("Finding the landmarks"),
+        "find landmarks": tr("Finding the landmarks"),
+        "fit control mesh": tr("Fitting the control mesh"),
+        "find patch": tr("Binding the body"),
+        "bind body": tr("Binding the body"),
+        "preparing the view": tr("Preparing the view"),
+    }
+    return words.get(what, "")
+
+
+def work_steps() -> list[str]:
+    """Return what is said of a scan's way into the window, in order."""
+    names = (
+        "reading",
+        "repairing",
+        "finding up and front",
+        "find landmarks",
+        "fit control mesh",
+        "bind body",
+        "preparing the view",
+    )
+    return [work_words(name) for name in names]

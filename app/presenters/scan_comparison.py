@@ -1,0 +1,200 @@
+"""What the window says of a worn scan: how it lies, predicted less real, the numbers that were found."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from app.gui.features.scan_comparison.page import FigureRow, NumberRow
+from app.i18n.catalog import joined, listed, number, tr
+from app.i18n.lengths import length, length_number
+from app.presenters.lines import told_title
+from core.analysis.calibration.api import CalibrationResult, Difference, Figures, Worn
+from core.analysis.calibration.parameters import (
+    FIRM_CHEST,
+    LENGTH,
+    LINE_STIFFNESS,
+    PRESTRESS,
+    STIFFNESS,
+    TISSUE,
+)
+from core.analysis.calibration.registration import MET
+from core.document.calibration_record import WELL, Calibration, FoundNumber
+from core.document.design import Design
+from core.geometry.mesh import Floats
+
+
+def aligned_words(worn: Worn) -> str:
+    """Return how well a worn scan lies on the first, in a sentence or two."""
+    laid = worn.alignment
+    met = tr(
+        "{share} % of the skin that no line moves lies within {near} of it, {length} off as a rule."
+    ).format(near=length(MET, 0), share=number(100.0 * laid.met, 0), length=length(laid.rms))
+    sure = tr("Sure to ±{turn}° and ±{length}.").format(
+        turn=number(2.0 * float(laid.turns.max()), 2), length=length(2.0 * float(laid.shifts.max()))
+    )
+    return joined([met, sure])
+
+
+def figure_rows(difference: Difference) -> tuple[FigureRow, ...]:
+    """Return predicted less real in rows: all, her left, her right."""
+    named = {"left": tr("Left"), "right": tr("Right")}
+    rows = [(tr("Moving skin"), difference.all_of_it)]
+    rows += [(named[side], figures) for side, figures in difference.sides.items()]
+    return tuple(FigureRow(title, *_figures(figures)) for title, figures in rows)
+
+
+def _figures(figures: Figures) -> tuple[str, str, str]:
+    if not np.isfinite(figures.rms):
+        return "–", "–", "–"
+    return length_number(figures.mean, 1, True), length_number(figures.rms), length_number(figures.most)
+
+
+def map_values(difference: Difference | None, count: int) -> Floats:
+    """Return predicted less real at ``count`` vertices, (count,) [mm]: no number where it is not known."""
+    values = np.full(count, np.nan)
+    if difference is not None:
+        values[: len(difference.values)] = difference.values
+    return values
+
+
+def bust_words(difference: Difference) -> str:
+    """Return how far the predicted bust points lie from the real ones, in a sentence."""
+    if not difference.bust_points:
+        return tr("The bust points do not show surely on the worn scan.")
+    named = {
+        "left": tr("Left bust point: predicted {way}, {out}."),
+        "right": tr("Right bust point: predicted {way}, {out}."),
+    }
+    said = [
+        named[side].format(
+            way=_way(
+                float(way[2]),
+                tr("{length} higher (±{sure})"),
+                tr("{length} lower (±{sure})"),
+                difference.bust_unsure[side],
+            ),
+            out=_way(-float(way[1]), tr("{length} further out"), tr("{length} less far out")),
+        )
+        for side, way in difference.bust_points.items()
+    ]
+    return joined([*said, tr("± is how surely both scans tell the bust points.")])
+
+
+def _way(mm: float, more: str, less: str, sure: float = 0.0) -> str:
+    return (less if round(mm, 1) < 0.0 else more).format(length=length(abs(mm)), sure=length(sure))
+
+
+def told_words(difference: Difference) -> str:
+    """Return what is said under the figures: the bust points, and how much is compared at all."""
+    return joined([bust_words(difference), shown_words(difference)])
+
+
+def shown_words(difference: Difference) -> str:
+    """Return how much of the moving skin the worn scan shows, where that is not nearly all."""
+    share = difference.all_of_it.seen
+    said = tr("The worn scan shows {share} % of the moving skin.").format(share=number(100.0 * share, 0))
+    return "" if share > 0.9 else said
+
+
+def number_rows(found: CalibrationResult, design: Design) -> tuple[NumberRow, ...]:
+    """Return the numbers that were found, in rows."""
+    return tuple(
+        NumberRow(
+            number_title(each.name, design),
+            value_words(each, each.before),
+            value_words(each, each.after),
+            f"±{value_words(each, each.plus_minus)}",
+            each.told,
+        )
+        for each in found.calibration.numbers
+        if not each.kept
+    )
+
+
+def surely_words(found: CalibrationResult, design: Design) -> str:
+    """Return which of the numbers that were found are told well, and which are not."""
+    sought = [each for each in found.calibration.numbers if not each.kept]
+    well, weak = (
+        listed([number_title(each.name, design) for each in sought if each.told is told])
+        for told in (True, False)
+    )
+    percent = number(100.0 * WELL, 0)
+    if not weak:
+        return tr("All are told to within {percent} %.").format(percent=percent) if well else ""
+    first = tr("Told to within {percent} %: {numbers}.").format(percent=percent, numbers=well) if well else ""
+    return joined([first, tr("Told weakly, as ± says: {numbers}.").format(numbers=weak)])
+
+
+def kept_words(found: CalibrationResult, design: Design) -> str:
+    """Return which numbers stay as they are, since the scans do not tell them."""
+    names = [number_title(each.name, design) for each in found.calibration.numbers if each.kept]
+    return tr("As they were, since these scans do not tell them: {numbers}.").format(
+        numbers=listed(names)
+    ) if names else ""  # fmt: skip
+
+
+def number_title(name: str, design: Design) -> str:
+    """Return what a number is called."""
+    kind, _, line = name.partition(" of ")
+    if kind == STIFFNESS and line:
+        return tr("Stiffness of {line}").format(line=told_title(line, design))
+    if kind == LENGTH and line:
+        return tr("Length of {line}").format(line=told_title(line, design))
+    return {
+        LINE_STIFFNESS: tr("Stiffness of lines"),
+        FIRM_CHEST: tr("Firm chest"),
+        PRESTRESS: tr("Tension of the springs"),
+        TISSUE: tr("Tissue"),
+    }.get(name, name)
+
+
+def value_words(of: FoundNumber, value: float) -> str:
+    """Return one value of a number, with its unit where it has one."""
+    if of.name == TISSUE:
+        return f"{number(value, 0)} N/m"
+    if of.name.startswith(LENGTH) or of.name == PRESTRESS:
+        return f"{number(100.0 * value, 1)} %"
+    return number(value, 3 if of.name == FIRM_CHEST else 1)
+
+
+def better_words(found: CalibrationResult, design: Design) -> str:
+    """Return by how much the prediction comes nearer to the worn scan, or why that counts for nothing."""
+    if found.at_end:
+        names = listed([number_title(name, design) for name in found.at_end])
+        return tr(
+            "Not found: {numbers} went to the end of what may be. Is this the scan with the garment on, and "
+            "are these its lines?"
+        ).format(numbers=names)
+    before, after = (length(each.all_of_it.rms) for each in (found.before, found.after))
+    if not found.helped:
+        return tr("No number moved by more than its ±: it stays at {before}.").format(before=before)
+    nearer = tr("Predicted less real: {before} → {after}.").format(before=before, after=after)
+    left = tr("Most of it remains: posture, breath or cloth may have made these numbers.")
+    weak = tr("None of these numbers is told well: take them as a hint.")
+    return joined([nearer, left if found.explains_little else "", weak if found.weak else ""])
+
+
+def record_words(record: Calibration | None) -> str:
+    """Return what a design keeps of a calibration, in a line; nothing if there was none."""
+    if record is None:
+        return ""
+    return tr("Calibrated on {file}: {before} → {after}.").format(
+        file=record.worn, before=length(record.rms_before), after=length(record.rms_after)
+    )
+
+
+def door_words(record: Calibration | None, worn: Worn | None) -> str:
+    """Return what stands on the door: what was calibrated, what is compared, or what is behind it."""
+    if worn is not None:
+        return worn.name
+    return record_words(record) or tr("Predicted less real, from a scan with the garment on")
+
+
+def notes_of(worn: Worn | None, pending: bool) -> Iterator[str]:
+    """Yield what the legend of the map says instead of its own line."""
+    if worn is None:
+        yield tr("Compare with a worn scan first: File menu.")
+    elif pending:
+        yield tr("Compared anew as soon as the run rests.")

@@ -1,0 +1,92 @@
+"""What is said of band and cup: the size in every system, the rule, what lies near it, the doubts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from app.gui.features.measurements.size_card import SizeView
+from app.i18n.catalog import colon, joined, language, listed, say, tr
+from app.i18n.lengths import length
+from core.measurements.letter_sizes import letter_sizes
+from core.measurements.sizes import GIRTHS_OF_SIZES, Neighbour, SizeAnswer, nearby, sizes
+from core.measurements.table import Measures
+from core.measurements.uncertain_value import BEFORE, Spread
+
+
+def size_views(
+    measured: Measures, allowance_mm: float, spread: Spread | None = None
+) -> tuple[list[SizeView], str]:
+    """Return the sizes of a body in every system, or none and why; ``spread`` tells others within the ±."""
+    underbust, bust = (measured[key] for key in GIRTHS_OF_SIZES)
+    if underbust.value is None or bust.value is None:
+        return [], say(underbust.note or bust.note)
+    answers = sizes(underbust.value, bust.value, allowance_mm)
+    letters = {"jp": tuple(_letters(measured))}
+    return [
+        _view(key, answer, letters.get(key, ()), within_words(answer, spread))
+        for key, answer in answers.items()
+    ], ""
+
+
+def within_words(answer: SizeAnswer, spread: Spread | None) -> str:
+    """Return which other sizes lie within what both girths may be off, once all of that is known."""
+    offs = [spread.plus_minus(f"{BEFORE}:{key}") for key in GIRTHS_OF_SIZES] if spread else [None]
+    known = [off for off in offs if off is not None]
+    if len(known) < len(GIRTHS_OF_SIZES) or not answer.inside:
+        return ""
+    others = nearby(answer, *known)
+    if not others:
+        return tr("No other size lies within the ±.")
+    return tr("Within the ± also: {sizes}").format(sizes=listed(others))
+
+
+def _letters(measured: Measures) -> Iterator[str]:
+    """Yield the sizes in letters of Japan that go by a girth which the scan shows."""
+    for table in letter_sizes().tables:
+        girth = measured[table.girth].value
+        found = table.sizes(girth) if girth is not None else ()
+        if found:
+            yield f"{table.title.told(language())}{colon()}{' / '.join(found)}"
+
+
+def _view(key: str, answer: SizeAnswer, letters: tuple[str, ...], within: str) -> SizeView:
+    said = (*answer.doubts, *(letter_sizes().doubts if letters else ()))
+    doubts, caution = _unlike([each.told(language()) for each in said]), answer.table.caution
+    return SizeView(
+        key,
+        key.upper() if len(key) == 2 else answer.table.system,
+        answer.label or "\N{EN DASH}",
+        joined(say(each) for each in answer.rule),
+        (*_near(answer), *letters),
+        answer.table.title.told(language()),
+        doubts,
+        caution.told(language()) if caution else "",
+        doubts[0] if caution and doubts else "",
+        within,
+    )
+
+
+def _unlike(sentences: list[str]) -> tuple[str, ...]:
+    """Return what is said, each once: what another one says and goes on is left out."""
+    return tuple(one for one in sentences if not any(one != each and one in each for each in sentences))
+
+
+def _near(answer: SizeAnswer) -> Iterator[str]:
+    """Yield a line on the next bands, one on the next cups and one on the sister sizes."""
+    lines = {
+        "band": tr("Under-bust {sizes}"),
+        "cup": tr("Bust {sizes}"),
+    }
+    for part, words in lines.items():
+        near = [_away(each) for each in answer.neighbours if each.part == part]
+        if near:
+            yield words.format(sizes=" · ".join(near))
+    if answer.sisters:
+        labels = listed(each.label for each in answer.sisters)
+        yield tr("Sister sizes: {sizes}").format(sizes=labels)
+
+
+def _away(neighbour: Neighbour) -> str:
+    """Return how far a size beside this one is, and which it is."""
+    missing = neighbour.missing_mm if neighbour.up else -neighbour.missing_mm
+    return f"{length(missing, signed=True)}{colon()}{neighbour.label or neighbour.name}"

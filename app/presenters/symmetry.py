@@ -1,0 +1,247 @@
+"""What the window says of left and right: figures with their sides, and what making them even begins with."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from app.gui.features.symmetry.card import EvenSummary, EvenView
+from app.i18n.catalog import joined, listed, number, say, tr
+from app.i18n.lengths import length, length_number, length_unit, shown_digits, shown_unit, shown_value
+from app.presenters.lines import row_title
+from app.presenters.measurement_views import length_off, plus_minus
+from app.presenters.target_shape import figure_title, is_met, is_signed, reasons_words
+from core.analysis.inverse_design.balance_quantity import FURTHER_OUT, HIGHER
+from core.analysis.inverse_design.bust_quantity import LIFT, OUT
+from core.analysis.inverse_design.profile_quantity import section_of
+from core.analysis.inverse_design.quantities import Goal
+from core.analysis.symmetry.compare import BeforeAfter, Evenness, EvenRow, even_rows
+from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, partable
+from core.control_mesh.template import read_template
+from core.document.design import Design
+from core.landmarks.warnings import edit_doubts
+from core.measurements.uncertain_value import AFTER, Spread
+from core.pipeline.build import Stages
+
+if TYPE_CHECKING:
+    from core.analysis.inverse_design.solve import Reply
+
+_SEEN = 0.05  # what differs less reads the same [mm]
+
+_FULL = {"mm": 10.0, "ml": 60.0}
+"""What fills half a bar."""
+
+
+_SURE = {"higher": "asymmetry_height", "further_out": "asymmetry_forward"}
+"""The measures whose ± is that of a figure."""
+
+
+def even_summary(
+    told: BeforeAfter, stages: Stages, doubt: str = "", spread: Spread | None = None
+) -> EvenSummary:
+    """Return what the card says of a body; with a ``doubt`` there is nothing to be told after.
+
+    ``spread`` tells how far figures may be off, if all of that is known.
+    """
+    now = told.before if doubt else told.after
+    rows = {row.key: row for row in even_rows(told.before, told.after)}
+    hint, possible = _hint(stages, now) if not doubt else (doubt, False)
+    offs = _offs(spread)
+    said = _sentence(now, {}, tr("Bust points before: {how}.")) if doubt else _sentence(now, offs)
+    return EvenSummary(
+        joined((*map(say, edit_doubts(stages.body)), said)),
+        tuple(_view(rows[key], bool(doubt), offs.get(key)) for key in _titles()),
+        (*map(say, told.notes), *_rests_on()),
+        hint,
+        possible,
+    )
+
+
+def map_note(told: BeforeAfter | None, after: bool) -> str:
+    """Return what the legend of the map says in ml; empty where it is not known."""
+    skin = None if told is None else (told.after if after else told.before).skin
+    if skin is None:
+        return ""
+    words = tr("+ stands out more than the other side: left {left} ml, right {right} ml")
+    return words.format(left=number(skin.left_more, 0), right=number(skin.right_more, 0))
+
+
+def _offs(spread: Spread | None) -> dict[str, float]:
+    known = {key: spread.plus_minus(f"{AFTER}:{of}") if spread else None for key, of in _SURE.items()}
+    return {key: off for key, off in known.items() if off is not None}
+
+
+def _sentence(now: Evenness, offs: Mapping[str, float], words: str = "") -> str:
+    if now.furthest < ENOUGH:
+        return tr("Both bust points lie alike within {length}.").format(length=length(ENOUGH))
+    parts, within = [], True
+    for key, value, left, right in (
+        ("higher", now.higher, tr("left {length} higher"), tr("right {length} higher")),
+        ("further_out", now.further_out, tr("left {length} further out"), tr("right {length} further out")),
+    ):
+        if abs(value) >= ENOUGH:
+            off = offs.get(key)
+            size = (
+                length(abs(value))
+                if off is None
+                else f"{length_number(abs(value))} {length_off(off)} {length_unit()}"
+            )
+            parts.append((left if value > 0.0 else right).format(length=size))
+            within &= off is not None and abs(value) <= off
+    said = (words or tr("Bust points: {how}.")).format(how=listed(parts))
+    return joined((said, tr("Within the error they lie alike."))) if within else said
+
+
+def _view(row: EvenRow, doubtful: bool, off: float | None) -> EvenView:
+    title, tip = _titles()[row.key]
+    after = None if doubtful else row.after
+    within = off is not None and after is not None and abs(after) <= off
+    shares = tuple(
+        None if not row.sided or value is None else value / _FULL[row.unit] for value in (row.before, after)
+    )
+    return EvenView(
+        f"{title} [{shown_unit(row.unit)}]",
+        _written(row, row.before),
+        _written(row, after),
+        joined((tip, tr("Within the error both are alike."))) if within else tip,
+        (shares[0], shares[1]),
+        "" if off is None else (length_off(off) if row.unit == "mm" else plus_minus(off)),
+        within,
+    )
+
+
+def _written(row: EvenRow, value: float | None) -> str:
+    """Return a figure with the side that is more, as it stands in the table."""
+    digits = shown_digits(0 if row.unit == "ml" else 1, row.unit)
+    if value is None:
+        return "\N{EN DASH}"
+    size = number(shown_value(abs(value), row.unit), digits)
+    if not row.sided or size == number(0.0, digits):
+        return size
+    return (tr("L {size}") if value > 0.0 else tr("R {size}")).format(size=size)
+
+
+def _titles() -> dict[str, tuple[str, str]]:
+    """Return what each figure is called, and what it is; the most telling first."""
+    return {
+        "higher": (tr("Higher"), tr("Which bust point is higher, and by how much.")),
+        "further_out": (tr("Further out"), tr("Which bust point is further to the front, and by how much.")),
+        "in_all": (
+            tr("Stands out"),
+            tr("By how many ml the skin of one breast stands out more than the other one's, mirrored."),
+        ),
+        "mean": (
+            tr("Skin apart"),
+            tr("How far the skin of one breast is from that of the other one, mirrored; mean of both."),
+        ),
+        "further_aside": (tr("Further aside"), tr("Which bust point is further from the mirror.")),
+        "largest": (tr("Apart, most"), tr("Where one side stands out most beyond the mirrored other.")),
+        "left_more": (tr("Left stands out"), tr("What lies between the skins where it is the left.")),
+        "right_more": (tr("Right stands out"), tr("What lies between the skins where it is the right.")),
+    }
+
+
+def _rests_on() -> tuple[str, ...]:
+    return (
+        tr("L: the left is more; R: the right. The tick in the bar is before."),
+        tr("The mirror stands where the trunk without the breasts matches best."),
+        tr("Lines move tissue and keep its volume: what one breast has more they do not take away."),
+    )
+
+
+def _hint(stages: Stages, now: Evenness) -> tuple[str, bool]:
+    """Return what is done before lengths are looked for, or why they are not; and whether they can be."""
+    if now.furthest < ENOUGH:
+        return "", False
+    if moves_one_side(stages):
+        return "", True
+    design = stages.design
+    names = partable(design, read_template(design.template))
+    if not names:
+        return tr(
+            "To make it even, wear a line that moves one side, or one across both that is unlocked."
+        ), False
+    return tr("Make even begins by setting left and right apart: {lines}.").format(
+        lines=listed(parted_titles(design, names))
+    ), True
+
+
+def parted_titles(design: Design, names: tuple[str, ...]) -> list[str]:
+    """Return what lines that are parted are called, a pair once."""
+    return list(dict.fromkeys(row_title(name, design) for name in names))
+
+
+def left_as_it_is(gained: float, lost: float) -> tuple[str, str]:
+    """Return why a design is not made even, and what could be done; both in mm, see ``Evened``."""
+    said = tr("These lines cannot make it more even: {gained} nearer would move both sides by {lost}.")
+    hint = tr("Other lines may do more: a strap lifts one side alone.")
+    return said.format(gained=length(max(gained, 0.0)), lost=length(lost)), hint
+
+
+def asks_to_be_even(goals: Sequence[Goal]) -> bool:
+    """Tell whether left and right are asked to be alike, and no profile besides."""
+    names = [goal.name for goal in goals]
+    return bool({HIGHER, FURTHER_OUT} & set(names)) and not any(map(section_of, names))
+
+
+def evened_words(
+    reply: Reply, goals: Sequence[Goal], now: Mapping[str, float], then: Mapping[str, float]
+) -> tuple[str, str, str]:
+    """Return in short lines what an answer brings nearer; then what that costs, and why it is no nearer.
+
+    ``now`` and ``then`` [mm] are figures before and after: what both sides do together is to stay.
+    """
+    met = is_met(reply, goals)
+    come = {**then, **reply.reached}
+    wanted = {goal.name: goal.value for goal in goals}
+    wanted |= {name: now[name] for name in (LIFT, OUT) if name in now and name not in wanted}
+    nearer = {name: abs(come[name] - mm) - abs(now[name] - mm) for name, mm in wanted.items() if name in now}
+    line = tr("{figure}: {before} → {after}")
+    lines = [_way(name, now[name], come[name], line) for name, by in nearer.items() if by < -_SEEN]
+    beside = tr("{figure} {before} → {after}")
+    price = listed(_way(name, now[name], come[name], beside) for name, by in nearer.items() if by > _SEEN)
+    costs = tr("At the price of: {figures}").format(figures=price) if price else ""
+    why = "\n".join(filter(None, ("" if met else _why(reply), _by_turns(reply.design))))
+    return "\n".join((_outcome(reply, met), *lines)), costs, why
+
+
+def _by_turns(design: Design) -> str:
+    """Return why the measures of a design will tell other figures than its exact answer, if they will."""
+    if design.volume in ("exact", "none") or design.volume_of == "both":
+        return ""
+    return tr(
+        "Figures are those of the exact answer, where each breast keeps its volume. Turns keep both "
+        "together: Measures may differ by up to {length} and 10 to 20 ml."
+    ).format(length=length(1.0, 0))
+
+
+def _outcome(reply: Reply, met: bool) -> str:
+    if met:
+        return tr("Reached.")
+    return tr("Not reachable. Nearest:") if reply.agreed else tr("Nearest so far:")
+
+
+def _why(reply: Reply) -> str:
+    if not reply.agreed:
+        return tr("Lengths, elastics and pressures did not come to agree.")
+    return tr("Because {reasons}.").format(reasons=reasons_words(reply))
+
+
+def _way(name: str, before: float, after: float, said: str) -> str:
+    """Return how a figure goes, as ``said``: of one that has a side with that side, and no sign."""
+    titles = {
+        HIGHER: (tr("Left higher"), tr("Right higher")),
+        FURTHER_OUT: (tr("Left further forward"), tr("Right further forward")),
+    }
+    if name not in titles:
+        signed = is_signed(name)
+        values = {"before": length_number(before, 1, signed), "after": length(after, 1, signed)}
+        return said.format(figure=figure_title(name), **values)
+    one, other = (titles[name][each < 0.0] for each in (before, after))
+    values = {"before": length_number(abs(before)), "after": length(abs(after))}
+    if min(abs(before), abs(after)) < _SEEN:  # even has no side
+        one = other = one if abs(before) >= abs(after) else other
+    if one != other:
+        said = tr("{figure} {before} → {other} {after}")
+        values["before"] = length(abs(before))
+    return said.format(figure=one, other=other, **values)

@@ -1,0 +1,285 @@
+"""What the window says while the result is asked for: figures, answers, changes."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from app.i18n.catalog import colon, listed, number, tr
+from app.i18n.lengths import length, length_number
+from app.presenters.lines import told_title
+from core.analysis.inverse_design.balance_quantity import FURTHER_OUT, HIGHER
+from core.analysis.inverse_design.bust_quantity import LIFT, OUT
+from core.analysis.inverse_design.girth_quantity import GIRTH
+from core.analysis.inverse_design.profile_quantity import profiles_off, section_of
+from core.analysis.inverse_design.quantities import Goal
+from core.document.design import Design
+from core.geometry.mesh import Floats
+
+if TYPE_CHECKING:
+    from core.analysis.inverse_design.solve import Reply
+
+_MET = 0.05  # [mm]
+_LIKE = 0.5  # of a profile [mm]
+_NEAR, _NEAREST = 1.0, 5.0  # of one that is as good as met, on average and anywhere: less is not drawn [mm]
+_MUCH = 0.5  # of what a profile was off: an answer that leaves more has hardly brought it nearer [1]
+_ABOUT = 1.015  # of a limit that counts as kept
+SAME = 5e-4
+"""Ratios that are this near to each other read the same [1]."""
+
+
+def figure_title(name: str) -> str:
+    """Return what a figure that can be asked for is called in the window."""
+    titles = {
+        "lift": tr("Bust point up"),
+        "out": tr("Bust point forward"),
+        "apex lift": tr("Foremost place up"),
+        "apex out": tr("Foremost place forward"),
+        GIRTH: tr("Bust girth"),
+        HIGHER: tr("Left higher than right"),
+        FURTHER_OUT: tr("Left further forward than right"),
+    }
+    if name in titles:
+        return titles[name]
+    if name.startswith("profile "):
+        return profile_title(name.split()[1])
+    what, _, side = name.rpartition(" ")
+    return listed((titles.get(what, what), tr("left") if side == "left" else tr("right")))
+
+
+def profile_title(section: str) -> str:
+    """Return what the profile of a section is called: "left", "right", or its x [mm]."""
+    sides = {"left": tr("Profile through the left bust point")}
+    sides["right"] = tr("Profile through the right bust point")
+    if section in sides:
+        return sides[section]
+    x = float(section)
+    return tr("Profile at {x}").format(x=length(x, 0 if x.is_integer() else 1))
+
+
+def is_signed(name: str) -> bool:
+    """Tell whether a figure counts from rest, so that its plus is written."""
+    return name != GIRTH and not section_of(name)
+
+
+def figure_words(name: str, value: float) -> str:
+    """Return a figure with its value: "Bust point up +12.0 mm"."""
+    return tr("{figure} {value}").format(
+        figure=figure_title(name), value=length(value, 1, signed=is_signed(name))
+    )
+
+
+def wishes_words(goals: Sequence[Goal]) -> str:
+    """Return in a few words what is asked for."""
+    single = [figure_words(goal.name, goal.value) for goal in goals if not section_of(goal.name)]
+    return listed((*single, *dict.fromkeys(figure_title(g.name) for g in goals if section_of(g.name))))
+
+
+def answer_words(
+    reply: Reply, goals: Sequence[Goal], limit: float | None = None, now: Mapping[str, float] | None = None
+) -> str:
+    """Return in a sentence whether it can be reached, else what is nearest and why.
+
+    With a ``limit`` [kPa] it was asked for that alone; ``goals`` are then what is to stay. ``now`` [mm] is
+    what figures were before, if that is known.
+    """
+    most = max(reply.pressure.values(), default=0.0)
+    if limit is not None and reply.agreed and most < _ABOUT * limit:
+        said = tr("Presses with {kpa} kPa at most; then {figures}.")
+        return said.format(kpa=number(most), figures=listed(_come(reply, goals)))
+    if reply.reachable:
+        return tr("Reached.")
+    if is_met(reply, goals):
+        most = max(float(np.abs(off).max()) for off in profiles_off(goals, reply.reached).values())
+        return tr("Reached within {length}.").format(length=length(most))
+    if is_near(reply, goals):
+        return _near_words(reply, goals, now or {})
+    nearest = nearest_words(reply, goals, now or {})
+    if not reply.agreed:
+        said = tr("Nearest so far: {nearest}. Lengths, elastics and pressures did not come to agree.")
+        return said.format(nearest=nearest)
+    said = tr("Not reachable: nearest is {nearest}, because {reasons}.")
+    return said.format(nearest=nearest, reasons=reasons_words(reply))
+
+
+def _near_words(reply: Reply, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
+    """Return how nearly profiles are met, and what they were off if that was hardly more."""
+    offs = profiles_off(goals, reply.reached)
+    section = max(offs, key=lambda each: float(np.abs(offs[each]).mean()))
+    before = _off_before(goals, now, section)
+    if before is None or float(np.abs(offs[section]).mean()) <= _MUCH * before:
+        said = tr("Met within {mean} on average, {most} at most.")
+    else:
+        said = tr("Nearest is {mean} off on average, {most} at most (was {before}).")
+    return said.format(**_mean_and_most(offs[section]), before=length(before or 0.0))
+
+
+def _off_before(goals: Sequence[Goal], now: Mapping[str, float], section: str) -> float | None:
+    """Return how far a profile was off on average [mm]; None where that is not known."""
+    there = [goal for goal in goals if section_of(goal.name) == section]
+    before = [abs(now[goal.name] - goal.value) for goal in there if goal.name in now]
+    return float(np.mean(before)) if before else None
+
+
+def _come(reply: Reply, goals: Sequence[Goal]) -> Iterable[str]:
+    """Yield what figures come to that were to stay."""
+    for goal in goals:
+        if abs(reply.reached[goal.name] - goal.value) > _MET:
+            yield _from_to(goal.name, goal.value, reply.reached[goal.name])
+        else:
+            yield figure_words(goal.name, reply.reached[goal.name])
+
+
+def nearest_words(reply: Reply, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
+    """Return what targets that are missed come to, and how far profiles are off."""
+    return listed(_nearest(reply, goals, now))
+
+
+def _nearest(reply: Reply, goals: Sequence[Goal], now: Mapping[str, float]) -> Iterable[str]:
+    missed = [goal for goal in goals if not section_of(goal.name)]
+    missed = [goal for goal in missed if abs(reply.reached[goal.name] - goal.value) > _MET] or missed
+    for goal in missed:
+        yield figure_words(goal.name, reply.reached[goal.name])
+    profiles = profiles_off(goals, reply.reached)
+    for section, off in profiles.items():
+        said = tr("a profile off by {mean} on average ({most} at most)")
+        if len(profiles) > 1:
+            said = tr("{profile}: off by {mean} on average ({most} at most)")
+        words = said.format(profile=figure_title(section), **_mean_and_most(off))
+        before = _off_before(goals, now, section)
+        if before is not None:
+            words += tr(", {before} before").format(before=length(before))
+        yield words
+
+
+def beside_words(goals: Sequence[Goal], now: Mapping[str, float], then: Mapping[str, float]) -> str:
+    """Return how the bust points move with a profile where they are free; empty where they stay.
+
+    ``now`` and ``then`` [mm] are figures before and after.
+    """
+    if not any(section_of(goal.name) for goal in goals):
+        return ""
+    asked = {goal.name.removesuffix(" left").removesuffix(" right") for goal in goals}
+    free = [name for name in (LIFT, OUT) if name not in asked and name in now and name in then]
+    moved = [_from_to(name, now[name], then[name]) for name in free if abs(then[name] - now[name]) > _MET]
+    return tr("Moves along: {figures}").format(figures=listed(moved)) if moved else ""
+
+
+def _from_to(name: str, before: float, after: float) -> str:
+    """Return a figure with what it was and what it comes to: "Bust point up +0.2 → +0.4 mm"."""
+    said, signed = tr("{figure} {before} → {after}"), is_signed(name)
+    values = {"before": length_number(before, 1, signed=signed), "after": length(after, 1, signed=signed)}
+    return said.format(figure=figure_title(name), **values)
+
+
+def off_words(goals: Sequence[Goal], reached: Mapping[str, float], section: str) -> str:
+    """Return how far what is ``reached`` is off the profile of a section: mean and largest distance."""
+    off = profiles_off(goals, reached).get(section)
+    if off is None:
+        return ""
+    return tr("off by {mean}, at most {most}").format(**_mean_and_most(off))
+
+
+def is_met(reply: Reply, goals: Sequence[Goal]) -> bool:
+    """Tell whether an answer is what was asked for, a profile within what a tailor can tell."""
+    near = {goal.name: abs(reply.reached[goal.name] - goal.value) for goal in goals}
+    within = all(off <= (_LIKE if section_of(name) else _MET) for name, off in near.items())
+    return reply.reachable or (reply.agreed and not reply.pressing and within)
+
+
+def is_near(reply: Reply, goals: Sequence[Goal]) -> bool:
+    """Tell whether all but profiles is met, and these as nearly as a hand draws them."""
+    offs = [np.abs(off) for off in profiles_off(goals, reply.reached).values()]
+    single = [goal for goal in goals if not section_of(goal.name)]
+    met = all(abs(reply.reached[goal.name] - goal.value) <= _MET for goal in single)
+    near = all(off.mean() < _NEAR and off.max() < _NEAREST for off in offs)
+    return bool(reply.agreed and offs and met and near)
+
+
+def _mean_and_most(off: Floats) -> dict[str, str]:
+    return {"mean": length(float(np.abs(off).mean())), "most": length(float(np.abs(off).max()))}
+
+
+def reasons_words(reply: Reply) -> str:
+    """Return why an answer is not what was asked for, as part of a sentence."""
+    return tr(", and ").join(_reasons(reply))
+
+
+def _reasons(reply: Reply) -> list[str]:
+    long = [name for name in reply.at_end if reply.may_not_be_longer(name)]
+    short = [name for name in reply.at_end if name not in long]
+    slack = [name for name in reply.slack if name not in reply.at_end]
+    kpa = number(reply.limit)
+    reasons = [
+        said.format(lines=_titles(names, reply.design), kpa=kpa)
+        for names, said in (
+            (short, tr("{lines} may not be shorter")),
+            (long, tr("{lines} may not be longer: a longer line would have to push")),
+            (slack, tr("{lines} would have to push, which no band can")),
+            (reply.pressing, tr("{lines} may not press more than {kpa} kPa")),
+        )
+        if names
+    ]
+    if reply.strained:
+        reasons.append(tr("the body would be strained more than looks natural"))
+    return reasons or [tr("these lines do not move the body that way")]
+
+
+def change_words(before: Design, reply: Reply) -> list[str]:
+    """Return how lengths would change, row by row, what elastics press with, and if others were not asked."""
+    after, said = reply.design, []
+    for title, name in _rows(sorted(after.worn()), after):
+        one, other = before.ratio(name), after.ratio(name)
+        if abs(one - other) >= SAME:
+            words = tr("{line} {before} → {after} %") + " ({change})"
+            values = {"before": number(100.0 * one), "after": number(100.0 * other)}
+            values["change"] = number(100.0 * (other - one), 1, True)
+            said.append(words.format(line=title, **values))
+    said = said or [tr("No line changes")]
+    if reply.pressure:
+        most = max(reply.pressure.values())
+        said.append(tr("presses with {kpa} kPa at most").format(kpa=number(most)))
+    if reply.unseen and reply.pressure:
+        lines = _titles(reply.unseen, after)
+        said.append(tr("pressure of {lines} not looked at: see Garment").format(lines=lines))
+    elif reply.unseen:
+        said.append(tr("pressure not looked at: see Garment"))
+    return said
+
+
+def kept_words(design: Design, kept: Collection[str]) -> str:
+    """Return which worn lines stay because they are locked, if any do."""
+    lines = _titles([name for name in sorted(design.worn()) if name in kept], design)
+    return tr("Locked, so kept: {lines}.").format(lines=lines) if lines else ""
+
+
+def missing_words(design: Design, moving: Collection[str]) -> str:
+    """Return what has to be done before anything can be asked, if there is something; see ``free_lines``."""
+    lines = design.worn() & set(moving)
+    if not lines:
+        return tr("Wear the lines that may change first: choose a preset, or shorten a line.")
+    if all(design.traits_of(name).locked for name in lines):
+        return tr("All worn lines are locked. Unlock one that may change.")
+    return ""
+
+
+def step_words(goals: Sequence[Goal], limit: float | None = None) -> str:
+    """Return what the step of undo is called; a ``limit`` [kPa] was asked for besides, or alone."""
+    wishes = [wishes_words(goals)] if goals else []
+    if limit is not None:
+        wishes.append(tr("{kpa} kPa at most").format(kpa=number(limit)))
+    return tr("Asked for") + colon() + listed(wishes)
+
+
+def _titles(names: Iterable[str], design: Design) -> str:
+    return listed(title for title, _ in _rows(names, design))
+
+
+def _rows(names: Iterable[str], design: Design) -> list[tuple[str, str]]:
+    """Return titles of rows with the first of their lines."""
+    rows: dict[str, str] = {}
+    for name in names:
+        rows.setdefault(told_title(name, design), name)
+    return list(rows.items())

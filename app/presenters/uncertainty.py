@@ -1,0 +1,116 @@
+"""What is said of how far figures may be off: beside measures, below them, and where it comes from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from app.gui.features.uncertainty.card import SpreadView
+from app.i18n.catalog import joined, language, listed, number, say, tr
+from app.i18n.lengths import length, shown_unit
+from app.presenters.measurement_views import MeasureView, length_off, plus_minus
+from core.analysis.uncertainty.input_uncertainty import origins
+from core.export.report_data import NOT_MODELLED
+from core.garment.pressure import LEFT_OUT
+from core.measurements.uncertain_value import AFTER, BEFORE, CHANGE, LIFT, OUT, Spread
+
+LEAST = 0.01
+"""A source with a smaller share of the variance is not named [1]."""
+
+
+def source_words(source: str) -> str:
+    """Return a source in a word or two."""
+    return {
+        "landmarks": tr("landmarks"),
+        "scan": tr("scan"),
+        "tissue": tr("tissue"),
+        "line": tr("stiffness of lines"),
+        "tape": tr("cutting and sewing"),
+        "elastic": tr("elastics"),
+        "root": tr("top of the root"),
+    }[source]
+
+
+def source_sentences() -> tuple[str, ...]:
+    """Return where each source's size comes from, in the language in use."""
+    return tuple(words.told(language()) for words in origins().values())
+
+
+def left_out_sentences() -> tuple[str, ...]:
+    """Return what no figure takes into account; the sheet says the same."""
+    return tuple(say(each) for each in (*NOT_MODELLED, *LEFT_OUT))
+
+
+def spread_views(views: Iterable[MeasureView], spread: Spread | None, faint: bool) -> list[MeasureView]:
+    """Return measures with their ±; ``faint`` are those of a former shape."""
+    if spread is None:
+        return list(views)
+    return [_with_off(view, spread, faint) for view in views]
+
+
+def _with_off(view: MeasureView, spread: Spread, faint: bool) -> MeasureView:
+    keys = _keys(view)
+    offs = tuple(None if key is None else spread.plus_minus(key) for key in keys)
+    told = tuple(
+        None if off is None or value is None else off
+        for off, value in zip(offs, (view.before, view.after, view.change), strict=True)
+    )
+    if not any(each is not None for each in told):
+        followed = not view.key
+        return replace(view, off_told=(_without_off(),)) if followed else view
+    return replace(view, off=told, off_faint=faint, off_told=_shares(keys, told, spread, view.unit))
+
+
+def _keys(view: MeasureView) -> tuple[str | None, str | None, str | None]:
+    if view.key:
+        return f"{BEFORE}:{view.key}", f"{AFTER}:{view.key}", f"{CHANGE}:{view.key}"
+    return None, None, view.moves or None
+
+
+def _without_off() -> str:
+    """Return why the figures that come with every frame have no ±: for most none is worked out."""
+    return tr("Of what is followed while it solves, lengths of lines too, only the bust points have a ±.")
+
+
+def _shares(
+    keys: Iterable[str | None], offs: Iterable[float | None], spread: Spread, unit: str
+) -> tuple[str, ...]:
+    heads = (tr("Before"), tr("After"), tr("Change"))
+    lines = []
+    for key, off, head in zip(keys, offs, heads, strict=True):
+        doubt = spread.doubts.get(key) if key else None
+        if doubt is None or off is None:
+            continue
+        parts = [
+            f"{source_words(source)} {number(100.0 * share, 0)} %"
+            for source, share in doubt.shares.items()
+            if share >= LEAST
+        ]
+        told = length_off(off) if unit == "mm" else plus_minus(off)
+        said = tr("{head}: {off} {unit}").format(head=head, off=told, unit=shown_unit(unit))
+        lines.append(f"{said} ({listed(parts)})" if parts else said)
+    return tuple(lines)
+
+
+def spread_view(spread: Spread | None, waiting: str, faint: bool) -> SpreadView:
+    """Return what stands below the measures; ``waiting`` says why there is no ± yet."""
+    if spread is None:
+        return SpreadView(waiting, short=tr("± is not there yet: why") if waiting else "")
+    meaning = tr("± is twice the standard deviation: 95 % of all cases, if errors are normal.")
+    told = tr("± of a former shape: what it means") if faint else tr("± holds 95 % of cases: what it means")
+    return SpreadView(
+        joined([meaning, _without_off(), *map(say, spread.cautions)]), _contact(spread), faint, told
+    )
+
+
+def _contact(spread: Spread) -> str:
+    if LIFT not in spread.other:
+        return ""
+    up, out = (length(spread.other[key], signed=True) for key in (LIFT, OUT))
+    if spread.contact == "sliding":
+        said = tr("If lines slid over the skin instead: bust points {up} up, {out} forward.")
+    else:
+        said = tr("If lines stuck to the skin instead: bust points {up} up, {out} forward.")
+    between = tr("The truth lies between the two, and no ± holds it.")
+    told = said.format(up=up, out=out)
+    return f"{told} {between}" if language() == "en" else f"{told}{between}"

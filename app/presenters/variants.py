@@ -1,0 +1,196 @@
+"""What the window says of the variants of a design beside each other: figures, and how far they are apart."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from app.gui.features.variants.panel import Figure, FigureRow, Told, VariantsView
+from app.i18n.catalog import say, tr
+from app.presenters.assessment import AssessmentView
+from app.presenters.bust_shift import bust_move, bust_sentence
+from app.presenters.convergence import is_result
+from app.presenters.lines import line_colours, line_title, row_title
+from core.document.design import Design
+from core.export.solution_report import kept_volume
+from core.garment.cut_list import CutRow, cut_list
+from core.garment.pressure_list import PressList
+from core.pipeline.live_solver import Frame
+
+Variants = Sequence[tuple[str, Design, Frame | None]]
+"""Variants by name, with the frame of those that are solved."""
+
+Pressed = Callable[[Frame], PressList | None]
+"""What the lines of a frame press with, if that is known."""
+
+_TOLD = 2  # lengths that differ which have room over a body
+
+
+Judged = Callable[[Frame], AssessmentView]
+"""The overall verdict of a frame, as far as it is known."""
+
+
+def variants_view(variants: Variants, shown: str, pressed: Pressed, judged: Judged) -> VariantsView:
+    """Return the table of variants, of which one is ``shown``."""
+    overall = [None if frame is None else judged(frame) for _, _, frame in variants]
+    levels = tuple("" if view is None else view.level for view in overall)
+    verdicts = tuple(tr("Not solved yet") if view is None else view.headline for view in overall)
+    names = tuple(name for name, _, _ in variants)
+    rows = *_lengths(variants), *_pieces(variants, pressed), *_results(variants)
+    return VariantsView(names, names.index(shown), levels, verdicts, rows)
+
+
+def as_table(view: VariantsView) -> list[list[str]]:
+    """Return the table as plain cells: a heading, the verdicts, each figure and what it differs by."""
+    first, *others = view.names
+    differences = [f"{name} - {first}" for name in others]
+    rows = [
+        [tr("Figure"), tr("Unit"), *view.names, *differences],
+        [tr("Verdict"), "", *view.verdicts, *[""] * len(others)],
+    ]
+    for row in view.rows:
+        for figure in row.figures:
+            rows.append([row.label, figure.unit, *figure.cells()])
+    return rows
+
+
+def variant_titles(variants: Variants, judged: Judged) -> list[str]:
+    """Return what stands over the bodies of variants: name and verdict, bust point, lengths that differ."""
+    differing = [row for row in _lengths(variants) if len(set(row.figures[0].values)) > 1]
+    return [
+        "\n".join(
+            (
+                _head(name, frame, judged),
+                *([bust_sentence(bust_move(frame))] if frame is not None and is_result(frame) else []),
+                *(f"{row.label} {row.figures[0].written(place)}" for row in differing[:_TOLD]),
+            )
+        )
+        for place, (name, _, frame) in enumerate(variants)
+    ]
+
+
+def _head(name: str, frame: Frame | None, judged: Judged) -> str:
+    title = tr("Variant {name}").format(name=name)
+    return title if frame is None else f"{title}   {judged(frame).headline}"
+
+
+def _lengths(variants: Variants) -> list[FigureRow]:
+    """Return a row for each line, or linked pair, whose length is set.
+
+    Of one that is made of an elastic in any variant it is what is reached on the body: what is set for an
+    elastic is its length unstretched, and nothing that a line of another kind can be compared with.
+    """
+    rests = [_rests(frame) for _, _, frame in variants]
+    heads: dict[str, str] = {}
+    for (_, design, _), rest in zip(variants, rests, strict=True):
+        for name in rest:
+            if name == min(design.linked(name)):
+                heads.setdefault(name, row_title(name, design))
+            elif name in heads or len(design.linked(name)) == 1:
+                heads[name] = line_title(name, design)
+    rows = []
+    elastic = {name for _, design, _ in variants for name in design.worn_elastics()}
+    for name, title in heads.items():
+        if name in elastic:
+            rows.append(_reached(name, tr("{line}, on the body").format(line=title), variants))
+            continue
+        ratios = [_ratio(design, name, rest) for (_, design, _), rest in zip(variants, rests, strict=True)]
+        lengths = [
+            None if ratio is None or name not in rest else ratio * rest[name]
+            for ratio, rest in zip(ratios, rests, strict=True)
+        ]
+        percent = tuple(None if ratio is None else 100.0 * ratio for ratio in ratios)
+        rows.append(
+            FigureRow(title, (Figure("%", 1, False, percent), Figure("mm", 1, False, tuple(lengths))))
+        )
+    return rows
+
+
+def _reached(name: str, title: str, variants: Variants) -> FigureRow:
+    """Return how long a line is on the body, if its variant is solved."""
+    lengths = tuple(None if frame is None else frame.lengths.get(name) for _, _, frame in variants)
+    rests = (_rests(frame).get(name) for _, _, frame in variants)
+    percent = tuple(
+        100.0 * length / rest if length and rest else None
+        for length, rest in zip(lengths, rests, strict=True)
+    )
+    return FigureRow(title, (Figure("%", 1, False, percent), Figure("mm", 1, False, lengths)))
+
+
+def _pieces(variants: Variants, pressed: Pressed) -> list[FigureRow]:
+    """Return a row for each line that is made of an elastic: to cut, of what, and what it presses with."""
+    frames = [frame if frame is not None and is_result(frame) else None for _, _, frame in variants]
+    cuts = [
+        {} if frame is None else {row.line: row for row in cut_list(frame.stages, frame.control_points).rows}
+        for frame in frames
+    ]
+    lists = [
+        pressed(frame) if frame is not None and frame.stages.design.worn_elastics() else None
+        for frame in frames
+    ]
+    press = [{} if each is None else {row.line: row.max_kpa for row in each.rows} for each in lists]
+    made = {name for _, design, _ in variants for name in design.worn_elastics()}
+    return [
+        FigureRow(
+            _piece_title(name, design, [each[name] for each in cuts if name in each]),
+            (
+                Figure("mm", 0, False, tuple(each[name].cut_mm if name in each else None for each in cuts)),
+                Told(tuple(say(design.traits_of(name).elastic) for _, design, _ in variants)),
+                Figure("kPa", 1, False, tuple(each.get(name) for each in press)),
+            ),
+        )
+        for name, design in _named(variants).items()
+        if name in made
+    ]
+
+
+def _named(variants: Variants) -> dict[str, Design]:
+    """Return all lines in the order of the list, each with a design that has it."""
+    found: dict[str, Design] = {}
+    for _, design, frame in variants:
+        lines = frame.stages.model.lines if frame is not None else ()
+        found = dict.fromkeys(line_colours(line.name for line in lines), design) | found
+    return {name: found[name] for name in line_colours(found)}
+
+
+def _piece_title(name: str, design: Design, rows: Sequence[CutRow]) -> str:
+    title = line_title(name, design)
+    if any(row.front_only for row in rows):
+        return tr("{line}: front part, elastic, pressure").format(line=title)
+    return tr("{line}: to cut, elastic, pressure").format(line=title)
+
+
+def _rests(frame: Frame | None) -> dict[str, float]:
+    """Return the lines whose length can be set with their length at rest [mm], in the order of the list."""
+    if frame is None:
+        return {}
+    lines = {line.name: line for line in frame.stages.model.lines}
+    return {name: lines[name].rest_length for name in line_colours(lines) if lines[name].constrains}
+
+
+def _ratio(design: Design, name: str, rest: dict[str, float]) -> float | None:
+    """Return what a line is set to; one that is not there, or not known to be, has no length."""
+    return design.ratio(name) if name in rest or name in design.worn() else None
+
+
+def _results(variants: Variants) -> list[FigureRow]:
+    """Return the rows of what came of it; a run that vibrates or a shape that is no body has none."""
+    frames = [frame if frame is not None and is_result(frame) else None for _, _, frame in variants]
+
+    def row(label: str, *told: tuple[str, int, Callable[[Frame], float]]) -> FigureRow:
+        return FigureRow(
+            label,
+            tuple(
+                Figure(unit, digits, True, tuple(None if f is None else read(f) for f in frames))
+                for unit, digits, read in told
+            ),
+        )
+
+    return [
+        row(tr("Bust point, up"), ("mm", 1, lambda frame: bust_move(frame).mean.up)),
+        row(tr("Bust point, forward"), ("mm", 1, lambda frame: bust_move(frame).mean.forward)),
+        row(
+            tr("Volume error"),
+            ("%", 2, lambda frame: kept_volume(frame)[0]),
+            ("ml", 1, lambda frame: kept_volume(frame)[1]),
+        ),
+    ]

@@ -1,1 +1,0 @@
-"""Presenting: what the window says, worked out as plain values for the panels."""

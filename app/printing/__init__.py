@@ -1,1 +1,0 @@
-"""Printing: the figures of the paper and their page, without Qt."""

@@ -1,0 +1,173 @@
+"""The turntable camera: a small value with the geometry of looking, and no window."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from core.geometry.mesh import Floats, Points, frozen
+
+if TYPE_CHECKING:
+    import pyvista as pv
+
+LENS = 20.0
+"""Vertical opening angle [degrees]; a portrait lens, because a wider one makes the chest bulge."""
+
+STEEPEST = 89.0
+"""Largest elevation [degrees]: the up direction stays defined, so that the picture never rolls."""
+
+SLANTED = 35.0
+"""The steepest view of a place that is turned to by itself [degrees]."""
+
+NEAREST, FARTHEST = 120.0, 9000.0
+"""Limits of the distance between the eye and the focus [mm]."""
+
+VIEWS: dict[str, tuple[float, float]] = {
+    "front": (0.0, 0.0),
+    "left": (90.0, 0.0),
+    "right": (-90.0, 0.0),
+    "back": (180.0, 0.0),
+    "three-quarter": (34.0, 8.0),
+    "top": (0.0, STEEPEST),
+}
+"""Named views: azimuth from the front towards the subject's left, and elevation [degrees]."""
+
+
+@dataclass(frozen=True)
+class View:
+    """Where the eye is: on a sphere round ``focus`` [mm], at ``azimuth`` and ``elevation`` [degrees].
+
+    Azimuth 0 looks at the front, 90 at the subject's left side. ``parallel`` shows the same size at the focus
+    without perspective.
+    """
+
+    focus: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    distance: float = 2000.0
+    azimuth: float = 0.0
+    elevation: float = 0.0
+    parallel: bool = False
+
+    @property
+    def name(self) -> str | None:
+        """Which of ``VIEWS`` this is, or None from any other side."""
+        for name, (azimuth, elevation) in VIEWS.items():
+            turned = (self.azimuth - azimuth + 180.0) % 360.0 - 180.0
+            if abs(turned) < 0.5 and abs(self.elevation - elevation) < 0.5:
+                return name
+        return None
+
+    @cached_property
+    def axes(self) -> Points:
+        """Unit vectors right, up and towards the eye, shape (3, 3)."""
+        a, e = np.radians([self.azimuth, self.elevation])
+        back = np.array([np.sin(a) * np.cos(e), -np.cos(a) * np.cos(e), np.sin(e)])
+        right = np.array([np.cos(a), np.sin(a), 0.0])
+        return frozen([right, np.cross(back, right), back])
+
+    @cached_property
+    def eye(self) -> Floats:
+        """Position of the eye, shape (3,) [mm]."""
+        return frozen(np.asarray(self.focus) + self.distance * self.axes[2])
+
+    @property
+    def half_height(self) -> float:
+        """Half of the height that is seen at the focus [mm]."""
+        return float(self.distance * np.tan(np.radians(LENS / 2.0)))
+
+    def orbit(self, azimuth: float, elevation: float) -> View:
+        """Return the view turned by two angles [degrees]; the elevation stops at straight up and down."""
+        turned = (self.azimuth + azimuth + 180.0) % 360.0 - 180.0
+        return replace(
+            self, azimuth=turned, elevation=float(np.clip(self.elevation + elevation, -STEEPEST, STEEPEST))
+        )
+
+    def named(self, name: str) -> View:
+        """Return the view from the side called ``name`` in ``VIEWS``; raises KeyError for another name."""
+        azimuth, elevation = VIEWS[name]
+        return replace(self, azimuth=azimuth, elevation=elevation)
+
+    def facing(self, way: npt.ArrayLike) -> View:
+        """Return the view from where ``way``, shape (3,), points, but neither steeply down nor up."""
+        x, y, z = np.asarray(way, dtype=np.float64)
+        elevation = np.degrees(np.arctan2(z, np.hypot(x, y)))
+        azimuth = float(np.degrees(np.arctan2(x, -y)))
+        return replace(self, azimuth=azimuth, elevation=float(np.clip(elevation, -SLANTED, SLANTED)))
+
+    def pan(self, dx: float, dy: float, height: int) -> View:
+        """Return the view dragged by (dx, dy) pixels, y downwards, in a picture ``height`` pixels high."""
+        step = 2.0 * self.half_height / max(height, 1)
+        right, up, _ = self.axes
+        return self.centred(np.asarray(self.focus) + step * (dy * up - dx * right))
+
+    def zoom(self, factor: float, x: float = 0.0, y: float = 0.0) -> View:
+        """Return the view ``factor`` times larger, keeping the place (x, y) of the focus plane where it is.
+
+        ``x`` and ``y`` count from the centre of the picture, y upwards, in half heights.
+        """
+        distance = float(np.clip(self.distance / factor, NEAREST, FARTHEST))
+        shift = self.half_height * (1.0 - distance / self.distance)
+        right, up, _ = self.axes
+        return replace(self.centred(np.asarray(self.focus) + shift * (x * right + y * up)), distance=distance)
+
+    def centred(self, focus: npt.ArrayLike) -> View:
+        """Return the view of another focus, shape (3,) [mm], from the same side."""
+        x, y, z = np.asarray(focus, dtype=np.float64)
+        return replace(self, focus=(float(x), float(y), float(z)))
+
+    def framing(self, bounds: npt.ArrayLike, aspect: float, margin: float = 1.16) -> View:
+        """Return the view from the same side that shows the box ``bounds``, (x0, x1, y0, y1, z0, z1) [mm]."""
+        box = np.asarray(bounds, dtype=np.float64).reshape(3, 2)
+        right, up, _ = np.abs(self.axes)
+        size = box[:, 1] - box[:, 0]
+        needed = max(float(up @ size), float(right @ size) / aspect) * margin
+        distance = needed / (2.0 * np.tan(np.radians(LENS / 2.0)))
+        return replace(self.centred(box.mean(axis=1)), distance=float(np.clip(distance, NEAREST, FARTHEST)))
+
+    def towards(self, other: View, part: float) -> View:
+        """Return the view ``part`` of the way (0..1) to ``other``, round the shorter side."""
+        turn = (other.azimuth - self.azimuth + 180.0) % 360.0 - 180.0
+        focus = (1.0 - part) * np.asarray(self.focus) + part * np.asarray(other.focus)
+        return replace(
+            other.centred(focus),
+            distance=self.distance ** (1.0 - part) * other.distance**part,
+            azimuth=self.azimuth + part * turn,
+            elevation=(1.0 - part) * self.elevation + part * other.elevation,
+        )
+
+    def to_picture(self, points: npt.ArrayLike, width: float, height: float) -> Points:
+        """Return where ``points``, (n, 3) [mm], appear: x and y from the top left [px], and depth [mm]."""
+        right, up, back = self.axes
+        relative = np.atleast_2d(np.asarray(points, dtype=np.float64)) - np.asarray(self.focus)
+        depth = self.distance - relative @ back
+        shrink = 1.0 if self.parallel else np.maximum(depth, 1e-3) / self.distance
+        scale = height / (2.0 * self.half_height) / shrink
+        x = width / 2.0 + relative @ right * scale
+        return np.stack([x, height / 2.0 - relative @ up * scale, depth], axis=1)
+
+    def ray(self, x: float, y: float, width: float, height: float) -> tuple[Floats, Floats]:
+        """Return the start, shape (3,) [mm], and the unit direction of the sight through a pixel."""
+        right, up, back = self.axes
+        step = 2.0 * self.half_height / height
+        across = (x - width / 2.0) * step * right + (height / 2.0 - y) * step * up
+        target = np.asarray(self.focus) + across
+        start = target + self.distance * back if self.parallel else self.eye
+        sight = target - start
+        return start, sight / np.linalg.norm(sight)
+
+
+def aim(camera: pv.Camera, view: View) -> None:
+    """Point a camera as ``view`` says; what range of depth it sees is not looked at.
+
+    Pyvista's own way looks through all places on the stage for that, at each of position, focus and up.
+    """
+    camera.SetPosition(*view.eye)
+    camera.SetFocalPoint(*view.focus)
+    camera.SetViewUp(0.0, 0.0, 1.0)
+    camera.SetViewAngle(LENS)
+    camera.SetParallelProjection(view.parallel)
+    camera.SetParallelScale(view.half_height)
+    camera.is_set = True

@@ -1,0 +1,1 @@
+"""The fitting report: layout and painting."""

@@ -1,0 +1,25 @@
+"""What a sheet is painted from: its figures, pictures of the body, and the colours of the lines."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from PySide6.QtGui import QImage
+
+from core.export.report_data import Sheet
+
+SHOTS = ("front before", "front after", "side before", "side after")
+"""The pictures of a sheet, in the order in which they stand."""
+
+SHOT_SIZES = {"front": (54.0, 60.0), "side": (37.0, 60.0)}
+"""Width and height of the pictures on the page [mm]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Handout:
+    """A sheet, its ``pictures`` by their names in ``SHOTS``, or none, and the ``colours`` of its lines."""
+
+    sheet: Sheet
+    pictures: Mapping[str, QImage] = field(default_factory=dict)
+    colours: Mapping[str, str] = field(default_factory=dict)

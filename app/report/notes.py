@@ -1,0 +1,97 @@
+"""What the figures of a sheet rest on, in words of the language in use."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from app.i18n.catalog import colon, joined, language, listed, say, tr
+from app.presenters.uncertainty import source_words
+from app.report.text import REASONS, known, overall, system_word
+from core.export.report_data import Sheet
+from core.garment.pressure_limits import comfort
+from core.measurements.sizes import built_in
+
+
+def cut_notes(sheet: Sheet) -> list[str]:
+    """Return what holds for all of the cut list."""
+    height = tr("Height: the middle of the front over (+) or under (−) the bust points, as worn.")
+    return [height, *(_with_elastics(note, sheet) for note in sheet.cuts.notes)]
+
+
+def note_groups(sheet: Sheet) -> Iterator[tuple[str, list[str]]]:
+    """Give what is to be known of the figures beside the cut list: what to look at, what is left out."""
+    if beyond := _beyond_the_head(sheet):
+        yield tr("To look at"), beyond
+    told = tr("Before: on the scan. After: on the body as the model reshapes it.")
+    taken = tr("How each measure is taken: user guide, Measures, and the data file of this sheet.")
+    yield tr("Measured"), [each for each in (told, taken, size_rule(sheet), size_cautions(sheet)) if each]
+    limits = _limits() if sheet.cuts.rows else []
+    if estimated := [*_meaning(sheet), *limits, *_unsure(sheet)]:
+        yield tr("Estimated"), estimated
+    yield tr("Not modelled"), [say(each) for each in sheet.left_out]
+
+
+def _beyond_the_head(sheet: Sheet) -> list[str]:
+    """Return the reasons of the verdict that have no room at the head, and what else is to be looked at."""
+    told = {each.message for each in sheet.assessment.findings}
+    reasons = [joined(each) for each in overall(sheet).reasons[REASONS:]]
+    return [*reasons, *(say(each) for each in sheet.warnings if each not in told)]
+
+
+def size_rule(sheet: Sheet) -> str:
+    """Return how the size in the chosen system was found, and its sister sizes."""
+    if not sheet.sizes:
+        return say(sheet.no_size)
+    chosen = sheet.sizes[0]
+    rule = joined([say(sentence) for sentence in chosen["rule"]])
+    sisters = listed([each["size"] for each in chosen["sisters"]])
+    more = tr("Sister sizes: {sizes}").format(sizes=sisters) if sisters else ""
+    return joined([f"{system_word(chosen)}{colon()}{rule}", more])
+
+
+def size_cautions(sheet: Sheet) -> str:
+    """Return where others find another size, in the words of the tables, or nothing."""
+    told: dict[str, list[str]] = {}
+    for each in sheet.sizes:
+        if each["caution"]:
+            told.setdefault(_caution(each), []).append(system_word(each))
+    between = "；" if language() == "ja" else "; "
+    words = between.join(f"{listed(systems)}{colon()}{caution}" for caution, systems in told.items())
+    return tr("* Others find another size. {words}").format(words=words) if words else ""
+
+
+def _meaning(sheet: Sheet) -> list[str]:
+    """Return what ± means, if it stands on the sheet."""
+    if not (sheet.off and sheet.sound):
+        return []
+    sources = listed([source_words(each) for each in sheet.off_sources])
+    means = tr("± is twice the standard deviation: 95 % of all cases, if errors are normal.")
+    holds = tr("It holds: {sources}. Whether lines stick or slide is no part of it.").format(sources=sources)
+    return [joined([means, holds]), *map(say, sheet.off_notes)]
+
+
+def _limits() -> list[str]:
+    """Return how sure the limits of the lights are, and between whose figures they stand."""
+    limits = comfort()
+    sources = ("、" if language() == "ja" else "; ").join(each.named(language()) for each in limits.sources)
+    return [limits.doubts[0].told(language()), tr("Sources: {names}.").format(names=sources)]
+
+
+def _unsure(sheet: Sheet) -> list[str]:
+    notes = (row["note"] for row in sheet.measures if row["estimate"] and known(row) and row["note"])
+    return [say(note) for note in dict.fromkeys(notes)]
+
+
+def _with_elastics(sentence: str, sheet: Sheet) -> str:
+    """Return what the core says of elastics, whose names are words of their own."""
+    names = {row.elastic for row in sheet.cuts.rows if row.elastic}
+    for name in sorted(names, key=len, reverse=True):
+        sentence = sentence.replace(f"{name}; ", listed([say(name), ""])).replace(name, say(name))
+    return say(sentence)
+
+
+def _caution(size: dict[str, Any]) -> str:
+    """Return the caution of a size in the language of the sheet; its data speak English."""
+    known = next((table.caution for table in built_in() if table.key == size["key"]), None)
+    return known.told(language()) if known else str(size["caution"])

@@ -1,0 +1,176 @@
+"""What a sheet says, in words of the language in use: plain values for the painter."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import groupby
+from typing import Any
+
+from app.i18n.catalog import colon, listed, number, say, tr
+from app.i18n.lengths import shown_digits, shown_value
+from app.presenters.assessment import AssessmentView, assessment_view
+from app.presenters.lines import line_title
+from app.presenters.measurement_names import measure_title
+from app.presenters.measurement_views import length_off, plus_minus
+from app.presenters.pressure import light_word
+from core.document.lines import partner_of
+from core.export.report_data import Sheet
+from core.garment.pressure_limits import comfort
+from core.measurements.custom import OWN
+from core.measurements.definitions import definition_of
+from core.measurements.uncertain_value import AFTER, BEFORE, CHANGE
+
+NOTHING = "\N{EN DASH}"
+"""What stands in a table where nothing is known."""
+
+
+@dataclass(frozen=True)
+class MeasureRow:
+    """A row of the measures, as it is printed; one that is missing has no ``figures`` but a ``note``.
+
+    ``off`` stands under the figures: how far each may be off.
+    """
+
+    title: str
+    unit: str
+    figures: tuple[str, ...]
+    note: str = ""
+    off: tuple[str, ...] = ()
+
+
+def piece_title(line: str, title: str) -> str:
+    """Return what a line is called: as the designer named it, else in the language in use."""
+    if title == line:
+        return line_title(line)
+    side = {"left": tr("left"), "right": tr("right")}.get(line.rpartition(" ")[2]) if partner_of(line) else ""
+    return listed((title, side)) if side else title
+
+
+def project_words(sheet: Sheet) -> str:
+    """Return of what the sheet is: the project, and which variant of it."""
+    heading = sheet.heading
+    variant = tr("Variant {name}").format(name=heading.variant) if heading.variant else ""
+    return " · ".join(filter(None, (heading.project, variant)))
+
+
+def overall(sheet: Sheet) -> AssessmentView:
+    """Return the overall verdict on a sheet in words."""
+    titles = {row.line: piece_title(row.line, row.title) for row in sheet.cuts.rows}
+    return assessment_view(sheet.assessment, titles=titles)
+
+
+def size_words(sheet: Sheet) -> str:
+    """Return the size as each system writes it, and which others lie within what girths may be off."""
+    within = sheet.sizes[0].get("within_off")
+    words = tr("Within the ± also: {sizes}") if within else tr("No other size lies within the ±.")
+    said = words.format(sizes=listed(within or ())) if within is not None and sheet.sizes[0]["inside"] else ""
+    return "\n".join(filter(None, (said, other_sizes(sheet))))
+
+
+def other_sizes(sheet: Sheet) -> str:
+    """Return the size as each system writes it, the chosen one first; a star where others find another."""
+    said = (
+        f"{system_word(each)} {each['size'] or NOTHING}{'*' * bool(each['caution'])}" for each in sheet.sizes
+    )
+    # What belongs together is not parted at the end of a line, nor does a line begin with a dot.
+    return "\N{NO-BREAK SPACE}· ".join(each.replace(" ", "\N{NO-BREAK SPACE}") for each in said)
+
+
+REASONS = 4
+"""How many reasons of the overall verdict stand at the head of a sheet."""
+
+KEY_MEASURES = ("bust_girth", "underbust_girth", "bust_point_distance", "bust_point_to_fold", "cup_depth")
+"""What a bra is made to, first of all."""
+
+
+def key_measures(sheet: Sheet) -> tuple[dict[str, Any], ...]:
+    """Return the rows of the few measures that a garment is made to."""
+    keys = {f"{key}{side}" for key in KEY_MEASURES for side in ("", "_left", "_right")}
+    return tuple(row for row in sheet.measures if row["key"] in keys and known(row))
+
+
+def measure_rows(sheet: Sheet) -> list[tuple[str, list[MeasureRow]]]:
+    """Return the measures in groups; those that are missing for one reason stand in one row."""
+    rows = [(_group(row["key"]), row) for row in sheet.measures]
+    order = list(dict.fromkeys(group for group, _ in rows))
+    found = []
+    for group in order:
+        those = [row for name, row in rows if name == group]
+        shown = [_measure_row(row, sheet) for row in those if known(row)]
+        missing = [row for row in those if not known(row)]
+        for note, same in groupby(missing, key=lambda row: row["note"]):
+            title = listed([measure_title(row) for row in same])
+            shown.append(MeasureRow(title, "", (), f"{title}{colon()}{say(note)}"))
+        found.append((group, shown))
+    return found
+
+
+def light_legend() -> list[tuple[str, str]]:
+    """Return each light with what it says of the largest pressure."""
+    limits = comfort()
+    amber, red = number(limits.amber_kpa, 0), number(limits.red_kpa, 0)
+    told = {
+        "green": tr("below {kpa} kPa").format(kpa=amber),
+        "amber": tr("from {kpa} kPa").format(kpa=amber),
+        "red": tr("from {kpa} kPa").format(kpa=red),
+    }
+    return [(light, f"{light_word(light)}{colon()}{words}") for light, words in told.items()]
+
+
+def foot_words(sheet: Sheet) -> str:
+    """Return what was at work, for the foot of each page."""
+    mesh = tr("control mesh {count}").format(count=sheet.model["template"])
+    return " · ".join((f"Busk {sheet.versions['busk']}", mesh, sheet.scan))
+
+
+def _measure_row(row: dict[str, Any], sheet: Sheet) -> MeasureRow:
+    digits = 0 if row["unit"] == "ml" else 1
+    figures = (
+        figure(row["before"], digits, row["unit"]),
+        figure(row["after"], digits, row["unit"]),
+        _change(row, digits),
+    )
+    figures = figures if sheet.sound else (figures[0], NOTHING, NOTHING)
+    offs = [sheet.off.get(f"{kind}:{row['key']}") for kind in (BEFORE, AFTER, CHANGE)] if sheet.sound else []
+    off_words = length_off if row["unit"] == "mm" else plus_minus
+    told = tuple("" if off is None else off_words(off) for off in offs)
+    told = told if any(told) else ()
+    unit = row["unit"].replace("2", "\N{SUPERSCRIPT TWO}")
+    unit = "" if unit == "mm" else unit
+    if row["estimate"]:
+        alone = row["plus_minus"] >= 0.5 and not told  # else it is in what stands below
+        off = f" ± {figure(row['plus_minus'], digits, row['unit'])}" if alone else ""
+        unit = f"{unit} {tr('est.')}{off}".strip()
+    return MeasureRow(measure_title(row), unit, figures, off=told)
+
+
+def _change(row: dict[str, Any], digits: int) -> str:
+    """Return the change of what is printed, so that the columns agree."""
+    digits, unit = shown_digits(digits, row["unit"]), row["unit"]
+    if row["before"] is None or row["after"] is None:
+        change = row["difference"]
+        return NOTHING if change is None else number(shown_value(change, unit), digits, signed=True)
+    after, before = (round(shown_value(row[when], unit), digits) for when in ("after", "before"))
+    return number(after - before, digits, signed=True)
+
+
+def _group(key: str) -> str:
+    return tr("Your own") if key.startswith(OWN) else say(definition_of(key)[0].group)
+
+
+def known(row: dict[str, Any]) -> bool:
+    """Return whether a measure was found, before or after."""
+    return row["before"] is not None or row["after"] is not None
+
+
+def system_word(size: dict[str, Any]) -> str:
+    """Return what a system of sizes is called beside a size."""
+    key = str(size["key"])
+    return key.upper() if len(key) == 2 else str(size["system"])
+
+
+def figure(value: float | None, digits: int, unit: str = "") -> str:
+    """Return a figure in ``unit`` as it is printed, or NOTHING; millimetres in the unit in use."""
+    if value is None:
+        return NOTHING
+    return number(shown_value(value, unit), shown_digits(digits, unit))

@@ -1,1 +1,0 @@
-"""Reporting: the sheet on paper, painted in millimetres for screen, PDF and print alike."""

@@ -1,0 +1,67 @@
+"""The figures of the paper, made again from the sample bodies and the sphere, and the page on them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from pathlib import Path
+
+from app.research.cases import Study
+from app.research.fig_1_3_5 import figure_1, figure_3, figure_5
+from app.research.fig_2 import figure_2
+from app.research.fig_4 import figure_4
+from app.research.fig_6_7_8 import figure_6, figure_7, figure_8
+from app.research.fig_9 import figure_9
+from app.research.fig_10 import figure_10
+from app.research.figure_style import Figure, print_style
+from app.research.page import write_page
+from core.errors import UserError
+
+FIGURES: dict[str, Callable[[Study], Figure]] = {
+    "1": figure_1,
+    "2": figure_2,
+    "3": figure_3,
+    "4": figure_4,
+    "5": figure_5,
+    "6": figure_6,
+    "7": figure_7,
+    "8": figure_8,
+    "9": figure_9,
+    "10": figure_10,
+}
+"""How each figure is drawn, by its number: 1 to 7 are the paper's, the others ours."""
+
+
+def say(text: str) -> None:
+    """Print a line at once, also into a pipe: who waits wants to see that something is done."""
+    print(text, flush=True)
+
+
+def make_figures(out: Path, tell: Callable[[str], None] = say) -> Callable[..., str]:
+    """Write all figures to ``out``, one picture and one CSV each, and the page REPRODUCTION.md on them.
+
+    Returns what makes the page again for other places of its pictures, see ``figure_page``; ``tell`` hears
+    of every file. Raises UserError.
+    """
+    study = Study()
+    drawn = [draw(number, study, out, tell) for number in FIGURES]
+    return write_page(out, drawn, study, tell)
+
+
+def make_some(numbers: Collection[str], out: Path, tell: Callable[[str], None] = say) -> None:
+    """Write the figures with these ``numbers`` to ``out``, without the page. Raises UserError."""
+    unknown = sorted(set(numbers) - FIGURES.keys())
+    if unknown:
+        raise UserError(f"There is no figure {unknown[0]}.", f"Choose among: {', '.join(FIGURES)}.")
+    study = Study()
+    for number in FIGURES:
+        if number in numbers:
+            draw(number, study, out, tell)
+
+
+def draw(number: str, study: Study, out: Path, tell: Callable[[str], None] = say) -> Figure:
+    """Draw one figure and write its picture and table to ``out``. Raises UserError."""
+    with print_style():
+        figure = FIGURES[number](study)
+        figure.save(out)
+    tell(f"  {out / figure.name}.png and .csv: Fig. {number}, {figure.title}")
+    return figure

@@ -1,0 +1,93 @@
+"""The page REPRODUCTION.md: the figures, and what the paper says beside what was found."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from importlib import resources
+from pathlib import Path
+
+from app.research.cases import BODIES, Study
+from app.research.claims import AGREES, DIFFERS, PARTLY, Claim, claims
+from app.research.figure_style import Figure, write_table
+from app.research.parameter_study import RATIOS, Finding, search
+from app.research.parameter_study_text import COLUMNS, rows_of, search_words
+from core import __version__
+from core.deformation.tffd import GAUSS_WIDTH, HAT_RANGE
+from core.files.atomic_write import write_text
+from core.mechanics.options import DEFAULT_LINE_STIFFNESS
+from core.mechanics.volume import ADAPTIVE_DAMPING, ADAPTIVE_STEP
+from core.pipeline.build import GAIN_SHARE, Stages
+
+NAME = "REPRODUCTION.md"
+
+
+def write_page(
+    out: Path, drawn: Sequence[Figure], study: Study, tell: Callable[[str], None] = print
+) -> Callable[..., str]:
+    """Write the page, the statements and the search as tables to ``out``; return what makes the page again.
+
+    Raises UserError if something cannot be written.
+    """
+    stated = claims(study)
+    rows = [(c.where, c.statement, c.found, c.verdict) for c in stated]
+    write_table(out / "statements.csv", ("section", "the_paper", "here", "verdict"), rows)
+    tell(f"  {out / 'statements.csv'}: {len(stated)} statements of the paper beside what was found")
+
+    def build(body: str, template: str, height: float) -> Stages:
+        return study.stages(body, template, line_height=height)
+
+    found = search(BODIES.values(), build, lambda part: tell(f"  searching: {part}"))
+    write_table(out / "search.csv", COLUMNS, rows_of(found))
+    tell(f"  {out / 'search.csv'}: {len(found)} lines, laws and lengths tried")
+
+    def page(pictures: str = "", tables: bool = True) -> str:
+        return page_of(drawn, stated, found, study, pictures=pictures, tables=tables)
+
+    write_text(out / NAME, page())
+    tell(f"  {out / NAME}: the page")
+    return page
+
+
+def page_of(
+    drawn: Sequence[Figure],
+    stated: Sequence[Claim],
+    found: Sequence[Finding],
+    study: Study,
+    *,
+    pictures: str = "",
+    tables: bool = True,
+) -> str:
+    """Return the page as Markdown; ``pictures`` goes before the names of pictures; ``tables`` links those."""
+    form = (resources.files("resources") / "pages" / "reproduction.md").read_text(encoding="utf-8")
+    counts = {verdict: sum(c.verdict == verdict for c in stated) for verdict in (AGREES, PARTLY, DIFFERS)}
+    return form.format(
+        version=__version__,
+        count=len(stated),
+        agrees=counts[AGREES],
+        partly=counts[PARTLY],
+        differs=counts[DIFFERS],
+        statements=_statements(stated),
+        first_length=f"{100 * RATIOS[0]:.0f} %",
+        stiffness=DEFAULT_LINE_STIFFNESS,
+        share=GAIN_SHARE,
+        step=ADAPTIVE_STEP,
+        damping=ADAPTIVE_DAMPING,
+        gauss=GAUSS_WIDTH,
+        hat=HAT_RANGE,
+        figures="\n".join(_figure(figure, pictures, tables) for figure in drawn),
+        **search_words(found, study),
+    )
+
+
+def _statements(found: Sequence[Claim]) -> str:
+    rows = [f"| {c.where} | {c.statement} | {c.found} | **{c.verdict}** |" for c in found]
+    return "\n".join(["| section | the paper | here | |", "|---|---|---|---|", *rows])
+
+
+def _figure(figure: Figure, pictures: str, tables: bool) -> str:
+    number = figure.name.split("-")[1]
+    table = f" [Table]({figure.name}.csv)." if tables else ""
+    return (
+        f"### Fig. {number}. {figure.title}\n\n![Fig. {number}]({pictures}{figure.name}.png)\n\n"
+        f"{figure.caption}{table}\n"
+    )

@@ -1,1 +1,0 @@
-"""Wording: words, colours and numbers that the window speaks in."""

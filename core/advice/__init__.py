@@ -1,1 +1,0 @@
-"""Advice: how far lines can go, what ends a fight, how sure a figure is, how even a body can be."""

@@ -1,0 +1,1 @@
+"""Tissue and line stiffness fitted to a scan of the worn garment."""

@@ -1,0 +1,177 @@
+"""The numbers of tissue and lines that predict a worn scan best, and how sure they are (ours).
+
+All that may be told is sought at once, each from what the design has, as far as such numbers differ at all.
+What the two scans do not tell stays there, and what that leaves open is in the ± of the others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from core.analysis.calibration.fit import Fit, Look
+from core.analysis.calibration.identifiability import confused_with, not_told, singular_values, unsure_of
+from core.analysis.calibration.parameters import Number, candidates
+from core.analysis.calibration.residuals import Difference, Worn, compare
+from core.analysis.calibration.robust_least_squares import Normal
+from core.analysis.calibration.surface_distance import known
+from core.document.calibration_record import Calibration, FoundNumber
+from core.document.design import Design
+from core.errors import UserError
+from core.geometry.mesh import Points
+from core.pipeline.build import Stages
+from core.progress import Progress, quiet
+
+FEWEST = 200
+"""Points of the worn scan on the skin that moves that are needed for a fit."""
+
+SURE = 2.0
+"""A ± is so many standard deviations: 95 % of what chance makes [1]."""
+
+
+MUCH_LEFT = 0.5
+"""Where more than this of predicted less real remains something else made it: posture, breath, cloth [1]."""
+
+
+@dataclass(frozen=True, eq=False)
+class CalibrationResult:
+    """What was found: ``design`` with its numbers and record, compared ``before`` and ``after``.
+
+    ``points`` (n, 3) [mm] are the control points that it predicts; ``met`` points of the worn scan were on
+    the moving skin. ``confused`` tells for numbers that stayed what they cannot be told from. ``singular``
+    are the singular values of the slopes in units of what is known before: below 1 that tells more of a
+    combination of numbers than the scans. ``solves`` exact answers were needed. ``at_end`` names numbers that
+    went as far as they may: what the scan shows is not what these lines do. ``noise`` [mm] is the scan's.
+    """
+
+    design: Design
+    points: Points
+    before: Difference
+    after: Difference
+    confused: Mapping[str, str]
+    met: int
+    singular: tuple[float, ...]
+    solves: int
+    at_end: tuple[str, ...] = ()
+    noise: float = 0.0
+
+    @property
+    def calibration(self) -> Calibration:
+        """The record of it."""
+        assert self.design.calibration is not None
+        return self.design.calibration
+
+    @property
+    def helped(self) -> bool:
+        """Whether a number moved by more than its ±, none to its end, and the prediction came nearer."""
+        moved = any(
+            abs(number.after - number.before) > number.plus_minus
+            for number in self.calibration.numbers
+            if not number.kept
+        )
+        return moved and not self.at_end and self.after.all_of_it.rms < self.before.all_of_it.rms
+
+    @property
+    def weak(self) -> bool:
+        """Whether none of the numbers is told well."""
+        return not any(number.told for number in self.calibration.numbers)
+
+    @property
+    def explains_little(self) -> bool:
+        """Whether more than ``MUCH_LEFT`` of predicted less real remains, beyond the scan's noise."""
+        before, after = (each.all_of_it.rms**2 - self.noise**2 for each in (self.before, self.after))
+        return after > (MUCH_LEFT**2) * max(before, 0.0)
+
+
+def refuse_bare(stages: Stages) -> None:
+    """Raise UserError if no line that moves the body is worn."""
+    if not len(stages.model.pulling):
+        raise UserError("No line that moves the body is worn.", "Wear the lines of the garment first.")
+
+
+def calibrate(
+    stages: Stages,
+    worn: Worn,
+    *,
+    thickness: float = 0.0,
+    lengths: bool = False,
+    one_roll: bool = False,
+    progress: Progress = quiet,
+) -> CalibrationResult:
+    """Find the numbers of a design at which it predicts a worn scan best.
+
+    The cloth is taken to be ``thickness`` [mm] thick; ``lengths`` tells that lines may have been cut to other
+    lengths than designed, ``one_roll`` that those without a stiffness or an elastic of their own are of one
+    roll, and share one stiffness. Raises UserError if nothing is worn that moves the body, or too little is
+    seen.
+    """
+    refuse_bare(stages)
+    numbers = candidates(stages, lengths=lengths, each=not one_roll)
+    fit = Fit(stages, worn, thickness, numbers, progress)
+    first = fit.look(stages.design)
+    seen = known(first.gaps)
+    if seen.sum() < FEWEST:
+        raise UserError(
+            f"The worn scan shows {seen.sum():.0f} places of the skin that moves; {FEWEST} are needed.",
+            "Scan the front of the body too.",
+        )
+    here = fit.least(stages.design, np.ones(len(numbers), dtype=bool))
+    stays = not_told(_sure(fit, here), numbers)
+    if stays.any():
+        here = fit.least(stages.design, ~stays)
+    # What stays is the answer from rest, as everywhere.
+    last = fit.look(here.stages.design, beside=here.beside)
+    return _result(fit, first, last, stays.tolist(), worn)
+
+
+def _result(fit: Fit, first: Look, last: Look, stays: list[bool], worn: Worn) -> CalibrationResult:
+    """Return what was found between the ``first`` look and the ``last``; ``stays`` tells what was not."""
+    numbers, thickness = fit.numbers, fit.thickness
+    sure, seen = _sure(fit, last), known(first.gaps)
+    before = compare(fit.start, first.points, worn, thickness)
+    after = compare(last.stages, last.points, worn, thickness)
+    found = tuple(_found(sure, numbers, stays, fit.start.design, last.stages.design))
+    record = Calibration(worn.name, before.all_of_it.rms, after.all_of_it.rms, found, thickness)
+    design = replace(last.stages.design, calibration=record)
+    confused = {numbers[at].name: confused_with(sure, numbers, at) for at in np.flatnonzero(stays).tolist()}
+    singular = singular_values(first.slopes[seen, : len(numbers)], numbers)
+    at_end = tuple(
+        number.name for number, kept in zip(numbers, stays, strict=True) if not kept and number.at_end(design)
+    )
+    return CalibrationResult(
+        design,
+        last.points,
+        before,
+        after,
+        confused,
+        int(seen.sum()),
+        singular,
+        fit.solves,
+        at_end,
+        worn.skin.noise,
+    )
+
+
+def _sure(fit: Fit, look: Look) -> Normal:
+    """Return how sure the numbers are of which a fit is, those that stay among them."""
+    equations = fit.normal(look)
+    count = len(fit.numbers)
+    return equations.of(np.arange(len(equations.slope)) < count)
+
+
+def _found(
+    sure: Normal, numbers: tuple[Number, ...], stays: list[bool], before: Design, after: Design
+) -> Iterator[FoundNumber]:
+    """Yield the numbers as they were found, then those that stay."""
+    unsure = (SURE * unsure_of(sure)).tolist()
+    for number, one, kept in zip(numbers, unsure, stays, strict=True):
+        value = number.of(after)
+        if not kept:
+            plus_minus = value * one if number.logarithmic else one
+            yield FoundNumber(number.name, number.of(before), value, plus_minus)
+    for number, kept in zip(numbers, stays, strict=True):
+        if kept:
+            value = number.of(before)
+            yield FoundNumber(number.name, value, value, 0.0, kept=True)

@@ -1,0 +1,195 @@
+"""The numbers of tissue and lines that a second scan may tell, and where a design keeps them (ours)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from core.document.design import Design
+from core.document.elastic import TISSUE_LIMITS
+from core.geometry.mesh import Floats
+from core.mechanics.constraint_lines import RATIO_LIMITS
+from core.mechanics.options import RANGES
+from core.mechanics.parameter_sensitivity import by_ground, by_net, by_prestress
+from core.mechanics.sensitivity import Answer
+from core.mechanics.stiffness_sensitivity import Changes, answers_to
+from core.mechanics.tensegrity import firm_ground
+from core.pipeline.active_lines import worn_lines
+from core.pipeline.build import Stages
+from core.pipeline.exact import volume_keeper
+
+LINE_STIFFNESS, FIRM_CHEST, PRESTRESS, TISSUE = (
+    "line_stiffness",
+    "firm_chest",
+    "prestress",
+    "tissue_stiffness",
+)
+"""Numbers that are settings of the whole design."""
+
+STIFFNESS, LENGTH = "stiffness", "length"
+"""Numbers of a line, or of linked ones: its own stiffness, its length as ratio."""
+
+MOST = 6
+"""No more numbers than this are sought at once."""
+
+_BEFORE = {
+    LINE_STIFFNESS: 1.0,
+    STIFFNESS: 1.0,
+    TISSUE: 0.5,
+    FIRM_CHEST: 0.1,
+    PRESTRESS: 0.25,
+    LENGTH: 0.02,
+}
+"""How far off a number may be before any scan tells it: a standard deviation, as it is sought."""
+
+_END = 1.0 - 1e-6  # of the largest number, where one counts as at the end
+_OWN = 0.5
+"""And how far the stiffness of one line from that of the others, its logarithm [1]."""
+
+
+@dataclass(frozen=True)
+class Number:
+    """One number that may be found: its ``kind`` and the ``lines`` it is of, where it is a line's."""
+
+    kind: str
+    lines: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """What it is called: its kind, and the first of its lines if it is a line's."""
+        return f"{self.kind} of {self.lines[0]}" if self.kind in (STIFFNESS, LENGTH) else self.kind
+
+    @property
+    def logarithmic(self) -> bool:
+        """Whether it is sought by its logarithm, which is what matters of a stiffness."""
+        return self.kind in (LINE_STIFFNESS, STIFFNESS, TISSUE)
+
+    @property
+    def before(self) -> float:
+        """How far off it may be before any scan tells it: a standard deviation, as it is sought."""
+        return _BEFORE[self.kind]
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """The least and the largest that a design allows."""
+        if self.kind == LENGTH:
+            return RATIO_LIMITS
+        if self.kind == TISSUE:
+            return TISSUE_LIMITS
+        return RANGES[LINE_STIFFNESS if self.kind == STIFFNESS else self.kind]
+
+    def of(self, design: Design) -> float:
+        """Return it as the design has it."""
+        if self.kind == LENGTH:
+            return design.ratio(self.lines[0])
+        if self.kind == STIFFNESS:
+            own = design.traits_of(self.lines[0]).stiffness
+            return design.line_stiffness if own is None else own
+        return float(getattr(design, self.kind))
+
+    def at_end(self, design: Design) -> bool:
+        """Tell whether it is as small or large as a design allows; a chest that is not firm may be true."""
+        low, high = self.range
+        value = self.of(design)
+        return value > _END * high or (value < low / _END and self.kind != FIRM_CHEST)
+
+    def put(self, design: Design, value: float) -> Design:
+        """Return the design with another one."""
+        if self.kind == LENGTH:
+            lines = tuple(
+                replace(each, ratio=value) if each.name in self.lines else each for each in design.lines
+            )
+            return replace(design, lines=lines)
+        if self.kind == STIFFNESS:
+            for line in self.lines:
+                design = design.with_traits(replace(design.traits_of(line), stiffness=value))
+            return design
+        setting: dict[str, Any] = {self.kind: value}
+        return replace(design, **setting)
+
+    def sought(self, design: Design) -> float:
+        """Return it as it is sought: its logarithm if it is ``logarithmic``."""
+        return math.log(self.of(design)) if self.logarithmic else self.of(design)
+
+    def found(self, design: Design, sought: float) -> Design:
+        """Return the design with what was ``sought``, within what is allowed."""
+        low, high = self.range
+        return self.put(design, min(max(math.exp(sought) if self.logarithmic else sought, low), high))
+
+
+def candidates(stages: Stages, *, lengths: bool, each: bool = True) -> tuple[Number, ...]:
+    """Return the numbers that a second scan may tell of a design, at most ``MOST``, the likeliest first.
+
+    ``each`` line has a stiffness of its own unless these are too many, or one does for all that have none of
+    their own; ``lengths`` tells that lines may have been cut to another length than was designed.
+    """
+    several = tuple(_candidates(stages, lengths, each))
+    return several if len(several) <= MOST else tuple(_candidates(stages, lengths, False))[:MOST]
+
+
+def _candidates(stages: Stages, lengths: bool, each: bool) -> Iterator[Number]:
+    design = stages.design
+    groups = worn_lines(stages)
+    elastic, own = design.worn_elastics(), design.own_stiffness()
+    springy = [group for group in groups if group[0] not in elastic]
+    if design.line_hold == "spring":
+        usual = tuple(group for group in springy if group[0] not in own)
+        if usual and (not each or (springy == [*usual] and len(usual) == 1)):
+            yield Number(LINE_STIFFNESS, tuple(name for group in usual for name in group))
+        for group in springy:
+            if group[0] in own or (each and len(springy) > 1):
+                yield Number(STIFFNESS, group)
+        if len(springy) < len(groups):
+            yield Number(TISSUE, tuple(name for group in groups if group[0] in elastic for name in group))
+    yield Number(FIRM_CHEST)
+    if design.member_law == "prestressed":
+        yield Number(PRESTRESS)
+    if lengths:
+        yield from (Number(LENGTH, group) for group in groups)
+
+
+def precision_before(numbers: tuple[Number, ...]) -> Floats:
+    """Return the precision (p, p) of ``numbers`` as they are sought, before any scan tells them."""
+    size = np.array([number.before for number in numbers])
+    lines = np.array([number.kind in (LINE_STIFFNESS, STIFFNESS) for number in numbers])
+    together = np.outer(size * lines, size * lines)
+    alone = np.diag(np.where(lines, _OWN, size) ** 2)
+    return np.asarray(np.linalg.inv(together + alone)) if len(numbers) else np.zeros((0, 0))
+
+
+def rates_by(stages: Stages, answer: Answer, numbers: tuple[Number, ...]) -> Floats:
+    """Return how the free points of an ``answer`` move with ``numbers`` as they are sought, (3 f, p) [mm]."""
+    model, design = stages.model, stages.design
+    names = [line.name for line in model.lines]
+    ratios = np.array([design.ratio(name) for name in names])
+    elastics = {names.index(name): elastic for name, elastic in design.worn_elastics().items()}
+    if design.line_hold == "held":
+        elastics = {}
+    stiffer, shares = np.zeros((len(names), len(numbers))), np.zeros((len(names), len(numbers)))
+    for column, number in enumerate(numbers):
+        rows = [names.index(name) for name in number.lines]
+        if number.kind in (LINE_STIFFNESS, STIFFNESS):
+            stiffer[rows, column] = 1.0
+        elif number.kind == TISSUE:
+            stiffer[rows, column] = -1.0
+        elif number.kind == LENGTH:
+            shares[rows, column] = 1.0
+        elif number.kind == PRESTRESS:
+            stiffer[list(elastics), column] = by_net(design.prestress)
+
+    kept = volume_keeper(stages, answer)
+    beside = np.zeros((answer.place.gradient.size, len(numbers)))
+    for column, number in enumerate(numbers):
+        if number.kind == FIRM_CHEST:
+            beside[:, column] = kept(by_ground(answer, _ground(stages))).moved[:, 0]
+        elif number.kind == PRESTRESS:
+            beside[:, column] = kept(by_prestress(answer)).moved[:, 0]
+    return answers_to(answer, Changes(stiffer, shares), elastics, ratios, kept, beside).moved
+
+
+def _ground(stages: Stages) -> Floats:
+    return firm_ground(stages.model.tensegric, stages.control.mesh)

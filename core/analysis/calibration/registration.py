@@ -1,0 +1,277 @@
+"""A second scan is laid on the first by the skin that no line moves: back, ribs, shoulders, belly (ours).
+
+The two stand upright already, each by itself. Landmarks tell roughly how far apart they are; from a few
+starts round there the still skin of the first is laid on the second, coarsely, and from the best one finely:
+first along its own normals, then by all points that the second has there. Arms are left out, and what is held
+otherwise counts little.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from core.analysis.calibration.point_to_surface import Ground
+from core.analysis.calibration.robust_least_squares import PATCHES, normal, spread_of
+from core.analysis.calibration.static_region import ground_of, still_faces, strewn_on
+from core.analysis.calibration.surface_distance import WornSkin, cells, known
+from core.errors import LandmarkError, ScanError
+from core.geometry.mesh import Floats, Mesh, Points
+from core.landmarks.detect import find_landmarks
+from core.landmarks.types import Landmarks
+from core.pipeline.build import Stages
+from core.progress import Progress, quiet
+from core.scan.body import Body
+
+MET = 5.0
+"""Still skin that is this near to the second scan is met [mm]."""
+
+LEAST_MET = 0.85
+"""Less of the still skin than this met is another person, or another posture [1]."""
+
+LEAST_SEEN = 0.4
+"""Less of the still skin than this to compare with is too little to tell [1]."""
+
+_COARSE = 700  # places that are laid on from every start
+_STILL = ("side_left", "side_right", "armpit_left", "armpit_right", "back_centre", "back_centre_underbust",
+          "front_centre_underbust", "waist_front", "hip_front", "neck_front", "neck_back")  # fmt: skip
+_HEIGHTS = (0.0, -25.0, 25.0, -50.0, 50.0)  # starts above and below what landmarks tell [mm]
+_TURNS = (0.0, -0.2, 0.2)  # and turned about the vertical [rad]
+_KEPT = 0.7  # of the still skin, the nearest: the rest may be arms, or not there
+_ROUNDS, _COARSE_ROUNDS, _POINT_ROUNDS, _STILL_STEP = 40, 7, 5, 1e-5
+_FEWEST, _MOST_POINTS = 50, 60_000  # places that tell anything; points of the second scan that are asked
+_SIZES = {"m": 1000.0, "inch": 25.4, "cm": 10.0, "mm": 1.0}
+
+
+@dataclass(frozen=True, eq=False)
+class Alignment:
+    """Where the second scan lies on the first: ``matrix`` (4, 4) takes its frame to that of the first [mm].
+
+    ``rms`` and ``most`` (at 95 %) [mm] are of the still skin that is met, whose share is ``met`` [1] of what
+    there is skin for, ``seen`` [1] of all. ``covariance`` (6, 6) is of turns about x, y and z through
+    ``middle`` (3,) [rad, mm] and of shifts [mm] along them.
+    """
+
+    matrix: Floats
+    rms: float
+    most: float
+    met: float
+    seen: float
+    covariance: Floats
+    middle: Points
+
+    @property
+    def turns(self) -> Floats:
+        """How unsure the rotation about x, y and z is, standard deviations (3,) [degrees]."""
+        return np.asarray(np.degrees(np.sqrt(np.maximum(np.diag(self.covariance)[:3], 0.0))))
+
+    @property
+    def shifts(self) -> Floats:
+        """How unsure the place along x, y and z is, standard deviations (3,) [mm]."""
+        return np.asarray(np.sqrt(np.maximum(np.diag(self.covariance)[3:], 0.0)))
+
+    def laid(self, mesh: Mesh) -> Mesh:
+        """Return a mesh of the second scan's frame in that of the first."""
+        return mesh.moved(moved(self.matrix, mesh.vertices))
+
+
+def moved(matrix: Floats, points: Points) -> Points:
+    """Return points (k, 3) where a ``matrix`` (4, 4) takes them."""
+    return np.asarray(points @ matrix[:3, :3].T + matrix[:3, 3])
+
+
+def align(stages: Stages, worn: Body, progress: Progress = quiet) -> Alignment:
+    """Lay ``worn`` on the body of ``stages``. Raises ScanError if it is no scan of the same still skin."""
+    faces = still_faces(stages)
+    places, normals = strewn_on(stages.body.mesh, faces)
+    _refuse_other_size(stages.body, worn)
+    skin = WornSkin(worn.mesh, worn.noise)
+    progress("aligning", 0.1)
+    there = _coarse(places, worn, _starts(stages, worn))
+    progress("aligning", 0.5)
+    there = _fine(skin, places, normals, there)
+    progress("aligning", 0.7)
+    found = _judged(skin, places, normals, there)
+    _refuse_other_body(found)
+    return by_all_points(found, skin, ground_of(stages.body.mesh, faces))
+
+
+def _starts(stages: Stages, worn: Body) -> Iterator[Floats]:
+    """Yield matrices that take the first body's frame to the second's: near each other, by landmarks."""
+    shift = _between(stages.landmarks, _landmarks(worn), stages.body.mesh, worn.mesh)
+    middle = stages.control.mesh.vertices.mean(axis=0)
+    for height in _HEIGHTS:
+        for turn in _TURNS:
+            matrix = turned(np.array([0.0, 0.0, turn]), middle)
+            matrix[:3, 3] += shift + np.array([0.0, 0.0, height])
+            yield matrix
+
+
+def _landmarks(worn: Body) -> Landmarks | None:
+    try:
+        return find_landmarks(worn)
+    except LandmarkError:
+        return None
+
+
+def _between(first: Landmarks, second: Landmarks | None, body: Mesh, worn: Mesh) -> Points:
+    """Return about how far the second lies from the first, shape (3,) [mm]."""
+    if second is not None:
+        names = [name for name in _STILL if name in first.points and name in second.points]
+        if len(names) > 2:
+            ways = [second.position(name) - first.position(name) for name in names]
+            return np.asarray(np.median(ways, axis=0))
+    return np.asarray(np.median(worn.vertices, axis=0) - np.median(body.vertices, axis=0))
+
+
+def turned(angles: Floats, middle: Points) -> Floats:
+    """Return the matrix (4, 4) that turns by the vector ``angles`` (3,) [rad] about a ``middle`` (3,)."""
+    angle = float(np.linalg.norm(angles))
+    x, y, z = angles / angle if angle > 0.0 else angles
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    matrix = np.eye(4)
+    matrix[:3, :3] += np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
+    matrix[:3, 3] = middle - matrix[:3, :3] @ middle
+    return matrix
+
+
+def _coarse(places: Points, worn: Body, starts: Iterator[Floats]) -> Floats:
+    """Return the matrix that lays few of the places best on the vertices of the second scan."""
+    few = places[:: max(1, len(places) // _COARSE)]
+    vertices, normals = worn.mesh.vertices, worn.mesh.vertex_normals
+    tree = cKDTree(vertices)
+    best, least = np.eye(4), np.inf
+    for start in starts:
+        matrix = start
+        for _ in range(_COARSE_ROUNDS):
+            here = moved(matrix, few)
+            at = tree.query(here)[1]
+            facing = normals[at]
+            ahead = np.einsum("ij,ij->i", here - vertices[at], facing)
+            away = np.linalg.norm(here - vertices[at], axis=1)
+            kept = away <= np.quantile(away, _KEPT)
+            slopes = _slopes(here[kept], facing[kept])
+            step = np.linalg.lstsq(slopes.T @ slopes, -slopes.T @ ahead[kept], rcond=1e-12)[0]
+            matrix = _stepped(step, here) @ matrix
+        score = float(np.sort(away)[: int(_KEPT * len(away))].mean())
+        if score < least:
+            best, least = matrix, score
+    return best
+
+
+def _slopes(places: Points, normals: Points) -> Floats:
+    """Return how gaps change with turns [rad] about the middle of ``places`` and shifts [mm], (k, 6)."""
+    return np.concatenate([np.cross(places - places.mean(axis=0), normals), normals], axis=1)
+
+
+def _stepped(step: Floats, places: Points) -> Floats:
+    matrix = turned(step[:3], places.mean(axis=0))
+    matrix[:3, 3] += step[3:]
+    return matrix
+
+
+def _fine(skin: WornSkin, places: Points, normals: Points, matrix: Floats) -> Floats:
+    """Return the matrix at which the gaps of the still skin, each by its weight, are least."""
+    for _ in range(_ROUNDS):
+        here, facing = moved(matrix, places), normals @ matrix[:3, :3].T
+        gaps = skin.gaps(here, facing)
+        seen = known(gaps)
+        if seen.sum() < _FEWEST:
+            return matrix
+        gaps, here, facing = gaps[seen], here[seen], facing[seen]
+        equations = normal(gaps, _slopes(here, facing), spread_of(gaps))
+        step = equations.step()
+        matrix = _stepped(step, here) @ matrix
+        if _is_still(step, 10.0 * _STILL_STEP):  # all points set it right
+            break
+    return matrix
+
+
+def _is_still(step: Floats, turn: float) -> bool:
+    """Tell whether a step (6,) turns by less than ``turn`` [rad], and shifts by as little."""
+    return bool(np.abs(step[:3]).max() < turn and np.abs(step[3:]).max() < 100.0 * turn)
+
+
+def by_all_points(found: Alignment, skin: WornSkin, ground: Ground) -> Alignment:
+    """Return an alignment set right by the points of the second scan over the still ``ground``.
+
+    Each of them counts, or each of very many: a scanner that gives more of them tells better where it stood.
+    """
+    every = max(1, int(np.ceil(len(skin.mesh.vertices) / _MOST_POINTS)))
+    points, facing, matrix = skin.mesh.vertices[::every], skin.facing[::every], found.matrix
+    for _ in range(_POINT_ROUNDS):
+        here = moved(matrix, points)
+        feet = ground.feet(here, facing @ matrix[:3, :3].T, skin.noise)
+        if len(feet.gaps) < _FEWEST:
+            return found
+        here = here[feet.rows]
+        slopes, spread = -_slopes(here, feet.normals), spread_of(feet.gaps)
+        step = normal(feet.gaps, slopes, spread).step()
+        matrix = _stepped(step, here) @ matrix
+        if _is_still(step, _STILL_STEP):
+            break
+    # By their feet: noise would part points of one place, those outside from those inside.
+    patches = [cells(feet.of(ground.places), size) for size in PATCHES]
+    covariance = normal(feet.gaps, slopes, spread, patches).covariance
+    return replace(found, matrix=matrix, covariance=covariance, middle=here.mean(axis=0))
+
+
+def _judged(skin: WornSkin, places: Points, normals: Points, matrix: Floats) -> Alignment:
+    here, facing = moved(matrix, places), normals @ matrix[:3, :3].T
+    gaps = skin.gaps(here, facing)
+    seen = known(gaps)
+    gaps, here, facing = gaps[seen], here[seen], facing[seen]
+    if len(gaps) < _FEWEST:
+        unsure = np.diag(np.full(6, np.inf))
+        return Alignment(_back(matrix), np.inf, np.inf, 0.0, len(gaps) / len(seen), unsure, np.zeros(3))
+    near = np.abs(gaps) < MET
+    patches = [cells(here, size) for size in PATCHES]
+    equations = normal(gaps, _slopes(here, facing), spread_of(gaps), patches)
+    return Alignment(
+        _back(matrix),
+        float(np.sqrt(np.mean(gaps[near] ** 2))) if near.any() else np.inf,
+        float(np.quantile(np.abs(gaps[near]), 0.95)) if near.any() else np.inf,
+        float(near.mean()),
+        float(seen.mean()),
+        equations.covariance,
+        moved(_back(matrix), here).mean(axis=0),
+    )
+
+
+def _back(matrix: Floats) -> Floats:
+    return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
+
+
+def _refuse_other_size(body: Body, worn: Body) -> None:
+    """Raise ScanError if one body is so much larger than the other that a unit must be wrong."""
+    times = _extent(worn.mesh) / _extent(body.mesh)
+    if 0.5 < times < 2.0:
+        return
+    raise ScanError(
+        f"The worn scan is {times:.2g} times as large as the first one: it was read in {worn.pose.unit}.",
+        "Tell its unit.",
+    )
+
+
+def _extent(mesh: Mesh) -> float:
+    """Return how far round its axis a body reaches [mm]: the median, which arms do not matter to."""
+    flat = mesh.vertices[:, :2]
+    return float(np.median(np.linalg.norm(flat - np.median(flat, axis=0), axis=1)))
+
+
+def _refuse_other_body(found: Alignment) -> None:
+    if found.seen < LEAST_SEEN:
+        raise ScanError(
+            f"The worn scan shows {100.0 * found.seen:.0f} % of the skin that no line moves; "
+            f"{100.0 * LEAST_SEEN:.0f} % are needed to lay it on the first.",
+            "Scan the back, the ribs and the shoulders too.",
+        )
+    if found.met < LEAST_MET:
+        raise ScanError(
+            f"The worn scan does not fit the first: {100.0 * found.met:.0f} % of the skin that no line moves "
+            f"lies within {MET:.0f} mm of it, {100.0 * LEAST_MET:.0f} % are needed.",
+            "Take a scan of the same person in the same posture, arms as before.",
+        )

@@ -1,0 +1,157 @@
+"""Predicted less real: how far the skin that was predicted stands before that of the worn scan (ours)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.analysis.calibration.point_to_surface import Ground
+from core.analysis.calibration.registration import Alignment, moved
+from core.analysis.calibration.surface_distance import WornSkin, curvature, known
+from core.analysis.uncertainty.input_uncertainty import assumed
+from core.errors import LandmarkError, ScanError
+from core.geometry.mesh import MIRROR, Floats, Mesh, Points
+from core.landmarks.detect import find_landmarks
+from core.landmarks.types import CERTAIN, SIDES, Landmark
+from core.pipeline.build import Stages
+from core.scan.body import Body
+
+THICKEST = 20.0
+"""Cloth is not thicker than this [mm]."""
+
+_MIRRORED = 2.0
+"""A worn scan whose mirror image lies so many times nearer to the moving skin is one itself [1]."""
+
+_OFF = 2.0  # and which lies at least this far from it [mm]: less is no matter
+_SEVERAL = 2.0  # points round a vertex, counted by their share of it, whose mean tells more than one triangle
+_ANY = 0.25  # and where no triangle is met
+
+
+@dataclass(frozen=True, eq=False)
+class Worn:
+    """A scan with the garment on, ``name`` its file, laid on the first: its ``skin`` in that frame [mm].
+
+    ``bust_points`` by side are (3,) [mm], and ``sure`` how sure they are (0..1); both empty where none show.
+    """
+
+    name: str
+    body: Body
+    alignment: Alignment
+    skin: WornSkin
+    bust_points: Mapping[str, Points]
+    sure: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Figures:
+    """Predicted less real [mm] of some skin: the mean, the root of the mean square, 95 % of all sizes.
+
+    ``seen`` [1] is the share of it that the worn scan shows.
+    """
+
+    mean: float
+    rms: float
+    most: float
+    seen: float
+
+
+@dataclass(frozen=True, eq=False)
+class Difference:
+    """Predicted less real at each of the moving vertices, ``values`` (k,) [mm] along the predicted normal.
+
+    Positive where the predicted skin stands before the real one; not a number where the worn scan shows none.
+    ``all_of_it`` and ``sides`` sum it up; ``bust_points`` (3,) [mm] by side, where they are sure on the scan,
+    and the ± of each along the skin, ``bust_unsure`` [mm], as both scans tell where it is.
+    """
+
+    values: Floats
+    all_of_it: Figures
+    sides: Mapping[str, Figures]
+    bust_points: Mapping[str, Points]
+    bust_unsure: Mapping[str, float]
+
+
+def laid_on(name: str, body: Body, alignment: Alignment) -> Worn:
+    """Return the body of a worn scan, ``name`` its file, laid on the first by an alignment."""
+    points: dict[str, Points] = {}
+    sure: dict[str, float] = {}
+    try:
+        found = find_landmarks(body).points
+    except LandmarkError:
+        found = {}
+    for side in SIDES:
+        if mark := found.get(f"bust_point_{side}"):
+            points[side] = moved(alignment.matrix, mark.position[None])[0]
+            sure[side] = mark.confidence
+    return Worn(name, body, alignment, WornSkin(alignment.laid(body.mesh), body.noise), points, sure)
+
+
+def refuse_mirrored(stages: Stages, worn: Worn) -> None:
+    """Raise ScanError for a scan that fits far better left for right: still skin may be too even to tell."""
+    points, mesh = stages.control.mesh.vertices, worn.skin.mesh
+    across = np.array([2.0 * stages.moving.middle, 0.0, 0.0])
+    other = Mesh(across + mesh.vertices * MIRROR, mesh.faces[:, ::-1])
+    skins = worn.skin, WornSkin(other, worn.skin.noise)
+    off, mirrored = (figures(gaps_at(stages, points, skin, 0.0)).rms for skin in skins)
+    if off > max(_OFF, _MIRRORED * mirrored):
+        raise ScanError(
+            "The worn scan looks like the mirror image of the first: its left lies on her right.",
+            "Export it again without mirroring it.",
+        )
+
+
+def gaps_at(stages: Stages, points: Points, skin: WornSkin, thickness: float) -> Floats:
+    """Return predicted less real of the moving vertices for control ``points`` (n, 3) [mm], shape (k,) [mm].
+
+    The real skin is taken to lie ``thickness`` [mm] under the scanned one. Where the scan is finer than the
+    predicted skin it is the mean of the points round a vertex, else where its normal meets the scan.
+    """
+    count = stages.moving.count
+    places, normals = stages.shape(points)
+    curved = curvature(places, normals, stages.moving.corners)[:count]
+    met = skin.gaps(places[:count], normals[:count], curved)
+    ground = Ground(places, normals, stages.moving.corners)
+    feet = ground.feet(skin.mesh.vertices, skin.facing, skin.noise)
+    many = np.bincount(feet.corners.ravel(), feet.parts.ravel(), len(places))[:count]
+    sums = np.bincount(feet.corners.ravel(), (feet.parts * feet.gaps[:, None]).ravel(), len(places))[:count]
+    several = many >= np.where(known(met), _SEVERAL, _ANY)
+    return np.asarray(np.where(several, sums / np.where(several, many, 1.0), met) + thickness)
+
+
+def compare(stages: Stages, points: Points, worn: Worn, thickness: float = 0.0) -> Difference:
+    """Compare what control ``points`` (n, 3) [mm] predict with a worn scan."""
+    values = gaps_at(stages, points, worn.skin, thickness)
+    left = stages.moving.rest[: len(values), 0] > stages.moving.middle
+    marks = dict(zip(SIDES, stages.watch.bust_points(points), strict=True))
+    inward = np.array([0.0, thickness, 0.0])
+    shown = [side for side in worn.bust_points if worn.sure[side] >= CERTAIN]
+    return Difference(
+        values,
+        figures(values),
+        {"left": figures(values[left]), "right": figures(values[~left])},
+        {side: marks[side] - (worn.bust_points[side] + inward) for side in shown},
+        {side: bust_unsure(stages.landmarks.points[f"bust_point_{side}"]) for side in shown},
+    )
+
+
+def bust_unsure(first: Landmark) -> float:
+    """Return the ± along the skin of a bust point of both scans, ``first`` that of the first [mm]."""
+    told = assumed()
+    return told.sds * math.hypot(told.of_landmark(first), told.landmark_mm)
+
+
+def figures(values: Floats) -> Figures:
+    """Return what sums up ``values`` (k,) [mm], of which some may be no number."""
+    seen = known(values)
+    real = values[seen]
+    if not len(real):
+        return Figures(np.nan, np.nan, np.nan, 0.0)
+    return Figures(
+        float(real.mean()),
+        float(np.sqrt(np.mean(real**2))),
+        float(np.quantile(np.abs(real), 0.95)),
+        float(seen.mean()),
+    )

@@ -1,0 +1,1 @@
+"""Conflicting lines of a design, and changes that end the conflict."""

@@ -1,0 +1,165 @@
+"""Ways of changing a design so that a fight ends, counted in steps that a person can set (ours)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial, reduce
+from typing import Any
+
+from core.document.design import Design
+from core.garment.curve_smoothing import USUAL_WIDTH
+from core.mechanics.constraint_lines import RATIO_LIMITS
+from core.pipeline.active_lines import Together, free_lines
+from core.pipeline.build import Stages
+
+LENGTH_STEP = 0.001
+"""Ratio of lengths that a person sets [1]."""
+
+GAIN_STEP = 0.01
+"""Gain that a person sets, in probe units [1]."""
+
+_LEAST_SHARE = 0.5  # of the gain that was set: with less it keeps hardly any volume
+_BELOW = 0.96  # of the gain that a shape bears: there a swing fades within the turns that a run is watched
+_BORNE = 0.88  # of the gain limit at rest: what shapes mostly bear
+_MOST_TOGETHER = 95  # %: beyond that nothing is left of the garment
+
+
+@dataclass(frozen=True, eq=False)
+class Change:
+    """One change of a design.
+
+    ``kind`` is "length", "gain", "setting", "off" (lines taken off), "width" (a wider band) or "together"
+    (all lines nearer to rest).
+    ``lines`` are those that it is about, ``setting`` the field and its new value, which may come with a
+    length. ``size`` [%] is how far a length moves, of that at rest, or the gain, of what it was: one scale;
+    of a setting it is 0.
+    """
+
+    kind: str
+    design: Design
+    size: float = 0.0
+    lines: tuple[str, ...] = ()
+    setting: tuple[str, Any] = ("", None)
+
+
+@dataclass(frozen=True)
+class Way:
+    """A way of changing a design in up to ``most`` steps; ``at`` returns the change of so many."""
+
+    at: Callable[[int], Change]
+    most: int
+
+
+def single_ways(stages: Stages, complaint: str) -> Iterator[Way]:
+    """Yield the ways to change one line, or the gain, which helps no lengths without a balance."""
+    turns = stages.design.volume == "conventional" and complaint != "unreachable"
+    if turns:
+        first = math.ceil(stages.gain / GAIN_STEP - 1e-6) - 1
+        yield Way(partial(_gain, stages, first), first - math.ceil(_least_gain(stages) / GAIN_STEP) + 1)
+    yield from line_ways(stages)
+
+
+def line_ways(stages: Stages) -> Iterator[Way]:
+    """Yield the ways to make one line longer or shorter; at its rest length it would be off."""
+    for names in free_lines(stages):
+        ratio = stages.design.ratio(names[0])
+        low, high = RATIO_LIMITS
+        top, bottom = (1.0 - LENGTH_STEP, low) if ratio < 1.0 else (high, 1.0 + LENGTH_STEP)
+        for sign, end in ((1, top), (-1, bottom)):
+            grid = math.floor(sign * ratio / LENGTH_STEP + 1e-6)
+            most = math.floor(sign * end / LENGTH_STEP + 1e-6) - grid
+            if most > 0:  # a line that is worn at its rest length has one way only
+                yield Way(partial(_length, stages.design, names, sign, grid), most)
+
+
+def _least_gain(stages: Stages) -> float:
+    return _LEAST_SHARE * stages.gain
+
+
+def _gain(stages: Stages, first: int, steps: int) -> Change:
+    gain = round((first - steps + 1) * GAIN_STEP, 6)
+    return Change("gain", replace(stages.design, gain=gain), 100.0 * (1.0 - gain / stages.gain))
+
+
+def _length(design: Design, names: tuple[str, ...], sign: int, grid: int, steps: int) -> Change:
+    ratio = round(sign * (grid + steps) * LENGTH_STEP, 6)
+    return Change(
+        "length", design.with_linked(names[0], ratio), 100.0 * abs(ratio - design.ratio(names[0])), names
+    )
+
+
+def lower_gains(stages: Stages, bears: float | None) -> Iterator[Change]:
+    """Yield lower gains, for other changes beside them: so the control that was chosen can stay.
+
+    Somewhat below what the shape ``bears``, where that is known, and below what shapes mostly bear: with
+    lines nearer to rest a shape may bear less.
+    """
+    lowest = math.inf
+    for borne in (bears, _BORNE * stages.gain_limit):
+        gain = 0.0 if borne is None else round(math.floor(_BELOW * borne / GAIN_STEP) * GAIN_STEP, 6)
+        if _least_gain(stages) <= gain < min(stages.gain, lowest):
+            lowest = gain
+            yield _set(stages.design, "gain", gain)
+
+
+def settings(design: Design, complaint: str) -> Iterator[Change]:
+    """Yield other choices of the model that may end a complaint, the least far-reaching first."""
+    moving = complaint in ("vibrating", "diverging", "settling")
+    in_step = [_set(design, "line_force", "implicit")]
+    controls = [_set(design, "volume", control) for control in ("adaptive", "exact")[: 1 + moving]]
+    spring = [_set(design, "line_hold", "spring")]
+    late = design.line_force == "explicit"  # then nothing else is of use before
+    order = [*in_step, *controls, *spring] if moving or late else [*spring, *controls]
+    for change in order:
+        if change.design != design:
+            yield change
+
+
+def _set(design: Design, key: str, value: str | float) -> Change:
+    return Change("setting", replace(design, **{key: value}), setting=(key, value))  # type: ignore[arg-type]
+
+
+def with_setting(setting: Change, ways: Iterator[Way]) -> Iterator[Way]:
+    """Yield ways that start from another choice of the model as the changes of both at once."""
+
+    def both(way: Way, steps: int) -> Change:
+        return replace(way.at(steps), setting=setting.setting)
+
+    for way in ways:
+        yield Way(partial(both, way), way.most)
+
+
+def off_changes(stages: Stages) -> Iterator[Change]:
+    """Yield the ways to take one line off."""
+    for names in free_lines(stages):
+        size = 100.0 * abs(stages.design.ratio(names[0]) - 1.0)
+        yield Change("off", stages.design.with_linked(names[0], None), size, names)
+
+
+def wider(design: Design, names: Together, width: float) -> Change:
+    """Return the change to bands ``width`` [mm] wide: they press less, and the shape stays."""
+    widths = [design.traits_of(name).width or USUAL_WIDTH for name in names]
+    for name in names:
+        design = design.with_traits(replace(design.traits_of(name), width=width))
+    return Change("width", design, 100.0 * (width / min(widths) - 1.0), tuple(names))
+
+
+def together_ways(stages: Stages) -> Iterator[Way]:
+    """Yield the way of all lines nearer to rest, a hundredth of how far they are a step, if there are two."""
+    groups = free_lines(stages)
+    if len(groups) > 1:
+        yield Way(partial(_together, stages.design, groups), _MOST_TOGETHER)
+
+
+def _together(design: Design, groups: Sequence[Together], steps: int) -> Change:
+    size = 0.0
+    for names in groups:
+        before = design.ratio(names[0])
+        after = 1.0 + (1.0 - steps / 100.0) * (before - 1.0)
+        round_ = math.ceil if before < 1.0 else math.floor
+        after = round(round_(after / LENGTH_STEP - (1e-6 if before < 1.0 else -1e-6)) * LENGTH_STEP, 6)
+        size = max(size, 100.0 * abs(after - before))
+        design = design.with_linked(names[0], None if after == 1.0 else after)
+    return Change("together", design, size, reduce(tuple.__add__, groups, ()))

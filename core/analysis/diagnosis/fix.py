@@ -1,0 +1,51 @@
+"""Cure: a change of a design that was run, and what remains to be checked with it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from core.analysis.diagnosis.candidate_changes import Change
+from core.analysis.diagnosis.trial_run import Standing
+from core.garment.assessment import GOOD, LEVELS, Finding, assessed
+
+CURABLE = ("convergence", "shape", "band", "pressure")
+"""Topics of findings that a change of lines or model can end."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cure:
+    """A change, and how the design stands with it: run from rest, and on from where it was.
+
+    ``left`` is the worse of what is wrong with the run then, empty if nothing is; ``remains`` are all
+    findings on the changed design that a change can end, the worst first. Of a change that is two,
+    ``choice_ends`` is what would be wrong without the other choice, ``lengths_end`` without the lengths.
+    """
+
+    change: Change
+    standing: Standing
+    ends: bool
+    left: str = ""
+    choice_ends: str = ""
+    lengths_end: str = ""
+    remains: tuple[Finding, ...] = ()
+
+    @property
+    def level(self) -> str:
+        """The level of what remains."""
+        return self.remains[0].level if self.remains else GOOD
+
+    @property
+    def rank(self) -> tuple[int, int, float]:
+        """How it compares to other changes, the best first: what remains, how many changes, how large [%]."""
+        change = self.change
+        of_lines = {"together": max(len(change.lines), 2), "off": 2, "length": 1, "width": 1, "gain": 1}.get(
+            change.kind, 0
+        )
+        return LEVELS.index(self.level), of_lines + bool(change.setting[0]), change.size
+
+
+def findings(standing: Standing) -> tuple[Finding, ...]:
+    """Return what is found on a design that was run and that a change of it can end, the worst first."""
+    found = (each for each in assessed(standing).findings if each.topic in CURABLE)
+    # No length, width or choice makes a pressure known.
+    return tuple(each for each in found if each.topic != "pressure" or each.value)

@@ -1,0 +1,191 @@
+"""How a run will end, known before it is made: where its turns come to rest, and whether they stay (ours).
+
+Turns of each control come to rest where the forces balance at the volume that the control then keeps. From
+there some dozen turns after a small push tell whether a swing fades or grows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from core.geometry.mesh import Floats, Points
+from core.mechanics.dense_volume import solve_body_exact
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.iteration import Record, State, Targets, iterate
+from core.mechanics.mesh_quality import Condition
+from core.mechanics.model import ConstrainedModel
+from core.mechanics.newton import Balance, balance_at
+from core.mechanics.potential import Potential
+from core.mechanics.solver_comparison import shape_of
+from core.mechanics.volume import Pressure
+from core.pipeline.build import Stages, targets_of
+
+FADES = 0.975
+"""Growth of a swing per turn below which it is gone within the turns that a run is watched [1]; ours."""
+
+PUSH = 0.02
+"""How far the push moves a point at most [mm]: small enough for turns to answer in proportion."""
+
+_FAR = 0.1  # of the lengths from which another balance is looked for [1]
+_QUICK, _FROM_REST = 20, 90  # Newton steps from near by, and from rest, after which no balance is hoped for
+_SPAN, _SHORT_SPAN = 30, 10
+_CLOSE = (0.9, 1.05)  # growths of a short span that tell nothing: its swing is not yet the one that stays
+_ROUNDS = 12
+_NEAR = 1e-7  # volume errors this far apart are the same [1]
+
+
+@dataclass(frozen=True, eq=False)
+class Outlook:
+    """Where the turns of a design come to rest, and in what ``condition`` the control mesh is there."""
+
+    model: ConstrainedModel
+    targets: Targets
+    balance: Balance
+    condition: Condition
+
+    @cached_property
+    def growth(self) -> float:
+        """By how much a small swing about it grows in a turn [1]; 0 where nothing swings."""
+        if self.targets.control == "exact":
+            return 0.0
+        return swing_growth(self.model, self.targets, self.balance)
+
+    @cached_property
+    def stays(self) -> bool:
+        """Whether the run comes to rest there: a few turns tell, unless it is close."""
+        if self.targets.control == "exact":
+            return True
+        growth = swing_growth(self.model, self.targets, self.balance, _SHORT_SPAN)
+        return (self.growth if _CLOSE[0] < growth < _CLOSE[1] else growth) < FADES
+
+
+def outlook(stages: Stages, near: Outlook | None = None) -> Outlook | None:
+    """Return how the run of a design will end, None where there is nothing for it to rest at.
+
+    From an outlook ``near`` by it is found quickly or held not to be there.
+    """
+    model, targets = stages.model, targets_of(stages.design, stages)
+    return _seen(model, targets, resting(stages, targets, _start(near, model, targets)))
+
+
+def outlook_about(stages: Stages, moved: Points) -> Outlook | None:
+    """Return where turns rest that stand about ``moved``, (f, 3) [mm], None if nothing is there.
+
+    Where lines slide there may be more than one balance, and turns come to another than a walk from rest.
+    """
+    model, targets = stages.model, targets_of(stages.design, stages)
+    if targets.control == "exact":
+        return outlook(stages)
+    if not np.isfinite(moved).all():
+        return None
+    start = balance_at(Potential(together(model), targets.ratios), moved)
+    return _seen(model, targets, resting(stages, targets, start))
+
+
+def _seen(model: ConstrainedModel, targets: Targets, balance: Balance) -> Outlook | None:
+    if not balance.found:
+        return None
+    condition = shape_of(model).condition(model.tensegric.expand(balance.state.moved))
+    return Outlook(model, targets, balance, condition)
+
+
+def _start(near: Outlook | None, model: ConstrainedModel, targets: Targets) -> Balance | None:
+    """Return the balance of ``near`` if a search can start there; exact answers are found from rest."""
+    if near is None or targets.control == "exact" or apart(near, model, targets) > _FAR:
+        return None
+    return near.balance
+
+
+def apart(near: Outlook, model: ConstrainedModel, targets: Targets) -> float:
+    """Return how far the lengths of two outlooks are apart [1], inf for those that share no model."""
+    if near.model is not model or near.targets.control == "exact":
+        return np.inf
+    return float(np.abs(np.subtract(near.targets.ratios, targets.ratios)).max(initial=0.0))
+
+
+def resting(stages: Stages, targets: Targets, near: Balance | None = None) -> Balance:
+    """Return the balance that a design comes to rest at with other ``targets``; see ``solve_exact``."""
+    model = stages.model
+    if targets.control == "exact":
+        if stages.design.dense_volume:
+            return solve_body_exact(model, targets.ratios, stages.body_change, near=near)
+        return solve_exact(model, targets.ratios, _most_steps(near), near=near, turns=False)
+    return _kept(together(model), targets, near)
+
+
+def together(model: ConstrainedModel) -> ConstrainedModel:
+    """Return a model as turns measure it: both breasts together, whatever the exact answer holds."""
+    both = replace(model.tensegric, mechanics=replace(model.mechanics, volume_of="both"))
+    return replace(model, tensegric=both)
+
+
+def _kept(model: ConstrainedModel, targets: Targets, near: Balance | None) -> Balance:
+    """Return the balance at the volume that a control keeps: another than at rest where it has no memory.
+
+    There the pressure is the gain times what is missing; that is closed in on by secants.
+    """
+    keeps = targets.control in ("adaptive", "accumulating")
+    excess = 0.0 if keeps or near is None else _excess(model, near)
+
+    def at(excess: float, steps: int, near: Balance | None) -> Balance:
+        kept = np.full(2, 0.5 * excess * model.volume.rest_volume)
+        return solve_exact(model, targets.ratios, steps, excess=kept, near=near, turns=False)
+
+    here = at(excess, _most_steps(near), near)
+    if keeps or not here.found:
+        return here
+    gain = targets.gain if targets.control == "conventional" else 0.0
+
+    def missing(balance: Balance, excess: float) -> float:
+        return float(balance.pressures[0]) / model.pressure_unit + gain * excess
+
+    before, amiss_before = excess, missing(here, excess)
+    excess -= amiss_before / (gain + 0.3)
+    for _ in range(_ROUNDS):
+        here = at(excess, _QUICK, here)
+        amiss = missing(here, excess)
+        if not here.found or abs(excess - before) < _NEAR or amiss == amiss_before:
+            return here
+        slope = (amiss - amiss_before) / (excess - before)
+        before, amiss_before, excess = excess, amiss, excess - amiss / slope
+    return here
+
+
+def _excess(model: ConstrainedModel, near: Balance) -> float:
+    """Return what the volume has there beyond rest, in parts of it [1]."""
+    return model.volume.volume(model.tensegric.expand(near.state.moved)) / model.volume.rest_volume - 1.0
+
+
+def _most_steps(near: Balance | None) -> int:
+    return _FROM_REST if near is None else _QUICK
+
+
+def swing_growth(model: ConstrainedModel, targets: Targets, balance: Balance, span: int = _SPAN) -> float:
+    """Return by how much a small swing about ``balance`` grows in a turn [1]; 0 if there is none.
+
+    That is what it does between one ``span`` of turns and the next.
+    """
+    outward = model.rest_gradient
+    push = outward * (PUSH / np.linalg.norm(outward, axis=1).max())
+    pressure = Pressure(float(balance.pressures[0]) / model.pressure_unit)
+    error = float(model.volume.volume(model.tensegric.expand(balance.state.moved)))
+    error = (model.volume.rest_volume - error) / model.volume.rest_volume
+    start = State(balance.state.moved + push, replace(pressure, error=error), 0, balance.tensions)
+    records = [measured for _, measured in iterate(model, lambda: targets, start, turns=2 * span + 2)]
+    course = _course(records)
+    if len(course) < 2 * span + 2 or not np.isfinite(course).all():
+        return np.inf
+    bend = course[:-2] - 2.0 * course[1:-1] + course[2:]
+    early, late = np.linalg.norm(bend[:span]), np.linalg.norm(bend[span:])
+    return float((late / early) ** (1.0 / span)) if late > 1e-12 else 0.0
+
+
+def _course(records: list[Record]) -> Floats:
+    """Return what swings: volume error and lengths of lines in parts of their size, one row per turn."""
+    course = np.array([(record.error, *record.lengths) for record in records])
+    if len(course):
+        course[:, 1:] /= course[0, 1:]
+    return course

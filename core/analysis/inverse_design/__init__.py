@@ -1,0 +1,1 @@
+"""Line lengths for a target shape."""

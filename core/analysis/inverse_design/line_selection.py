@@ -1,0 +1,122 @@
+"""Targets solved with lines that are off as well, where the active ones do not reach them (ours)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Sequence
+
+from core.analysis.inverse_design.conflicts import Conflict
+from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.search import Bounds
+from core.analysis.inverse_design.solve import Asking, Reply
+from core.document.design import Design
+from core.errors import UserError
+from core.geometry.mesh import Points
+from core.pipeline.build import Stages, build
+from core.progress import Progress, quiet
+
+_MOST = 4  # groups of optional lines that are each tried alone as well
+_WORTH = 0.1  # nearer by so much a line is worth switching on [mm]
+
+Chosen = tuple[str, ...]
+
+
+def optional_lines(stages: Stages) -> tuple[Chosen, ...]:
+    """Return the inactive lines that could move the body, linked ones together."""
+    design, moving = stages.design, [line.name for line in stages.model.lines if line.constrains]
+    off = [name for name in moving if name not in design.worn() and not design.traits_of(name).locked]
+    groups = (tuple(sorted(set(design.linked(name)).intersection(off))) for name in off)
+    return tuple(dict.fromkeys(groups))
+
+
+class LineSelection:
+    """One design whose targets may switch on ``optional`` lines; used as ``Asking`` is.
+
+    Without an optional line, with each alone and with all of them: the nearest answer counts, and of those
+    that are about as near the one with the fewest lines.
+    """
+
+    def __init__(
+        self,
+        stages: Stages,
+        optional: Collection[str] = (),
+        bounds: Bounds | None = None,
+        most_kpa: float | None = None,
+    ) -> None:
+        self._stages, self._bounds, self._most_kpa = stages, bounds or Bounds({}), most_kpa
+        self._groups = [group for group in optional_lines(stages) if set(group) <= set(optional)]
+        self._solvers: dict[Chosen, Asking] = {(): Asking(stages, self._bounds, most_kpa)}
+        self._chosen: Chosen = ()
+        self.nearer: Callable[[Design], object] = lambda design: None
+
+    def reply(self, goals: Sequence[Goal], progress: Progress = quiet) -> Reply:
+        """Return the answer to ``goals``, which depends on them and the design alone; see ``ask``."""
+        found: dict[Chosen, Reply] = {}
+        problem: UserError | None = None
+        for chosen in self._candidates():
+            try:
+                found[chosen] = self._solver(chosen).reply(goals, progress)
+            except UserError as why:
+                problem = problem or why
+                continue
+            if found[chosen].reachable:
+                break
+        if not found:
+            assert problem is not None
+            raise problem
+        self._chosen = next(iter(found))
+        for chosen, reply in found.items():
+            best = found[self._chosen]
+            nearer = (reply.agreed, best.deviation - _WORTH > reply.deviation) == (True, True)
+            if reply.reachable or nearer:
+                self._chosen = chosen
+        return found[self._chosen]
+
+    def hurried(self, goals: Sequence[Goal], progress: Progress = quiet) -> Reply:
+        """Return an answer near the last one, with the lines of that; see ``Asking.hurried``."""
+        return self._solver(self._chosen).hurried(goals, progress)
+
+    def conflicts(
+        self, reply: Reply, goals: Sequence[Goal], progress: Progress = quiet
+    ) -> tuple[Conflict, ...]:
+        """Return which of the ``goals`` conflict in the last reply; see ``Asking.conflicts``."""
+        return self._solver(self._chosen).conflicts(reply, goals, progress)
+
+    def unlimited(self, reply: Reply, goals: Sequence[Goal], progress: Progress = quiet) -> Reply | None:
+        """Return the answer without a limit of pressure where that is what keeps ``goals`` from being met.
+
+        Else there is none. Raises UserError, Cancelled.
+        """
+        if reply.reachable or not reply.pressing:
+            return None
+        chosen = [name for name in self._chosen if name in reply.design.worn()]
+        free = LineSelection(self._stages, chosen, self._bounds, math.inf)
+        return free.reply(goals, progress)
+
+    def now(self, names: Collection[str]) -> tuple[dict[str, float], dict[str, float]]:
+        """Return what quantities and pressures are in the design as it is; see ``Asking.now``."""
+        return self._solver(()).now(names)
+
+    def figures(self, names: Collection[str], points: Points) -> dict[str, float]:
+        """Return the quantities ``names`` where the control points are at ``points`` (n, 3) [mm]."""
+        return self._solver(()).figures(names, points)
+
+    def _candidates(self) -> Sequence[Chosen]:
+        every = tuple(name for group in self._groups for name in group)
+        singles = self._groups if 1 < len(self._groups) <= _MOST else []
+        return list(dict.fromkeys(((), *singles, every)))
+
+    def _solver(self, chosen: Chosen) -> Asking:
+        if chosen not in self._solvers:
+            design = self._stages.design
+            for name in chosen:
+                design = design.with_line(name, self._bounds.longest)
+            self._solvers[chosen] = Asking(build(design, self._stages), self._bounds, self._most_kpa)
+        solver = self._solvers[chosen]
+        solver.nearer = self.nearer
+        return solver
+
+
+def switched_on(before: Design, after: Design) -> tuple[str, ...]:
+    """Return the lines that are active ``after`` and were not ``before``."""
+    return tuple(sorted(after.worn() - before.worn()))

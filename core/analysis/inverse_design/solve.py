@@ -1,0 +1,300 @@
+"""Ask for the result: the lengths of lines that bring the body to what is wished (ours).
+
+The search works on one model. Lines made of elastics have other stiffnesses at other lengths, and what bands
+press with follows from the shape they lie on: both are looked at after an answer, and it is asked again from
+there with what was learnt, until figures and pressures agree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from core.analysis.inverse_design.candidate import Candidate
+from core.analysis.inverse_design.conflicts import Conflict, conflicts_of
+from core.analysis.inverse_design.objective import NEAR, weights_of
+from core.analysis.inverse_design.pressure_limit import PressureLimit, largest_pressures
+from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.readings import Figures
+from core.analysis.inverse_design.search import LOOSEST, Bounds, Search
+from core.analysis.inverse_design.sensitivities import exact_points
+from core.document.design import Design
+from core.errors import LineError
+from core.geometry.mesh import Floats, Points
+from core.mechanics.force_units import newtons_per_unit
+from core.pipeline.build import Stages, build
+from core.pipeline.exact import NoBalanceError
+from core.progress import Progress, quiet
+
+_LIMIT_ROUNDS, _FIRM_FROM = (
+    9,
+    3,
+)  # rounds for pressure; from then on limits only get lower: lines may alternate
+_SLOPES = -2.0, 0.5  # of lengths that are found by those of the model [1]
+
+
+@dataclass(frozen=True, eq=False)
+class Reply:
+    """What can be done: the ``design`` with the lengths found, and what its exact answer ``reached`` [mm].
+
+    ``reachable`` tells whether that is what was asked for, ``miss`` [mm] what the worst figure lacks,
+    ``deviation`` [mm] the root of the squares of all as they count: see ``weights_of``. If not,
+    there is a reason: lines ``at_end`` are as short or as long as they may be, lines that are ``pressing`` do
+    so as hard as they may, ``slack`` ones would push, ``strained`` is a shape that would strain beyond what
+    looks natural; without any the lines do not move it that way. ``agreed`` is False where lengths, elastics
+    and pressures did not come to agree: there may be better. ``pressure`` [kPa] is the largest of each line
+    that was looked at, and ``limit`` what it may be; ``unseen`` are the worn lines that were not looked at.
+    ``tension`` [N] is the sum over the lines, an estimate where they are made of no elastic; ``answers`` how
+    many were worked out.
+    ``longest`` is the ratio that no line goes beyond [1], ``points`` (n, 3) [mm] are the exact answer.
+    """
+
+    design: Design
+    reached: Mapping[str, float]
+    reachable: bool
+    miss: float
+    at_end: tuple[str, ...]
+    pressing: tuple[str, ...]
+    slack: tuple[str, ...]
+    strained: bool
+    agreed: bool
+    pressure: Mapping[str, float]
+    limit: float
+    unseen: tuple[str, ...]
+    tension: float
+    answers: int
+    longest: float = LOOSEST
+    deviation: float = 0.0
+    points: Points = field(default_factory=lambda: np.zeros((0, 3)))
+
+    def may_not_be_longer(self, name: str) -> bool:
+        """Tell of a line that is at its end which end that is."""
+        return self.design.ratio(name) > self.longest - 1e-3
+
+
+def ask(
+    stages: Stages,
+    goals: Sequence[Goal],
+    shortest: Mapping[str, float] | None = None,
+    kept: Collection[str] = (),
+    progress: Progress = quiet,
+    most_kpa: float | None = None,
+) -> Reply:
+    """Return the lengths of the worn lines that bring the body to ``goals``, or as near as they can.
+
+    ``shortest`` [1] are ratios that named lines may not go below; locked lines and those ``kept`` stay.
+    No line pushes, and none presses more than ``most_kpa``; if that is not given, lines made of elastic press
+    no more than the red light begins with, straps aside. Raises UserError if no worn line is free, nothing is
+    asked, or nothing balances at the start; Cancelled.
+    """
+    return Asking(stages, Bounds(shortest or {}, kept), most_kpa).reply(goals, progress)
+
+
+class Asking:
+    """One design that is asked again and again: what one answer needed is there for the next.
+
+    ``bounds`` and ``most_kpa`` are those of ``ask``. ``nearer`` hears of the nearest design so far while an
+    answer is looked for elsewhere, in the thread that asks.
+    """
+
+    def __init__(self, stages: Stages, bounds: Bounds | None = None, most_kpa: float | None = None) -> None:
+        self._stages, design = stages, stages.design
+        self._made = {} if design.line_hold == "held" else design.worn_elastics()
+        self._limit = PressureLimit(design, most_kpa)
+        bounds = bounds or Bounds({})
+        shortest = dict(bounds.shortest)
+        for name, elastic in self._made.items():
+            # As if the line did not move the body: beyond that its elastic is not known.
+            shortest[name] = max(shortest.get(name, 0.0), 1.0 / (1.0 + elastic.reach))
+        self._bounds = replace(bounds, shortest=shortest)
+        self._newtons = newtons_per_unit(stages.model, design.tissue_stiffness)
+        self._figures = Figures(stages)  # they hang on the body, not on its lines
+        self._goals: Sequence[Goal] = ()
+        self._progress: Progress = quiet
+        self.nearer: Callable[[Design], object] = lambda design: None
+        self._search: Search | None = None
+        self._used: list[tuple[Search, int]] = []
+
+    def reply(self, goals: Sequence[Goal], progress: Progress = quiet) -> Reply:
+        """Return the answer to ``goals``, which depends on them and the design alone; see ``ask``."""
+        return self._told(self._answered, goals, progress)
+
+    def hurried(self, goals: Sequence[Goal], progress: Progress = quiet) -> Reply:
+        """Return an answer near the last one, for a hand on its way: lengths that do it, not the best.
+
+        It is neither sought elsewhere nor checked from rest, and pressures are looked at once. Raises as
+        ``ask`` does.
+        """
+        return self._told(self._near_the_last, goals, progress)
+
+    def conflicts(
+        self, reply: Reply, goals: Sequence[Goal], progress: Progress = quiet
+    ) -> tuple[Conflict, ...]:
+        """Return which ``goals`` the last ``reply`` could not meet together. Raises UserError, Cancelled."""
+        if reply.reachable or len(goals) < 2:
+            return ()
+        with threadpool_limits(1):
+            stages = build(reply.design, self._stages)
+            self._goals, self._progress = goals, progress
+            search = self._begun(stages)
+            return conflicts_of(search, goals)
+
+    def now(self, names: Collection[str]) -> tuple[dict[str, float], dict[str, float]]:
+        """Return what the figures ``names`` are in the design as it is [mm], and what its lines press with.
+
+        These are the largest pressures [kPa] of all lines. Raises UserError.
+        """
+        with threadpool_limits(1):
+            points = exact_points(self._stages)
+            return self.figures(names, points), largest_pressures(self._stages, points)
+
+    def figures(self, names: Collection[str], points: Points) -> dict[str, float]:
+        """Return what the figures ``names`` are where the control points are at ``points`` (n, 3) [mm]."""
+        values, _ = self._figures.of(tuple(names))(points)
+        return dict(zip(names, values.tolist(), strict=True))
+
+    def _told(self, answered: Callable[[], Reply], goals: Sequence[Goal], progress: Progress) -> Reply:
+        same = [goal.name for goal in goals] == [goal.name for goal in self._goals]
+        self._goals, self._progress, self._used = goals, progress, []
+        if not same:
+            self._search = None
+        # Two BLAS threads make these small products many times slower.
+        with threadpool_limits(1):
+            try:
+                return answered()
+            except NoBalanceError:
+                self._search = None
+                raise NoBalanceError(self._stages.design) from None
+
+    # -- the answer
+
+    def _answered(self) -> Reply:
+        """Return what was found; of what elastics make of it, the nearest that was seen."""
+        self._limit.forget()
+        search = self._begun(self._stages)
+        found = search.found(search.least())
+        if not self._made:
+            return self._within_limit(search, found)
+        best, rounds = self._reply(found, agreed=False), [(search.start, found.lengths)]
+        for _ in range(_LIMIT_ROUNDS):
+            try:
+                stages = build(search.design(_agreed(rounds)), search.stages)
+            except LineError:  # beyond the curve of an elastic, or no balance with it
+                break
+            search = self._begun(stages)
+            seen = search.found(search.start)
+            well = self._is_within_limit(search, seen)
+            seen = search.found(search.start)  # within the limits that were found just now
+            if well and (not best.agreed or self._miss(seen) < best.miss):
+                best = self._kept(search, seen, agreed=True)
+            elif not best.agreed:  # nearer to the limits than what was found without them
+                best = self._kept(search, seen, agreed=False)
+            if well and seen.reached:  # a first look is from rest, so this is what the design is solved to
+                return best
+            found = search.found(search.from_here(search.start))
+            rounds.append((search.start, found.lengths))
+            if well and np.abs(found.look.values - seen.look.values).max() < NEAR:
+                # What keeps the search from here keeps the answer, which is as good as there.
+                return replace(best, pressing=tuple(sorted({*best.pressing, *found.pulled})))
+        return replace(best, agreed=False)
+
+    def _within_limit(self, search: Search, found: Candidate) -> Reply:
+        """Return what was found, or the nearest within the limit of pressure; the model stays the same."""
+        for number in range(_LIMIT_ROUNDS if self._limit.concerns else 0):
+            if self._is_within_limit(search, found, firm=number >= _FIRM_FROM):
+                break
+            found = search.found(search.from_here(found.lengths) if number else search.least())
+        else:
+            return self._kept(search, found, agreed=not self._limit.concerns)
+        return self._kept(search, found, agreed=True)
+
+    def _near_the_last(self) -> Reply:
+        if self._search is None:
+            return self._answered()
+        search = self._search
+        self._used.append((search, len(search)))
+        search.want(self._goals)
+        search.progress = self._progress
+        found = search.found(search.from_here(search.start))
+        if not self._made:
+            if self._limit.concerns and not self._is_within_limit(search, found):
+                found = search.found(search.from_here(found.lengths))
+            return self._kept(search, found, agreed=True)
+        try:
+            search = self._begun(build(found.design, search.stages))
+        except LineError:
+            return self._reply(found, agreed=False)
+        well = self._is_within_limit(search, search.found(search.start))
+        seen = search.found(search.start)
+        if not (well and seen.reached):
+            seen = search.found(search.from_here(search.start))
+        return self._kept(search, seen, agreed=True)
+
+    # -- its parts
+
+    def _begun(self, stages: Stages) -> Search:
+        read = self._figures.of([goal.name for goal in self._goals])
+        search = Search(stages, self._goals, self._bounds, self._progress, read)
+        search.limit(self._limit.hardest)
+        search.nearer = lambda found: self.nearer(found.design)
+        self._used.append((search, 0))
+        return search
+
+    def _is_within_limit(self, search: Search, found: Candidate, *, firm: bool = False) -> bool:
+        """Compute what lines press with at what was found, limit their tensions, and tell if all is kept."""
+        stages = replace(search.stages, design=found.design)
+        kept = self._limit.is_kept(stages, found.look, search.free, firm=firm)
+        search.limit(self._limit.hardest)
+        return kept
+
+    def _kept(self, search: Search, found: Candidate, *, agreed: bool) -> Reply:
+        """Return what was found, and go on from there when the next wish is in a hurry."""
+        search.start, self._search = found.lengths, search
+        return self._reply(found, agreed=agreed)
+
+    def _reply(self, found: Candidate, *, agreed: bool) -> Reply:
+        design, limit = found.design, self._limit
+        values = found.look.values.tolist()
+        return Reply(
+            design,
+            {goal.name: value for goal, value in zip(self._goals, values, strict=True)},
+            found.reached and agreed,
+            self._miss(found),
+            found.at_end,
+            limit.pressing(found.pulled),
+            found.slack,
+            found.strained,
+            agreed,
+            dict(limit.pressure),
+            limit.kpa,
+            tuple(sorted(design.worn() - set(limit.pressure))),
+            self._newtons * float(np.maximum(found.look.pulls, 0.0).sum()),
+            sum(len(search) - before for search, before in self._used),
+            self._bounds.longest,
+            self._deviation(found),
+            found.look.points,
+        )
+
+    def _deviation(self, found: Candidate) -> float:
+        lack = found.look.values - [goal.value for goal in self._goals]
+        return float(np.linalg.norm(weights_of(self._goals) * lack))
+
+    def _miss(self, found: Candidate) -> float:
+        return float(np.abs(found.look.values - [goal.value for goal in self._goals]).max())
+
+
+def _agreed(rounds: Sequence[tuple[Floats, Floats]]) -> Floats:
+    """Return the lengths at which those of the model and those found with it should be the same.
+
+    ``rounds`` are both, round by round; each line goes on with the slope that the last two rounds showed.
+    """
+    model, found = rounds[-1]
+    if len(rounds) < 3:  # the first search began elsewhere
+        return found
+    step = model - rounds[-2][0]
+    moved = np.abs(step) > 1e-9
+    slope = np.clip(np.where(moved, (found - rounds[-2][1]) / np.where(moved, step, 1.0), 0.0), *_SLOPES)
+    return model + (found - model) / (1.0 - slope)

@@ -1,0 +1,1 @@
+"""Limits of line lengths and zones of sliders."""

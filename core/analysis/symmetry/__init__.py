@@ -1,0 +1,1 @@
+"""Differences of left and right, and lengths that balance them."""

@@ -1,0 +1,138 @@
+"""Make even: the lengths of left and right lines that bring both bust points alike, as a request (ours)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, replace
+from math import hypot
+
+from core.analysis.inverse_design.balance_quantity import FURTHER_OUT, HIGHER
+from core.analysis.inverse_design.bust_quantity import LIFT, OUT
+from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.readings import reading
+from core.analysis.inverse_design.solve import Reply, ask
+from core.analysis.symmetry.compare import NO_BREAST, Evenness, evenness
+from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, partable, parted
+from core.control_mesh.template import read_template
+from core.errors import UserError
+from core.geometry.mesh import Points
+from core.landmarks.types import SIDES
+from core.measurements.subject import shows_breast
+from core.pipeline.build import Stages, build
+from core.pipeline.solve import run
+from core.progress import Progress, quiet
+
+EVEN = (Goal(HIGHER, 0.0), Goal(FURTHER_OUT, 0.0))
+"""Both bust points equally high and equally far out."""
+
+_UNSEEN = 0.1  # [mm]
+
+KEPT = (LIFT, OUT)
+"""What is to stay of both sides together: else least tension would undo the garment."""
+
+
+@dataclass(frozen=True, eq=False)
+class Evened:
+    """What makes a design even, or nearest to it: the ``reply`` to ``goals``, those of evenness first.
+
+    ``rest``, ``before`` and ``after`` are how left and right differ at rest, and in the exact answers of the
+    design as it was and as it was found. ``kept`` is how lift and way out went from there to here [mm].
+    ``parted`` names the lines that were split or unlinked for it.
+    """
+
+    reply: Reply
+    goals: tuple[Goal, ...]
+    rest: Evenness
+    before: Evenness
+    after: Evenness
+    kept: Mapping[str, tuple[float, float]]
+    parted: tuple[str, ...]
+
+    @property
+    def even(self) -> bool:
+        """Whether both bust points come to lie alike."""
+        return self.after.furthest < ENOUGH
+
+    @property
+    def gained(self) -> float:
+        """By how much nearer to each other the bust points lie, mirrored [mm]."""
+        return self.before.apart - self.after.apart
+
+    @property
+    def lost(self) -> float:
+        """By how much both sides together lie elsewhere than they did, in height and way out [mm]."""
+        return hypot(*(after - before for before, after in self.kept.values()))
+
+    @property
+    def worth(self) -> bool:
+        """Whether it is even, or at least brings more than what it takes away."""
+        return self.even or self.gained > max(self.lost, ENOUGH)
+
+
+def even_goals(stages: Stages, control_points: Points) -> tuple[Goal, ...]:
+    """Return what to ask for so that left and right come alike and the rest stays: the first the most.
+
+    Lift and way out of both together are to stay as they are at ``control_points`` (n, 3) [mm]. With fewer
+    lengths than wishes the nearest to all of them then takes no more away than it brings.
+    """
+    return (*EVEN, *(Goal(name, value) for name, value in _kept(stages, control_points).items()))
+
+
+def _kept(stages: Stages, control_points: Points) -> dict[str, float]:
+    return {name: reading(stages, name)(control_points).value for name in KEPT}
+
+
+def make_even(
+    stages: Stages,
+    shortest: Mapping[str, float] | None = None,
+    kept: Collection[str] = (),
+    progress: Progress = quiet,
+) -> Evened:
+    """Return the lengths that bring both bust points of a design alike, or as near as is worth it.
+
+    Pairs are set apart and lines across both sides split first, if nothing else moves one side alone. What
+    cannot be kept besides is let go of where that makes it even, or brings more than it takes away. Where
+    nothing does, what is returned is not ``worth`` it. ``shortest`` and ``kept`` see ``ask``. Raises
+    UserError if a breast is missing, no worn line can move one side alone, or nothing balances; Cancelled.
+    """
+    if not all(shows_breast(stages.landmarks, side) for side in SIDES):
+        raise UserError(NO_BREAST, "Place its bust point, or change lines by hand.")
+    exact = build(replace(stages.design, volume="exact"), stages, progress)
+    names: tuple[str, ...] = ()
+    if not moves_one_side(exact):
+        template = read_template(exact.design.template)
+        names = partable(exact.design, template)
+        exact = build(parted(exact.design, template), exact, progress)
+    if not moves_one_side(exact):
+        raise UserError(
+            "No worn line can move one side alone.",
+            "Wear a line that is not locked: one across both sides is split, a pair set apart.",
+        )
+    best = _best(exact, names, lambda goals: ask(exact, goals, shortest, kept, progress))
+    design = replace(best.reply.design, volume=stages.design.volume)
+    return replace(best, reply=replace(best.reply, design=design))
+
+
+def _best(stages: Stages, names: tuple[str, ...], asked: Callable[[tuple[Goal, ...]], Reply]) -> Evened:
+    """Return what brings the most among those that keep more and less; if any is even, among these."""
+    here = run(stages).control_points
+    told, found = evenness(stages, here), []
+    were, goals = _kept(stages, here), even_goals(stages, here)
+
+    def tried(count: int) -> bool:
+        reply = asked(goals[:count])
+        there = build(reply.design, stages)
+        points = run(there).control_points
+        kept = {name: (were[name], value) for name, value in _kept(there, points).items()}
+        after = evenness(there, points).after
+        found.append(Evened(reply, goals[:count], told.before, told.after, after, kept, names))
+        return reply.reachable
+
+    # What evenness alone does not reach it does not reach with more to keep either: that is not looked for.
+    if not tried(len(goals)) and tried(len(EVEN)):
+        tried(len(EVEN) + 1)
+    # Of several that bring as much, to what cannot be seen, the one that keeps the most.
+    return max(
+        found,
+        key=lambda each: (each.even, round((each.gained - each.lost) / _UNSEEN), len(each.goals)),
+    )

@@ -1,0 +1,1 @@
+"""Uncertainty of results, propagated from landmarks, scan, tissue and lines."""

@@ -1,0 +1,91 @@
+"""What figures may be off by: standard deviations of all sources, with where each comes from, as data."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from functools import cache
+from importlib import resources
+
+from core.errors import UserError
+from core.landmarks.bust_point import SMOOTH
+from core.landmarks.types import CERTAIN, Landmark
+from core.measurements.size_table import Words
+from core.measurements.uncertain_value import SOURCES
+
+
+@dataclass(frozen=True)
+class Assumed:
+    """Standard deviations of the sources.
+
+    ``landmark_mm`` of a landmark in each direction along the skin, ``unsure_landmark_mm`` of one that is not
+    sure; ``skin_mm`` of the scan along its normals; ``tissue_ln`` and ``line_ln`` of the logarithm of the
+    stiffness of tissue and of lines without an elastic; ``tape_mm`` of the length of a band as it is sewn;
+    ``elastic_ln`` and ``measured_elastic_ln`` of the logarithm of an elastic's force. What is told after a ±
+    is ``sds`` of them.
+    """
+
+    sds: float = 2.0
+    landmark_mm: float = 0.0
+    unsure_landmark_mm: float = 0.0
+    skin_mm: float = 0.0
+    tissue_ln: float = 0.0
+    line_ln: float = 0.0
+    tape_mm: float = 0.0
+    elastic_ln: float = 0.0
+    measured_elastic_ln: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in NUMBERS:
+            if not 0.0 <= getattr(self, name) <= 20.0:
+                raise UserError(f"{name} cannot be {getattr(self, name):g}.", "It goes from 0 to 20.")
+
+    def times(self, share: float) -> Assumed:
+        """Return all sources so many times as large."""
+        return replace(self, **{name: share * getattr(self, name) for name in NUMBERS if name != "sds"})
+
+    def of_landmark(self, mark: Landmark) -> float:
+        """Return the standard deviation of a landmark in each direction along the skin [mm]."""
+        # A smooth breast tells where it points to, but its nipple lies somewhere about there.
+        sure = mark.confidence >= CERTAIN and mark.rule != SMOOTH
+        return self.landmark_mm if sure else self.unsure_landmark_mm
+
+
+NUMBERS = tuple(field.name for field in fields(Assumed))
+"""The names of all that is assumed."""
+
+
+@cache
+def assumed() -> Assumed:
+    """Return what comes with Busk."""
+    return Assumed(**{name: float(_file()[name]) for name in NUMBERS})  # type: ignore[arg-type]
+
+
+@cache
+def origins() -> Mapping[str, Words]:
+    """Return where each source's numbers come from, by source."""
+    told = {each["name"]: Words(each["en"], each["ja"]) for each in _file()["sources"]}  # type: ignore[attr-defined]
+    return {name: told[name] for name in SOURCES}
+
+
+def assuming(texts: Sequence[str], base: Assumed) -> Assumed:
+    """Return ``base`` with what ``texts`` like "tape_mm=3" say. Raises UserError."""
+    told = {}
+    for text in texts:
+        name, _, value = text.partition("=")
+        name = name.strip().replace("-", "_")
+        if name not in NUMBERS:
+            raise UserError(f"Nothing called '{name}' is assumed.", f"Choose one of: {', '.join(NUMBERS)}.")
+        try:
+            told[name] = float(value)
+        except ValueError:
+            raise UserError(f"'{value}' is no number for {name}.", f"Write {name}=2.") from None
+    return replace(base, **told)
+
+
+@cache
+def _file() -> dict[str, object]:
+    text = (resources.files("resources") / "spread.json").read_text(encoding="utf-8")
+    values: dict[str, object] = json.loads(text)
+    return values

@@ -1,0 +1,212 @@
+"""What each knob does to all figures, by derivatives: propagated through the solved system.
+
+What lines are made of and how long they are goes through the linear system of the balance; figures are then
+read a step to either side along what that says. Landmarks move the control mesh itself, and no fit is
+differentiable in closed form: there the body is fitted anew a step to either side.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from core.analysis.uncertainty.outputs import (
+    Figures,
+    apart,
+    line_figures,
+    measured_figures,
+    rested,
+    rested_figures,
+    skin_normals,
+)
+from core.analysis.uncertainty.parameters import PLACING, Knob, turned
+from core.analysis.uncertainty.perturbed_solutions import Trials
+from core.deformation.tffd import deform
+from core.errors import UserError
+from core.garment.tension import LineTension, line_tensions
+from core.geometry.mesh import Floats, Points
+from core.measurements.uncertain_value import ELASTIC, LANDMARKS, LINE, SCAN, TAPE, TISSUE
+from core.mechanics.force_units import newtons_per_unit
+from core.mechanics.stiffness_sensitivity import Changes, answers_to
+from core.pipeline.build import targets_of
+
+
+@dataclass(frozen=True, eq=False)
+class Effect:
+    """What one standard deviation of a ``knob`` does to ``figures``, and to the reshaped skin along its
+    normals, ``skin`` (n,) [mm].
+    """
+
+    knob: Knob
+    figures: Figures
+    skin: Floats
+
+
+class Propagation:
+    """One solved design and what its knobs do to it. Raises NoBalanceError."""
+
+    def __init__(self, trials: Trials) -> None:
+        self.trials, self.stages = trials, trials.base
+        stages = trials.base
+        self.ratios = np.array(targets_of(stages.design, stages).ratios)
+        self.points = trials.points
+        self.answer, self._kept = trials.resting.answer, trials.resting.kept
+        self.places = deform(stages.binding, self.points)
+        self.normals = skin_normals(stages, self.points)
+        self.tensions = line_tensions(stages, self.points)
+        self._long = {line.name: line.rest_lengths for line in stages.model.lines}
+        for at in stages.model.pulling:
+            name = stages.model.lines[at].name
+            self._long[name] = stages.model.tapes_at_rest[stages.model.owner == at]
+
+    def effect(self, knob: Knob) -> Effect:
+        """Return what a knob does. Raises the UserError of a fit that fails to both sides."""
+        if knob.source == SCAN:
+            return self._of_scan(knob)
+        if knob is PLACING:
+            return self._of_placing()
+        return self._of_landmark(knob) if knob.source == LANDMARKS else self._of_lines(knob)
+
+    def _of_placing(self) -> Effect:
+        """A fold that is placed may lead a root another way than one that is found."""
+        trials, stages = self.trials, self.stages
+        here = rested_figures(trials.rest)
+        if not trials.bare:
+            here = measured_figures(stages, trials.steps, trials.rest, self.points) | trials.figures
+        there = trials(turned(stages, {PLACING: 0.0}))
+        skin = apart(stages.body, there.places, self.places, self.normals)
+        return Effect(PLACING, _per(here, there.figures, 1.0), skin)
+
+    def _of_scan(self, knob: Knob) -> Effect:
+        rest, steps = self.trials.rest.subject, self.trials.steps
+        if self.trials.bare:
+            sides = [rested(self.stages, steps, rest, skin) for skin in (-knob.sd, knob.sd)]
+            return Effect(knob, _half(*map(rested_figures, sides)), np.full(len(self.places), knob.sd))
+        found = [
+            measured_figures(self.stages, steps, rested(self.stages, steps, rest, skin), self.points, skin)
+            for skin in (-knob.sd, knob.sd)
+        ]
+        return Effect(knob, _half(*found), np.full(len(self.places), knob.sd))
+
+    def _of_landmark(self, knob: Knob) -> Effect:
+        tried = []
+        for turn in (-1.0, 1.0):
+            try:
+                tried.append((turn, self.trials(turned(self.stages, {knob: turn}))))
+            except UserError as problem:
+                failed = problem
+        if not tried:
+            raise failed
+        if len(tried) == 1:
+            # To one side there is no fit: the other side alone tells, against all landmarks in their places.
+            tried.append((0.0, self.trials(turned(self.stages, {knob: 0.0}))))
+        (low, one), (high, other) = sorted(tried, key=lambda each: each[0])
+        whole = high - low
+        skin = apart(self.stages.body, other.places, one.places, self.normals) / whole
+        return Effect(knob, _per(one.figures, other.figures, whole), skin)
+
+    def _of_lines(self, knob: Knob) -> Effect:
+        moved, pulls = self._answered(knob)
+        found, places = [], []
+        for turn in (-1.0, 1.0):
+            points = self.points + turn * moved
+            tensions = {
+                name: _pulled(each, turn * pulls[name], self._long[name])
+                for name, each in self.tensions.items()
+            }
+            design = turned(self.stages, {knob: turn}).design
+            stages = replace(self.stages, design=design)
+            meant = {
+                line.name: float(ratio) for line, ratio in zip(stages.model.lines, self.ratios, strict=True)
+            }
+            figures = line_figures(stages, points, tensions, meant)
+            if np.abs(moved).max() > _STILL:
+                figures |= measured_figures(stages, self.trials.steps, self.trials.rest, points)
+            found.append(figures)
+            places.append(deform(self.stages.binding, points))
+        return Effect(knob, _half(*found), apart(self.stages.body, places[1], places[0], self.normals) / 2.0)
+
+    def _answered(self, knob: Knob) -> tuple[Points, dict[str, Floats]]:
+        """Return how control points move, (n, 3) [mm], and tensions change [N], by line, for one sd."""
+        model, design = self.stages.model, self.stages.design
+        elastics = design.worn_elastics()
+        names = [line.name for line in model.lines]
+        stiffer, ratios = np.zeros((len(names), 1)), np.zeros((len(names), 1))
+        newtons = knob.sd if knob.source == TISSUE else 0.0
+        for at, name in enumerate(names):
+            elastic = elastics.get(name)
+            if knob.source == TISSUE and elastic:
+                stiffer[at] = -knob.sd
+            elif (knob.source == LINE and not elastic) or (
+                knob.source == ELASTIC and elastic and elastic.name == knob.name
+            ):
+                stiffer[at] = knob.sd
+            elif knob.source == TAPE and name == knob.name:
+                ratios[at] = knob.sd / model.lines[at].whole_length
+        made = {names.index(name): elastic for name, elastic in elastics.items()}
+        answers = answers_to(self.answer, Changes(stiffer, ratios), made, self.ratios, self._kept)
+        moved = np.zeros_like(self.points)
+        moved[model.tensegric.free] = answers.moved[:, 0].reshape(-1, 3)
+        return moved, self._pulls(knob, answers.pulls[:, 0], newtons, ratios)
+
+    def _pulls(self, knob: Knob, pulls: Floats, newtons: float, ratios: Floats) -> dict[str, Floats]:
+        stages, model = self.stages, self.stages.model
+        unit = newtons_per_unit(model, stages.design.tissue_stiffness)
+        held = stages.design.line_hold == "held"
+        found = {}
+        for at, line in enumerate(model.lines):
+            if line.name not in self.tensions:
+                continue
+            segments = self.tensions[line.name].segments
+            if held:
+                found[line.name] = newtons * segments + unit * self._held(at, ratios)
+            elif (model.owner == at).any():
+                found[line.name] = newtons * segments + unit * pulls[model.owner == at]
+            else:
+                gained = self._on_ribs(knob, line.name, float(ratios[at, 0]))
+                found[line.name] = np.full(len(segments), gained)
+        return found
+
+    def _held(self, line: int, ratios: Floats) -> float:
+        """Return what the tension of a held line gains, in the model's unit."""
+        every = np.arange(len(ratios))
+        rates = self._kept(self.answer.by_ratio(every))
+        rest = np.array([each.rest_length for each in self.stages.model.lines])
+        by_line = self.answer.tensions(rates, np.diag(rest))[1]
+        return float(by_line[line] @ ratios[:, 0])
+
+    def _on_ribs(self, knob: Knob, name: str, longer: float) -> float:
+        """Return what the tension of an elastic that cannot move gains [N]."""
+        elastic, ratio = self.stages.design.worn_elastics()[name], self.stages.design.ratio(name)
+        force = elastic.force(1.0 / ratio - 1.0)
+        if knob.source == ELASTIC and knob.name == elastic.name:
+            return knob.sd * force
+        ends = [elastic.force(1.0 / (ratio + turn * longer) - 1.0) for turn in (-1.0, 1.0)]
+        return (ends[1] - ends[0]) / 2.0
+
+
+_STILL = 1e-9  # a knob that moves no point further changes no measure [mm]
+
+
+def effects(propagation: Propagation, knobs: Sequence[Knob]) -> Iterator[Effect | None]:
+    """Yield what each knob does, or None where no fit was found to either side."""
+    for knob in knobs:
+        try:
+            yield propagation.effect(knob)
+        except UserError:
+            yield None
+
+
+def _pulled(tension: LineTension, more: Floats, lengths: Floats) -> LineTension:
+    mean = tension.mean + float(np.average(more, weights=lengths))
+    return replace(tension, segments=tension.segments + more, mean=mean)
+
+
+def _half(low: Mapping[str, float], high: Mapping[str, float]) -> Figures:
+    return _per(low, high, 2.0)
+
+
+def _per(low: Mapping[str, float], high: Mapping[str, float], whole: float) -> Figures:
+    return {key: (high[key] - low[key]) / whole for key in low if key in high}

@@ -1,0 +1,151 @@
+"""All figures of a solved design whose spread is told, read off one body."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from core.deformation.tffd import deform
+from core.garment.band_path import courses
+from core.garment.pressure import band_pressure
+from core.garment.tension import LineTension, line_tensions
+from core.geometry.mesh import Floats, Mesh, Points
+from core.measurements.definitions import Measure
+from core.measurements.subject import Subject, subject_of
+from core.measurements.table import calm_moves, of_subject
+from core.measurements.uncertain_value import (
+    AFTER,
+    BEFORE,
+    CHANGE,
+    CUT,
+    LIFT,
+    MAX_KPA,
+    MEAN_KPA,
+    OUT,
+    TENSION,
+)
+from core.pipeline.build import Stages
+from core.scan.body import Body
+
+Figures = dict[str, float]
+"""Figures by key, see ``core.measurements.uncertain_value``."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rested:
+    """A body at rest that is measured again and again: ``subject``, and what was measured ``before``."""
+
+    subject: Subject
+    before: Mapping[str, Measure]
+
+
+@dataclass(frozen=True)
+class Steps:
+    """How far under the breasts the under-bust is measured before and after [mm].
+
+    The rule goes down in steps until no breast is nicked. A hair decides between two steps; what is told here
+    is how sure the girth is at the one that was taken.
+    """
+
+    before: float | None
+    after: float | None
+
+
+def steps_of(rest: Subject, after: Subject) -> Steps:
+    """Return the steps that a body takes by the rule."""
+    return Steps(*(each.landmarks.underbust_level - each.levels["underbust"].z for each in (rest, after)))
+
+
+def rested(stages: Stages, steps: Steps, subject: Subject | None = None, skin: float = 0.0) -> Rested:
+    """Return the body of a design at rest, its skin so much further out [mm]."""
+    subject = subject or replace(subject_of(stages.body.calm, stages.landmarks), down=steps.before)
+    shown = subject
+    if skin:
+        mesh = subject.mesh
+        shown = subject.moved(mesh.vertices + skin * mesh.vertex_normals, (0.0, 0.0))
+    return Rested(subject, of_subject(shown, stages.design.own_measures))
+
+
+def rested_figures(rest: Rested) -> Figures:
+    """Return the measures of a body that wears nothing: before and after are the same, and no change is."""
+    return {**_values(BEFORE, rest.before), **_values(AFTER, rest.before)}
+
+
+def measured_figures(
+    stages: Stages, steps: Steps, rest: Rested, points: Points, skin: float = 0.0
+) -> Figures:
+    """Return measures before and after with their change, and how the bust points moved [mm].
+
+    ``points`` (n, 3) [mm] are the control points; ``skin`` [mm] is how much further out all skin lies.
+    """
+    places = deform(stages.binding, points)
+    vertices = rest.subject.mesh.vertices + calm_moves(stages.body, places - stages.body.mesh.vertices)
+    if skin:
+        vertices = vertices + skin * Mesh(vertices, rest.subject.mesh.faces).vertex_normals
+    left, right = stages.body_change(points).tolist()
+    worn = replace(rest.subject, down=steps.after).moved(vertices, (left, right))
+    after = of_subject(worn, stages.design.own_measures, rest.subject)
+    before, now = _values(BEFORE, rest.before), _values(AFTER, after)
+    changes = {
+        f"{CHANGE}:{key}": now[f"{AFTER}:{key}"] - before[f"{BEFORE}:{key}"]
+        for key in after
+        if f"{AFTER}:{key}" in now and f"{BEFORE}:{key}" in before
+    }
+    return {**before, **now, **changes, **bust_figures(stages, points)}
+
+
+def bust_figures(stages: Stages, points: Points) -> Figures:
+    """Return how far the bust points rose and came forward [mm], both and each."""
+    moves = stages.watch.bust_points(points) - stages.watch.bust_points(stages.control.mesh.vertices)
+    found: Figures = {}
+    for what, ways in ((LIFT, moves[:, 2]), (OUT, -moves[:, 1])):
+        found |= {what: float(ways.mean()), f"{what} left": float(ways[0]), f"{what} right": float(ways[1])}
+    return found
+
+
+def line_figures(
+    stages: Stages, points: Points, tensions: Mapping[str, LineTension], ratios: Mapping[str, float]
+) -> Figures:
+    """Return what is told of worn lines: lengths to cut [mm], tensions [N] and pressures [kPa].
+
+    ``ratios`` are the lengths that are meant to be cut, whatever comes of cutting them.
+    """
+    found: Figures = {f"{TENSION}:{name}": each.mean for name, each in tensions.items()}
+    elastics, held = stages.design.worn_elastics(), stages.design.line_hold == "held"
+    for line in stages.model.lines:
+        if line.name in elastics:
+            elastic, reached = elastics[line.name], line.length(points)
+            natural = ratios[line.name] * line.rest_length
+            if held and line.name in tensions:
+                natural = reached / (1.0 + elastic.elongation(tensions[line.name].mean))
+            whole = reached + line.back_length
+            found[f"{CUT}:{line.name}"] = whole * natural / reached + elastic.allowance_mm
+    for name, course, width in courses(stages, points, tensions):
+        pressed = band_pressure(course, width)
+        found[f"{MEAN_KPA}:{name}"], found[f"{MAX_KPA}:{name}"] = pressed.mean, pressed.largest
+    return found
+
+
+def figures_of(stages: Stages, points: Points) -> Figures:
+    """Return all but the measures of a design as it is solved to control ``points``, shape (n, 3) [mm]."""
+    ratios = {line.name: stages.design.ratio(line.name) for line in stages.model.lines}
+    return {
+        **bust_figures(stages, points),
+        **line_figures(stages, points, line_tensions(stages, points), ratios),
+    }
+
+
+def skin_normals(stages: Stages, points: Points) -> Points:
+    """Return the normals of the reshaped body, shape (n, 3) [1]."""
+    return Mesh(deform(stages.binding, points), stages.body.mesh.faces).vertex_normals
+
+
+def apart(body: Body, one: Points, other: Points, normals: Points) -> Floats:
+    """Return how far ``one`` lies beyond ``other``, both (n, 3) [mm], along ``normals``, shape (n,) [mm]."""
+    return np.asarray(np.einsum("ij,ij->i", one - other, normals))
+
+
+def _values(kind: str, measured: Mapping[str, Measure]) -> Figures:
+    return {f"{kind}:{key}": each.value for key, each in measured.items() if each.value is not None}

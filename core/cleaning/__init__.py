@@ -1,1 +1,0 @@
-"""What makes a raw scan one clean skin: before the unit is known, after it, and noise taken out."""

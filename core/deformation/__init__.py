@@ -1,0 +1,1 @@
+"""The body deformed with the control mesh (t-FFD)."""

@@ -1,0 +1,1 @@
+"""The design and its document: lines, elastics, presets, text notation."""

@@ -1,0 +1,274 @@
+"""Design: all that the designer decided, one small immutable value. Everything else follows from it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from functools import reduce
+from typing import Any
+
+from core.document.calibration_record import Calibration
+from core.document.custom_measures import WORN_TIGHT, OwnMeasure, check_customer, put_measure
+from core.document.document_limits import (
+    MOST_ELASTICS,
+    MOST_LINES,
+    MOST_MEASURES,
+    MOST_POINTS,
+    MOST_ROWS,
+    check_counts,
+)
+from core.document.elastic import TISSUE_LIMITS, TISSUE_STIFFNESS, Elastic, check_elastics
+from core.document.lines import LineTraits, OwnLine, WornLine, partner_of
+from core.document.printable_name import repeated
+from core.document.validation import check_flags, check_numbers, check_words
+from core.errors import LandmarkError, LineError, UserError
+from core.landmarks.manual import PlacedMark
+from core.mechanics.constraint_lines import RATIO_LIMITS
+from core.mechanics.options import CHOICES, DEFAULT_LINE_STIFFNESS, RANGES, Mechanics
+from core.mechanics.volume import CONTROLS
+from core.scan.source import ScanSource
+
+__all__ = ["TEMPLATES", "WEIGHTS", "Design", "ScanSource"]
+
+WEIGHTS = ("smooth", "paper")
+TEMPLATES = ("168", "120")
+
+
+@dataclass(frozen=True)
+class Design:
+    """The document: what is saved, undone and solved.
+
+    A line that is not in ``lines`` is not worn: it is measured only. ``line_height`` [1] is where the
+    mid-bust line runs between fold (0) and bust point (1). ``gain`` [probe units] is that of the conventional
+    force; None stands for 0.97 of the limit at which it starts to vibrate at rest. ``scaled_normals`` lets
+    what stands off the control mesh grow with it; ``dense_volume`` lets the exact answer hold the volume of
+    the body itself and not that of the control mesh. For the choices of the model see ``core.mechanics.options``.
+    ``own_lines`` are lines beside those of the template, ``traits`` how lines are treated where that is
+    not as usual, ``placed`` the landmarks that were placed by hand, ``own_measures`` what is measured beside
+    the usual, ``elastics`` those that lines are made of, with their curves, so that a project opens
+    elsewhere. ``tissue_stiffness`` [N/m] tells what the model's forces are in newtons, an estimate (see
+    docs/sewing.md). ``customer`` is whom it is for, in whatever words, ``worn_tight_mm`` what her sizes take
+    off the under-bust. ``calibration`` tells which scan with the garment on its numbers come from, if any.
+    ``unknown`` keeps what a later version wrote.
+    """
+
+    scan: ScanSource
+    template: str = "168"
+    line_height: float = 0.5
+    lines: tuple[WornLine, ...] = ()
+    volume: str = "adaptive"
+    gain: float | None = None
+    line_stiffness: float = DEFAULT_LINE_STIFFNESS
+    line_contact: str = "glued"
+    weights: str = "smooth"
+    scaled_normals: bool = False
+    dense_volume: bool = False
+    member_law: str = "force-density"
+    prestress: float = 0.5
+    line_force: str = "implicit"
+    line_hold: str = "spring"
+    firm_chest: float = 0.0
+    volume_of: str = "each"
+    own_lines: tuple[OwnLine, ...] = ()
+    traits: tuple[LineTraits, ...] = ()
+    placed: tuple[PlacedMark, ...] = ()
+    own_measures: tuple[OwnMeasure, ...] = ()
+    elastics: tuple[Elastic, ...] = ()
+    tissue_stiffness: float = TISSUE_STIFFNESS
+    customer: str = ""
+    worn_tight_mm: float = 0.0
+    calibration: Calibration | None = None
+    unknown: Mapping[str, Any] = field(default_factory=dict, hash=False)
+
+    def __post_init__(self) -> None:
+        self._check_counts()
+        self._check_settings()
+        check_customer(self.customer)
+        for line in self.lines:
+            if not RATIO_LIMITS[0] <= line.ratio <= RATIO_LIMITS[1]:
+                raise LineError(
+                    f"{line.name} cannot be set to {100 * line.ratio:.1f} % of its rest length.",
+                    f"Stay between {100 * RATIO_LIMITS[0]:.0f} and {100 * RATIO_LIMITS[1]:.0f} %.",
+                )
+        if twice := repeated(line.name for line in self.own_lines):
+            raise LineError(f"There are two lines '{twice}'.", "Give each line a name of its own.")
+        if twice := repeated(line.name for line in self.traits):
+            raise LineError(f"The line {twice} is treated in two ways.", "Say once how.")
+        if twice := repeated(mark.name for mark in self.placed):
+            raise LandmarkError(f"The landmark {twice} is placed twice.", "Place it once.")
+        if twice := repeated(measure.name for measure in self.own_measures):
+            raise UserError(f"There are two measures '{twice}'.", "Give each measure a name of its own.")
+        check_elastics(self.elastics, {each.name: each.elastic for each in self.traits if each.elastic})
+
+    def _check_counts(self) -> None:
+        check_counts(
+            (
+                *((len(lines), MOST_LINES, "lines") for lines in (self.lines, self.own_lines, self.traits)),
+                (sum(map(OwnLine.count, self.own_lines)), MOST_POINTS, "points of own lines"),
+                (len(self.own_measures), MOST_MEASURES, "own measures"),
+                (len(self.elastics), MOST_ELASTICS, "elastics"),
+                (sum(len(each.curve) for each in self.elastics), MOST_ROWS, "rows in tables of elastics"),
+            )
+        )
+
+    def _check_settings(self) -> None:
+        check_words(
+            (
+                (self.template, TEMPLATES, "template"),
+                (self.volume, CONTROLS, "volume control"),
+                (self.weights, WEIGHTS, "t-FFD weights"),
+                *((getattr(self, key), words, key.replace("_", " ")) for key, words in CHOICES.items()),
+            )
+        )
+        check_flags((getattr(self, key), key.replace("_", " ")) for key in ("scaled_normals", "dense_volume"))
+        check_numbers(
+            (
+                (self.line_height, 0.25, 0.75, "line height"),
+                *((getattr(self, key), *limits, key.replace("_", " ")) for key, limits in RANGES.items()),
+                (1.0 if self.gain is None else self.gain, 0.0, 10.0, "gain"),
+                (self.tissue_stiffness, *TISSUE_LIMITS, "tissue stiffness"),
+                (self.worn_tight_mm, *WORN_TIGHT, "allowance of a tape worn tight"),
+            )
+        )
+
+    @property
+    def mechanics(self) -> Mechanics:
+        """The choices of the model among the settings."""
+        return Mechanics(**{field.name: getattr(self, field.name) for field in fields(Mechanics)})
+
+    def ratio(self, name: str) -> float:
+        """Return the ratio of a line, 1 if it is not worn."""
+        return next((line.ratio for line in self.lines if line.name == name), 1.0)
+
+    def worn(self) -> frozenset[str]:
+        """Return the names of the lines that are worn."""
+        return frozenset(line.name for line in self.lines)
+
+    def own_stiffness(self) -> dict[str, float]:
+        """Return the stiffness [1] of each worn line that has its own."""
+        own = {each.name: each.stiffness for each in self.traits if each.name in self.worn()}
+        return {name: stiffness for name, stiffness in own.items() if stiffness is not None}
+
+    def worn_elastics(self) -> dict[str, Elastic]:
+        """Return the elastic of each worn line that has one."""
+        elastics = {elastic.name: elastic for elastic in self.elastics}
+        made = {each.name: each.elastic for each in self.traits if each.elastic}
+        return {name: elastics[elastic] for name, elastic in made.items() if name in self.worn()}
+
+    def with_elastic(self, name: str, elastic: Elastic | None) -> Design:
+        """Return the design with a line made of an elastic, and as wide; of none in particular if None.
+
+        Lines that share an elastic of this name share its curve.
+        """
+        if elastic is None:
+            return self.with_traits(replace(self.traits_of(name), elastic="", width=None))
+        others = tuple(each for each in self.elastics if each.name != elastic.name)
+        design = replace(self, elastics=tuple(sorted((*others, elastic), key=lambda each: each.name)))
+        traits = replace(self.traits_of(name), elastic=elastic.name, width=elastic.width_mm)
+        return design.with_traits(traits)
+
+    def acts_as(self, other: Design) -> bool:
+        """Tell whether another design is solved alike: customer, measures, names, calibration do not act."""
+        mine, others = (
+            reduce(Design.with_traits, map(LineTraits.acting, each.traits), each) for each in (self, other)
+        )
+        said: dict[str, Any] = {"own_measures": (), "customer": "", "worn_tight_mm": 0.0, "calibration": None}
+        return replace(mine, **said) == replace(others, **said)
+
+    def with_template(self, template: str) -> Design:
+        """Return the design with another template. Raises LineError if there are own lines.
+
+        Their control points are those of the template that they were drawn on.
+        """
+        if self.own_lines and template != self.template:
+            raise LineError(
+                f"Own lines belong to the control mesh of {self.template} polygons.",
+                "Keep it, or remove your own lines first.",
+            )
+        return replace(self, template=template)
+
+    def with_own_line(self, line: OwnLine) -> Design:
+        """Return the design with an own line, in the place of one of the same name if there is one."""
+        if line.name in {each.name for each in self.own_lines}:
+            self._check_unlocked(line.name)
+            own = tuple(line if each.name == line.name else each for each in self.own_lines)
+            return replace(self, own_lines=own)
+        return replace(self, own_lines=(*self.own_lines, line))
+
+    def without_own_line(self, name: str) -> Design:
+        """Return the design without an own line and what was decided of it. Raises LineError if locked."""
+        self._check_unlocked(name)
+        own = tuple(each for each in self.own_lines if each.name != name)
+        worn = tuple(line for line in self.lines if line.name != name)
+        return replace(self.with_traits(LineTraits(name)), lines=worn, own_lines=own)
+
+    def traits_of(self, name: str) -> LineTraits:
+        """Return how a line is treated."""
+        return next((traits for traits in self.traits if traits.name == name), LineTraits(name))
+
+    def with_traits(self, traits: LineTraits) -> Design:
+        """Return the design with a line treated in another way."""
+        others = [each for each in self.traits if each.name != traits.name]
+        kept = others if traits == LineTraits(traits.name) else [*others, traits]
+        used = {each.elastic for each in kept}
+        elastics = tuple(each for each in self.elastics if each.name in used)
+        return replace(self, traits=tuple(sorted(kept, key=lambda each: each.name)), elastics=elastics)
+
+    def linked(self, name: str) -> tuple[str, ...]:
+        """Return the own line ``name`` and its partner of the other side, if they share length and lock."""
+        partner = partner_of(name)
+        sides = [self.traits_of(each) for each in (name, partner)]
+        both = partner in {line.name for line in self.own_lines} and all(side.linked for side in sides)
+        alike = sides[0].locked == sides[1].locked and self.ratio(name) == self.ratio(partner)
+        return (name, partner) if both and alike else (name,)
+
+    def with_link(self, name: str) -> Design:
+        """Return the design with a line linked to its partner, which takes its length; a lock is for both.
+
+        Raises LineError if the partner is locked at another length.
+        """
+        names = (name, partner_of(name))
+        locked = any(self.traits_of(each).locked for each in names)
+        after = self
+        if self.ratio(names[0]) != self.ratio(names[1]):
+            after = self.with_line(names[1], self.ratio(name) if name in self.worn() else None)
+        traits = [replace(self.traits_of(each), linked=True, locked=locked) for each in names]
+        return reduce(Design.with_traits, traits, after)
+
+    def with_placed(self, name: str, position: tuple[float, float, float] | None) -> Design:
+        """Return the design with a landmark placed in the scan file's frame, or found again (None)."""
+        others = tuple(mark for mark in self.placed if mark.name != name)
+        placed = others if position is None else (*others, PlacedMark(name, position))
+        return replace(self, placed=tuple(sorted(placed, key=lambda mark: mark.name)))
+
+    def with_own_measure(self, measure: OwnMeasure, former: str = "") -> Design:
+        """Return the design with an own measure, in the place of the ``former`` one or one of its name.
+
+        Raises UserError if another one than the former has the name already.
+        """
+        return replace(self, own_measures=put_measure(self.own_measures, measure, former))
+
+    def without_own_measure(self, name: str) -> Design:
+        """Return the design without an own measure."""
+        return replace(self, own_measures=tuple(each for each in self.own_measures if each.name != name))
+
+    def with_line(self, name: str, ratio: float | None) -> Design:
+        """Return the design with a line at ``ratio``, or off (None). Raises LineError if it is locked."""
+        if ratio != (self.ratio(name) if name in self.worn() else None):
+            self._check_unlocked(name)
+        others = [line for line in self.lines if line.name != name]
+        worn = [*others, WornLine(name, ratio)] if ratio is not None else others
+        return replace(self, lines=tuple(sorted(worn, key=lambda line: line.name)))
+
+    def with_linked(self, name: str, ratio: float | None) -> Design:
+        """Return the design with a line and its linked partner at ``ratio``. Raises LineError if locked."""
+        return reduce(lambda design, each: design.with_line(each, ratio), self.linked(name), self)
+
+    def at_rest(self) -> Design:
+        """Return the design with every line taken off that is not locked."""
+        kept = tuple(line for line in self.lines if self.traits_of(line.name).locked)
+        return replace(self, lines=kept)
+
+    def _check_unlocked(self, name: str) -> None:
+        if self.traits_of(name).locked:
+            raise LineError(f"The line {name} is locked.", "Unlock it first.")

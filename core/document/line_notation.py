@@ -1,0 +1,235 @@
+"""Own lines as text: control points by number, or places by row and column of the template."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import groupby
+from types import MappingProxyType
+
+import numpy as np
+
+from core.control_mesh.embedding import Cell, Embedded, embed
+from core.control_mesh.fit import ControlMesh
+from core.control_mesh.template import Template
+from core.document.lines import OwnLine
+from core.errors import LineError
+from core.geometry.mesh import Flags
+
+HELP = (
+    "NAME=POINT,POINT,...[,closed][,shoulder]: a line of your own. A POINT is the number of a control point, "
+    "or its place like r2c-3: row 2 from below, column 3 on the subject's right (c0 is the middle); "
+    "r2c-3:r2c3 goes along a row or a column. control.csv lists them all. With fractions, like r2.35c-3.2, "
+    "the line is free: it runs between control points, straight over each triangle. With shoulder it runs on "
+    "over the shoulder to the under-bust band. Set its length with --line NAME=LENGTH, else it is measured "
+    "only"
+)
+"""What a user has to know to write an own line."""
+
+DECIMALS = 4
+"""Of a row or column: a few thousandths of a millimetre."""
+
+_NUMBER = r"\d+(?:\.\d+)?"
+_PLACE = re.compile(rf"r({_NUMBER})c([+-]?{_NUMBER})")
+_ASK = "Write NAME=r2c-3,r3c0,r2c3 or NAME=28,45,34, with ,closed at the end for a line that goes round."
+_ENDINGS = ("closed", "shoulder")
+
+
+def own_line(text: str, template: Template) -> OwnLine:
+    """Read ``NAME=POINT,POINT,...`` and what follows on a template (ours). Raises LineError, see ``HELP``."""
+    name, equals, path = text.replace("\N{MINUS SIGN}", "-").partition("=")
+    name, words = name.strip().lower(), path.lower().replace(" ", "").split(",")
+    endings = set()
+    while words and words[-1] in _ENDINGS:
+        endings.add(words.pop())
+    if not equals or not name or not words or not all(words):
+        raise LineError(f"'{text}' is no line.", _ASK)
+    closed, shoulder = (ending in endings for ending in _ENDINGS)
+    if any(_between(word) for word in words):
+        places = tuple(place for word in words for place in _places(word, template))
+        return OwnLine(name, (), closed, places, shoulder)
+    points = [point for word in words for point in _walk(word, template)]
+    return OwnLine(name, tuple(points), closed, over_shoulder=shoulder)
+
+
+def place_of(point: int, template: Template) -> str:
+    """Return how a control point is written: r2c-3."""
+    return f"r{template.row[point]}c{template.column[point]}"
+
+
+def text_of(line: OwnLine, template: Template) -> str:
+    """Return how the course of a line is written, without its name: r2c-3,r2.35c-1.8,closed."""
+    words = [place_of(point, template) for point in line.points]
+    words += [f"r{_plain(row)}c{_plain(column)}" for row, column in line.places]
+    return ",".join([*words, *_ENDINGS[:1] * line.closed, *_ENDINGS[1:] * line.over_shoulder])
+
+
+def _plain(number: float) -> str:
+    return f"{number:.{DECIMALS}f}".rstrip("0").rstrip(".")
+
+
+def mirrored(points: Sequence[int], template: Template) -> tuple[int, ...]:
+    """Return the control points of the other side, in the same order."""
+    return tuple(template.point(int(template.row[point]), -int(template.column[point])) for point in points)
+
+
+def mirror_image(line: OwnLine, template: Template, name: str) -> OwnLine:
+    """Return a line with its mirror image on the other side, as ``name``."""
+    points, places = mirrored(line.points, template), tuple((row, -column) for row, column in line.places)
+    return replace(line, name=name, points=points, places=places)
+
+
+def cells_of(line: OwnLine, template: Template) -> tuple[Cell, ...]:
+    """Return the course of a line by row and column; a closed line ends with where it begins."""
+    path = tuple((float(template.row[point]), float(template.column[point])) for point in line.path)
+    return line.course or path
+
+
+def with_own_lines(control: ControlMesh, own: tuple[OwnLine, ...]) -> ControlMesh:
+    """Return the control mesh with ``own`` lines beside those of the template.
+
+    Raises LineError if a line cannot be laid.
+    """
+    paths, embedded, count = dict(control.paths), {}, len(control.mesh.vertices)
+    for line in own:
+        if line.name in paths or line.name in embedded:
+            raise LineError(f"There are two lines '{line.name}'.", "Give each line a name of its own.")
+        if not all(0 <= point < count for point in line.points):
+            raise LineError(
+                f"The line {line.name} names a control point that there is not.",
+                f"The control mesh has the points 0 to {count - 1}.",
+            )
+        if not all(control.grid.has(place) for place in line.places):
+            raise LineError(
+                f"The line {line.name} leaves the control mesh.",
+                f"Its rows are 0 to {control.grid.top}, its columns {-control.grid.half} to "
+                f"{control.grid.half}.",
+            )
+        if line.free:
+            embedded[line.name] = _led_over(control, embed(control.grid, line.course), line)
+        else:
+            paths[line.name] = _strap(control, line.path) if line.over_shoulder else line.path
+    return replace(control, paths=MappingProxyType(paths), embedded=MappingProxyType(embedded))
+
+
+def _strap(control: ControlMesh, path: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the path of a strap up to where the body is fixed."""
+    upward = path if control.row[path[0]] <= control.row[path[-1]] else path[::-1]
+    return upward[: _held_from(control.fixed[list(upward)])]
+
+
+def _led_over(control: ControlMesh, curve: Embedded, line: OwnLine) -> Embedded:
+    """Return the vertices of a free line; those of a strap go up to where the body is fixed."""
+    if not line.over_shoulder:
+        return curve
+    upward = line.course if curve.places[0, 0] <= curve.places[-1, 0] else line.course[::-1]
+    curve = embed(control.grid, upward)
+    end = _held_from(curve.weights @ control.fixed > 1.0 - 1e-9)
+    return embed(control.grid, [(float(row), float(column)) for row, column in curve.places[:end]])
+
+
+def _held_from(fixed: Flags) -> int:
+    """Return how many vertices there are up to the first fixed one above all that move; two at least."""
+    moving = np.flatnonzero(~fixed)
+    return max(int(moving[-1]) + 2 if len(moving) else len(fixed), 2)
+
+
+def _between(word: str) -> bool:
+    """Tell whether a word names a place between control points."""
+    match = _PLACE.fullmatch(word)
+    return match is not None and any(not float(number).is_integer() for number in match.groups())
+
+
+def _places(word: str, template: Template) -> list[Cell]:
+    """Return the places of one word of a free line."""
+    if not _between(word):
+        return [(float(template.row[at]), float(template.column[at])) for at in _walk(word, template)]
+    match = _PLACE.fullmatch(word)
+    assert match is not None, "it was matched before"
+    place = float(match[1]), float(match[2])
+    if not template.grid.has(place):
+        raise _nowhere(word, template)
+    return [place]
+
+
+def _walk(word: str, template: Template) -> list[int]:
+    """Return the points of one word: one, or all from one to the other along a row or a column."""
+    ends = [_point(each, template) for each in word.split(":")]
+    if len(ends) == 1:
+        return ends
+    (row, column), (to_row, to_column) = (
+        (int(template.row[end]), int(template.column[end])) for end in (ends[0], ends[-1])
+    )
+    if len(ends) != 2 or (row == to_row) == (column == to_column):
+        raise LineError(f"'{word}' does not go along a row or a column.", "Name its points one by one.")
+    rows, columns = _steps(row, to_row), _steps(column, to_column)
+    return [template.point(r, c) for r in rows for c in columns]
+
+
+def _steps(start: int, end: int) -> range:
+    step = 1 if end >= start else -1
+    return range(start, end + step, step)
+
+
+def _point(word: str, template: Template) -> int:
+    """Return the number of the control point that a word names."""
+    match = _PLACE.fullmatch(word)
+    if match is None:
+        count = len(template.row)
+        if not word.isdecimal() or not int(word) < count:
+            raise LineError(
+                f"'{word}' is no control point of the template {template.name}.",
+                f"Its points are 0 to {count - 1}, or places like r2c-3. {_ASK}",
+            )
+        return int(word)
+    if _between(word) or not template.grid.has((float(match[1]), float(match[2]))):
+        raise _nowhere(word, template)
+    return template.point(int(float(match[1])), int(float(match[2])))
+
+
+def _nowhere(word: str, template: Template) -> LineError:
+    return LineError(
+        f"The template {template.name} has no place '{word}'.",
+        f"Its rows are 0 to {len(template.rows) - 1}, its columns {-template.half} to {template.half}.",
+    )
+
+
+def ready_made(template: Template) -> dict[str, tuple[OwnLine, ...]]:
+    """Return lines that garments have, a pair of each, by kind (ours): they go where the template has rows.
+
+    "straps" rise through the bust points and go over the shoulder, "slings" hang round each breast from the
+    upper edge, "obliques" go from the side under the bust point and up inside it, "rings" are closed round
+    the bust point.
+    """
+    low, bust = template.lines["mid-bust"], template.row_of("bust point")
+    top, side, tip = template.row_of("edge"), template.half - 1, template.bust_column
+    up = range(low, top + 1)
+    around = [(bust - 1, column) for column in range(tip - 1, tip + 2)] + [(bust, tip + 1)]
+    around += [(bust + 1, column) for column in range(tip + 1, tip - 2, -1)] + [(bust, tip - 1)]
+    inner = max(tip - 2, 1)
+    rising = [(bust, tip - 1), *((row, inner) for row in range(bust + 1, top + 1))]
+    kinds = {
+        "strap": [(row, tip) for row in up],
+        "sling": [*((row, tip + 1) for row in reversed(up)), (low, tip), *((row, tip - 1) for row in up)],
+        "oblique": [(low, column) for column in range(side, tip - 1, -1)] + rising,
+        "ring": around,
+    }
+    sides = (("left", 1), ("right", -1))
+    return {
+        f"{kind}s": tuple(
+            OwnLine(
+                f"{kind} {word}",
+                _numbers(cells, sign, template),
+                kind == "ring",
+                over_shoulder=kind == "strap",
+            )
+            for word, sign in sides
+        )
+        for kind, cells in kinds.items()
+    }
+
+
+def _numbers(cells: list[tuple[int, int]], sign: int, template: Template) -> tuple[int, ...]:
+    points = [template.point(row, sign * column) for row, column in cells]
+    return tuple(point for point, _ in groupby(points))

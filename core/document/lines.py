@@ -1,0 +1,141 @@
+"""What the designer decides of lines: which are worn and how long, lines of her own, how each is treated."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import isfinite
+
+from core.control_mesh.embedding import Cell
+from core.document.printable_name import check_line_name, is_blank, is_printable
+from core.errors import LineError
+from core.mechanics.options import RANGES
+
+LONGEST_TITLE = 60
+"""Letters of a line's title."""
+
+WIDTHS = (2.0, 100.0)
+"""The narrowest and the widest band [mm]."""
+
+
+@dataclass(frozen=True)
+class WornLine:
+    """A line that is worn, and its natural length as ratio of its length at rest [1] (paper section 3).
+
+    Raises LineError for a name that no line has.
+    """
+
+    name: str
+    ratio: float
+
+    def __post_init__(self) -> None:
+        check_line_name(self.name)
+
+
+@dataclass(frozen=True)
+class OwnLine:
+    """A line of the designer's own; "closed" goes round.
+
+    It runs through control points of the template, by number, or is a free line through ``places`` between
+    them, by row and column of the template (``core.control_mesh.embedding``). One that goes ``over_shoulder`` runs on from
+    its upper end down the back to the under-bust band. Raises LineError if it has no name, does not go from
+    point to point, or is closed and goes over the shoulder.
+    """
+
+    name: str
+    points: tuple[int, ...] = ()
+    closed: bool = False
+    places: tuple[Cell, ...] = ()
+    over_shoulder: bool = False
+
+    def __post_init__(self) -> None:
+        if is_blank(self.name):
+            raise LineError("A line has no name.", "Give each line a name of its own.")
+        check_line_name(self.name)
+        stops: tuple[object, ...] = self.places or self.points
+        following = stops + stops[:1] if self.closed else stops
+        if len(stops) < (3 if self.closed else 2) or any(a == b for a, b in pairwise(following)):
+            raise LineError(
+                f"The line {self.name} does not go from point to point.",
+                "Name two control points at least, three if it is closed, and none twice in a row.",
+            )
+        if not all(isfinite(number) for place in self.places for number in place):
+            raise LineError(f"The line {self.name} has a point without a place.", "Draw it anew.")
+        if self.closed and self.over_shoulder:
+            raise LineError(
+                f"The line {self.name} is closed and cannot go over the shoulder.", "Leave its ends open."
+            )
+
+    @property
+    def free(self) -> bool:
+        """Whether it runs between control points."""
+        return bool(self.places)
+
+    def count(self) -> int:
+        """Return how many points or places it has."""
+        return len(self.points) + len(self.places)
+
+    @property
+    def path(self) -> tuple[int, ...]:
+        """The control points in order; a closed line ends with the one that it begins with."""
+        return self.points + self.points[:1] if self.closed else self.points
+
+    @property
+    def course(self) -> tuple[Cell, ...]:
+        """The places of a free line in order; a closed line ends with the one that it begins with."""
+        return self.places + self.places[:1] if self.closed else self.places
+
+
+@dataclass(frozen=True)
+class LineTraits:
+    """How the designer treats a line, whether it is worn or not.
+
+    ``title`` and ``colour`` ("#rrggbb") are empty where the usual ones stand. A ``locked`` line keeps its
+    length and cannot be removed; a ``linked`` one shares its length with its partner of the other side.
+    ``stiffness`` [1] is its own in place of the design's, or None; ``width`` [mm] is that of its band as it
+    is drawn, or None for the usual one. ``elastic`` names what it is made of among the design's elastics, and
+    gives it its stiffness; empty for nothing in particular. Raises LineError for what cannot be.
+    """
+
+    name: str
+    title: str = ""
+    colour: str = ""
+    locked: bool = False
+    linked: bool = True
+    stiffness: float | None = None
+    width: float | None = None
+    elastic: str = ""
+
+    def __post_init__(self) -> None:
+        check_line_name(self.name)
+        if not is_printable(self.title, LONGEST_TITLE):
+            raise LineError(
+                f"The title of the line {self.name} is too long or cannot be printed.",
+                f"Use up to {LONGEST_TITLE} letters.",
+            )
+        if self.colour and not re.fullmatch("#[0-9a-fA-F]{6}", self.colour):
+            raise LineError(f"'{self.colour}' is no colour.", "Write it like #e5536b.")
+        low, high = RANGES["line_stiffness"]
+        if self.stiffness is not None and not low <= self.stiffness <= high:
+            raise LineError(
+                f"The stiffness {self.stiffness:g} of the line {self.name} is out of range.",
+                f"It goes from {low:g} to {high:g}.",
+            )
+        if self.width is not None and not WIDTHS[0] <= self.width <= WIDTHS[1]:
+            raise LineError(
+                f"The line {self.name} cannot be {self.width:g} mm wide.",
+                f"It goes from {WIDTHS[0]:g} to {WIDTHS[1]:g}.",
+            )
+
+    def acting(self) -> LineTraits:
+        """Return what of it acts on the model: a name, a colour, a lock and a link do not."""
+        return replace(self, title="", colour="", locked=False, linked=True)
+
+
+def partner_of(name: str) -> str:
+    """Return what a line's partner on the other side is called, or an empty text if it has no side."""
+    for side, other in ((" left", " right"), (" right", " left")):
+        if name.endswith(side):
+            return name.removesuffix(side) + other
+    return ""

@@ -1,0 +1,102 @@
+"""The design as text, as a project keeps it; keys of later versions stay."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, fields
+from typing import Any
+
+from core.document.design import Design
+from core.document.document_limits import LARGEST_UNKNOWN, check_nesting, check_values
+from core.document.elastic import TISSUE_STIFFNESS
+from core.document.json_values import field_of, parsed, whole_number
+from core.errors import ProjectError
+from core.scan.edits import UNEDITED
+
+FORMAT = 5
+"""The newest format that is read: 2 has variants beside the design, 3 elastics, 4 free lines and straps, 5
+edits of the scan.
+"""
+
+WITH_VARIANTS, WITH_ELASTICS, WITH_FREE_LINES, WITH_EDITS = 2, 3, 4, 5
+"""All else is written as 1."""
+
+_KNOWN = frozenset(field.name for field in fields(Design)) - {"unknown"}
+
+
+def to_json(design: Design, written: int = 1) -> str:
+    """Return the design as text, the number of the format first."""
+    return json.dumps(to_values(design, written), indent=1)
+
+
+def to_values(design: Design, written: int = 1) -> dict[str, Any]:
+    """Return the design as values of JSON, the number of the format first."""
+    values = asdict(design)
+    unknown = values.pop("unknown")
+    # What is not used is not written: the project stays one that every Busk reads, to the byte.
+    for traits in values["traits"]:
+        if not traits["elastic"]:
+            del traits["elastic"]
+    for line in values["own_lines"]:
+        for key in ("places", "over_shoulder"):
+            if not line[key]:
+                del line[key]
+    if not design.elastics:
+        del values["elastics"]
+    if design.scan.edits == UNEDITED:
+        del values["scan"]["edits"]
+    if design.tissue_stiffness == TISSUE_STIFFNESS:
+        del values["tissue_stiffness"]
+    for key in ("own_measures", "customer", "worn_tight_mm", "calibration"):
+        if not values[key]:
+            del values[key]
+    return {"format": max(written, _format_of(design)), "length_unit": "mm", **unknown, **values}
+
+
+def _format_of(design: Design) -> int:
+    """Return the oldest format that holds a design: an older program would drop what it does not know."""
+    needed = (
+        (WITH_EDITS, design.scan.edits != UNEDITED),
+        (WITH_FREE_LINES, any(line.free or line.over_shoulder for line in design.own_lines)),
+        (WITH_ELASTICS, bool(design.elastics)),
+    )
+    return max((written for written, used in needed if used), default=1)
+
+
+def from_json(text: str) -> Design:
+    """Read a design; keys of later versions are kept. Raises ProjectError if it is no design."""
+    try:
+        check_values(text)
+        return from_values(parsed(text))
+    except ValueError as broken:
+        raise ProjectError(
+            "The project's design cannot be read.", "Open a backup or start from the scan."
+        ) from broken
+
+
+def from_values(values: Any) -> Design:
+    """Read a design of JSON values; keys of later versions are kept. Raises ProjectError, ValueError."""
+    if not isinstance(values, Mapping) or not {"format", "scan", "lines"} <= values.keys():
+        raise ValueError("it is no design")
+    written = whole_number(values["format"], "format")
+    if written > FORMAT:
+        raise ProjectError(
+            f"This project has format {written}; this Busk reads up to {FORMAT}.", "Update Busk."
+        )
+    known = {key: field_of(Design, key, values[key]) for key in values if key in _KNOWN}
+    others = {key: values[key] for key in values if key not in (*_KNOWN, "format", "length_unit")}
+    check_nesting(others)
+    if not _fits(others):
+        raise ProjectError("The project holds too much that this Busk does not know.", "Update Busk.")
+    return Design(**known, unknown=others)
+
+
+def _fits(others: Mapping[str, Any]) -> bool:
+    """Return whether what is unknown can be written within its limit; no more of it is than that."""
+    left = LARGEST_UNKNOWN
+    for part in json.JSONEncoder(indent=1).iterencode(others):
+        left -= len(part)
+        if left < 0:
+            return False
+    return True

@@ -1,0 +1,123 @@
+"""A line that goes across both sides, split at the front centre into a left and a right one (ours)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from core.control_mesh.embedding import embed
+from core.control_mesh.template import Template
+from core.document.design import Design
+from core.document.line_notation import DECIMALS
+from core.document.lines import OwnLine
+from core.errors import LineError
+
+_HALVES = ("{name} left", "{name} right")
+
+
+def halves(name: str, path: Sequence[int], template: Template) -> tuple[OwnLine, OwnLine]:
+    """Return the left and the right half of the line ``name`` whose control points are ``path``, in order.
+
+    Both begin at the front centre. Raises LineError if it does not cross the front centre just once, at a
+    control point: then there are no two halves that are as long together.
+    """
+    sides = [int(template.column[point]) for point in path]
+    at = sides.index(0) if 0 in sides else -1
+    before, after = sides[:at], sides[at + 1 :]
+    if path[0] == path[-1]:
+        raise LineError(f"The line {name} goes round and has no two halves.", "Draw two lines instead.")
+    if at <= 0 or not (
+        (_beside(before, -1) and _beside(after, 1)) or (_beside(before, 1) and _beside(after, -1))
+    ):
+        raise _crosses_not(name)
+    inward, outward = tuple(path[at::-1]), tuple(path[at:])
+    left, right = (outward, inward) if after[0] > 0 else (inward, outward)
+    return OwnLine(_HALVES[0].format(name=name), left), OwnLine(_HALVES[1].format(name=name), right)
+
+
+def free_halves(line: OwnLine) -> tuple[OwnLine, OwnLine]:
+    """Return the left and the right half of a free line; see ``halves``."""
+    if line.closed:
+        raise LineError(f"The line {line.name} goes round and has no two halves.", "Draw two lines instead.")
+    side = 1.0 if line.places[0][1] < 0.0 else -1.0
+    before = [place for place in line.places if side * place[1] < 0.0]
+    after = [place for place in line.places if side * place[1] > 0.0]
+    crossing = line.places[len(before) : len(line.places) - len(after)]
+    apart = (*before, *crossing, *after) == line.places and len(crossing) < 2
+    if not before or not after or not apart:
+        raise _crosses_not(line.name)
+    (row, column), (next_row, next_column) = before[-1], after[0]
+    middle = crossing[0] if crossing else (row - column / (next_column - column) * (next_row - row), 0.0)
+    middle = round(middle[0], DECIMALS), 0.0
+    inward, outward = (middle, *before[::-1]), (middle, *after)
+    left, right = (outward, inward) if side > 0.0 else (inward, outward)
+    pair = zip(_HALVES, (left, right), strict=True)
+    first, second = (OwnLine(half.format(name=line.name), places=places) for half, places in pair)
+    return first, second
+
+
+def _crosses_not(name: str) -> LineError:
+    return LineError(
+        f"The line {name} does not go across the front centre from one side to the other.",
+        "Split one that does, such as the mid-bust line.",
+    )
+
+
+def _beside(columns: list[int], side: int) -> bool:
+    return bool(columns) and all(side * column > 0 for column in columns)
+
+
+def can_split(design: Design, template: Template, name: str) -> bool:
+    """Tell whether a line can be split as it stands."""
+    try:
+        split(design, template, name)
+    except LineError:
+        return False
+    return True
+
+
+def is_split(design: Design, name: str) -> bool:
+    """Tell whether a line is off while its halves, of which one at least is worn, lie in its place."""
+    pair, worn = {half.format(name=name) for half in _HALVES}, design.worn()
+    return name not in worn and pair <= {line.name for line in design.own_lines} and bool(pair & worn)
+
+
+def split(design: Design, template: Template, name: str, *, linked: bool = False) -> Design:
+    """Return the design with a line split at the front centre into "NAME left" and "NAME right".
+
+    Both lie where it lay, are as long in percent, worn if it was, and treated alike, ``linked`` or each by
+    itself. It is taken off; one of the designer's own is no more. Raises LineError if it cannot be split,
+    moves nothing, is locked, or other lines have these names.
+    """
+    there = {line.name: line for line in design.own_lines}
+    pair = _halves_of(design, template, name)
+    for half in pair:
+        if half.name in there and there[half.name] != half:
+            raise LineError(f"There is another line {half.name}.", "Rename or remove that one first.")
+    worn, ratio, traits = name in design.worn(), design.ratio(name), design.traits_of(name)
+    after = design
+    for half in pair:
+        after = after.with_own_line(half) if half.name not in there else after
+        treated = replace(traits, name=half.name, linked=linked, locked=False)
+        after = after.with_traits(treated)
+        if worn:
+            after = after.with_line(half.name, ratio)
+    if name in there:
+        return after.without_own_line(name)
+    return after.with_line(name, None)
+
+
+def _halves_of(design: Design, template: Template, name: str) -> tuple[OwnLine, OwnLine]:
+    """Return both halves of a line of the design. Raises LineError if there are none, or nothing moves."""
+    own = {line.name: line for line in design.own_lines}
+    if name in own and own[name].free:
+        touched = embed(template.grid, own[name].course).weights.nonzero()[1].tolist()
+    elif name in own:
+        touched = list(own[name].path)
+    elif name in template.paths:
+        touched = list(template.paths[name])
+    else:
+        raise LineError(f"There is no line '{name}'.", "Name one of the design's.")
+    if not template.free[touched].any():
+        raise LineError(f"The line {name} lies where nothing moves.", "Split one that moves the body.")
+    return free_halves(own[name]) if name in own and own[name].free else halves(name, touched, template)

@@ -1,0 +1,74 @@
+"""The archive that a project is: its members, never more of them than is read of a file of its size."""
+
+from __future__ import annotations
+
+import io
+import os
+import zipfile
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from core.document.document_limits import too_large
+from core.errors import ProjectError
+from core.files.regular_file import open_regular
+
+HEADROOM = 64_000_000
+"""So many bytes more than ``_RATIO`` times what it takes in its file may a member hold."""
+
+_RATIO = 10
+"""No scan packs better; a file made to fill the memory packs a hundred times better."""
+
+_AT_ONCE = 1 << 20
+_BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError)
+_HINT = "Open a backup, or start again from the scan."
+
+
+class _Sparing(io.BufferedReader):
+    """A file of which nobody reads much at once: a table of contents that is larger fills the memory."""
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        """Return ``size`` bytes, or all the rest. Raises BadZipFile if that is too much."""
+        data = super().read(_AT_ONCE + 1 if size is None or size < 0 else min(size, _AT_ONCE + 1))
+        if len(data) > _AT_ONCE:
+            raise zipfile.BadZipFile("too much at once")
+        return data
+
+
+@contextmanager
+def project_archive(path: Path) -> Iterator[zipfile.ZipFile]:
+    """Open the archive of a project for reading. Raises ProjectError, also if reading fails meanwhile."""
+    try:
+        with _Sparing(io.FileIO(open_regular(path))) as file, zipfile.ZipFile(file) as archive:
+            yield archive
+    except FileNotFoundError:
+        raise ProjectError(f"There is no project {path}.", "Check the name, or choose another one.") from None
+    except OSError as problem:
+        raise ProjectError(
+            f"{path.name} cannot be read: {problem.strerror or problem}.", "Check the file, or open a backup."
+        ) from problem
+    except _BROKEN as problem:
+        raise ProjectError(f"{path.name} is not a whole Busk project.", _HINT) from problem
+
+
+def member_bytes(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
+    """Return what a member holds, ``most`` bytes at most.
+
+    Its size is what is read, whatever the archive says. Raises ProjectError.
+    """
+    try:
+        member = archive.getinfo(name)
+    except KeyError:
+        raise ProjectError("This file is no Busk project.", "Open a .busk file or a scan.") from None
+    # Other ways of packing are not unpacked piece by piece.
+    if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        raise ProjectError(f"{name} of this project is packed in a way that Busk does not read.", _HINT)
+    packed = min(member.compress_size, os.fstat(archive.fp.fileno()).st_size)  # type: ignore[union-attr]
+    within, out = min(most, HEADROOM + _RATIO * packed), io.BytesIO()
+    with archive.open(member) as stream:
+        while piece := stream.read(_AT_ONCE):
+            if out.tell() + len(piece) > within:
+                raise too_large(name, within, _HINT)
+            out.write(piece)
+    return out.getvalue()

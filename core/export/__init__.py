@@ -1,0 +1,1 @@
+"""Files for other programs: meshes, drawings, measurements, report data."""

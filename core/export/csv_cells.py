@@ -1,0 +1,43 @@
+"""Cells of tables that other programs open: figures short, texts as texts, letters beyond English marked."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Iterable, Sequence
+
+from core.document.printable_name import printable
+
+ENCODING = "utf-8-sig"
+"""With the mark that tells spreadsheets that letters beyond English follow."""
+
+_FORMULA = re.compile(r"[\t\r\n]|\s*[=@＝＠＋－]|\s*[+\-](?![\d.,\s]*\d\s?%?$)")
+
+
+def cell(value: object) -> object:
+    """Return what stands in a cell for a value, floats in six digits; nothing for None.
+
+    A text that a spreadsheet would work out as a formula gets an apostrophe before it: customers, lines and
+    elastics may be called anything, also by somebody who sent a project.
+    """
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, tuple):
+        return " ".join(str(cell(each)) for each in value)
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, str):
+        return f"'{printable(value)}" if _FORMULA.match(value) else printable(value)
+    return value
+
+
+def csv_text(columns: Sequence[str], rows: Iterable[Iterable[object]]) -> str:
+    """Return rows under a heading as comma-separated values, each value as ``cell`` writes it."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows([cell(value) for value in row] for row in rows)
+    return text.getvalue()

@@ -1,0 +1,297 @@
+"""The sheet to work from: everything of one fitting as plain data, for paper and for tables."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from core import __version__
+from core.deformation.tffd import deform
+from core.export.solution_report import Shown, kept_volume, shape_warnings, still_lines, warnings
+from core.garment.assessment import Assessment, assessment_of
+from core.garment.cut_list import CutList, cut_list
+from core.garment.pressure import LEFT_OUT
+from core.garment.pressure_list import PressRow, press_list
+from core.garment.tension import ran_away
+from core.geometry.mesh import Floats, Mesh, Points
+from core.geometry.planar_curves import AXES, Curve, Plane, Slicer, nearest
+from core.landmarks.warnings import doubts
+from core.measurements.definitions import DEFINITIONS
+from core.measurements.sizes import GIRTHS_OF_SIZES, sizes, sizes_text, with_nearby
+from core.measurements.table import Measures, before_after, measure_rows
+from core.measurements.uncertain_value import BEFORE, SOURCES, Spread
+from core.mechanics.convergence import SOUND
+from core.mechanics.iteration import Marks, Record
+from core.pipeline.build import Stages
+from core.progress import Progress, quiet
+
+AROUND = 12.0
+"""What a section shows beside the part that can move [mm]."""
+
+NOT_MODELLED = (
+    "Friction between garment and skin, gravity, breathing, posture and movement are not modelled.",
+    "Lines alone shape the body: cloth between them, seams, wires and hooks are not there.",
+)
+"""What no figure of a sheet takes into account."""
+
+
+@dataclass(frozen=True)
+class Heading:
+    """What stands over a sheet: whose it is, of what, and the ``date`` as year-month-day.
+
+    ``system`` is the key of the table whose size comes first, ``allowance_mm`` what a tape that is worn tight
+    takes off the under-bust.
+    """
+
+    project: str
+    date: str
+    customer: str = ""
+    variant: str = ""
+    system: str = "jp"
+    allowance_mm: float = 0.0
+
+
+@dataclass(frozen=True)
+class Lift:
+    """How far the bust points went from where they are at rest [mm]: up and forward, the mean of both too."""
+
+    left_up: float
+    right_up: float
+    left_forward: float
+    right_forward: float
+    up: float
+    forward: float
+
+
+@dataclass(frozen=True)
+class VolumeKept:
+    """The volume inside the reshaped part at rest [ml], and how far it is from that now [ml, %]."""
+
+    rest_ml: float
+    error_ml: float
+    error_percent: float
+
+
+Pair = tuple[float, float]
+Line2 = tuple[Pair, ...]
+"""A flat curve, place by place: across and up [mm], as ``core.geometry.planar_curves.Plane`` has them."""
+
+
+@dataclass(frozen=True)
+class SectionCurves:
+    """A cut of the body across ``axis`` at ``at_mm``, before and after; ``box`` is the part that can move.
+
+    ``bust_point`` is where that lies on the cut before, ``bust_point_after`` after; of a level cut the middle
+    of both. A side is cut through its bust point, which moves aside: ``after_at_mm`` is where it is after.
+    ``off_mm`` is how far the skin may be off at each place of the curves after, ``off_before_mm`` before;
+    both are nothing where that was not worked out.
+    """
+
+    name: str
+    axis: str
+    at_mm: float
+    after_at_mm: float
+    box: tuple[Pair, Pair]
+    bust_point: Pair
+    bust_point_after: Pair
+    before: tuple[Line2, ...]
+    after: tuple[Line2, ...]
+    off_mm: tuple[tuple[float, ...], ...] = ()
+    off_before_mm: float = 0.0
+
+
+@dataclass(frozen=True)
+class Turns:
+    """What is plotted of a run, turn by turn: volume error and how far the bust points are up [mm]."""
+
+    control: str
+    turn: tuple[int, ...] = ()
+    error_percent: tuple[float, ...] = ()
+    up_mm: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Everything of a report; sentences are those of the core, in English.
+
+    ``state`` is the word of the verdict ("strained" where skin strains though all has settled); ``lift`` is
+    None in any state that is not ``SOUND``. ``measures`` are rows of ``core.measurements.table.measure_rows``,
+    ``sizes`` those of ``core.measurements.sizes.sizes_text``, the chosen system first, or none and ``no_size`` says why;
+    ``pressures`` follow the cut list row by row, ``limits`` are those of their lights; ``doubts`` say what
+    should be looked at before landmarks are trusted; ``assessment`` is the overall verdict. ``off`` is how
+    far figures may be off, by the keys of ``core.measurements.uncertain_value``, in their units: nothing where that
+    was not worked out; see ``with_spread``. ``off_factor`` tells of others how many times smaller or larger
+    they may be [1], ``off_notes`` where all of this says less than it seems to, ``off_sources`` what any of
+    it comes from. ``strain`` is that of the verdict.
+    """
+
+    heading: Heading
+    scan: str
+    state: str
+    settled: bool
+    lift: Lift | None
+    volume: VolumeKept
+    measures: tuple[dict[str, Any], ...]
+    sizes: tuple[dict[str, Any], ...]
+    no_size: str
+    cuts: CutList
+    pressures: tuple[PressRow, ...]
+    limits: Mapping[str, Any]
+    sections: tuple[SectionCurves, ...]
+    turns: Turns
+    doubts: tuple[str, ...]
+    warnings: tuple[str, ...]
+    left_out: tuple[str, ...]
+    model: Mapping[str, Any]
+    versions: Mapping[str, str]
+    assessment: Assessment
+    definitions: tuple[dict[str, Any], ...] = field(
+        default_factory=lambda: tuple(asdict(each) for each in DEFINITIONS.values())
+    )
+    off: Mapping[str, float] = field(default_factory=dict)
+    off_factor: Mapping[str, float] = field(default_factory=dict)
+    off_notes: tuple[str, ...] = ()
+    off_sources: tuple[str, ...] = ()
+    strain: Pair | None = None
+
+    @property
+    def sound(self) -> bool:
+        """Whether its figures can be worked with."""
+        return self.state in SOUND
+
+    def as_data(self) -> dict[str, Any]:
+        """Return the sheet ready for JSON."""
+        told = {name: dict(getattr(self, name)) for name in ("limits", "model", "off", "off_factor")}
+        return {**asdict(self), **told, "assessment": self.assessment.as_data()}
+
+
+def sheet_of(shown: Shown, records: Sequence[Record], heading: Heading, progress: Progress = quiet) -> Sheet:
+    """Return the sheet of a body as it is ``shown``; ``records`` are those of its turns.
+
+    Raises Cancelled, and LineError if the turns ran away: they leave no body.
+    """
+    stages, points, verdict = shown.stages, shown.control_points, shown.verdict
+    if verdict.motion == "diverging":
+        raise ran_away()
+    progress("measuring", 0.1)
+    before, after = before_after(stages, points)
+    found, why = _sizes(before, heading)
+    progress("pressing", 0.8)
+    cuts, pressed = cut_list(stages, points), press_list(stages, points)
+    percent, error_ml = kept_volume(shown)
+    return Sheet(
+        heading=heading,
+        scan=stages.design.scan.name,
+        state=verdict.told,
+        settled=verdict.state == "settled",
+        lift=_lift(stages.rest_marks, stages.watch(points)) if verdict.sound else None,
+        volume=VolumeKept(stages.model.volume.rest_volume / 1000.0, error_ml, percent),
+        measures=tuple(measure_rows(before, after)),
+        sizes=found,
+        no_size=why,
+        cuts=cuts,
+        pressures=pressed.rows,
+        limits=pressed.as_data()["limits"],
+        sections=_sections(stages, points),
+        turns=_turns(stages, records),
+        doubts=tuple(doubts(stages.body, stages.landmarks)),
+        warnings=(*shape_warnings(shown), *still_lines(stages), *warnings(stages)),
+        left_out=(*NOT_MODELLED, *LEFT_OUT),
+        model=_model(stages),
+        strain=verdict.strain,
+        assessment=assessment_of(shown, cuts, pressed),
+        versions={"busk": __version__, "python": platform.python_version(), "numpy": np.__version__},
+    )
+
+
+def with_spread(sheet: Sheet, stages: Stages, control_points: Points, spread: Spread) -> Sheet:
+    """Return a sheet of ``control_points``, shape (n, 3) [mm], with how far its figures may be off."""
+    rest, places = stages.body.mesh, deform(stages.binding, control_points)
+    sections = []
+    for cut in sheet.sections:
+        slicer = Slicer(rest, Plane(cut.axis, cut.after_at_mm))
+        offs = slicer.along(places, spread.sds * spread.skin)
+        rounded = tuple(tuple(np.round(each, 3).tolist()) for each in offs)
+        sections.append(replace(cut, off_mm=rounded, off_before_mm=spread.sds * spread.rest))
+    off = {key: off for key in spread.doubts if (off := spread.plus_minus(key)) is not None}
+    factors = {key: factor for key in spread.doubts if (factor := spread.factor(key)) is not None}
+    told = with_nearby(sheet.sizes, *(off.get(f"{BEFORE}:{key}") for key in GIRTHS_OF_SIZES))
+    within = {name for doubt in spread.doubts.values() for name in doubt.by_source}
+    sheet = replace(sheet, off=off, off_factor=factors, sections=tuple(sections), sizes=told)
+    return replace(sheet, off_notes=spread.cautions, off_sources=tuple(s for s in SOURCES if s in within))
+
+
+def _sizes(before: Measures, heading: Heading) -> tuple[tuple[dict[str, Any], ...], str]:
+    """Return the sizes of the body at rest, the chosen system first, or none and why."""
+    underbust, bust = (before[key] for key in GIRTHS_OF_SIZES)
+    if underbust.value is None or bust.value is None:
+        return (), underbust.note or bust.note
+    answers = sizes(underbust.value, bust.value, heading.allowance_mm)
+    keys = sorted(answers, key=lambda key: key != heading.system)
+    return tuple(sizes_text(answers[key]) for key in keys), ""
+
+
+def _lift(rest: Marks, now: Marks) -> Lift:
+    up = now.nipple_left_z - rest.nipple_left_z, now.nipple_right_z - rest.nipple_right_z
+    forward = now.nipple_left_out - rest.nipple_left_out, now.nipple_right_out - rest.nipple_right_out
+    return Lift(*up, *forward, 0.5 * sum(up), 0.5 * sum(forward))
+
+
+def _sections(stages: Stages, control_points: Points) -> tuple[SectionCurves, ...]:
+    """Return the side through a bust point and the level of the bust."""
+    control, marks = stages.control, stages.landmarks.points
+    laid = control.mesh.vertices[list(control.bust_points)]  # a side without a breast has these
+    both = [marks[name].position for name in ("bust_point_left", "bust_point_right") if name in marks]
+    left, middle = (both[0], np.mean(both, axis=0)) if both else (laid[0], laid.mean(axis=0))
+    rest, places = stages.body.mesh, deform(stages.binding, control_points)
+    free = control.mesh.vertices[~control.fixed]
+    vertex = int(np.linalg.norm(rest.vertices - left, axis=1).argmin())
+    move = places[vertex] - rest.vertices[vertex]
+    found = []
+    for name, axis, mark, moved in (("side", "x", left, left + move), ("bust", "z", middle, middle)):
+        flat = Plane(axis, 0.0).flat(free)
+        box = _pair(flat.min(axis=0) - AROUND), _pair(flat.max(axis=0) + AROUND)
+        at, point, before = _cut(rest, rest.vertices, axis, mark)
+        after_at, point_after, after = _cut(rest, places, axis, moved)
+        found.append(SectionCurves(name, axis, at, after_at, box, point, point_after, before, after))
+    return tuple(found)
+
+
+def _cut(rest: Mesh, places: Points, axis: str, mark: Floats) -> tuple[float, Pair, tuple[Line2, ...]]:
+    """Return where a cut through a bust point lies, where that is in it, and its curves.
+
+    The landmark of a side may stand a hair off the skin: what is told lies on it.
+    """
+    plane = Plane(axis, float(mark[AXES.index(axis)]))
+    curves = Slicer(rest, plane).curves(places)
+    foot = nearest(curves, plane.flat(mark)) if axis == "x" else None
+    return plane.at, _pair(plane.flat(mark) if foot is None else foot.place), tuple(map(_line, curves))
+
+
+def _line(curve: Curve) -> Line2:
+    return tuple(_pair(place) for place in curve.places)
+
+
+def _pair(place: Floats) -> Pair:
+    return round(float(place[0]), 2), round(float(place[1]), 2)
+
+
+def _turns(stages: Stages, records: Sequence[Record]) -> Turns:
+    """Return the turns of a run; Newton's steps to the exact answer are none."""
+    rest, made = stages.rest_marks, () if stages.design.volume == "exact" else records
+    rows = [(row, row.marks) for row in made if row.marks is not None]
+    return Turns(
+        stages.design.volume,
+        tuple(row.turn for row, _ in rows),
+        tuple(100.0 * row.error for row, _ in rows),
+        tuple(_lift(rest, marks).up for _, marks in rows),
+    )
+
+
+def _model(stages: Stages) -> dict[str, Any]:
+    names = "template", "volume", "line_contact", "line_hold", "member_law", "tissue_stiffness"
+    return {name: getattr(stages.design, name) for name in names}

@@ -1,0 +1,274 @@
+"""A run in numbers: one CSV row per turn, and a report with the final figures, versions and times."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import platform
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Protocol
+
+from core import __version__
+from core.document.serialization import to_json
+from core.export.mesh import write_control_points, write_mesh
+from core.files.atomic_write import whole_file, write_text
+from core.geometry.mesh import Points
+from core.mechanics.constraint_lines import Line
+from core.mechanics.convergence import Verdict
+from core.mechanics.iteration import Marks, Record
+from core.mechanics.mesh_quality import Condition
+from core.pipeline.build import Stages
+from core.pipeline.solve import Solution
+
+_LIBRARIES = ("numpy", "scipy", "trimesh")
+_SETTINGS = ("template", "line_height", "weights", "scaled_normals", "dense_volume", "tissue_stiffness")
+
+
+class Shown(Protocol):
+    """A body as it is shown, a ``Frame`` or a ``Solution``: control points (n, 3) [mm], and how it stands."""
+
+    @property
+    def stages(self) -> Stages:
+        """What it was made of."""
+
+    @property
+    def control_points(self) -> Points:
+        """Where the control points are [mm]."""
+
+    @property
+    def verdict(self) -> Verdict:
+        """How the run stands."""
+
+
+def kept_volume(shown: Shown) -> tuple[float, float]:
+    """Return how far the volume that is kept is from the one at rest, of that of the control mesh [%, ml].
+
+    It is the body's own where the exact answer keeps that, else that of the control mesh; while it swings,
+    the mean of its swing.
+    """
+    stages, rest = shown.stages, shown.stages.model.volume.rest_volume
+    if shown.verdict.state == "vibrating":
+        change = shown.verdict.error * rest
+    elif stages.design.dense_volume and stages.design.volume == "exact":
+        change = float(stages.body_change(shown.control_points).sum())
+    else:
+        change = stages.model.volume.volume(shown.control_points) - rest
+    return 100.0 * change / rest, change / 1000.0
+
+
+def write_solution(solution: Solution, folder: Path, more: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """Write body.ply, control.ply, control.csv, turns.csv and report.json, and return the report.
+
+    ``more`` stands in the report beside its own figures.
+
+    Raises UserError if something cannot be written.
+    """
+    stages = solution.stages
+    write_mesh(folder / "body.ply", solution.body)
+    write_mesh(folder / "control.ply", stages.control.mesh.moved(solution.control_points))
+    write_control_points(folder / "control.csv", stages.control)
+    write_turns(folder / "turns.csv", solution.records, stages)
+    figures = {**(more or {}), **report(solution)}
+    write_text(folder / "report.json", json.dumps(figures, indent=1, ensure_ascii=False) + "\n")
+    return figures
+
+
+def write_turns(path: str | os.PathLike[str], records: Sequence[Record], stages: Stages) -> None:
+    """Write one CSV row per turn; each heading names its unit, heights what they are counted from."""
+    heading = ["turn", "volume_error_percent", "volume_error_ml", *_marks(stages.rest_marks)]
+    heading += [*(f"length_{line.name}_mm" for line in stages.model.lines), "step_mm"]
+    low = _lowest(stages)
+    with (
+        whole_file(Path(path)) as partial,
+        open(partial, "w", newline="", encoding="utf-8") as file,
+    ):
+        writer = csv.writer(file)
+        writer.writerow(heading)
+        for row in records:
+            seen = _marks(row.marks, low).values()
+            figures = (100.0 * row.error, row.error_ml, *seen, *row.lengths, row.step)
+            writer.writerow([row.turn, *(f"{value:.9g}" for value in figures)])
+
+
+def report(solution: Solution) -> dict[str, Any]:
+    """Return the final figures of a solution, with definitions, versions and seconds, ready for JSON."""
+    stages, last, verdict = solution.stages, solution.last, solution.verdict
+    return {
+        "state": verdict.state,
+        "motion": verdict.motion,
+        "turns": last.turn,
+        "control_points": len(stages.control.row),
+        "volume_control": stages.design.volume,
+        "volume": _volume_report(solution),
+        "vibration": {
+            "period_turns": verdict.period,
+            "amplitude_percent": 100.0 * verdict.amplitude,
+            "growth_per_turn": verdict.growth,
+        },
+        "condition": _condition_report(verdict.condition),
+        "lines": {
+            line.name: _line_report(line, stages, reached)
+            for line, reached in zip(stages.model.lines, last.lengths, strict=True)
+        },
+        "marks": {
+            "rest": _marks(solution.rest.marks, _lowest(stages)),
+            "final": _marks(last.marks, _lowest(stages)),
+        },
+        "fit": _fit_report(stages),
+        "settings": _settings(stages),
+        "notes": [*shape_warnings(solution), *notes(stages)],
+        "seconds": {
+            **{name: round(seconds, 4) for name, seconds in stages.seconds.items()},
+            "solve": round(solution.seconds, 4),
+        },
+        "versions": {
+            "busk": __version__,
+            "python": platform.python_version(),
+            **{name: version(name) for name in _LIBRARIES},
+        },
+        "design": json.loads(to_json(stages.design)),
+    }
+
+
+def _volume_report(solution: Solution) -> dict[str, Any]:
+    rest, last = solution.stages.model.volume.rest_volume / 1000.0, solution.last
+    return {
+        "rest_ml": rest,
+        "error_percent": 100.0 * last.error,
+        "error_ml": last.error_ml,
+        "body_change_percent": 100.0 * solution.body_change / rest,
+        "body_change_ml": solution.body_change,
+        "definition": "rest_ml: between the control mesh and the fan from the centre of its border; "
+        "error = (volume - rest volume) / rest volume; body_change: what the reshaped scan itself gained, "
+        "in percent of the same rest volume",
+    }
+
+
+def _condition_report(condition: Condition | None) -> dict[str, Any]:
+    if condition is None:
+        return {}
+    return {
+        "folded": condition.folded,
+        "inverted": condition.inverted,
+        "overstrained": condition.overstrained,
+        "strained": condition.strained,
+        "largest_turn_degrees": condition.largest_turn,
+        "shortest_edge_percent": 100.0 * condition.shortest,
+        "longest_edge_percent": 100.0 * condition.longest,
+        "definition": "of the control mesh: the largest angle between a triangle's normal and its normal at "
+        "rest, and edge lengths over rest lengths; folded from 78 degrees on, strained outside 80 to 120 %, "
+        "overstrained outside 70 to 130 %",
+    }
+
+
+def _fit_report(stages: Stages) -> dict[str, Any]:
+    quality = stages.control.quality
+    if quality is None:
+        return {}
+    return {
+        "deviation_mean_mm": quality.deviation_mean,
+        "deviation_95_mm": quality.deviation_95,
+        "deviation_max_mm": quality.deviation_max,
+        "smallest_angle_degrees": quality.smallest_angle,
+        "shortest_edge_mm": quality.shortest_edge,
+        "largest_bend_degrees": quality.largest_bend,
+        "crossings": quality.crossings,
+        "same_way": quality.same_way,
+        "bust_off_mm": quality.bust_off,
+        "fold_off_mm": quality.fold_off,
+        "definition": "deviation: from the skin behind the control mesh to it, by area; largest_bend: of two "
+        "triangles off the fold row; crossings: triangles that cut another; same_way: smallest cosine "
+        "between a triangle and the skin; *_off: of bust points and fold row from their landmarks",
+    }
+
+
+def _settings(stages: Stages) -> dict[str, Any]:
+    return {
+        **{key: getattr(stages.design, key) for key in _SETTINGS},
+        **asdict(stages.design.mechanics),
+        "gain": stages.gain,
+        "gain_limit_at_rest": stages.gain_limit,
+    }
+
+
+def notes(stages: Stages) -> list[str]:
+    """Return in sentences what a reader of the figures has to know."""
+    return [
+        *still_lines(stages),
+        *warnings(stages),
+        *stages.body.repairs,
+        "Lengths are those of the front part of a line, side to side; the back does not change.",
+        "Not modelled: friction between garment and skin, gravity, stiffness of real tissue, and of real "
+        "elastic where a line is made of none.",
+    ]
+
+
+def shape_warnings(shown: Shown) -> list[str]:
+    """Return in a sentence what is wrong with a folded or overstrained shape."""
+    condition, state = shown.verdict.condition, shown.verdict.state
+    if condition is None or state not in ("folded", "overstrained"):
+        return []
+    if state == "folded":
+        turn = f"{condition.largest_turn:.0f}"
+        said = f"The shape is folded: a triangle of the control mesh has turned by {turn} degrees."
+    else:
+        low, high = f"{100.0 * condition.shortest:.0f}", f"{100.0 * condition.longest:.0f}"
+        said = f"The shape is overstrained: edges of the mesh have {low} to {high} % of their rest lengths."
+    return [" ".join((said, "It does not tell how a body would look."))]
+
+
+def still_lines(stages: Stages) -> list[str]:
+    """Return a sentence for each line that is worn where no length can move anything.
+
+    One that is made of an elastic is there to be cut: of it there is nothing to be told.
+    """
+    own = {line.name for line in stages.design.own_lines}
+    still = [line.name for line in stages.model.lines if not line.constrains]
+    return [
+        f"{name} lies on points that do not move: it is measured, and no length that is set moves it."
+        if name in own
+        else f"{name} lies on the rib cage: it is measured, and no length that is set moves it."
+        for name in still
+        if name in stages.design.worn() and name not in stages.design.worn_elastics()
+    ]
+
+
+def warnings(stages: Stages) -> list[str]:
+    """Return in sentences what did not go as well as it should on the way to the model."""
+    patch = stages.patch
+    faded = [] if patch.rule == "flood" else [f"The reshaped part fades by distance: {patch.reason}"]
+    return [*stages.control.warnings, *faded]
+
+
+def _line_report(line: Line, stages: Stages, reached: float) -> dict[str, Any]:
+    ratio = stages.design.ratio(line.name)
+    return {
+        "worn": line.name in stages.design.worn(),
+        "rest_mm": line.rest_length,
+        "set_mm": ratio * line.rest_length,
+        "reached_mm": reached,
+        "set_percent": 100.0 * ratio,
+        "reached_percent": 100.0 * reached / line.rest_length,
+        "whole_band_rest_mm": line.whole_length,
+        "whole_band_reached_mm": reached + line.back_length,
+    }
+
+
+def _lowest(stages: Stages) -> float:
+    return float(stages.body.mesh.vertices[:, 2].min())
+
+
+def _marks(marks: Marks | None, low: float = 0.0) -> dict[str, float]:
+    """Return what is watched on the body [mm], if it was; heights are over ``low``, the lowest point."""
+    if marks is None:
+        return {}
+    return {
+        "bust_point_left_above_lowest_mm": marks.nipple_left_z - low,
+        "bust_point_right_above_lowest_mm": marks.nipple_right_z - low,
+        "apex_above_lowest_mm": marks.apex_z - low,
+        "apex_protrusion_mm": marks.apex_protrusion,
+    }

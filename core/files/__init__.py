@@ -1,0 +1,1 @@
+"""Reading and writing files: regular files only, whole or not at all."""

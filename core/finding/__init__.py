@@ -1,1 +1,0 @@
-"""The rules behind the landmarks, one a room."""

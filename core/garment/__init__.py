@@ -1,0 +1,1 @@
+"""The garment's bands: elastics, tension, cut list, contact pressure."""

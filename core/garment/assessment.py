@@ -1,0 +1,210 @@
+"""Assessment: one overall verdict on a solved design, the worst of all that was checked (ours).
+
+Checked are convergence and shape of the run, contact pressure, bands that cannot do what they are set to,
+scan, landmarks and the fit of the control mesh.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from core.export.solution_report import Shown, warnings
+from core.garment.cut_list import CutList, CutRow, cut_list
+from core.garment.pressure_limits import AMBER, GREEN, comfort
+from core.garment.pressure_list import PressList, PressRow, press_list
+from core.landmarks.warnings import doubts
+from core.mechanics.convergence import Verdict
+from core.pipeline.build import Stages
+
+GOOD, PENDING, CAUTION, BAD = LEVELS = ("good", "pending", "caution", "bad")
+"""Levels from the best to the worst; one that is still being computed is better than none that is known."""
+
+TOPICS = ("convergence", "shape", "band", "pressure", "fit", "landmarks")
+"""What is checked, in the order in which findings of one level are ranked."""
+
+PUSHES = 0.5
+"""A line that would have to push with more than this carries part of the shape [N]; an estimate."""
+
+FIT_LIMITS = (20.0, 10.0, 20.0)
+"""Largest and 95 % deviation of the skin from the control mesh, and of its fold row from the landmark of the
+fold, beyond which a fit is doubtful [mm]; ours.
+"""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One reason for an assessment.
+
+    ``topic`` is one of TOPICS, ``level`` CAUTION or BAD. ``message`` states in a sentence what is wrong,
+    ``action`` what to do, empty where the message includes it. ``lines`` are the lines concerned,
+    ``value`` the pressure [kPa] of one on that, the elongation [1] of an elastic that is stretched far, 0
+    where neither is known.
+    """
+
+    topic: str
+    level: str
+    message: str
+    action: str = ""
+    lines: tuple[str, ...] = ()
+    value: float = 0.0
+
+
+UNKNOWN_PRESSURE = Finding(
+    *("pressure", CAUTION, "The contact pressure was not computed."),
+    "Change a length to compute it again.",
+)
+
+
+@dataclass(frozen=True)
+class Assessment:
+    """The overall verdict: ``findings`` are ranked, the worst first.
+
+    ``pending`` names what is not known yet, "convergence" or "pressure", or is empty. ``active`` tells
+    whether any line is.
+    """
+
+    findings: tuple[Finding, ...]
+    pending: str = ""
+    active: bool = True
+
+    @property
+    def level(self) -> str:
+        """The worst level: one of LEVELS."""
+        worst = self.findings[0].level if self.findings else GOOD
+        return PENDING if self.pending and worst != BAD else worst
+
+    def as_data(self) -> dict[str, Any]:
+        """Return the assessment ready for JSON."""
+        return {"level": self.level, "findings": [asdict(each) for each in self.findings]}
+
+
+def assessed(shown: Shown) -> Assessment:
+    """Return the assessment of a run that has ended; cut list and pressures are computed for it."""
+    if not shown.verdict.sound:
+        return assessment_of(shown, None, None)
+    stages, points = shown.stages, shown.control_points
+    return assessment_of(shown, cut_list(stages, points), press_list(stages, points))
+
+
+def assessment_of(
+    shown: Shown,
+    cuts: CutList | None,
+    pressed: PressList | None,
+    *,
+    running: bool = False,
+    failed: bool = False,
+) -> Assessment:
+    """Return the assessment of a run, with its cut list and pressures as far as they are known.
+
+    While it is ``running`` it may still converge; ``failed``: computing its pressures did, and they stay
+    unknown. A run without a valid shape has neither.
+    """
+    stages, verdict, active = shown.stages, shown.verdict, bool(shown.stages.design.worn())
+    found = [*_run(shown, running), *_foundations(stages)]
+    if verdict.sound:
+        found += [*_bands(cuts), *([UNKNOWN_PRESSURE] if failed else _pressures(pressed))]
+    ranked = sorted(found, key=lambda each: (-LEVELS.index(each.level), TOPICS.index(each.topic)))
+    awaited = active and verdict.sound and pressed is None and not failed
+    pending = "convergence" if running else "pressure" if awaited else ""
+    return Assessment(tuple(ranked), pending, active)
+
+
+def _run(shown: Shown, running: bool) -> Iterator[Finding]:
+    """Yield what is wrong with the run and its shape."""
+    verdict = shown.verdict
+    if verdict.motion == "diverging":
+        yield Finding(
+            *("convergence", BAD, "The calculation diverges: there is no shape."),
+            "Set the lines longer or softer.",
+        )
+    elif verdict.motion == "vibrating":
+        message = "The calculation does not converge: it oscillates."
+        yield Finding("convergence", BAD, message, "Diagnose the design.")
+    elif verdict.motion == "settling" and not running:
+        yield Finding("convergence", BAD, "The calculation has not converged.", "Diagnose the design.")
+    if verdict.motion not in ("diverging", "vibrating"):
+        yield from _shape(verdict)
+
+
+def _shape(verdict: Verdict) -> Iterator[Finding]:
+    condition, action = verdict.condition, "Diagnose the design."
+    if condition is None:
+        return
+    ends = (100.0 * (each - 1.0) for each in (condition.shortest, condition.longest))
+    low, high = (f"{each:+.0f}".replace("-", "\N{MINUS SIGN}") for each in ends)
+    if condition.folded:
+        yield Finding("shape", BAD, "The skin folds over: this shape is not valid.", action)
+    elif condition.overstrained:
+        message = f"Skin is compressed or stretched by over 30 % ({low} to {high} %)."
+        yield Finding("shape", BAD, message, action)
+    elif condition.strained:
+        message = f"Skin is compressed or stretched by over 20 % ({low} to {high} %)."
+        yield Finding("shape", CAUTION, message, action)
+
+
+def _bands(cuts: CutList | None) -> Iterator[Finding]:
+    """Yield lines whose band cannot do what it is set to."""
+    for row in cuts.rows if cuts is not None else ():
+        if row.refused:
+            yield Finding("band", BAD, row.refused, lines=(row.line,))
+        if row.slack:
+            yield _slack(row)
+        elif row.far and row.elongation is not None:
+            message = f"The elastic of {row.title} is stretched far, by {100.0 * row.elongation:.0f} %."
+            action = "Cut it longer, or choose another elastic."
+            yield Finding("band", CAUTION, message, action, (row.line,), row.elongation)
+
+
+def _slack(row: CutRow) -> Finding:
+    level = BAD if row.push_n > PUSHES else CAUTION
+    message = f"{row.title} is slack: it has no tension."
+    if row.push_n:
+        message = f"{row.title} is slack: it would have to push with {row.push_n:.1f} N, which no band can."
+    return Finding("band", level, message, "Shorten it, or take it off.", (row.line,))
+
+
+def _pressures(pressed: PressList | None) -> Iterator[Finding]:
+    """Yield lines that press more than the green light allows, the hardest first, and those not known."""
+    rows = [row for row in pressed.rows if row.light != GREEN] if pressed is not None else []
+    for row in sorted(rows, key=lambda row: -(row.max_kpa or 0.0)):
+        yield _pressure(row)
+
+
+def _pressure(row: PressRow) -> Finding:
+    if row.max_kpa is None:
+        message = f"{row.title} has an unknown contact pressure."
+        return Finding("pressure", CAUTION, message, " ".join(row.notes), (row.line,))
+    kpa, mmhg = row.max_kpa or 0.0, row.max_mmhg or 0.0
+    message = f"{row.title} presses with {kpa:.1f} kPa ({mmhg:.0f} mmHg)."
+    if row.light == AMBER:
+        action = "Try it on: sit and breathe in with it."
+        return Finding("pressure", CAUTION, message, action, (row.line,), kpa)
+    unwearable = kpa >= comfort().beyond[-1][0]
+    action = "Set it longer, wider or softer."
+    much = "It cannot be worn: set it much longer, wider or softer."
+    return Finding("pressure", BAD, message, much if unwearable else action, (row.line,), kpa)
+
+
+def _foundations(stages: Stages) -> Iterator[Finding]:
+    """Yield what is doubtful about the scan, its landmarks and the control mesh."""
+    for sentence in doubts(stages.body, stages.landmarks):
+        yield Finding("landmarks", CAUTION, sentence)
+    yield from _fit(stages)
+    for sentence in warnings(stages):
+        yield Finding("fit", CAUTION, sentence)
+
+
+def _fit(stages: Stages) -> Iterator[Finding]:
+    """Yield how far the control mesh is off the body, where that is more than on any body that was tried."""
+    quality, action = stages.control.quality, "Check the bust points and folds."
+    if quality is None:
+        return
+    largest, most, fold = FIT_LIMITS
+    if quality.deviation_max > largest or quality.deviation_95 > most:
+        message = f"The control mesh is up to {quality.deviation_max:.0f} mm off the skin."
+        yield Finding("fit", CAUTION, message, action)
+    if quality.fold_off > fold:
+        message = f"The fold row of the control mesh is {quality.fold_off:.0f} mm off the fold."
+        yield Finding("fit", CAUTION, message, action)

@@ -1,0 +1,244 @@
+"""The cut list: from the lengths that lines reach on the body to lengths of elastic to cut."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from core.control_mesh.path_snapping import off_by
+from core.document.elastic import Elastic
+from core.garment.tension import LineTension, line_tensions
+from core.geometry.mesh import Points
+from core.geometry.plane_sections import arc_length
+from core.mechanics.constraint_lines import Line
+from core.mechanics.force_units import newtons_per_unit
+from core.pipeline.build import Stages
+
+FAR = 0.8
+"""The part of its table beyond which an elastic is stretched further than usual [1]: an estimate."""
+
+UNEVEN = 0.1
+"""A tension that differs by more than this along a line is told [1]."""
+
+SLACK = "Slack: it is longer than the body needs there, and a band cannot push. Shorten it, or take it off."
+"""What is said of a line without tension that the model would have push."""
+
+UNCHOSEN = "No elastic is chosen for it: choose one to get its length to cut."
+"""What is said of a line that is made of nothing in particular."""
+
+SEWN_ON = 3.0
+"""A line that ends nearer than this to a band is sewn to it [mm]."""
+
+FRONT_ONLY = (
+    "Front part only, up to the edge of the control mesh: what goes on over shoulder or back is not in it."
+)
+"""What is said of a line that ends where the control mesh does."""
+
+
+@dataclass(frozen=True)
+class CutRow:
+    """One piece to cut, or why there is none yet.
+
+    ``reached_front_mm`` is the front part as it is worn, ``reached_whole_mm`` the whole closed band, or the
+    same for an open line. ``cut_mm`` = whole / (1 + ``elongation``) + ``allowance_mm``; a slack piece is not
+    stretched, and is cut to the length that is set. None stands for what is not known, an empty ``elastic``
+    for a line that is made of nothing in particular. ``notes`` are sentences. ``front_only`` tells of an open
+    line that ends where the control mesh does, as straps do: its lengths are those of the part that is
+    modelled, and no whole piece can be cut to them. ``far`` tells of an elastic that is stretched nearly to
+    the end of its table, ``refused`` why none can be cut to this length. A ``slack`` line has no tension;
+    ``push_n`` is what it would have to push with to hold the shape. ``height_mm`` is how high the middle of
+    its front part is over the bust points.
+    """
+
+    line: str
+    title: str
+    elastic: str
+    width_mm: float | None
+    closed: bool
+    reached_front_mm: float
+    reached_whole_mm: float
+    elongation: float | None = None
+    tension_n: float | None = None
+    allowance_mm: float | None = None
+    cut_mm: float | None = None
+    estimate: bool = True
+    notes: tuple[str, ...] = ()
+    front_only: bool = False
+    far: bool = False
+    slack: bool = False
+    push_n: float = 0.0
+    refused: str = ""
+    height_mm: float | None = None
+
+
+@dataclass(frozen=True)
+class CutList:
+    """All pieces in the order of the lines; ``notes`` say what holds for all of them.
+
+    ``newtons_per_unit`` [N/mm] is one unit of the model's stiffness on tissue of ``tissue_stiffness`` [N/m].
+    """
+
+    rows: tuple[CutRow, ...]
+    tissue_stiffness: float
+    newtons_per_unit: float
+    notes: tuple[str, ...]
+
+    def as_data(self) -> dict[str, Any]:
+        """Return the list ready for JSON."""
+        return asdict(self)
+
+
+def cut_list(stages: Stages, control_points: Points) -> CutList:
+    """Return what to cut for the worn lines at ``control_points``, shape (n, 3) [mm].
+
+    Raises LineError for points that are no shape; see ``line_tensions``.
+    """
+    design = stages.design
+    tensions = line_tensions(stages, control_points)
+    bust = float(stages.watch.bust_points(control_points)[:, 2].mean())
+    rows = tuple(
+        replace(
+            _row(stages, line, line.length(control_points), tensions),
+            height_mm=_middle(line.places(control_points)) - bust,
+        )
+        for line in stages.model.lines
+        if line.name in design.worn()
+    )
+    unit = newtons_per_unit(stages.model, design.tissue_stiffness)
+    return CutList(rows, design.tissue_stiffness, unit, _notes(rows, design.tissue_stiffness))
+
+
+def _middle(places: Points) -> float:
+    """Return the height of the middle of a path, shape (k, 3) [mm]."""
+    along = arc_length(places)
+    return float(np.interp(0.5 * along[-1], along, places[:, 2]))
+
+
+def _row(stages: Stages, line: Line, reached: float, tensions: Mapping[str, LineTension]) -> CutRow:
+    design = stages.design
+    traits, elastic = design.traits_of(line.name), design.worn_elastics().get(line.name)
+    row = CutRow(
+        line.name,
+        traits.title or line.name,
+        elastic.name if elastic else "",
+        elastic.width_mm if elastic else traits.width,
+        line.back_length > 0.0 or line.closed,
+        reached,
+        reached + line.back_length,
+    )
+    tail = stages.tails.get(line.name)
+    if tail is not None and tail.length > 0.0:
+        row = _noted(
+            row,
+            "From its lower end over the shoulder to the under-bust band at the back: "
+            f"{tail.length:.0f} mm of it lie where the body is fixed.",
+        )
+    elif goes_on(stages, line):
+        why = (tail.problem,) if tail is not None and tail.problem else ()
+        row = replace(row, front_only=True, notes=(*why, FRONT_ONLY))
+    tension = tensions.get(line.name)
+    if tension is not None:
+        slack = tension.push > 0.0
+        notes = (*row.notes, *([SLACK] if slack else _uneven(tension)))
+        row = replace(row, tension_n=tension.pull, slack=slack, push_n=tension.push, notes=notes)
+    if elastic is None:
+        return _noted(row, UNCHOSEN)
+    if design.line_hold == "held":
+        return _held(row, elastic)
+    elongation = reached / (design.ratio(line.name) * line.rest_length) - 1.0
+    return _stretched(row, elastic, elongation, elastic.force(elongation))
+
+
+def goes_on(stages: Stages, line: Line) -> bool:
+    """Return whether an open line has an end where nothing moves any more, and no band to be sewn to.
+
+    A strap that is led over the shoulder has a band at the back.
+    """
+    if line.back_length > 0.0 or line.closed or line.tail_length > 0.0:
+        return False
+    rest, fixed = stages.control.mesh.vertices, line.weights @ stages.control.fixed > 1.0 - 1e-9
+    bands = [each.places(rest)[1:-1] for each in stages.model.lines if each.back_length > 0.0]
+    ends = line.places(rest)[[0, -1]]
+    sewn = [any(off_by(end[None], band) < SEWN_ON for band in bands) for end in ends]
+    return any(held and not sewed for held, sewed in zip(fixed[[0, -1]], sewn, strict=True))
+
+
+def is_strap(stages: Stages, line: Line) -> bool:
+    """Return whether a line goes on over the shoulder, or would if the body were modelled there."""
+    return line.tail_length > 0.0 or goes_on(stages, line)
+
+
+def _held(row: CutRow, elastic: Elastic) -> CutRow:
+    """Return the row of a line whose length is held: its tension tells how far its elastic is stretched."""
+    if row.tension_n is None:
+        return _noted(
+            row, "It lies on points that do not move, so its tension is not known: let lines spring back."
+        )
+    if row.tension_n > elastic.strength:
+        return _refused(row, str(elastic.overpulled(row.tension_n, row.title)))
+    if row.slack:
+        return row
+    return _stretched(row, elastic, elastic.elongation(row.tension_n), row.tension_n)
+
+
+def _stretched(row: CutRow, elastic: Elastic, elongation: float, tension: float) -> CutRow:
+    if elongation > elastic.reach:
+        return _refused(row, str(elastic.overstretched(elongation, row.title)))
+    row = replace(
+        row,
+        elongation=max(elongation, 0.0),
+        tension_n=tension,
+        allowance_mm=elastic.allowance_mm,
+        cut_mm=row.reached_whole_mm / (1.0 + elongation) + elastic.allowance_mm,
+        estimate=elastic.estimate,
+    )
+    if elongation < 0.0:
+        return row if row.slack else _noted(replace(row, slack=True), SLACK)
+    if elongation <= FAR * elastic.reach:
+        return row
+    end = 100.0 * elastic.reach
+    note = f"Stretched far, its table ends at {end:g} %: 30 to 50 % are usual, an estimate."
+    return _noted(replace(row, far=True), note)
+
+
+def _refused(row: CutRow, why: str) -> CutRow:
+    return replace(_noted(row, why), refused=why)
+
+
+def _noted(row: CutRow, note: str) -> CutRow:
+    return replace(row, notes=(*row.notes, note))
+
+
+def _uneven(tension: LineTension) -> tuple[str, ...]:
+    low, high = max(float(tension.segments.min()), 0.0), max(float(tension.segments.max()), 0.0)
+    if high - low <= UNEVEN * abs(tension.mean):
+        return ()
+    return (f"Its tension goes from {low:.1f} to {high:.1f} N along the line.",)
+
+
+def _notes(rows: tuple[CutRow, ...], tissue: float) -> tuple[str, ...]:
+    """Return in sentences what holds for the whole list."""
+    notes = [
+        f"Newtons are an estimate: skin and tissue are taken to answer with {tissue:.0f} N per m of width "
+        "and strain; skins alone were measured from about 160 to 1150.",
+    ]
+    guessed = sorted({row.elastic for row in rows if row.elastic and row.estimate and row.cut_mm})
+    if guessed:
+        notes.append(f"The force of {'; '.join(guessed)} is an estimate: measure your own before you cut.")
+    if any(row.closed and row.cut_mm for row in rows):
+        notes.append("The back of a band is taken to be stretched as far as its front.")
+        notes.append("Lengths run along the line, which need not lie level: a girth by tape is another one.")
+    allowances = {row.allowance_mm for row in rows if row.cut_mm}
+    if len(allowances) == 1:
+        notes.append(
+            f"Each length to cut includes {allowances.pop():g} mm for seams; hooks and eyes, "
+            "rings and slides are not taken off."
+        )
+    elif allowances:
+        notes.append(
+            "Lengths to cut hold the allowance for seams; hooks and eyes, rings and slides are not taken off."
+        )
+    return tuple(notes)

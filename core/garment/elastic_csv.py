@@ -1,0 +1,220 @@
+"""Elastics as tables of comma-separated values: measured by a designer, and handed on."""
+
+from __future__ import annotations
+
+import csv
+import re
+import unicodedata
+from collections.abc import Iterator, Sequence
+
+from core.document.elastic import Curve, Elastic
+from core.errors import LineError
+
+LARGEST = 1_000_000
+"""Bytes of the largest table that is read."""
+
+ALLOWANCE = 20.0
+"""For seams, at both ends together, where a table tells none [mm]."""
+
+FEWEST = 2
+"""Rows that a table must have beside that of the unstretched elastic."""
+
+_NEWTONS = {"n": 1.0, "cn": 0.01, "gf": 0.00980665, "g": 0.00980665, "kgf": 9.80665, "kg": 9.80665}
+_WHOLE = {"%": 100.0, "1": 1.0}  # what elongations are divided by
+_ELONGATION = re.compile(r"elongation|extension|stretch|strain|dehnung|伸", re.IGNORECASE)
+_FORCE = re.compile(r"force|load|(?<!ex)tension|pull|kraft|荷重|張力|力", re.IGNORECASE)
+_TOLD = re.compile(
+    r"#\s*(name|width|allowance|source|estimate)(?:_mm)?\s*[:=]\s*(.*?)[\s,;]*$", re.IGNORECASE
+)
+_QUOTED = re.compile(r'^"(.*)"$')
+
+HELP = (
+    "one row of headings with units, like 'elongation %' and 'force N' (also N/cm, cN, gf, kgf), then one "
+    "row for each point; before them lines like '# width_mm: 12', '# name: ...', '# allowance_mm: 20'"
+)
+"""What a user has to know to write a table."""
+
+
+SHORTEST_REACH, MOST_PER_CM = 0.02, 100.0
+"""Less elongation [1], or more force per width [N/cm], is no elastic's: the unit in the heading is wrong."""
+
+_UNFILLED = "whose it is, when it was measured, at which stretch"
+
+TEMPLATE = f"""\
+# name: my elastic 12 mm
+# width_mm: 12
+# allowance_mm: 20
+# source: {_UNFILLED}
+elongation %,force N
+20,
+40,
+60,
+80,
+"""
+"""A table to fill in: until each row has its force, it is refused."""
+
+
+def elastic_from_csv(text: str, name: str, width_mm: float | None = None) -> Elastic:
+    """Read a measured table; ``name`` and ``width_mm`` stand where the text tells none.
+
+    See ``HELP``. Force per cm of width is made that of the whole width. Raises LineError with what is wrong.
+    """
+    told = _told(text)
+    name = told.get("name") or name
+    width = width_mm if "width" not in told else _number(told["width"].removesuffix("mm"), "width", name)
+    if width is None:
+        raise LineError(f"The table {name} does not say how wide the elastic is.", "Write '# width_mm: 12'.")
+    allowance = ALLOWANCE
+    if "allowance" in told:
+        allowance = _number(told["allowance"].removesuffix("mm"), "allowance", name)
+    estimate = told.get("estimate", "no").strip().lower() in ("yes", "true", "1")
+    curve = _curve(text, name, width)
+    source = told.get("source", "").replace(_UNFILLED, "")
+    elastic = Elastic(name, width, curve, allowance, source, estimate)
+    _check_units(elastic)
+    return elastic
+
+
+def _check_units(elastic: Elastic) -> None:
+    """Raise LineError where figures are no elastic's in the units that the headings tell."""
+    if elastic.reach < SHORTEST_REACH:
+        raise LineError(
+            f"The table {elastic.name} ends at {100.0 * elastic.reach:g} %: no elastic stretches so little.",
+            "If 1 means twice as long, head it 'elongation 1'.",
+        )
+    if elastic.strength > MOST_PER_CM * elastic.width_mm / 10.0:
+        raise LineError(
+            f"The table {elastic.name} ends at {elastic.strength:g} N: no elastic {elastic.width_mm:g} mm "
+            "wide pulls so hard.",
+            "Look at its unit: 'force cN' or 'force gf' may be meant.",
+        )
+
+
+def tells_allowance(text: str) -> bool:
+    """Return whether a table tells the allowance, or ``ALLOWANCE`` is taken."""
+    return "allowance" in _told(text)
+
+
+def csv_of(elastic: Elastic) -> str:
+    """Return an elastic as a table that ``elastic_from_csv`` reads back as it was, its source on one line."""
+    source = " ".join(elastic.source.split())
+    told = {
+        "name": _kept(elastic.name),
+        "width_mm": f"{elastic.width_mm:.12g}",
+        "allowance_mm": f"{elastic.allowance_mm:.12g}",
+        "source": _kept(source),
+        "estimate": "yes" if elastic.estimate else "no",
+    }
+    heading = [*(f"# {key}: {value}" for key, value in told.items()), "elongation %,force N"]
+    rows = [f"{_percent(elongation)},{force!r}" for elongation, force in elastic.curve]
+    return "\n".join([*heading, *rows]) + "\n"
+
+
+def _told(text: str) -> dict[str, str]:
+    """Return what stands over a table, in words."""
+    found = (match for match in map(_TOLD.match, text.splitlines()) if match)
+    return {match[1].lower(): _QUOTED.sub(r"\1", match[2]) for match in found}
+
+
+def _kept(words: str) -> str:
+    """Return words so that they are read back: quoted if their ends would be taken for those of cells."""
+    plain = _TOLD.match(f"# name: {words}")
+    return words if plain and plain[2] == words and not _QUOTED.match(words) else f'"{words}"'
+
+
+def _percent(share: float) -> str:
+    """Return a share in %, rounded where that comes back as the same share."""
+    short = f"{100.0 * share:.12g}"
+    return short if float(short) / 100.0 == share else repr(100.0 * share)
+
+
+def _number(text: str, what: str, name: str) -> float:
+    try:
+        return float(text.strip().replace(",", "."))
+    except ValueError:
+        raise LineError(f"The {what} '{text.strip()}' of {name} is no number.", "Write it in mm.") from None
+
+
+def _curve(text: str, name: str, width: float) -> Curve:
+    """Return the points of a table with the unstretched elastic first."""
+    numbered = [
+        (count, line)
+        for count, line in enumerate(text.splitlines(), start=1)
+        if line.strip(" \t,;") and not line.lstrip().startswith("#")
+    ]
+    if not numbered:
+        raise LineError(f"The table {name} is empty.", f"It needs {HELP}.")
+    comma = next((mark for mark in "\t;," if mark in numbered[0][1]), "")
+    if not comma:
+        raise LineError(f"The table {name} has one column only.", f"It needs {HELP}.")
+    heading, *rows = ((count, _cells(line, comma)) for count, line in numbered)
+    columns = _columns(heading[1], name, width)
+    points = list(_points(rows, columns, name, "," if comma != "," else "."))
+    if points and points[0] == (0.0, 0.0):
+        points = points[1:]
+    if len(points) < FEWEST:
+        raise LineError(
+            f"The table {name} has too few rows to be a curve.",
+            f"Measure {FEWEST} points at least beside the unstretched elastic.",
+        )
+    if points[0][0] == 0.0:
+        raise LineError(
+            f"The table {name} begins with {points[0][1]:g} N at no elongation.",
+            "Measure from where it begins to pull, or leave that row out.",
+        )
+    return ((0.0, 0.0), *points)
+
+
+def _cells(line: str, comma: str) -> Sequence[str]:
+    """Return the cells of a line, none if they cannot be read; a quotation mark holds no other line in it."""
+    try:
+        return next(csv.reader([line], delimiter=comma))
+    except csv.Error:
+        return ()
+
+
+def _columns(heading: Sequence[str], name: str, width: float) -> tuple[tuple[int, float], tuple[int, float]]:
+    """Return the places of elongation and force, with what figures are divided and multiplied by."""
+    found = []
+    for pattern, what, example in ((_ELONGATION, "elongation", "%"), (_FORCE, "force", "N")):
+        at = next((i for i, cell in enumerate(heading) if pattern.search(cell)), None)
+        if at is None:
+            raise LineError(f"The table {name} has no column '{what}'.", f"It needs {HELP}.")
+        unit = _unit(heading[at], what, width)
+        if unit is None:
+            raise LineError(
+                f"The column '{heading[at].strip()}' of {name} does not say its unit.",
+                f"Head it like '{what} {example}'.",
+            )
+        found.append((at, unit))
+    return found[0], found[1]
+
+
+def _unit(heading: str, what: str, width: float) -> float | None:
+    """Return what makes figures under a heading shares or newtons, None if it tells no unit."""
+    plain = unicodedata.normalize("NFKC", heading).strip()
+    last = re.search(r"[\[(]?\s*([%1]|c?n|k?gf?)\s*(/\s*cm)?\s*[\])]?$", plain, re.IGNORECASE)
+    # The unit must stand for itself: the n of "elongation" is none.
+    if last is None or (plain[: last.start()][-1:].isalpha() and last[0][:1].isalpha()):
+        return None
+    if what == "elongation":
+        return None if last[2] else _WHOLE.get(last[1])
+    newtons = _NEWTONS.get(last[1].lower())
+    return newtons if newtons is None or not last[2] else newtons * width / 10.0
+
+
+def _points(
+    rows: Sequence[tuple[int, Sequence[str]]],
+    columns: tuple[tuple[int, float], tuple[int, float]],
+    name: str,
+    point: str,
+) -> Iterator[tuple[float, float]]:
+    """Yield the points of a table, rows with their lines in it, whose figures have the decimal ``point``."""
+    for count, row in rows:
+        try:
+            stretched, pulled = (float(row[at].strip().replace(point, ".")) for at, _ in columns)
+        except (ValueError, IndexError):
+            raise LineError(
+                f"Line {count} of the table {name} has no two numbers.", "Leave out what is no point."
+            ) from None
+        yield stretched / columns[0][1], pulled * columns[1][1]

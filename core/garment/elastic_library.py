@@ -1,0 +1,187 @@
+"""The elastics to choose from: those that come with Busk, and a designer's own as measured tables."""
+
+from __future__ import annotations
+
+import json
+from contextlib import suppress
+from importlib import resources
+from itertools import chain, count
+from pathlib import Path
+from typing import Any
+
+import platformdirs
+
+from core.document.elastic import Elastic
+from core.document.storage.project_file import safe_name
+from core.errors import LineError, UserError
+from core.files.atomic_write import private_folder, write_text
+from core.files.regular_file import read_regular
+from core.garment.elastic_csv import ALLOWANCE, LARGEST, TEMPLATE, csv_of, elastic_from_csv, tells_allowance
+
+__all__ = [
+    "ALLOWANCE",
+    "Elastic",
+    "built_in",
+    "find_elastic",
+    "library",
+    "own_elastics",
+    "own_folder",
+    "read_elastic",
+    "remove_elastic",
+    "save_elastic",
+    "told_allowance",
+    "write_elastic",
+    "write_template",
+]
+
+FORMAT = 1
+"""The format of the files in ``resources/elastics``."""
+
+
+def built_in() -> tuple[Elastic, ...]:
+    """Return the elastics that come with Busk, every kind in each of its widths."""
+    folder = resources.files("resources") / "elastics"
+    files = sorted((each for each in folder.iterdir() if each.name.endswith(".json")), key=lambda f: f.name)
+    return tuple(elastic for each in files for elastic in kind_of(json.loads(each.read_text("utf-8"))))
+
+
+def kind_of(values: dict[str, Any]) -> tuple[Elastic, ...]:
+    """Return the elastics of one kind: one curve [N/cm of width] in several widths."""
+    assert values["format"] == FORMAT
+    return tuple(
+        Elastic(
+            f"{values['kind']} {width:g} mm",
+            float(width),
+            tuple(
+                (e, round(newtons * width / 10.0, 6))
+                for e, newtons in values["elongation_and_newtons_per_cm"]
+            ),
+            values["allowance_mm"],
+            values["source"],
+            values["estimate"],
+        )
+        for width in values["widths_mm"]
+    )
+
+
+def own_folder() -> Path:
+    """Return where a designer's own elastics lie, as tables."""
+    return Path(platformdirs.user_data_path("Busk", appauthor=False)) / "elastics"
+
+
+def own_elastics() -> tuple[list[Elastic], list[LineError]]:
+    """Return the designer's own elastics, and why some tables cannot be read."""
+    elastics, problems = [], []
+    for path in _own_tables():
+        try:
+            elastics.append(read_elastic(path))
+        except LineError as problem:
+            problems.append(problem)
+    return elastics, problems
+
+
+def library() -> dict[str, Elastic]:
+    """Return all elastics by name; one of the designer's own takes the place of one of the same name."""
+    own, _ = own_elastics()
+    return {elastic.name: elastic for elastic in (*built_in(), *own)}
+
+
+def find_elastic(text: str) -> Elastic:
+    """Return the elastic of the library that is called so, or the only one with all these words in its name.
+
+    Raises LineError if there is none, or more than one.
+    """
+    elastics = library()
+    words = text.casefold().split()
+    exact = [each for name, each in elastics.items() if name.casefold().split() == words]
+    alike = [
+        each for name, each in elastics.items() if set(words) <= set(name.casefold().replace(",", "").split())
+    ]
+    found = exact or (alike if words else [])
+    if len(found) > 1:
+        names = "; ".join(each.name for each in found)
+        raise LineError(f"Several elastics are called '{text}'.", f"Choose one of: {names}.")
+    if not found:
+        raise LineError(f"No elastic is called '{text}'.", f"Choose one of: {'; '.join(elastics)}.")
+    return found[0]
+
+
+def read_elastic(path: Path, width_mm: float | None = None) -> Elastic:
+    """Read a table of one's own; its name is the file's unless it tells one. Raises LineError."""
+    return elastic_from_csv(_text_of(path), path.stem, width_mm)
+
+
+def told_allowance(path: Path) -> bool:
+    """Return whether a table tells the allowance, or ``ALLOWANCE`` is taken. Raises LineError."""
+    return tells_allowance(_text_of(path))
+
+
+def _text_of(path: Path) -> str:
+    try:
+        data = read_regular(path, LARGEST)
+    except OSError as problem:
+        raise LineError(
+            f"The table {path.name} cannot be read: {problem.strerror}.", "Check its name and place."
+        ) from problem
+    if b"\0" in data:
+        raise LineError(f"The file {path.name} is no text.", "Save the table as CSV, then import that.")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("cp932", errors="replace")  # what spreadsheets write in Japan
+
+
+def write_elastic(path: Path, elastic: Elastic) -> None:
+    """Write an elastic as a table, whole or not at all. Raises ProjectError."""
+    write_text(path, csv_of(elastic), "utf-8-sig")
+
+
+def write_template(path: Path) -> None:
+    """Write a table to be filled in with what is measured, whole or not at all. Raises ProjectError."""
+    write_text(path, TEMPLATE, "utf-8-sig")
+
+
+def remove_elastic(name: str) -> None:
+    """Take one of the designer's own elastics away, with its table. Raises UserError."""
+    for path in _own_tables():
+        if _holds(path, name):
+            try:
+                path.unlink()
+            except OSError as problem:
+                raise UserError(
+                    f"The table {path.name} cannot be removed: {problem.strerror}.",
+                    "Remove it from the folder by hand.",
+                ) from problem
+
+
+def save_elastic(elastic: Elastic) -> Path:
+    """Keep an elastic in the designer's own folder, over one of the same name and no other.
+
+    Raises ProjectError.
+    """
+    folder = own_folder()
+    try:
+        private_folder(folder)
+    except OSError as problem:
+        raise UserError(f"The folder {folder} cannot be made.", "Make room, or make it by hand.") from problem
+    held = [path for path in _own_tables() if _holds(path, elastic.name)]
+    # Of several the library has the last; names that differ may be one name for files.
+    path = held[-1] if held else _free(folder, safe_name(elastic.name))
+    write_elastic(path, elastic)
+    return path
+
+
+def _own_tables() -> list[Path]:
+    return sorted(own_folder().glob("*.csv"))
+
+
+def _holds(path: Path, name: str) -> bool:
+    with suppress(LineError):
+        return read_elastic(path).name == name
+    return False
+
+
+def _free(folder: Path, stem: str) -> Path:
+    """Return a place for a table where no file lies."""
+    names = chain([stem], (f"{stem} {number}" for number in count(2)))
+    return next(path for path in (folder / f"{name}.csv" for name in names) if not path.exists())

@@ -1,0 +1,206 @@
+"""Contact pressure along bands: what a taut band presses the skin with, after Laplace's law.
+
+p = T / (w R): tension T over width w and the radius R of the band's path in the plane of the skin's normal.
+The full law has a second term for the pull across the band; bands have none, it is left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from types import MappingProxyType
+
+import numpy as np
+
+from core.garment.band_contact import STANDS_OFF, Bridge, bridges, straight, taut
+from core.garment.band_path import Course, courses
+from core.garment.curve_smoothing import USUAL_WIDTH
+from core.garment.cut_list import is_strap
+from core.garment.pressure_limits import comfort
+from core.garment.tension import LineTension, line_tensions
+from core.geometry.mesh import Flags, Floats, Points
+from core.pipeline.build import Stages
+
+MMHG = 0.133322
+"""One mmHg [kPa]."""
+
+LEAST_OVER = 20.0
+"""The radius is never taken over less than this length [mm]: a scan does not show more."""
+
+LEFT_OUT = (
+    "An estimate, and rather too much: tissue gives way under a band, and sensors read up to 42 % less.",
+    "Friction is left out: what keeps a band from slipping, along it or up and down, is not counted.",
+    "Only the pull along the band presses here; fabric that is stretched both ways presses more.",
+    "The radius is taken over about the width of the band: an edge of a bone presses more.",
+    "The body stands and breathes evenly: sitting and breathing in can double the pressure.",
+)
+"""What the figures leave out."""
+
+LIES_SLACK = "It is slack: it does not press."
+"""What is said of a line without tension."""
+
+NOT_FOR_STRAPS = (
+    "The limits of the light are for soft parts round the trunk: "
+    "they were not set for what goes over shoulders."
+)
+"""What is said of a line that goes on beyond the control mesh, as straps do."""
+
+
+@dataclass(frozen=True, eq=False)
+class LinePressure:
+    """What a band presses with at places along it, every ``step`` [mm], shape (k,).
+
+    ``places`` (k, 3) [mm] of the taut band, the ``skin`` below it and its ``normals``; ``tension`` [N] (a
+    slack band has none), ``turns`` [rad] towards the skin, how far the band is ``off`` it [mm], ``front``
+    where it is the front part; ``width`` [mm]. A ``closed`` one ends beside its beginning. ``told`` is what
+    was put in.
+    """
+
+    places: Points
+    skin: Points
+    normals: Points
+    tension: Floats
+    turns: Floats
+    off: Floats
+    front: Flags
+    width: float
+    step: float
+    closed: bool
+    told: tuple[str, ...] = ()
+
+    @cached_property
+    def along(self) -> Floats:
+        """The distance of each place from the first [mm]."""
+        return np.asarray(self.step * np.arange(len(self.places)))
+
+    @cached_property
+    def radius(self) -> Floats:
+        """The radius that the band bends with towards the skin [mm]; infinite where it does not press."""
+        with np.errstate(divide="ignore"):
+            return np.asarray(self.step / self.turns)
+
+    @cached_property
+    def kpa(self) -> Floats:
+        """The pressure at each place [kPa], 0 where the band bridges."""
+        return np.asarray(1000.0 * self.tension / (self.width * self.radius))
+
+    @cached_property
+    def lies(self) -> Floats:
+        """How much of the band lies on the skin at each place, 0 to 1.
+
+        It fades while the band comes off, so that a hollow that hardly shows does not decide about the mean.
+        """
+        return np.asarray(np.clip(2.0 - self.off / STANDS_OFF, 0.0, 1.0))
+
+    @cached_property
+    def bridges(self) -> tuple[Bridge, ...]:
+        """Where it goes straight over a hollow so that it shows; a slack band does not."""
+        return bridges(self.off, self.step, self.closed) if self.tension.any() else ()
+
+    @cached_property
+    def bridged(self) -> Flags:
+        """Whether each place belongs to a hollow that the band goes straight over, shape (k,)."""
+        flags = np.zeros(len(self.places), dtype=np.bool_)
+        for bridge in self.bridges:
+            inside = np.arange(np.ceil(bridge.begin / self.step), bridge.end / self.step).astype(np.int64)
+            flags[inside % len(flags)] = True
+        return flags
+
+    @property
+    def bridged_length(self) -> float:
+        """How much of the band does not lie on the skin [mm]."""
+        return sum(bridge.length for bridge in self.bridges)
+
+    @property
+    def mean(self) -> float:
+        """The mean pressure where the band lies on the skin [kPa]."""
+        return float(self.kpa.sum() / max(self.lies.sum(), 1.0))
+
+    @property
+    def peak(self) -> int:
+        """The place that is pressed most."""
+        return int(self.kpa.argmax())
+
+    @property
+    def largest(self) -> float:
+        """The largest pressure [kPa]."""
+        return float(self.kpa[self.peak])
+
+    @property
+    def force(self) -> float:
+        """All that the band presses with, whichever way [N]."""
+        return float((self.tension * self.turns).sum())
+
+    @property
+    def resultant(self) -> Floats:
+        """The sum of all forces on the skin along its normals, shape (3,) [N]; nothing for a level band."""
+        inward = -self.tension * self.turns
+        return np.asarray(inward @ self.normals, dtype=np.float64)
+
+    @property
+    def light(self) -> str:
+        """ "green", "amber" or "red" for the largest pressure; see ``core.garment.pressure_limits``."""
+        return comfort().light(self.largest)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is to be said of this band: what was taken for granted, and where it does not press."""
+        said = list(self.told)
+        if not self.tension.any():
+            said.append(LIES_SLACK)
+        elif not self.tension.all():
+            said.append("Part of it is slack: it does not press there.")
+        if self.bridges:
+            most = max(bridge.height for bridge in self.bridges)
+            said.append(
+                f"It goes straight over hollows for {self.bridged_length:.0f} mm, "
+                f"up to {most:.0f} mm off the skin: it does not press there."
+            )
+        return tuple(said)
+
+
+def mmhg(kpa: float) -> float:
+    """Return a pressure of so many kPa in mmHg."""
+    return kpa / MMHG
+
+
+def band_pressure(course: Course, width: float) -> LinePressure:
+    """Return what a band ``width`` [mm] wide on a course presses with.
+
+    The radius is taken over about its width. A hollow is bridged: there it does not press.
+    """
+    smooth = course.smoothed(max(width, LEAST_OVER))
+    turns, touched = taut(smooth.points, smooth.normals, course.closed)
+    places, off = straight(course.points, smooth.normals, touched, course.closed)
+    tension = np.maximum(course.tension, 0.0)  # a band cannot push
+    front, step, closed = course.front, course.step, course.closed
+    return LinePressure(
+        places, course.points, smooth.normals, tension, turns, off, front, width, step, closed
+    )
+
+
+def pressures(stages: Stages, control_points: Points) -> Mapping[str, LinePressure]:
+    """Return what worn lines press with on the body as ``control_points``, (n, 3) [mm], shape it, by line.
+
+    A line whose tension is not known is left out; see ``core.garment.tension``.
+    """
+    tensions = line_tensions(stages, control_points)
+    return MappingProxyType(
+        {
+            name: replace(band_pressure(course, width), told=_told(stages, name, tensions[name]))
+            for name, course, width in courses(stages, control_points, tensions)
+        }
+    )
+
+
+def _told(stages: Stages, name: str, tension: LineTension) -> tuple[str, ...]:
+    """Return in sentences what was taken for granted."""
+    said = []
+    if tension.estimate:
+        said.append("Its tension follows from the stiffness of tissue alone, an estimate.")
+    if not stages.design.traits_of(name).width:
+        said.append(f"It is taken to be {USUAL_WIDTH:g} mm wide: no width was told.")
+    if any(line.name == name and is_strap(stages, line) for line in stages.model.lines):
+        said.append(NOT_FOR_STRAPS)
+    return tuple(said)

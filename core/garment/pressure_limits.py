@@ -1,0 +1,56 @@
+"""When a band presses too much: a traffic light whose limits, sources and doubts are data."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from types import MappingProxyType
+from typing import Any
+
+from core.measurements.size_table import Source, Words
+
+GREEN, AMBER, RED = "green", "amber", "red"
+
+
+@dataclass(frozen=True)
+class Comfort:
+    """From which pressure [kPa] the light is amber and red, what each light says, and how sure that is.
+
+    ``beyond`` are pressures [kPa] above which more has to be said than the red light does, the lowest first.
+    The limits are an estimate of ours between the figures of the ``sources``: guidance, nothing medical.
+    """
+
+    amber_kpa: float
+    red_kpa: float
+    lights: Mapping[str, Words]
+    beyond: tuple[tuple[float, Words], ...]
+    sources: tuple[Source, ...]
+    doubts: tuple[Words, ...]
+
+    def light(self, kpa: float) -> str:
+        """Return "green", "amber" or "red" for a pressure [kPa]."""
+        return RED if kpa >= self.red_kpa else AMBER if kpa >= self.amber_kpa else GREEN
+
+    def says(self, kpa: float) -> Words:
+        """Return what is said of a pressure [kPa]."""
+        above = [words for limit, words in self.beyond if kpa >= limit]
+        return above[-1] if above else self.lights[self.light(kpa)]
+
+
+@cache
+def comfort() -> Comfort:
+    """Return the limits that come with Busk."""
+    values = json.loads((resources.files("resources") / "pressure.json").read_text(encoding="utf-8"))
+    lights = {name: _words(values["lights"][name]) for name in (GREEN, AMBER, RED)}
+    beyond = tuple((each["from_kpa"], _words(each)) for each in values["beyond"])
+    sources = tuple(Source(each["name"], _words(each), each.get("name_ja", "")) for each in values["sources"])
+    doubts = tuple(_words(each) for each in values["doubts"])
+    amber, red = values["amber_kpa"], values["red_kpa"]
+    return Comfort(amber, red, MappingProxyType(lights), beyond, sources, doubts)
+
+
+def _words(values: Mapping[str, Any]) -> Words:
+    return Words(values["en"], values["ja"])

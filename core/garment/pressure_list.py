@@ -1,0 +1,135 @@
+"""What each worn line presses with, in figures: a row a line, and what holds for all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from core.deformation.tffd import deform
+from core.garment.body_location import whereabouts
+from core.garment.pressure import LEFT_OUT, LinePressure, mmhg, pressures
+from core.garment.pressure_limits import comfort
+from core.garment.tension import LineTension, line_tensions
+from core.geometry.mesh import Mesh, Points
+from core.mechanics.constraint_lines import Line
+from core.pipeline.build import Stages
+
+
+@dataclass(frozen=True)
+class PressRow:
+    """What one worn line presses with, or why that is not known: then its figures are None.
+
+    ``where`` is the place that is pressed most, see ``core.garment.body_location``, ``height_mm`` that above the
+    lowest point of the scan, ``place`` the same as x, y, z [mm]. ``light`` is "green", "amber" or "red".
+    ``force_n`` is all that the band presses with, whichever way; ``notes`` are sentences.
+    """
+
+    line: str
+    title: str
+    elastic: str
+    width_mm: float | None = None
+    tension_n: float | None = None
+    mean_kpa: float | None = None
+    mean_mmhg: float | None = None
+    max_kpa: float | None = None
+    max_mmhg: float | None = None
+    where: str = ""
+    height_mm: float | None = None
+    place: tuple[float, ...] = ()
+    light: str = ""
+    force_n: float | None = None
+    bridged_mm: float | None = None
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class PressList:
+    """All worn lines in the order of the model; ``worn`` holds place by place what is known, by line."""
+
+    rows: tuple[PressRow, ...]
+    worn: Mapping[str, LinePressure]
+
+    @property
+    def force_n(self) -> float | None:
+        """All that the bands of known tension press with together, whichever way [N]; None without any."""
+        known = [row.force_n for row in self.rows if row.force_n is not None]
+        return sum(known) if known else None
+
+    @property
+    def complete(self) -> bool:
+        """Whether the tension of every line is known."""
+        return all(row.force_n is not None for row in self.rows)
+
+    @property
+    def hardest(self) -> PressRow | None:
+        """The line with the largest pressure, if any presses."""
+        pressing = [row for row in self.rows if row.max_kpa]
+        return max(pressing, key=lambda row: row.max_kpa or 0.0, default=None)
+
+    def as_data(self) -> dict[str, Any]:
+        """Return the list ready for JSON, with limits, their sources and what is left out."""
+        limits = comfort()
+        return {
+            "rows": [asdict(row) for row in self.rows],
+            "force_n": self.force_n,
+            "limits": {
+                "amber_kpa": limits.amber_kpa,
+                "red_kpa": limits.red_kpa,
+                "lights": {name: words.en for name, words in limits.lights.items()},
+                "beyond": [{"from_kpa": kpa, "says": words.en} for kpa, words in limits.beyond],
+                "sources": [{"name": each.name, "says": each.words.en} for each in limits.sources],
+                "doubts": [each.en for each in limits.doubts],
+            },
+            "left_out": list(LEFT_OUT),
+        }
+
+
+def press_list(stages: Stages, control_points: Points) -> PressList:
+    """Return what the worn lines press with at ``control_points``, shape (n, 3) [mm].
+
+    Raises LineError for points that are no shape; see ``line_tensions``.
+    """
+    worn, tensions = pressures(stages, control_points), line_tensions(stages, control_points)
+    body = stages.body.mesh.moved(deform(stages.binding, control_points))
+    rows = [
+        _row(stages, body, line, worn.get(line.name), tensions.get(line.name))
+        for line in stages.model.lines
+        if line.name in stages.design.worn()
+    ]
+    return PressList(tuple(rows), worn)
+
+
+def _row(
+    stages: Stages, body: Mesh, line: Line, worn: LinePressure | None, tension: LineTension | None
+) -> PressRow:
+    design = stages.design
+    elastic = design.worn_elastics().get(line.name)
+    named = line.name, design.traits_of(line.name).title or line.name, elastic.name if elastic else ""
+    if worn is None or tension is None:
+        return PressRow(*named, notes=(_unknown(design.line_hold == "held"),))
+    place = worn.places[worn.peak]
+    at = whereabouts(body, stages.moving.middle, place, worn.normals[worn.peak])
+    pressing = worn.largest > 0.0
+    return PressRow(
+        *named,
+        width_mm=worn.width,
+        tension_n=tension.pull,
+        mean_kpa=worn.mean,
+        mean_mmhg=mmhg(worn.mean),
+        max_kpa=worn.largest,
+        max_mmhg=mmhg(worn.largest),
+        where=at.side if pressing else "",
+        height_mm=at.height_mm if pressing else None,
+        place=tuple(map(float, place)) if pressing else (),
+        light=worn.light,
+        force_n=worn.force,
+        bridged_mm=worn.bridged_length,
+        notes=worn.notes,
+    )
+
+
+def _unknown(held: bool) -> str:
+    if held:
+        return "It lies on points that do not move, so its tension is not known: let lines spring back."
+    return "It lies on points that do not move: its tension is known once an elastic is chosen for it."

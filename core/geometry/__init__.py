@@ -1,0 +1,1 @@
+"""Meshes, plane sections, nearest points, mirroring, geodesics and the compiled kernels."""

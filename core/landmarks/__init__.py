@@ -1,0 +1,1 @@
+"""Bust landmarks: detection, manual placement, validation and warnings."""

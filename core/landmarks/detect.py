@@ -1,0 +1,147 @@
+"""The landmarks of the bust: bust points, under-bust folds, lowest points of the breasts, and two levels."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from types import MappingProxyType
+
+import numpy as np
+
+from core.geometry.mesh import Mesh, Points
+from core.landmarks.anchor import find_anchor
+from core.landmarks.body_build import build_of
+from core.landmarks.breast_root import root_marks
+from core.landmarks.bust_point import bust_points, missing_sides
+from core.landmarks.chest import find_poles
+from core.landmarks.lower_breast import ABOVE, folds_and_lowest
+from core.landmarks.manual import held_against, laid_on
+from core.landmarks.plausibility import doubted, hints, refuse_angular
+from core.landmarks.resolution import coarse_warning, spacing, trust
+from core.landmarks.torso.cross_sections import survey
+from core.landmarks.torso_landmarks import trunk_marks
+from core.landmarks.types import SIDES, Landmark, Landmarks
+from core.landmarks.validation import check, check_anchor, check_placed, placed_warnings
+from core.progress import Progress, quiet
+from core.scan.body import Body
+from core.scan.edited_body import is_estimated
+from core.scan.repair.inner_surfaces import BURIED
+
+NOTHING: Mapping[str, Points] = MappingProxyType({})
+
+FINDING = "find landmarks"
+"""The name of this work."""
+
+UNMEASURED = 0.55
+"""Landmarks that were never held against a known answer claim this part of their confidence: below 0.5."""
+
+
+ESTIMATED = 0.3
+"""The most confidence [1] in a landmark on skin that fills a hole: no more than in one that a hole hides."""
+
+FILLED = "Found on skin that fills a hole by estimate."
+
+
+def find_landmarks(
+    body: Body, placed: Mapping[str, Points] = NOTHING, progress: Progress = quiet
+) -> Landmarks:
+    """Return the bust landmarks of ``body``; ``placed`` points, by name, shape (3,) [mm], replace found ones.
+
+    What depends on a placed point follows it. Raises LandmarkError if the body shows no bust, unless bust
+    points and folds are all placed, or if a place or its name makes no sense; Cancelled. Source: ours.
+    """
+    calm = body.calm
+    by_hand = laid_on(calm, placed)
+    around = all(f"{name}_{side}" in by_hand for name in ("bust_point", "fold") for side in SIDES)
+    found, warnings = (_around(calm, by_hand), ()) if around else _detected(calm, by_hand, progress)
+    progress(FINDING, 0.7)
+    further = {
+        mark.name: mark if mark.name.startswith("front_centre") else _less(mark, UNMEASURED)
+        for mark in (*trunk_marks(calm, found), *root_marks(calm, found))
+    }
+    further = {name: held_against(by_hand.get(name), mark) for name, mark in further.items()}
+    told = replace(found, points=MappingProxyType({**by_hand, **further, **found.points}))
+    progress(FINDING, 0.9)
+    build = build_of(calm, told)
+    if not around:
+        refuse_angular(build, found)
+    strange = hints(build, body.pose, told)
+    most = doubted(found.points, strange)
+    bust = {name: _at_most(mark, most) for name, mark in found.points.items()}
+    points = MappingProxyType(_on_filled(body, {**told.points, **bust}))
+    warnings = (*[BURIED] * (BURIED in body.repairs), *(hint.sentence for hint in strange), *warnings)
+    warnings = (*warnings, *placed_warnings(found), *coarse_warning(_spacing(calm, found.points)))
+    return Landmarks(points, found.bust_level, found.underbust_level, warnings, strange)
+
+
+def _detected(
+    mesh: Mesh, by_hand: Mapping[str, Landmark], progress: Progress
+) -> tuple[Landmarks, tuple[str, ...]]:
+    """Return the landmarks of the bust, with warnings, where not all of them are placed."""
+    trunk = survey(mesh)
+    progress(FINDING, 0.3)
+    anchor = find_anchor(trunk)
+    check_anchor(anchor)
+    poles = find_poles(trunk, anchor)
+    progress(FINDING, 0.5)
+    flat = missing_sides(poles, anchor.lone)
+    missing = [side for side in flat if f"bust_point_{side}" not in by_hand]
+    seen = bust_points(mesh, poles, trunk.middle, flat)
+    busts = [held_against(by_hand.get(mark.name), mark) for mark in seen]
+    progress(FINDING, 0.6)
+    marks = busts + folds_and_lowest(mesh, busts, anchor.z, by_hand)
+    found = _levels(mesh, marks, by_hand, missing)
+    return found, check(mesh, trunk, anchor, poles, missing, found)
+
+
+def _around(mesh: Mesh, by_hand: Mapping[str, Landmark]) -> Landmarks:
+    """Return the landmarks round bust points and folds that are all placed, whatever the body looks like."""
+    busts = [by_hand[f"bust_point_{side}"] for side in SIDES]
+    level = min(by_hand[f"fold_{side}"].position[2] for side in SIDES) - ABOVE
+    found = _levels(mesh, busts + folds_and_lowest(mesh, busts, level, by_hand), by_hand)
+    check_placed(found)
+    return found
+
+
+def _levels(
+    mesh: Mesh, marks: list[Landmark], by_hand: Mapping[str, Landmark], missing: Sequence[str] = ()
+) -> Landmarks:
+    """Return the landmarks with the levels of the sides that have a breast; others are unsure."""
+    sure = trust(_spacing(mesh, {mark.name: mark for mark in marks}))
+    found = {
+        mark.name: held_against(
+            by_hand.get(mark.name), _less(mark, sure * (0.3 if mark.name.endswith(tuple(missing)) else 1.0))
+        )
+        for mark in marks
+    }
+    sides = [side for side in SIDES if side not in missing] or SIDES
+    bust = [found[f"bust_point_{side}"].position[2] for side in sides]
+    under = [found[f"{name}_{side}"].position[2] for name in ("fold", "lowest") for side in sides]
+    return Landmarks(MappingProxyType(found), float(sum(bust)) / len(bust), float(min(under)))
+
+
+def _on_filled(body: Body, points: Mapping[str, Landmark]) -> dict[str, Landmark]:
+    """Return landmarks with little confidence in those that were found on skin that fills a hole."""
+    if len(body.estimated) == 0:
+        return dict(points)
+    inside = is_estimated(body, np.stack([mark.position for mark in points.values()]))
+    return {
+        name: replace(mark, confidence=min(mark.confidence, ESTIMATED), rule=FILLED)
+        if on and not mark.by_hand
+        else mark
+        for (name, mark), on in zip(points.items(), inside, strict=True)
+    }
+
+
+def _less(mark: Landmark, share: float) -> Landmark:
+    return mark if mark.by_hand else replace(mark, confidence=share * mark.confidence)
+
+
+def _at_most(mark: Landmark, most: float) -> Landmark:
+    return mark if mark.by_hand else replace(mark, confidence=min(most, mark.confidence))
+
+
+def _spacing(mesh: Mesh, marks: Mapping[str, Landmark]) -> float:
+    return spacing(
+        mesh, [marks[f"{name}_{side}"].position for name in ("bust_point", "fold") for side in SIDES]
+    )

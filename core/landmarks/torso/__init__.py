@@ -1,0 +1,1 @@
+"""Cross-sections of the torso without the arms, and their girths."""

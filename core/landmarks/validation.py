@@ -1,0 +1,166 @@
+"""Whether what was found can be a bust: refused where it cannot, warned of where it is only unusual."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from core.errors import LandmarkError
+from core.geometry.mesh import Mesh
+from core.landmarks.anchor import KINK, Anchor
+from core.landmarks.bust_point import FLAT, NIPPLE
+from core.landmarks.chest import Pole
+from core.landmarks.lower_breast import HIDDEN, NO_CREASE, UNSEEN
+from core.landmarks.torso.cross_sections import Survey, stable_level, trunk_levels
+from core.landmarks.types import SIDES, Landmarks
+
+SLIMMEST, WIDEST = 550.0, 1600.0
+"""Under-bust girths of adults [mm]: the sizes of bands that are sold, some 600 to 1500, and a little more."""
+
+FLATTEST_BUST, FULLEST_BUST = 5.0, 500.0
+"""A bust is by so much wider round than the trunk under it [mm]: wide bounds of our own, from no table."""
+
+FULL = 30.0
+"""Breasts that both stand out by more than this [mm], and as far forward of what is under them, are breasts:
+though a belly under them be as wide and they hide their creases."""
+
+ROUNDEST, FLATTEST = 1.0, 2.3
+"""A trunk is so many times as wide as deep; chairs, bottles and things on a table are not."""
+
+APART = 55.0, 400.0
+"""Bust points lie so far apart [mm]: less is one bump, more the knees or the arms of something."""
+
+UNEVEN = 60.0
+"""The heights of two bust points differ by less than this [mm]: one breast may hang, or the scan lean."""
+
+ASIDE = 40.0
+"""So near to the middle of the trunk lies the middle between the bust points [mm]."""
+
+DEEPEST = 220.0
+"""The under-bust level lies by less than this below that of the bust [mm]."""
+
+ONE_BUMP, RIDGE = 0.6, 9.0
+"""What comes forward in the middle by more than this part of the sides, and lies by more than this before or
+behind them there [mm], is one bump or has a cleft: a bra spans from breast to breast."""
+
+SPANNED = 50.0
+"""Under the cloth that spans from breast to breast the middle comes forward by less than this [mm]."""
+
+OPEN = 0.25
+"""One straight line is no longer than this part of an outline: else a side of the trunk is missing."""
+
+
+def refusal(why: str, placed: bool = False) -> LandmarkError:
+    """Return the error that says ``why`` there is no bust, or none with the points that were ``placed``."""
+    if placed:
+        return LandmarkError(
+            f"No bust can be found with the points that were placed by hand: {why}.",
+            "Place bust points on the breasts and folds under them, or take them away.",
+        )
+    return LandmarkError(
+        f"No bust can be found: {why}.",
+        "Open a scan of a whole upper body, say which way is up and which is the front, or place both bust "
+        "points and both folds by hand.",
+    )
+
+
+def check_anchor(anchor: Anchor) -> None:
+    """Raise LandmarkError where the body does not come forward as over a bust."""
+    least = 2.0 * KINK if anchor.lone else KINK
+    spanned = abs(anchor.ridge) <= RIDGE and anchor.middle_kink < SPANNED
+    one_bump = anchor.middle_kink > ONE_BUMP * anchor.kink and not spanned
+    if anchor.kink < least or one_bump:
+        raise refusal("no fold lies under a left and a right breast")
+
+
+def check_placed(landmarks: Landmarks) -> None:
+    """Raise LandmarkError where points that were placed by hand contradict each other."""
+    points = landmarks.points
+    for kind in ("bust_point", "fold"):
+        left, right = (points[f"{kind}_{side}"] for side in SIDES)
+        if (left.by_hand or right.by_hand) and left.position[0] <= right.position[0]:
+            raise refusal("left and right are swapped", _placed(landmarks))
+    if _placed(landmarks) and landmarks.bust_level <= landmarks.underbust_level:
+        raise refusal("the folds lie above the bust points", _placed(landmarks))
+
+
+def _placed(landmarks: Landmarks) -> bool:
+    return any(mark.by_hand for mark in landmarks.points.values())
+
+
+def check(
+    mesh: Mesh,
+    trunk: Survey,
+    anchor: Anchor,
+    poles: tuple[Pole, Pole],
+    missing: Sequence[str],
+    landmarks: Landmarks,
+) -> tuple[str, ...]:
+    """Return warnings, one sentence each; on sides ``missing`` there is no breast.
+
+    Raises LandmarkError where this cannot be a bust.
+    """
+    check_placed(landmarks)
+    full = min(anchor.kink, *(pole.prominence for pole in poles)) > FULL
+    for wrong, why in _rules(mesh, trunk, poles, missing, landmarks, full):
+        if wrong:
+            raise refusal(why, _placed(landmarks))
+    rules = [landmarks.points[f"fold_{side}"].rule for side in SIDES]
+    return tuple(
+        warning
+        for side, rule in zip(SIDES, rules, strict=True)
+        for warning in _warnings(side, rule, side in missing)
+    )
+
+
+def _rules(
+    mesh: Mesh,
+    trunk: Survey,
+    poles: tuple[Pole, Pole],
+    missing: Sequence[str],
+    landmarks: Landmarks,
+    full: bool,
+) -> Iterator[tuple[bool, str]]:
+    """Give what a bust must not be, whether it is so, and why it is refused then; the first is told."""
+    under, bust = stable_level(mesh, landmarks.underbust_level), trunk_levels(mesh, landmarks.bust_level)[0]
+    yield under.tape == 0.0 or bust.tape == 0.0, "the trunk is missing there"
+    left, right = (landmarks.position(f"bust_point_{side}") for side in SIDES)
+    across, middle = left - right, 0.5 * (left + right)
+    wide, deep, _ = np.ptp(under.points, axis=0)
+    busts = [landmarks.points[f"bust_point_{side}"] for side in SIDES if side not in missing]
+    clear = all(mark.rule == NIPPLE or mark.by_hand for mark in busts)
+    more, depth = bust.tape - under.tape, landmarks.bust_level - landmarks.underbust_level
+    yield under.longest_straight > OPEN * under.tape, "the trunk is open, as if only a part of it was scanned"
+    yield not SLIMMEST < under.tape < WIDEST, f"the girth under it would be {under.tape:.0f} mm"
+    yield len(missing) > 0 and not clear, "only one side stands out of the chest"
+    slight = more <= FLATTEST_BUST and not full
+    yield slight or more >= FULLEST_BUST, "it would not be wider than the trunk under it"
+    yield not ROUNDEST < wide / deep < FLATTEST, "the trunk is not as deep as a body"
+    yield not APART[0] < across[0] < APART[1], f"its points would lie {across[0]:.0f} mm apart"
+    yield abs(across[2]) > UNEVEN and not missing, "its points would lie at very different heights"
+    yield abs(middle[0] - trunk.middle) > ASIDE and not missing, "it would lie beside the middle of the body"
+    yield max(pole.prominence for pole in poles) < FLAT, "nothing stands out of the chest"
+    yield not 0.0 < depth < DEEPEST, "no fold lies at a likely depth under it"
+    rules = {landmarks.points[f"fold_{side}"].rule for side in SIDES}
+    yield rules == {NO_CREASE} and not (full and clear), "there is no crease under it"
+
+
+def _warnings(side: str, rule: str, missing: bool) -> list[str]:
+    if missing:
+        return [f"On the {side} side no breast stands out of the chest: its points are uncertain."]
+    if rule in HIDDEN:
+        return [f"The scan has a hole where the fold of the {side} breast lies: its height is estimated."]
+    if rule == UNSEEN:
+        return [f"No fold shows under the {side} breast: its height is estimated."]
+    return []
+
+
+def placed_warnings(landmarks: Landmarks) -> tuple[str, ...]:
+    """Return one sentence for each side on which the fold lies above the bust point by hand."""
+    pairs = {side: [landmarks.points[f"{name}_{side}"] for name in ("bust_point", "fold")] for side in SIDES}
+    return tuple(
+        f"The fold of the {side} breast lies above its bust point, as placed by hand: please check both."
+        for side, (bust, fold) in pairs.items()
+        if (bust.by_hand or fold.by_hand) and fold.position[2] > bust.position[2]
+    )

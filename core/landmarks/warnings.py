@@ -1,0 +1,69 @@
+"""Doubts: what should be looked at before a scan's pose and landmarks are trusted, in plain words."""
+
+from __future__ import annotations
+
+from core.landmarks.bust_point import ACROSS, NIPPLE
+from core.landmarks.types import CERTAIN, SIDES, Landmarks
+from core.scan.body import Body
+from core.scan.edited_body import mirror_sentence
+
+ESSENTIAL = ("bust_point", "fold")
+"""The landmarks, a pair each, that the control mesh hangs on: doubts about others would only distract."""
+
+
+def doubts(body: Body, landmarks: Landmarks) -> list[str]:
+    """Return one sentence for each thing that should be looked at. Source: ours."""
+    unsure = "It is not certain how this scan is to be understood: please check unit, up and front."
+    return [unsure] * (not body.pose.sure) + edit_doubts(body) + landmark_doubts(landmarks)
+
+
+def edit_doubts(body: Body) -> list[str]:
+    """Return what edits of the scan leave to be looked at."""
+    filled = "Holes of the scan are filled by hand: what is measured there is an estimate."
+    mirrored = [mirror_sentence(body.edits.kept)] if body.edits.kept else []
+    return mirrored + [filled] * (len(body.estimated) > 0)
+
+
+def landmark_doubts(landmarks: Landmarks) -> list[str]:
+    """Return what should be looked at on the landmarks alone; a side without a breast is named once."""
+    said = [sentence for kind in ESSENTIAL for sentence in _doubt(kind, _untold(landmarks, kind), landmarks)]
+    return [*said, *landmarks.warnings]
+
+
+def first_doubt(landmarks: Landmarks) -> str:
+    """Return the name of the landmark that the first sentence of ``landmark_doubts`` speaks of, or of the
+    least sure one.
+    """
+    weak = [f"{kind}_{side}" for kind in ESSENTIAL for side in _untold(landmarks, kind)]
+    names = [f"{kind}_{side}" for kind in ESSENTIAL for side in SIDES]
+    return weak[0] if weak else min(names, key=lambda name: landmarks.points[name].confidence)
+
+
+def _untold(landmarks: Landmarks, kind: str) -> list[str]:
+    """Return the weak sides of a landmark, but for sides without a breast, of which a warning tells."""
+    told = [side for side in SIDES if landmarks.points[f"bust_point_{side}"].rule == ACROSS]
+    return [side for side in weak_sides(landmarks, kind) if side not in told]
+
+
+def weak_sides(landmarks: Landmarks, kind: str) -> list[str]:
+    """Return the sides on which a landmark, like "fold", was found and is not certain."""
+    found = {side: landmarks.points.get(f"{kind}_{side}") for side in SIDES}
+    return [side for side, mark in found.items() if mark and not mark.by_hand and mark.confidence < CERTAIN]
+
+
+def _doubt(kind: str, sides: list[str], landmarks: Landmarks) -> list[str]:
+    if not sides:
+        return []
+    if kind == "fold":
+        one = f"The fold under the {sides[0]} breast could not be seen clearly: please check it."
+        two = "The folds under both breasts could not be seen clearly: please check them."
+        return [two if len(sides) == 2 else one]
+    shown = [side for side in sides if landmarks.points[f"bust_point_{side}"].rule == NIPPLE]
+    if shown:
+        one = f"The nipple of the {shown[0]} breast is not clearly seen: please check its bust point."
+        two = "The nipples are not clearly seen: please check both bust points."
+        rest = _doubt(kind, [side for side in sides if side not in shown], landmarks)
+        return [two if len(shown) == 2 else one, *rest]
+    one = f"No nipple stands out clearly on the {sides[0]} breast: please check its bust point."
+    two = "No nipple stands out clearly: the bust points follow the shape of the breasts."
+    return [two if len(sides) == 2 else one]

@@ -1,0 +1,254 @@
+"""What every measure is: its name, its unit and what is measured, in words that a pattern cutter knows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from core.geometry.mesh import Points
+from core.landmarks.types import SIDES
+
+
+@dataclass(frozen=True)
+class Definition:
+    """What a measure is.
+
+    ``iso`` is what ISO 8559-1 calls it, empty where that has no such measure or ours is another one; ``text``
+    says how it is taken, ``group`` where it stands in a list. One that is ``sided`` is there for the left and
+    for the right, with that added to its key.
+    """
+
+    key: str
+    title: str
+    unit: str
+    iso: str
+    text: str
+    group: str
+    sided: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Measure:
+    """What was measured: ``value`` in ``unit``, None if the scan does not show it; ``note`` then says why.
+
+    ``curves``, each (k, 3) [mm], show it on the body. ``confidence`` (0..1) is that of what it was taken
+    from; an ``estimate`` rests on something that the scan does not show, and may be off by ``plus_minus``.
+    ``text`` says how one of the designer's own is taken; of all others the definition does.
+    """
+
+    key: str
+    value: float | None
+    unit: str
+    curves: tuple[Points, ...] = ()
+    confidence: float = 1.0
+    estimate: bool = False
+    plus_minus: float = 0.0
+    note: str = ""
+    text: str = ""
+
+
+GIRTHS, CUPS, BUST = "Girths", "Cups", "Bust"
+AREAS, BOTH = "Sections and volumes", "Left and right"
+
+TAPE = "A tape lies level round the trunk and bridges hollows; arms are left out."
+"""How a tape lies, said of every girth."""
+
+_SKIN = "The same level, but along the skin into every hollow."
+
+_TABLE = (
+    Definition(
+        "bust_girth",
+        "Bust girth",
+        "mm",
+        "Bust girth",
+        f"At the mean height of the bust points. {TAPE} The standard measures over a brassiere.",
+        GIRTHS,
+    ),
+    Definition("bust_girth_skin", "Bust outline", "mm", "", f"Ours. {_SKIN}", GIRTHS),
+    Definition(
+        "underbust_girth",
+        "Under-bust girth",
+        "mm",
+        "Under bust girth",
+        f"Directly below the breasts, at the first height where no breast is nicked any more. {TAPE}",
+        GIRTHS,
+    ),
+    Definition("underbust_girth_skin", "Under-bust outline", "mm", "", f"Ours. {_SKIN}", GIRTHS),
+    Definition(
+        "high_bust_girth",
+        "High bust girth",
+        "mm",
+        "",
+        f"Ours: level, just below the lower one of the armpits. {TAPE}",
+        GIRTHS,
+    ),
+    Definition("high_bust_girth_skin", "High bust outline", "mm", "", f"Ours. {_SKIN}", GIRTHS),
+    Definition(
+        "waist_girth",
+        "Waist girth (narrowest)",
+        "mm",
+        "Waist girth",
+        f"Where the trunk is narrowest. {TAPE} The standard goes midway between lowest rib and hip bone, "
+        "which a scan does not show.",
+        GIRTHS,
+    ),
+    Definition("waist_girth_skin", "Waist outline (narrowest)", "mm", "", f"Ours. {_SKIN}", GIRTHS),
+    Definition(
+        "hip_girth",
+        "Hip girth",
+        "mm",
+        "Hip girth",
+        f"Where the trunk is widest round below the waist. {TAPE} The standard goes over the greatest "
+        "prominence of the buttocks.",
+        GIRTHS,
+    ),
+    Definition("hip_girth_skin", "Hip outline", "mm", "", f"Ours. {_SKIN}", GIRTHS),
+    Definition(
+        "bust_point_distance",
+        "Bust point distance",
+        "mm",
+        "",
+        "Straight from bust point to bust point.",
+        BUST,
+    ),
+    Definition(
+        "bust_point_to_fold",
+        "Bust point to fold",
+        "mm",
+        "",
+        "The shortest way over the skin from the bust point to the fold below it.",
+        CUPS,
+        True,
+    ),
+    Definition(
+        "cup_depth",
+        "Cup depth",
+        "mm",
+        "",
+        "Ours: how far the bust point stands out, level, from the straight line between the inner and the "
+        "outer end of the root.",
+        CUPS,
+        True,
+    ),
+    Definition(
+        "cup_width",
+        "Cup width",
+        "mm",
+        "",
+        "Ours: straight from the inner to the outer end of the root, at the height of the bust point.",
+        CUPS,
+        True,
+    ),
+    Definition(
+        "root_length",
+        "Root length",
+        "mm",
+        "",
+        "Ours: along the root of the breast where a wire lies, from its inner end down through the fold to "
+        "its outer end.",
+        CUPS,
+        True,
+    ),
+    Definition(
+        "bust_height",
+        "Bust height over under-bust",
+        "mm",
+        "",
+        "Ours: the mean height of the bust points over the under-bust level, which follows the skin: it "
+        "rises with the breast, so this may fall while the bust points are lifted. The standard measures "
+        "from the ground, which few scans show.",
+        BUST,
+    ),
+    Definition(
+        "bust_protrusion",
+        "Bust protrusion",
+        "mm",
+        "",
+        "Ours: how far the foremost places of both breasts lie, in the mean, before the middle of the chest "
+        "at the under-bust level.",
+        BUST,
+    ),
+    Definition(
+        "apex_lift",
+        "Lift of the apex",
+        "mm",
+        "",
+        "Ours: how much higher the foremost places of the breasts lie, in the mean, than at rest.",
+        BUST,
+    ),
+    Definition(
+        "section_area_bust",
+        "Area at the bust",
+        "cm2",
+        "",
+        "Ours: what the skin encloses at the level of the bust girth.",
+        AREAS,
+    ),
+    Definition(
+        "section_area_underbust",
+        "Area under the bust",
+        "cm2",
+        "",
+        "Ours: what the skin encloses at the level of the under-bust girth.",
+        AREAS,
+    ),
+    Definition(
+        "breast_volume",
+        "Breast volume",
+        "ml",
+        "",
+        "Ours, an estimate: between the skin within the root and a smooth chest that goes on from the skin "
+        "round it: what stands out, less than all of the breast. No skin shows the top of the root: it is "
+        "taken half as high over its ends as it is wide; ± tells what 15 mm lower would make. "
+        "Reshaped, what the skin of that side has gained is added.",
+        AREAS,
+        True,
+    ),
+    Definition(
+        "asymmetry_height",
+        "Left bust point higher",
+        "mm",
+        "",
+        "Ours: how much higher the left bust point lies than the right one.",
+        BOTH,
+    ),
+    Definition(
+        "asymmetry_forward",
+        "Left bust point further out",
+        "mm",
+        "",
+        "Ours: how much further forward the left bust point lies than the right one.",
+        BOTH,
+    ),
+    Definition(
+        "asymmetry_volume",
+        "Left breast larger",
+        "ml",
+        "",
+        "Ours, an estimate: the volume of the left breast less that of the right one. How far off is "
+        "not known; what Left and right tells is surer.",
+        BOTH,
+    ),
+)
+
+DEFINITIONS: Mapping[str, Definition] = MappingProxyType({each.key: each for each in _TABLE})
+"""What every measure is, by its key without a side, in the order in which they are shown."""
+
+KEYS = tuple(
+    key for each in _TABLE for key in ([f"{each.key}_{side}" for side in SIDES] if each.sided else [each.key])
+)
+"""The keys of all measures, in the same order."""
+
+
+def definition_of(key: str) -> tuple[Definition, str]:
+    """Return what a measure is and its side, "left", "right" or empty. Raises KeyError for an own measure."""
+    if key in DEFINITIONS:
+        return DEFINITIONS[key], ""
+    name, _, side = key.rpartition("_")
+    return DEFINITIONS[name], side
+
+
+def missing(key: str, why: str) -> Measure:
+    """Return a measure that the scan does not show, with the reason."""
+    return Measure(key, None, definition_of(key)[0].unit, confidence=0.0, note=why)

@@ -1,0 +1,260 @@
+"""Sizes: band and cup from two girths, in every system that is told as data, with the way there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from itertools import product
+from math import isfinite
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+import platformdirs
+
+from core.document.custom_measures import WORN_TIGHT
+from core.errors import SizeError
+from core.measurements.size_explanation import allowance_sentence, band_sentences, cup_sentences
+from core.measurements.size_table import BAND, Scale, SizeTable, Words
+from core.measurements.size_table_file import read_table, table_of
+
+ALLOWANCE = WORN_TIGHT
+"""What may be taken off the under-bust girth for a tape that is worn tight [mm]: an estimate, not a norm."""
+
+GIRTHS_OF_SIZES = ("underbust_girth", "bust_girth")
+"""The measures that a size is made of."""
+
+_ORDER = ("jp", "eu", "uk", "us", "fr", "it", "au")
+_LONGEST = 5000.0  # mm; no girth of a body is longer
+_SHARES, _ROUND = (0.25, 0.5, 0.75, 1.0), 32  # of an ellipse that is looked at, and places round it
+
+
+@dataclass(frozen=True)
+class Neighbour:
+    """The next band or cup: its ``name``, and the ``label`` of the size beyond that border.
+
+    ``part`` is "band" or "cup", ``up`` whether it is the larger one. ``missing_mm`` is how far the border is:
+    what the under-bust girth would have to change for a band, the bust girth for a cup, the other one kept.
+    So a larger band often comes with a smaller cup. The label is empty where no cup is that small or large.
+    """
+
+    part: str
+    up: bool
+    name: str
+    label: str
+    missing_mm: float
+
+
+@dataclass(frozen=True)
+class Sister:
+    """A sister size: a band smaller and a cup larger, or the other way round.
+
+    ``bust_mm`` is how much longer the bust is that it is made for, nominally.
+    """
+
+    label: str
+    bust_mm: float
+
+
+@dataclass(frozen=True)
+class SizeAnswer:
+    """What a table says of a body: the size by its ``label``, empty if the body is not ``inside`` the table.
+
+    ``rule`` says how it was found, sentence by sentence; ``doubts`` what is uncertain in the table.
+    """
+
+    table: SizeTable
+    underbust_mm: float
+    bust_mm: float
+    allowance_mm: float
+    label: str
+    band: str
+    cup: str
+    neighbours: tuple[Neighbour, ...]
+    sisters: tuple[Sister, ...]
+    rule: tuple[str, ...]
+
+    @property
+    def inside(self) -> bool:
+        """Tell whether the table has a size for this body."""
+        return bool(self.label)
+
+    @property
+    def doubts(self) -> tuple[Words, ...]:
+        """What is uncertain in the table."""
+        return self.table.doubts
+
+
+def size(table: SizeTable, underbust_mm: float, bust_mm: float, allowance_mm: float = 0.0) -> SizeAnswer:
+    """Return the size that a table makes of two girths, as a tape measures them [mm].
+
+    ``allowance_mm`` is taken off the under-bust first, and told. Raises SizeError for what no body measures.
+    """
+    _check(underbust_mm, bust_mm, allowance_mm)
+    underbust, bust = table.in_unit(underbust_mm - allowance_mm), table.in_unit(bust_mm)
+    band, cup = table.steps(underbust, bust)
+    over = table.over(underbust, bust)
+    rule = band_sentences(table, underbust)
+    if allowance_mm:
+        rule = (allowance_sentence(table, *map(table.in_unit, (underbust_mm, allowance_mm))), *rule)
+    if over is not None:
+        rule = (*rule, *cup_sentences(table, over))
+    return SizeAnswer(
+        table=table,
+        underbust_mm=underbust_mm,
+        bust_mm=bust_mm,
+        allowance_mm=allowance_mm,
+        label=table.labelled(band, cup),
+        band=band.name if band else "",
+        cup=cup.name if cup else "",
+        neighbours=tuple(_neighbours(table, underbust, bust)),
+        sisters=tuple(_sisters(table, underbust, over)),
+        rule=rule,
+    )
+
+
+def sizes(underbust_mm: float, bust_mm: float, allowance_mm: float = 0.0) -> Mapping[str, SizeAnswer]:
+    """Return the sizes in every system, by the key of its table: those of Busk, then the designer's own.
+
+    Own tables that cannot be read are left out: ``own_tables`` tells why. Raises SizeError as ``size`` does.
+    """
+    tables = (*built_in(), *own_tables()[0])
+    return MappingProxyType({each.key: size(each, underbust_mm, bust_mm, allowance_mm) for each in tables})
+
+
+def nearby(answer: SizeAnswer, underbust_off: float, bust_off: float) -> tuple[str, ...]:
+    """Return the other sizes of bodies whose girths are no further off than that [mm], the nearest first.
+
+    Both girths may be off at once, together no further than the ellipse with these half axes.
+    """
+    table, found = answer.table, dict[str, None]()
+    for share, angle in product(_SHARES, np.linspace(0.0, 2.0 * np.pi, _ROUND, endpoint=False)):
+        underbust = answer.underbust_mm + share * underbust_off * np.cos(angle) - answer.allowance_mm
+        bust = answer.bust_mm + share * bust_off * np.sin(angle)
+        found[table.labelled(*table.steps(table.in_unit(underbust), table.in_unit(bust)))] = None
+    return tuple(label for label in found if label not in ("", answer.label))
+
+
+def sizes_text(answer: SizeAnswer, language: str = "en") -> dict[str, Any]:
+    """Return an answer as plain data for JSON, lengths in mm; the texts of the table in ``language``.
+
+    The sentences of the rule are those of the core, in English: whoever shows them says them in other words.
+    """
+    table = answer.table
+    return {
+        "key": table.key,
+        "system": table.system,
+        "title": table.title.told(language),
+        "size": answer.label or None,
+        "band": answer.band or None,
+        "cup": answer.cup or None,
+        "inside": answer.inside,
+        "underbust_mm": answer.underbust_mm,
+        "bust_mm": answer.bust_mm,
+        "allowance_mm": answer.allowance_mm,
+        "unit": table.unit,
+        "rule": list(answer.rule),
+        "neighbours": [
+            {
+                "part": each.part,
+                "direction": "up" if each.up else "down",
+                "name": each.name,
+                "size": each.label or None,
+                "missing_mm": round(each.missing_mm, 2),
+            }
+            for each in answer.neighbours
+        ],
+        "sisters": [{"size": each.label, "bust_mm": round(each.bust_mm, 2)} for each in answer.sisters],
+        "caution": table.caution.told(language) if table.caution else None,
+        "doubts": [each.told(language) for each in answer.doubts],
+        "sources": [{"name": each.name, "says": each.words.told(language)} for each in table.sources],
+    }
+
+
+def with_nearby(
+    told: Sequence[dict[str, Any]], underbust_off: float | None, bust_off: float | None
+) -> tuple[dict[str, Any], ...]:
+    """Return sizes of ``sizes_text``, each with the others ``within_off`` (``nearby``) if both are known."""
+    if underbust_off is None or bust_off is None or not told:
+        return tuple(told)
+    girths = ("underbust_mm", "bust_mm", "allowance_mm")
+    answers = sizes(*(told[0][name] for name in girths))
+    return tuple(
+        {**each, "within_off": list(nearby(answers[each["key"]], underbust_off, bust_off))} for each in told
+    )
+
+
+@cache
+def built_in() -> tuple[SizeTable, ...]:
+    """Return the tables that come with Busk."""
+    folder = resources.files("resources") / "sizes"
+    return tuple(table_of(key, (folder / f"{key}.json").read_text(encoding="utf-8")) for key in _ORDER)
+
+
+def own_folder() -> Path:
+    """Return where a designer's own tables lie, each as one JSON file."""
+    return Path(platformdirs.user_data_path("Busk", appauthor=False)) / "sizes"
+
+
+def own_tables() -> tuple[list[SizeTable], list[SizeError]]:
+    """Return the designer's own tables, and why some of them cannot be read."""
+    tables, problems = [], []
+    for path in sorted(own_folder().glob("*.json")):
+        try:
+            if path.stem in _ORDER:
+                raise SizeError(f"Busk has a table {path.stem} itself.", f"Give {path.name} another name.")
+            tables.append(read_table(path))
+        except SizeError as problem:
+            problems.append(problem)
+    return tables, problems
+
+
+def _check(underbust_mm: float, bust_mm: float, allowance_mm: float) -> None:
+    for girth in (underbust_mm, bust_mm):
+        if not (isfinite(girth) and 0.0 < girth <= _LONGEST):
+            raise SizeError(f"No body has a girth of {girth:g} mm.", "Look at the landmarks and the unit.")
+    low, high = ALLOWANCE
+    if not low <= allowance_mm <= high:
+        raise SizeError(
+            f"{allowance_mm:g} mm cannot be taken off for a tape that is worn tight.",
+            f"Choose {low:g} to {high:g}.",
+        )
+
+
+def _neighbours(table: SizeTable, underbust: float, bust: float) -> Iterator[Neighbour]:
+    """Yield the bands and cups next to a body: below and above, or the nearest if it lies outside."""
+    band, over = table.bands.step(table.bands.place(underbust)), table.over(underbust, bust)
+    for up, place, missing in _next(table.bands, underbust):
+        step = table.bands.steps[place]
+        under = step.middle if table.cup_from == BAND else underbust + (missing if up else -missing)
+        cup = table.cups.step(table.cups.place(round(bust - under, 6)))
+        yield Neighbour("band", up, step.name, table.labelled(step, cup), missing * table.unit_mm)
+    if over is None:
+        return
+    for up, place, missing in _next(table.cups, over):
+        step = table.cups.steps[place]
+        yield Neighbour("cup", up, step.name, table.labelled(band, step), missing * table.unit_mm)
+
+
+def _next(scale: Scale, value: float) -> Iterator[tuple[bool, int, float]]:
+    """Yield the steps next to a value: whether it is above, its place and how far its border is [unit]."""
+    place = scale.place(value)
+    if place > 0:
+        yield False, place - 1, value - scale.borders[place]
+    if place < len(scale.steps) - 1:
+        yield True, place + 1, scale.borders[place + 1] - value
+
+
+def _sisters(table: SizeTable, underbust: float, over: float | None) -> Iterator[Sister]:
+    if over is None:
+        return
+    place = (table.bands.place(underbust), table.cups.place(over))
+    here = (table.bands.step(place[0]), table.cups.step(place[1]))
+    for turn in (-1, 1):
+        band, cup = table.bands.step(place[0] + turn), table.cups.step(place[1] - turn)
+        if here[0] and here[1] and band and cup:
+            longer = band.middle + cup.middle - here[0].middle - here[1].middle
+            yield Sister(table.labelled(band, cup), longer * table.unit_mm)

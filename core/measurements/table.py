@@ -1,0 +1,158 @@
+"""Measures: what a body measures, at rest and reshaped, for a pattern cutter."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from core.deformation.tffd import deform
+from core.document.custom_measures import OwnMeasure
+from core.geometry.mesh import Mesh, Points
+from core.landmarks.types import Landmarks
+from core.measurements.bust import NO_ROOT, cup_measures, foremost_places
+from core.measurements.custom import OWN, own_measures
+from core.measurements.definitions import KEYS, Measure, definition_of, missing
+from core.measurements.girths import girth_measures
+from core.measurements.subject import Subject, subject_of
+from core.pipeline.build import Stages
+from core.scan.body import Body
+
+Measures = Mapping[str, Measure]
+"""Measures by their keys, in the order of the table of definitions; own ones come last, as "own:NAME"."""
+
+
+def measures(mesh: Mesh, landmarks: Landmarks, own: Iterable[OwnMeasure] = ()) -> Measures:
+    """Return what a body measures; of a scan take the calm skin, ``body.calm``.
+
+    One that the scan does not show is there with the value None and the reason.
+    """
+    return of_subject(subject_of(mesh, landmarks), own)
+
+
+def before_after(stages: Stages, control_points: Points) -> tuple[Measures, Measures]:
+    """Return what a body measures at rest, and reshaped by ``control_points``, shape (n, 3) [mm].
+
+    The landmarks ride on the skin and the levels follow them; the lift of the apex is told after alone.
+    Raises ValueError unless there are as many control points as the control mesh has.
+    """
+    mesh, landmarks, own = stages.body.calm, stages.landmarks, stages.design.own_measures
+    rest, before = subject_at_rest(mesh, landmarks), _at_rest(mesh, landmarks)
+    after = reshaped(rest, stages, control_points)
+    return _with_own(before, rest, own), of_subject(after, own, rest)
+
+
+def of_subject(subject: Subject, own: Iterable[OwnMeasure] = (), rest: Subject | None = None) -> Measures:
+    """Return what a subject measures; told who it was at ``rest``, the lift of its apex too."""
+    usual = dict(_usual(subject))
+    if rest is not None:
+        usual["apex_lift"] = _lift(subject, rest)
+    return _with_own(_ordered(usual), subject, own)
+
+
+def own_before_after(stages: Stages, control_points: Points, own: OwnMeasure) -> tuple[Measure, Measure]:
+    """Return one measure of the designer's own at rest, and reshaped by ``control_points`` (n, 3) [mm].
+
+    It need not belong to the design yet. Raises ValueError as ``before_after`` does.
+    """
+    rest = subject_at_rest(stages.body.calm, stages.landmarks)
+    before, after = (
+        next(own_measures(subject, (own,))) for subject in (rest, reshaped(rest, stages, control_points))
+    )
+    return before, after
+
+
+@lru_cache(maxsize=2)  # while a line is dragged, the body at rest is one and the same
+def subject_at_rest(mesh: Mesh, landmarks: Landmarks) -> Subject:
+    """Return who is measured, at rest: the calm skin, ``body.calm``, with its landmarks."""
+    return subject_of(mesh, landmarks)
+
+
+@lru_cache(maxsize=2)
+def _at_rest(mesh: Mesh, landmarks: Landmarks) -> Measures:
+    return _ordered(_usual(subject_at_rest(mesh, landmarks)))
+
+
+def reshaped(rest: Subject, stages: Stages, control_points: Points) -> Subject:
+    """Return a subject as ``control_points``, shape (n, 3) [mm], reshape it."""
+    moves = deform(stages.binding, control_points) - stages.body.mesh.vertices
+    left, right = stages.body_change(control_points).tolist()
+    return rest.moved(rest.mesh.vertices + calm_moves(stages.body, moves), (left, right))
+
+
+def calm_moves(body: Body, moves: Points) -> Points:
+    """Return how the vertices of the calm skin move where those of the scan make ``moves``, (n, 3) [mm].
+
+    The calm skin has the vertices of the scan, or, of a giant scan, fewer: these go as the nearest do.
+    """
+    if len(body.calm.vertices) == len(moves):
+        return moves
+    nearest = cKDTree(body.mesh.vertices).query(body.calm.vertices)[1]
+    return np.asarray(moves[nearest])
+
+
+def measure_rows(before: Measures, after: Measures | None = None) -> list[dict[str, Any]]:
+    """Return a table of what was measured as plain values, one row a measure, in order.
+
+    Each has key, title, side, unit, before, after, difference (None where one is missing), plus_minus,
+    confidence, estimate, note, iso and definition. Lengths and the like are not rounded.
+    """
+    rows = []
+    for key in after or before:
+        first, last = before.get(key), after.get(key) if after else None
+        told = last or first
+        assert told is not None
+        values = [each.value if each else None for each in (first, last)]
+        both = [value for value in values if value is not None]
+        title, side, iso, text = _words(told)
+        rows.append(
+            {
+                "key": key,
+                "title": title,
+                "side": side,
+                "unit": told.unit,
+                "before": values[0],
+                "after": values[1],
+                "difference": both[1] - both[0] if len(both) > 1 else None,
+                "plus_minus": told.plus_minus,
+                "confidence": told.confidence,
+                "estimate": told.estimate or bool(first and first.estimate),
+                "note": told.note,
+                "iso": iso,
+                "definition": text,
+            }
+        )
+    return rows
+
+
+def _words(measure: Measure) -> tuple[str, str, str, str]:
+    """Return title, side, name in the standard and definition of a measure."""
+    if measure.key.startswith(OWN):
+        return measure.key.removeprefix(OWN), "", "", measure.text
+    told, side = definition_of(measure.key)
+    return told.title, side, told.iso, told.text
+
+
+def _usual(subject: Subject) -> Measures:
+    return {each.key: each for each in (*girth_measures(subject), *cup_measures(subject))}
+
+
+def _ordered(found: Measures) -> Measures:
+    return {key: found[key] for key in KEYS if key in found}
+
+
+def _with_own(found: Measures, subject: Subject, own: Iterable[OwnMeasure]) -> Measures:
+    return MappingProxyType({**found, **{each.key: each for each in own_measures(subject, own)}})
+
+
+def _lift(subject: Subject, rest: Subject) -> Measure:
+    now, before = foremost_places(subject), foremost_places(rest)
+    if now is None or before is None:
+        return missing("apex_lift", NO_ROOT)
+    sure = min(root.confidence for root in subject.roots.values())
+    lines = tuple(np.array(pair) for pair in zip(before, now, strict=True))
+    return Measure("apex_lift", float((now - before)[:, 2].mean()), "mm", lines, sure)

@@ -1,0 +1,138 @@
+"""How far figures of a solved design may be off: a standard deviation by source, and what it is told as."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import exp, hypot
+
+from core.geometry.mesh import Floats
+
+BEFORE, AFTER, CHANGE = "before", "after", "change"
+LIFT, OUT = "lift", "out"
+CUT, TENSION, MEAN_KPA, MAX_KPA = "cut", "tension", "mean_kpa", "max_kpa"
+"""Kinds of figures; keys are "before:bust_girth", "lift", "lift left", "cut:mid-bust" and the like."""
+
+LANDMARKS, SCAN, TISSUE, LINE, TAPE, ELASTIC, ROOT = SOURCES = (
+    *("landmarks", "scan", "tissue", "line", "tape", "elastic", "root"),
+)
+"""What figures may be off by, in the order in which it is told."""
+
+
+FACTORS = (TISSUE, LINE, ELASTIC)
+"""Sources that are known to a factor: what goes with them is off by more upwards than downwards."""
+
+FORCES = (TENSION, MEAN_KPA, MAX_KPA)
+"""Kinds of figures that go with such sources; of what pulls they are never below nothing."""
+
+MOST = 3.0
+"""Standard deviations of the logarithm, times those that are told, up to which a factor makes sense [1]."""
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """How far one figure may be off: the standard deviation by source, in the figure's unit."""
+
+    by_source: Mapping[str, float]
+
+    @property
+    def sd(self) -> float:
+        """The standard deviation from all sources, which are taken as independent."""
+        return hypot(*self.by_source.values())
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """What part of the variance each source makes [1], the largest first; none where nothing is off."""
+        whole = self.sd**2
+        parts = {name: sd**2 / whole for name, sd in self.by_source.items()} if whole else {}
+        return dict(sorted(parts.items(), key=lambda part: -part[1]))
+
+    @property
+    def by_factor(self) -> bool:
+        """Whether sources that are known to a factor make most of it."""
+        return sum(self.shares.get(name, 0.0) for name in FACTORS) > 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Spread:
+    """How far the figures of one solved design may be off.
+
+    ``doubts`` by the keys of figures; a figure that is not known has none. ``skin`` (n,) [mm] is the standard
+    deviation of each vertex of the reshaped body along its normal, ``rest`` [mm] that of the body at rest.
+    What is told after the ± is ``sds`` standard deviations. ``sources`` are those that are in; the landmarks
+    come last. ``other`` tells the figures if lines had the ``contact`` that the design has not: a choice of
+    the model, and no part of the ±. ``failed`` counts what was tried and had no answer. ``figures`` are
+    those where the run comes to rest, which all of this is told of; ``bare`` is a body that wears no line.
+    ``cautions`` are sentences on where this ± says less than it seems to.
+    """
+
+    doubts: Mapping[str, Doubt]
+    skin: Floats
+    rest: float
+    sds: float
+    sources: tuple[str, ...]
+    other: Mapping[str, float]
+    contact: str
+    failed: int = 0
+    figures: Mapping[str, float] = field(default_factory=dict)
+    bare: bool = False
+    cautions: tuple[str, ...] = ()
+
+    @property
+    def whole(self) -> bool:
+        """Whether all sources are in."""
+        return LANDMARKS in self.sources and (self.bare or bool(self.contact))
+
+    def plus_minus(self, key: str) -> float | None:
+        """Return what stands after the ± of a figure, in its unit.
+
+        None for one that is not known, and where a ± would be wrong: see ``between``.
+        """
+        off = self._off(key)
+        uneven = off is not None and _kind(key) in FORCES and (self.factor(key) or off > self.figures[key])
+        return None if uneven else off
+
+    def factor(self, key: str) -> float | None:
+        """Return by what a figure may be too small or too large, where mostly factors make it so."""
+        off, value = self._off(key), self.figures.get(key, 0.0)
+        if off is None or _kind(key) not in FORCES or not self.doubts[key].by_factor or off > MOST * value:
+            return None
+        return exp(off / value)
+
+    def between(self, key: str, value: float) -> tuple[float, float] | None:
+        """Return from where to where a figure that comes to ``value`` may lie; None if that is not known."""
+        off, factor = self._off(key), self.factor(key)
+        if factor is not None:
+            return value / factor, value * factor
+        if off is None:
+            return None
+        ends = value - off, value + off
+        return (max(ends[0], 0.0), max(ends[1], 0.0)) if _kind(key) in FORCES else ends  # a band cannot push
+
+    def _off(self, key: str) -> float | None:
+        doubt = self.doubts.get(key)
+        return None if doubt is None else self.sds * doubt.sd
+
+
+def _kind(key: str) -> str:
+    return key.partition(":")[0]
+
+
+def told_between(low: float, high: float) -> str:
+    """Return a range as it is written where there are no other words for numbers."""
+    return f"{low:.{digits(low)}f} to {high:.{digits(high)}f}"
+
+
+def digits(off: float) -> int:
+    """Return how many decimals a ± is told with: none from 10 on, else one; the one rule of rounding."""
+    return 0 if off >= 9.95 else 1
+
+
+def told_off(off: float) -> str:
+    """Return a ± as it is written where there are no other words for numbers."""
+    return f"{rounded(off):.{digits(off)}f}"
+
+
+def rounded(off: float) -> float:
+    """Return a ± as it is told; nothing is told to be surer than 0.1."""
+    return max(round(off, digits(off)), 0.1)

@@ -1,0 +1,1 @@
+"""The tensegric model: lines, volume, iteration, exact solution, sensitivities, convergence."""

@@ -1,0 +1,200 @@
+"""Band storage: symmetric and general matrices over the free coordinates, ordered so that they are narrow.
+
+A matrix is the sum of a few contributions, each linear in a handful of figures (blocks of springs, positions
+of corners). Where their entries go is worked out once; filling a matrix is then one sparse product, and its
+factors cost little because the free points are ordered to lie near their neighbours (Cuthill and McKee).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy import sparse
+from scipy.linalg import blas, lapack
+from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+from core.geometry.mesh import Flags, Floats, Indices, frozen
+
+DENSE_LIMIT = 65536
+"""Up to this many entries a product with the full matrix is quicker than with its non-zero entries."""
+
+Operator = Floats | sparse.csr_array
+Solve = Callable[[Floats], Floats]
+
+
+def compact(matrix: sparse.csr_array) -> Operator:
+    """Return ``matrix`` in the form whose products are quickest: full if it is small."""
+    return frozen(matrix.toarray()) if np.prod(matrix.shape) <= DENSE_LIMIT else matrix
+
+
+@dataclass(frozen=True, eq=False)
+class Entries:
+    """Matrix entries that are linear in ``width`` figures: ``value`` times figure ``source`` at its place.
+
+    ``row``, ``column`` (e,) are free coordinates, 3 times the free point plus the axis; both halves of a
+    symmetric matrix are listed. Entries at the same place add up.
+    """
+
+    row: Indices
+    column: Indices
+    source: Indices
+    value: Floats
+    width: int
+
+
+def member_entries(signs: Operator) -> Entries:
+    """Return the entries of a block B (3, 3) for each member: what it does between all its points.
+
+    Of a member whose vector is the sum of ``signs`` (s, f) times the free points, B lies between points i and
+    j times both signs. The figures are the blocks, (9 s,).
+    """
+    member, point, sign = nonzeros(signs)
+    i, j = same_member(member)
+    a, b = (axis.ravel()[None, :] for axis in np.indices((3, 3)))
+    row, column = 3 * point[i][:, None] + a, 3 * point[j][:, None] + b
+    source = 9 * member[i][:, None] + 3 * a + b
+    value = np.repeat(sign[i] * sign[j], 9)
+    return joined([Entries(row.ravel(), column.ravel(), source.ravel(), value, 0)], 9 * signs.shape[0])
+
+
+def same_member(member: Indices) -> tuple[Indices, Indices]:
+    """Return all pairs of rows, both (p,), that belong to the same ``member`` (e,)."""
+    shape = int(member.max(initial=-1)) + 1, len(member)
+    belongs = sparse.csr_array((np.ones(len(member)), (member, np.arange(len(member)))), shape=shape)
+    first, second, _ = nonzeros(sparse.csr_array(belongs.T @ belongs))
+    return first, second
+
+
+def nonzeros(matrix: Operator) -> tuple[Indices, Indices, Floats]:
+    """Return rows, columns and values of the entries that are not 0, each (e,)."""
+    row, column, value = sparse.find(sparse.csr_array(matrix))
+    return row.astype(np.int64), column.astype(np.int64), value
+
+
+def joined(parts: list[Entries], width: int) -> Entries:
+    """Return all entries of ``parts`` as one list of ``width`` figures."""
+    row, column, source = (
+        np.concatenate([getattr(part, name) for part in parts]).astype(np.int64)
+        for name in ("row", "column", "source")
+    )
+    return Entries(row, column, source, np.concatenate([part.value for part in parts]), width)
+
+
+@dataclass(frozen=True, eq=False)
+class Band:
+    """An order of the free coordinates, shape (3 f,), in which all matrices of a model are narrow.
+
+    ``place`` tells where each coordinate comes; entries lie at most ``reach`` off the diagonal.
+    """
+
+    place: Indices
+    reach: int
+
+    @property
+    def size(self) -> int:
+        """The number of coordinates."""
+        return len(self.place)
+
+    @cached_property
+    def _order(self) -> Indices:
+        return np.argsort(self.place)
+
+    def lower(self, entries: Entries) -> Operator:
+        """Return the map from the entries' figures to the lower band of a symmetric matrix."""
+        row, column = self.place[entries.row], self.place[entries.column]
+        below = row >= column
+        at = column * (self.reach + 1) + row - column
+        return self._map(entries, at, below, self.size * (self.reach + 1))
+
+    def general(self, entries: Entries) -> Operator:
+        """Return the map from the entries' figures to the band of any matrix, with room for pivoting."""
+        row, column = self.place[entries.row], self.place[entries.column]
+        at = column * self._tall + 2 * self.reach + row - column
+        return self._map(entries, at, np.ones(len(at), dtype=bool), self.size * self._tall)
+
+    @property
+    def _tall(self) -> int:
+        return 3 * self.reach + 1
+
+    def _map(self, entries: Entries, at: Indices, kept: Flags, size: int) -> sparse.csr_array:
+        where = (at[kept], entries.source[kept])
+        return sparse.csr_array((entries.value[kept], where), shape=(size, entries.width))
+
+    def cholesky(self, lower: Floats) -> Solve | None:
+        """Return a solver of the symmetric matrix with this lower band, None unless positive definite."""
+        factor, bad = lapack.dpbtrf(lower.reshape(self.size, self.reach + 1).T, lower=1)
+        if bad:
+            return None
+
+        def solve(right: Floats) -> Floats:
+            found, _ = lapack.dpbtrs(factor, right[self._order], lower=1)
+            return np.asarray(found[self.place])
+
+        return solve
+
+    def lu(self, general: Floats) -> Solve | None:
+        """Return a solver of the matrix with this general band, None if it is singular."""
+        matrix = general.reshape(self.size, self._tall).T
+        factor, pivots, bad = lapack.dgbtrf(matrix, self.reach, self.reach)
+        if bad:
+            return None
+
+        def solve(right: Floats) -> Floats:
+            found, _ = lapack.dgbtrs(factor, self.reach, self.reach, right[self._order], pivots)
+            return np.asarray(found[self.place])
+
+        return solve
+
+    def product(self, general: Floats) -> Solve:
+        """Return what multiplies by the matrix with this general band."""
+        matrix = general.reshape(self.size, self._tall)[:, self.reach :].T
+
+        def multiply(right: Floats) -> Floats:
+            found = blas.dgbmv(self.size, self.size, self.reach, self.reach, 1.0, matrix, right[self._order])
+            return np.asarray(found[self.place])
+
+        return multiply
+
+    @cached_property
+    def _whole(self) -> tuple[Indices, Indices, Indices, Indices]:
+        """Where the lower band's entries lie in a general band, and in its upper half mirrored."""
+        column, off = (at.ravel() for at in np.indices((self.size, self.reach + 1)))
+        inside = column + off < self.size
+        source = np.flatnonzero(inside)
+        column, off = column[inside], off[inside]
+        upper = off > 0
+        mirror = (column + off) * self._tall + 2 * self.reach - off
+        return source, column * self._tall + 2 * self.reach + off, source[upper], mirror[upper]
+
+    def spread(self, lower: Floats) -> Floats:
+        """Return the general band of the symmetric matrix with this lower band."""
+        source, at, above, mirror = self._whole
+        general = np.zeros(self.size * self._tall)
+        general[at] = lower[source]
+        general[mirror] = lower[above]
+        return general
+
+    def full(self, lower: Floats) -> Floats:
+        """Return the symmetric matrix with this lower band, shape (3 f, 3 f), in the order of coordinates."""
+        column, off = (at.ravel() for at in np.indices((self.size, self.reach + 1)))
+        inside = column + off < self.size
+        matrix = np.zeros((self.size, self.size))
+        row, column = self._order[(column + off)[inside]], self._order[column[inside]]
+        matrix[row, column] = matrix[column, row] = lower[inside]
+        return matrix
+
+
+def band_of(count: int, first: Indices, second: Indices) -> Band:
+    """Order ``count`` free points so that all pairs ``first``, ``second`` (-1: a fixed point) lie near."""
+    both = (first >= 0) & (second >= 0)
+    ones = np.ones(int(both.sum()))
+    half = sparse.coo_array((ones, (first[both], second[both])), shape=(count, count)).tocsr()
+    graph = sparse.csr_array(half + half.T + sparse.eye_array(count))
+    place = np.empty(count, dtype=np.int64)
+    place[reverse_cuthill_mckee(graph, symmetric_mode=True)] = np.arange(count)
+    far = int(np.abs(place[first[both]] - place[second[both]]).max(initial=0))
+    coordinates = 3 * place[:, None] + np.arange(3)
+    return Band(coordinates.ravel(), 3 * far + 2)

@@ -1,0 +1,205 @@
+"""How a run stands: a small pure function of its records and of the condition of its control mesh.
+
+Paper section 5 names the cases; the rules and figures are ours.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.geometry.mesh import Floats, Indices
+from core.mechanics.iteration import Record
+from core.mechanics.mesh_quality import Condition
+
+MOTIONS = ("settled", "settling", "vibrating", "diverging")
+"""What a run can do."""
+
+STATES = (*MOTIONS, "folded", "overstrained")
+"""What can be said of a run in one word."""
+
+SOUND = ("settled", "strained", "settling")
+"""What is told of runs whose figures can be worked with, or will be once all has settled."""
+
+SETTLED_STEP = 0.002
+"""A run has settled when no control point moved further than this in each of the last turns [mm]."""
+
+_QUIET_TURNS = 5
+_DIVERGED = 0.5
+_FADING = 0.99
+
+_RIPPLE = 1e-4
+_LEAST = 26  # turns without which no swing is judged
+_LOOK_BACK = 120  # turns: room for a swing of 40 turns to show twice
+_LAGS = (1, 2, 4, 8, 16)  # together they see periods from 2 to 40
+_WINDOW = 12  # turns over which a quick swing is measured
+_SPANS = (24, 48)  # over which its growth is: the longer for swings that come and go
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """How a run stands: ``motion`` is one of MOTIONS, ``condition`` that of the control mesh, if known.
+
+    ``error`` [1] is the mean volume error of the last turns. ``period`` [turns], ``amplitude`` [1] (half the
+    swing of the volume error, 0 if only the shape swings) and ``growth`` per turn [1] describe a vibration;
+    without one they are 0, 0 and 1.
+    """
+
+    motion: str
+    turns: int
+    error: float
+    period: float = 0.0
+    amplitude: float = 0.0
+    growth: float = 1.0
+    condition: Condition | None = None
+
+    @property
+    def state(self) -> str:
+        """The one word of STATES to say.
+
+        A run that vibrates or diverges has no shape to speak of; else a fold weighs more than strain, and
+        both more than whether it has come to rest.
+        """
+        if self.condition is None or self.motion in ("vibrating", "diverging"):
+            return self.motion
+        if self.condition.folded:
+            return "folded"
+        return "overstrained" if self.condition.overstrained else self.motion
+
+    @property
+    def told(self) -> str:
+        """The state as designers are told it: "strained" where skin strains though all has settled."""
+        strained = self.condition is not None and self.condition.strained
+        return "strained" if self.state == "settled" and strained else self.state
+
+    @property
+    def strain(self) -> tuple[float, float] | None:
+        """How far a "strained" skin is pressed together and stretched at most [%], else None."""
+        condition = self.condition
+        if condition is None or self.told != "strained":
+            return None
+        return 100.0 * (condition.shortest - 1.0), 100.0 * (condition.longest - 1.0)
+
+    @property
+    def sound(self) -> bool:
+        """Whether figures can be worked with, or will be once all has settled."""
+        return self.told in SOUND
+
+    @property
+    def words(self) -> str:
+        """The state, after the motion if that is another: "settled but folded"."""
+        return self.motion if self.state == self.motion else f"{self.motion} but {self.state}"
+
+
+def judge(records: Sequence[Record], condition: Condition | None = None) -> Verdict:
+    """Judge a run by its records so far, and by the condition of its control mesh if that is known."""
+    if not records:
+        return Verdict("settling", 0, 0.0, condition=condition)
+    last, recent = records[-1], records[-_LOOK_BACK:]
+    errors = np.array([record.error for record in recent])
+    if not np.isfinite(errors).all():
+        return Verdict("diverging", last.turn, last.error, condition=condition)
+    if len(recent) >= _QUIET_TURNS and max(record.step for record in recent[-_QUIET_TURNS:]) < SETTLED_STEP:
+        return Verdict("settled", last.turn, last.error, condition=condition)
+    if abs(last.error) > _DIVERGED:
+        return Verdict("diverging", last.turn, last.error, condition=condition)
+    swing = _strongest_swing(errors) or _shape_swing(recent)
+    if swing is None:
+        return Verdict("settling", last.turn, float(errors[-2:].mean()), condition=condition)
+    mean = float(errors[-swing.window :].mean())
+    return Verdict("vibrating", last.turn, mean, swing.period, swing.amplitude, swing.growth, condition)
+
+
+@dataclass(frozen=True)
+class _Swing:
+    """How a course swings: period [turns], half the swing, growth per turn, turns it was measured over."""
+
+    period: float
+    amplitude: float
+    growth: float
+    window: int
+
+
+def _strongest_swing(course: Floats) -> _Swing | None:
+    """Return the largest swing of a course (n,) [1] that neither fades nor is too small to see, or None."""
+    ups = course[1:] > course[:-1]
+    turned = int(np.count_nonzero(ups[1:] != ups[:-1]))
+    if len(course) < _LEAST or turned < 3:
+        return None
+    late = course[-3 * _WINDOW :]
+    room = 0.25 * float(late.max() - late.min())
+    strongest = None
+    for lag in _LAGS:
+        swing = _swing(course, lag)
+        if swing and (strongest is None or swing.amplitude > strongest.amplitude):
+            strongest = swing
+            if swing.amplitude > room:  # no other can be much larger
+                break
+    return strongest if strongest and strongest.amplitude >= _RIPPLE else None
+
+
+def _swing(course: Floats, lag: int) -> _Swing | None:
+    """Return the swing of about 2 x ``lag`` turns in a course, if there is one that does not fade.
+
+    Second differences over half a period show a swing in full and a straight drift not at all; a smooth
+    approach leaves little, and that of one sign.
+    """
+    bend = course[: -2 * lag] + course[2 * lag :] - 2.0 * course[lag:-lag]
+    turns = _sign_changes(bend)
+    if len(turns) < 4:  # a single pulse bends three times
+        return None
+    periods = min((len(turns) - 1) // 2, _WINDOW)
+    turns = turns[-1 - 2 * periods :]
+    period = float(turns[-1] - turns[0]) / periods
+    longest = max(int((turns[1:] - turns[:-1]).max()), len(bend) - int(turns[-1]))
+    whole = int(len(bend) / 2.0 / period)
+    if not 1.4 * lag <= period <= 4.0 * lag or whole < 1 or longest > period + 1.0:
+        return None
+    window, *spans = (round(period * min(whole, math.ceil(n / period))) for n in (_WINDOW, *_SPANS))
+    growth = next((each for span in spans if (each := _growth(bend, period, span)) >= _FADING), None)
+    if growth is None:
+        return None
+    gain = 4.0 * math.sin(math.pi * lag / period) ** 2
+    return _Swing(period, _size(bend[-window:], period) / gain, growth, window)
+
+
+def _growth(bend: Floats, period: float, span: int) -> float:
+    """Return by how much the last ``span`` turns swing more than those before them, per turn."""
+    earlier = max(_size(bend[-2 * span : -span], period), 0.01 * _RIPPLE)
+    return math.pow(_size(bend[-span:], period) / earlier, 1.0 / span)
+
+
+def _sign_changes(bend: Floats) -> Indices:
+    """Return where ``bend`` takes the other sign, but for what is too small to matter."""
+    large = (np.abs(bend) > _RIPPLE).nonzero()[0]
+    up = bend[large] > 0.0
+    return np.asarray(large[1:][up[1:] != up[:-1]])
+
+
+def _size(bend: Floats, period: float) -> float:
+    """Return half the swing about its mean: a flip-flop is always at its crest, else that of the best sine.
+
+    A window that cuts a period would make the root mean square larger or smaller, and be seen as growth.
+    """
+    if period < 2.05:
+        return float(np.abs(bend - bend.sum() / len(bend)).sum()) / len(bend)
+    angle = 2.0 * math.pi / period * np.arange(len(bend))
+    waves = np.column_stack((np.cos(angle), np.sin(angle), np.ones(len(bend))))
+    fit = np.linalg.lstsq(waves, bend)[0]
+    return math.hypot(fit[0], fit[1])
+
+
+def _shape_swing(records: Sequence[Record]) -> _Swing | None:
+    """Return the swing of the line that moves most, in parts of its length, unless the moves fade."""
+    if len(records) < _LEAST or not records[-1].lengths:
+        return None
+    earlier, later = (max(r.step for r in part) for part in (records[-24:-12], records[-12:]))
+    if later < _FADING**12 * earlier:
+        return None
+    lengths = np.array([record.lengths for record in records])
+    course = lengths[:, int(np.ptp(lengths[-24:], axis=0).argmax())]
+    swing = _strongest_swing(course / course.mean())
+    return swing and _Swing(swing.period, 0.0, swing.growth, swing.window)

@@ -1,0 +1,220 @@
+"""When the conventional force vibrates: the gain limit, at rest and in any balance, before any turn (ours).
+
+A turn is linear for small moves: it moves the points by M^-1 (P a - K d), M being the lower triangle of the
+stiffness that a turn solves for, K the true stiffness where the points are and a the direction of the volume
+force. On the brink the displacement d flips from turn to turn, so that 2 M d - K d = P a, and its volume
+calls forth the very pressure that made it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse import linalg as sparse_linalg
+
+from core.geometry.mesh import Floats, unit
+from core.mechanics.banded_matrix import Entries, Operator, Solve
+from core.mechanics.iteration import HELD_GROWTH
+from core.mechanics.model import ConstrainedModel
+from core.mechanics.newton import Balance, balance_at
+from core.mechanics.newton_sliding import LONGEST_STEP, Skin
+from core.mechanics.potential import Place, Potential
+from core.mechanics.springs import stretch_blocks
+
+_NEAR_ENOUGH = 1e-6  # largest unbalanced force over the mean stiffness [mm]: the limit does not see less
+_STEPS = 12  # three are the rule
+
+
+def gain_limit(model: ConstrainedModel) -> float:
+    """Return the conventional gain above which small volume errors flip and grow at rest (probe units [1]).
+
+    The tension of held lines, which also changes from turn to turn, is left out.
+    """
+    a = model.rest_gradient
+    cables, lines = _double_lower_less_true(model)
+    if model.mechanics.line_contact == "sliding":
+        n = unit(a)
+        across = sparse.csr_array(sparse.block_diag([np.outer(v, v) for v in n], format="csr"))
+        lines = sparse.csr_array(across @ lines)
+    d = sparse_linalg.spsolve(sparse.csc_array(cables + lines), a.ravel())
+    return model.probe / abs(float(a.ravel() @ d))
+
+
+class Swing:
+    """What turns of the conventional control come to in a ``model``, and when they swing about it."""
+
+    def __init__(self, model: ConstrainedModel) -> None:
+        self._model = model
+        slides = model.mechanics.line_contact == "sliding" and len(model.owner) > 0
+        self._skin = Skin(model) if slides else None
+        band = model.layout.band
+        lower = _lower_entries(model.tensegric.stiffness if slides else model.stiffness)
+        self._lower = band.general(lower) @ np.ones(1)
+        if slides:
+            row, column, weight = sparse.find(sparse.tril(model.line_laplacian))
+            self._row, each = row, 9 * np.arange(len(row))[:, None]
+            a, b = (axis.ravel()[None, :] for axis in np.indices((3, 3)))
+            self._of_lines = band.general(
+                Entries(
+                    (3 * row[:, None] + a).ravel(),
+                    (3 * column[:, None] + b).ravel(),
+                    (each + 3 * a + b).ravel(),
+                    np.repeat(weight, 9),
+                    9 * len(row),
+                )
+            )
+
+    def balance(self, potential: Potential, near: Balance, gain: float) -> Balance | None:
+        """Return where turns of the conventional control with ``gain`` come to rest, if they do, or None.
+
+        Its pressure is ``gain`` times the volume error, so volume is missing there; ``near`` is the exact
+        balance.
+        """
+        sides = len(potential.sides)
+        soft = np.zeros(1 + len(potential.held_lines))
+        soft[0] = self._model.probe / (gain * potential.area**2)
+        moved = near.state.moved
+        multipliers = np.concatenate([[near.multipliers[:sides].mean()], near.multipliers[sides:]])
+        for step in range(_STEPS):
+            place = potential.at(moved)
+            forces, push = self._forces(place, sides)
+            slopes, held = _together(place.slopes, sides), _together(place.held, sides)
+            amiss = held + soft * multipliers
+            unbalanced = np.abs(forces - multipliers @ push).max() / self._model.tensegric.mean_stiffness
+            whole = _apart(multipliers, sides)
+            if max(unbalanced, np.abs(amiss).max()) < _NEAR_ENOUGH:
+                return balance_at(potential, moved, unbalanced, whole, step)
+            solve = self._model.layout.band.lu(self._derivative(potential, place, whole))
+            if solve is None:
+                return None
+            solved = solve(np.column_stack([-forces, push.T]))
+            free, along = solved[:, 0], solved[:, 1:]
+            small = slopes @ along + np.diag(soft)
+            multipliers = -np.linalg.lstsq(small, slopes @ free + held, rcond=1e-12)[0]
+            shift = (free + along @ multipliers).reshape(-1, 3)
+            longest = float(np.abs(shift).max())
+            if not np.isfinite(longest):
+                return None
+            moved = moved + shift * (LONGEST_STEP / max(longest, LONGEST_STEP))
+        return None
+
+    def limit(self, potential: Potential, balance: Balance) -> float:
+        """Return the gain above which small errors flip and grow where ``balance`` is (probe units [1]).
+
+        Lines whose length is held also change their tension from turn to turn; that is in it. Whether turns
+        swing without any volume force is told by ``overshoot``.
+        """
+        place = potential.at(balance.state.moved)
+        matrix = 2.0 * self._turn(place) - self._derivative(potential, place, balance.multipliers)
+        solve = self._model.layout.band.lu(matrix)
+        sides = len(potential.sides)
+        a = potential.area * place.slopes[:sides].sum(axis=0)
+        if solve is None:
+            return 0.0
+        flipped = self._with_held(potential, place, solve, a)
+        return max(self._model.probe / float(a @ flipped), 0.0)
+
+    def overshoot(self, potential: Potential, balance: Balance) -> float:
+        """Return how far one turn goes where it goes furthest, over the way to ``balance`` [1].
+
+        Beyond 2 that move flips and grows from turn to turn, whatever holds the volume. It can only where
+        turns leave out the stiffness of the lines: it is the largest real part of an eigenvalue of M^-1 K.
+        """
+        place = potential.at(balance.state.moved)
+        band = self._model.layout.band
+        solve = band.lu(self._turn(place))
+        assert solve is not None, "a triangle with a diagonal of stiffnesses has an answer"
+        pull = band.product(self._derivative(potential, place, balance.multipliers))
+        held = place.slopes[len(potential.sides) :]
+        push = self._forces(place, len(potential.sides))[1][1:]
+        weight = (1.0 - 0.5 * HELD_GROWTH) * self._model.tapes[potential.held_lines]
+
+        def turned(moved: Floats) -> Floats:
+            return solve(pull(moved) + push.T @ (weight * (held @ moved)))
+
+        size = band.size
+        loop = sparse_linalg.LinearOperator((size, size), matvec=turned, dtype=np.float64)
+        begin = np.cos(np.arange(size))  # any start does that is not even on both sides
+        found = sparse_linalg.eigs(loop, 1, which="LR", v0=begin, tol=1e-4, return_eigenvectors=False)
+        return float(found[0].real)
+
+    def _forces(self, place: Place, sides: int) -> tuple[Floats, Floats]:
+        """Return the forces to balance, (3 f,), and the directions of one pressure and the tensions."""
+        forces, push = (place.gradient, place.slopes) if self._skin is None else self._skin.projected(place)
+        return forces, _together(push, sides)
+
+    def _derivative(self, potential: Potential, place: Place, multipliers: Floats) -> Floats:
+        if self._skin is not None:
+            return self._skin.derivative(potential, place, multipliers)
+        return potential.model.layout.band.spread(
+            potential.hessian(place, multipliers, clip=False, curved=True)
+        )
+
+    def _turn(self, place: Place) -> Floats:
+        """Return M, the triangle that a turn solves with, as a general band."""
+        if self._skin is None:
+            return self._lower
+        n = self._skin.normals(place)[self._row]
+        return np.asarray(self._lower + self._of_lines @ (n[:, :, None] * n[:, None, :]).ravel())
+
+    def _with_held(self, potential: Potential, place: Place, solve: Solve, a: Floats) -> Floats:
+        """Solve for ``a`` with what held lines add: each pulls by its excess, less what its tension learns.
+
+        A tension that takes a share of the excess each turn, while that flips, is half a share behind it.
+        """
+        sides, held = len(potential.sides), potential.held_lines
+        if not len(held):
+            return solve(a)
+        _, push = self._forces(place, sides)
+        pulled = solve(np.column_stack([a, push[1:].T]))
+        weight = (1.0 - 0.5 * HELD_GROWTH) * self._model.tapes[held]
+        slopes = place.slopes[sides:] * weight[:, None]
+        small = np.eye(len(held)) - slopes @ pulled[:, 1:]
+        return np.asarray(pulled[:, 0] + pulled[:, 1:] @ np.linalg.solve(small, slopes @ pulled[:, 0]))
+
+
+def _together(rows: Floats, sides: int) -> Floats:
+    """Return ``rows`` with those of the sides summed, as turns hold the sum of both volumes."""
+    return np.concatenate([rows[:sides].sum(axis=0, keepdims=True), rows[sides:]])
+
+
+def _apart(multipliers: Floats, sides: int) -> Floats:
+    return np.concatenate([np.full(sides, multipliers[0]), multipliers[1:]])
+
+
+def _lower_entries(stiffness: Operator) -> Entries:
+    """Return the entries of the lower triangle of a stiffness (f, f) that acts alike in all directions."""
+    row, column, weight = sparse.find(sparse.tril(sparse.csr_array(stiffness)))
+    axes = np.arange(3)
+    rows, columns = ((3 * at[:, None] + axes).ravel() for at in (row, column))
+    return Entries(rows, columns, np.zeros_like(rows), np.repeat(weight, 3), 1)
+
+
+def _double_lower_less_true(model: ConstrainedModel) -> tuple[sparse.csr_array, sparse.csr_array]:
+    """Return 2 M - H at rest for the cables and for the lines, both of shape (3 f, 3 f)."""
+    tensegric, segments = model.tensegric, model.segments
+    rest = np.zeros((len(tensegric.free), 3))
+    figures = [np.ones(1), *tensegric.hessian_figures(rest, False)]
+    true = sum_of(tensegric.hessian_entries, figures, rest.size)
+    u = segments.rest_spans / segments.rest_lengths[:, None]
+    blocks = stretch_blocks(u, segments.stiffness, np.zeros(len(u)))
+    line_true = sum_of([segments.entries], [blocks.ravel()], rest.size)
+    return (
+        sparse.csr_array(2.0 * _lower(tensegric.stiffness) - true),
+        sparse.csr_array(2.0 * _lower(model.line_laplacian) - line_true),
+    )
+
+
+def _lower(stiffness: Operator) -> sparse.csr_array:
+    return sparse.csr_array(sparse.kron(sparse.tril(sparse.csr_array(stiffness)), np.eye(3)))
+
+
+def sum_of(parts: Sequence[Entries], figures: Sequence[Floats], size: int) -> sparse.csr_array:
+    """Return the matrix (size, size) that ``figures`` make with the entries of ``parts``."""
+    pieces = [
+        (part.value * of[part.source], part.row, part.column) for part, of in zip(parts, figures, strict=True)
+    ]
+    value, row, column = (np.concatenate(column) for column in zip(*pieces, strict=True))
+    return sparse.csr_array((value, (row, column)), shape=(size, size))

@@ -1,0 +1,78 @@
+"""One sweep over the free points: each goes where its forces balance, its neighbours being where they are.
+
+Visiting the points one after the other (Gauss-Seidel, paper section 5) is forward substitution with the lower
+triangle of the stiffness. Written for what is unbalanced before the sweep, it needs nothing else: the points
+move by the answer of that triangle to the unbalanced forces, whatever law made them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+from scipy.linalg import solve_triangular
+from scipy.sparse import linalg as sparse_linalg
+
+from core.geometry.mesh import Floats, Indices, Points, frozen, unit
+from core.mechanics.banded_matrix import DENSE_LIMIT, Operator, Solve
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """The answer of one sweep; ``forward`` solves the lower triangle for forces of shape (f, 3).
+
+    Under sliding lines it is that of the cables alone. There only the part of a line's force across the skin
+    acts at the points ``nodes`` (l,) of the lines: ``reach`` (l, f) is the lower triangle of the lines times
+    ``forward``, ``among`` (l, l) the same between the nodes.
+    """
+
+    forward: Solve
+    nodes: Indices
+    reach: Floats
+    among: Floats
+
+    def answer(self, inner: Points, line: Points, outward: Points) -> Points:
+        """Return how far the points move for unbalanced forces of the body and of the lines, all (f, 3).
+
+        ``outward`` are vectors across the skin, of any length; glued lines do not ask for them.
+        """
+        if not len(self.nodes):
+            return self.forward(inner + line)
+        # The nodes' rows of the system have the lines' part projected on n: a correction of low rank.
+        n = unit(outward[self.nodes])
+        forces = inner.copy()
+        forces[self.nodes] += n * np.einsum("ij,ij->i", n, line[self.nodes])[:, None]
+        known = np.einsum("ij,ij->i", n, self.reach @ forces)
+        taken = np.linalg.solve(np.eye(len(n)) + self.among * (n @ n.T), known)
+        forces[self.nodes] -= n * taken[:, None]
+        return self.forward(forces)
+
+
+def glued_sweep(stiffness: Operator) -> Sweep:
+    """Return the sweep of a stiffness (f, f) that acts alike in all directions."""
+    none = np.empty((0, stiffness.shape[0]))
+    return Sweep(_forward(stiffness), np.empty(0, dtype=np.int64), none, np.empty((0, 0)))
+
+
+def sliding_sweep(cables: Operator, lines: Operator, nodes: Indices) -> Sweep:
+    """Return the sweep of cables (f, f) and of lines (f, f) that slide over the points ``nodes``, (l,)."""
+    forward = _forward(cables)
+    lower = sparse.tril(sparse.csr_array(lines), format="csr")[nodes]
+    # Row by row: (T^-1)^T would need the other triangle, so the few columns of T^-1 are made instead.
+    at_nodes = np.zeros((cables.shape[0], len(nodes)))
+    at_nodes[nodes, np.arange(len(nodes))] = 1.0
+    among = lower @ forward(at_nodes)
+    reach = lower @ forward(np.eye(cables.shape[0]))
+    return Sweep(forward, nodes, frozen(reach), frozen(among))
+
+
+def _forward(stiffness: Operator) -> Solve:
+    """Return the solver of the lower triangle of a stiffness: its inverse if it is small."""
+    if np.prod(stiffness.shape) <= DENSE_LIMIT:
+        lower = np.tril(stiffness if isinstance(stiffness, np.ndarray) else stiffness.toarray())
+        inverse = solve_triangular(lower, np.eye(len(lower)), lower=True)
+        return lambda right: np.asarray(inverse @ right)
+    lower = sparse.tril(sparse.csr_array(stiffness), format="csc")
+    factor = sparse_linalg.splu(lower, permc_spec="NATURAL", diag_pivot_thresh=0.0)
+    return lambda right: np.asarray(factor.solve(right))

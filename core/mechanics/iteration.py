@@ -1,0 +1,149 @@
+"""Turns: one sweep to local balance, then the volume and the lengths are measured and the forces refreshed.
+
+Paper section 5 tells the turn in words; the equations are ours. What is unbalanced at the beginning of a turn
+- cables, lines, volume force - moves the points as ``core.mechanics.gauss_seidel`` tells.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from core.geometry.mesh import Floats, Points
+from core.mechanics.model import ConstrainedModel
+from core.mechanics.volume import Pressure, next_pressure
+
+HELD_GROWTH = 0.1
+"""What of a held line's pull for being too long stays in its tension after the turn [1]; ours."""
+
+
+@dataclass(frozen=True)
+class Targets:
+    """All that can change while a run goes on: a ratio per line [1], volume control, gain [probe units]."""
+
+    ratios: tuple[float, ...]
+    control: str = "adaptive"
+    gain: float = 1.5
+
+
+@dataclass(frozen=True)
+class Marks:
+    """What is watched on the body: height and protrusion of the bust points and of the apex [mm]."""
+
+    nipple_left_z: float
+    nipple_right_z: float
+    apex_z: float
+    apex_protrusion: float
+    nipple_left_out: float
+    nipple_right_out: float
+
+
+Watch = Callable[[Points], Marks]
+
+
+@dataclass(frozen=True)
+class Record:
+    """The scalars of one turn: what plot, CSV and tests read.
+
+    ``error`` is (V - V0) / V0 [1], negative when volume is missing; ``error_ml`` [ml]; ``step`` [mm] the
+    largest move of a control point in this turn; ``lengths`` [mm] of the lines' front parts.
+    """
+
+    turn: int
+    error: float
+    error_ml: float
+    step: float
+    lengths: tuple[float, ...]
+    marks: Marks | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """Where a run stands: displacements of the free points, shape (f, 3) [mm], and the turns made.
+
+    ``pressure`` is that of the coming turn; ``tensions`` (lines,) [mm] those of lines whose length is held,
+    0 for others.
+    """
+
+    moved: Points
+    pressure: Pressure = field(default_factory=Pressure)
+    turn: int = 0
+    tensions: Floats = field(default_factory=lambda: np.zeros(0))
+
+
+def at_rest(model: ConstrainedModel) -> State:
+    """Return the state in which nothing has moved."""
+    return State(np.zeros((len(model.tensegric.free), 3)))
+
+
+def record(model: ConstrainedModel, state: State, step: float, watch: Watch | None = None) -> Record:
+    """Measure a state."""
+    points = model.tensegric.expand(state.moved)
+    change = model.volume.volume(points) - model.volume.rest_volume
+    return Record(
+        state.turn,
+        change / model.volume.rest_volume,
+        change / 1000.0,
+        step,
+        model.line_lengths(points),
+        watch(points) if watch else None,
+    )
+
+
+def turn(
+    model: ConstrainedModel, targets: Targets, state: State, watch: Watch | None = None
+) -> tuple[State, Record]:
+    """Make one turn: every point to its local balance, then measure, then refresh the forces.
+
+    Source: paper section 5.
+    """
+    moved, volume = state.moved, model.volume
+    spans, lengths = model.segments.spans(moved)
+    natural, tensions = aims(model, targets, state, lengths)
+    outward = volume.gradient(model.tensegric.expand(moved))
+    inner = -model.tensegric.gradient(moved)
+    if targets.control != "none":
+        inner += (state.pressure.value * model.pressure_unit) * outward
+    line = -model.segments.gradient(spans, lengths, natural)
+    shift = model.sweep.answer(inner, line, outward)
+    step = float(np.sqrt(np.max(np.einsum("ij,ij->i", shift, shift), initial=0.0)))
+    after = State(moved + shift, state.pressure, state.turn + 1, tensions)
+    measured = record(model, after, step, watch)
+    pressure = next_pressure(targets.control, state.pressure, -measured.error, targets.gain)
+    return replace(after, pressure=pressure), measured
+
+
+def aims(model: ConstrainedModel, targets: Targets, state: State, lengths: Floats) -> tuple[Floats, Floats]:
+    """Return the natural lengths of the worn segments in the coming turn, (s,) [mm], and the lines' tensions.
+
+    A spring has its own (paper section 3). A line whose length is held pulls with one tension all along and,
+    while it is too long, as a spring of its tape besides; a part of that pull stays in the tension (the
+    method of multipliers, damped: if all of it stayed the line would swing about its length for hundreds of
+    turns; if it pulled harder short lines would run away; ours).
+    """
+    natural = model.natural_lengths(targets.ratios)
+    if model.mechanics.line_hold == "spring":
+        return natural, state.tensions
+    before = state.tensions if len(state.tensions) else np.zeros(len(model.lines))
+    excess = model.tapes * model.sums(lengths - natural)
+    pull = (before + excess)[model.owner]
+    return lengths - pull / model.segments.stiffness, before + HELD_GROWTH * excess
+
+
+def iterate(
+    model: ConstrainedModel,
+    targets: Callable[[], Targets],
+    state: State | None = None,
+    *,
+    turns: int,
+    watch: Watch | None = None,
+) -> Iterator[tuple[State, Record]]:
+    """Yield up to ``turns`` turns; not asking for the next one is how to stop."""
+    state = at_rest(model) if state is None else state
+    for _ in range(turns):
+        state, measured = turn(model, targets(), state, watch)
+        yield state, measured
+        if not np.isfinite(measured.error) or abs(measured.error) > 10.0:
+            return

@@ -1,0 +1,210 @@
+"""ConstrainedModel: a tensegric model with its constraining lines and its volume, ready to be solved."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from types import MappingProxyType
+
+import numpy as np
+from scipy import sparse
+
+from core.control_mesh.fit import ControlMesh
+from core.geometry.mesh import Floats, Indices, Points, frozen
+from core.mechanics.banded_matrix import Operator, compact
+from core.mechanics.constraint_lines import Line, free_line, line_on
+from core.mechanics.gauss_seidel import Sweep, glued_sweep, sliding_sweep
+from core.mechanics.hessian_layout import Layout, layout_of
+from core.mechanics.options import Mechanics
+from core.mechanics.springs import Springs, members
+from core.mechanics.tensegrity import TensegricModel, tensegric_model
+from core.mechanics.volume import VolumeMeasure, volume_measure
+
+
+@dataclass(frozen=True, eq=False)
+class ConstrainedModel:
+    """A tensegric model with its constraining lines and its volume: all that stays fixed during a run.
+
+    ``lines`` are all lines, worn or only measured. ``segments`` are those of the worn ones as springs, the
+    same tape along a line; ``owner`` (s,) tells the line of each. ``beyond`` (s,) [mm] is the tape that
+    slides over the shoulder from the segment on, as long as it is whatever the body does.
+    """
+
+    tensegric: TensegricModel
+    lines: tuple[Line, ...]
+    volume: VolumeMeasure
+    segments: Springs
+    owner: Indices
+    beyond: Floats
+
+    @property
+    def mechanics(self) -> Mechanics:
+        """The choices that this model was built with."""
+        return self.tensegric.mechanics
+
+    @cached_property
+    def stiffness(self) -> Operator:
+        """Stiffness of cables, ground and implicit line segments between free points, shape (f, f) [1]."""
+        return compact(sparse.csr_array(sparse.csr_array(self.tensegric.stiffness) + self.line_laplacian))
+
+    @cached_property
+    def line_laplacian(self) -> sparse.csr_array:
+        """What the segments of the lines add to the stiffness of a turn, shape (f, f) [1]."""
+        if self.mechanics.line_force != "implicit":
+            return self.segments.weighted(np.zeros(len(self.owner)))
+        # A long tail makes a segment soft along it, but not across: the upper bound is that without a tail.
+        bound = self.tapes_at_rest / self.segments.rest_lengths
+        return self.segments.weighted(self.segments.stiffness * bound)
+
+    @cached_property
+    def sweep(self) -> Sweep:
+        """How one turn answers the forces that it finds unbalanced."""
+        if self.mechanics.line_contact == "glued" or not len(self.owner):
+            return glued_sweep(self.stiffness)
+        return sliding_sweep(self.tensegric.stiffness, self.line_laplacian, self.segments.nodes)
+
+    @cached_property
+    def rest_gradient(self) -> Points:
+        """The direction of the volume force at rest, shape (f, 3) [mm^2]."""
+        return self.volume.gradient(self.tensegric.rest)
+
+    @cached_property
+    def rest_sides(self) -> Floats:
+        """The left and the right volume at rest, shape (2,) [mm^3]."""
+        return self.volume.side_volumes(self.tensegric.rest)
+
+    @cached_property
+    def probe(self) -> float:
+        """Volume change of one sweep per unit of pressure, dV/dP [mm^5], measured on a zero field (ours)."""
+        a = self.rest_gradient
+        return float(np.sum(a * self.sweep.answer(a, np.zeros_like(a), a)))
+
+    @cached_property
+    def layout(self) -> Layout:
+        """Where the second derivatives lie that the exact answer needs."""
+        return layout_of(self.tensegric, self.segments, self.volume)
+
+    def laid_as(self, other: ConstrainedModel) -> ConstrainedModel:
+        """Return this model with the layout of ``other``, whose members join the same points.
+
+        It does not depend on any stiffness, and takes longer than a balance.
+        """
+        self.__dict__["layout"] = other.layout  # what would be worked out when first asked for
+        return self
+
+    @property
+    def pressure_unit(self) -> float:
+        """The pressure that would change the whole volume by 100 % in one turn, linearised."""
+        return self.volume.rest_volume / self.probe
+
+    def natural_lengths(self, ratios: tuple[float, ...]) -> Floats:
+        """Return the natural lengths of the worn segments for a ratio per line, shape (s,) [mm].
+
+        Source: paper section 3. Where tape goes on beyond a segment, what that keeps of its length is taken
+        off, so that length less natural length is what all of the tape is too long (ours).
+        """
+        return np.asarray(np.asarray(ratios)[self.owner] * self.tapes_at_rest - self.beyond)
+
+    @cached_property
+    def tapes_at_rest(self) -> Floats:
+        """The rest lengths of the worn segments with what goes on beyond them, shape (s,) [mm]."""
+        return self.segments.rest_lengths + self.beyond
+
+    def sums(self, values: Floats) -> Floats:
+        """Return the sums of values of the worn segments over each line, shape (lines,)."""
+        return np.asarray(np.bincount(self.owner, values, len(self.lines)), dtype=np.float64)
+
+    def line_lengths(self, points: Points) -> tuple[float, ...]:
+        """Return the lengths of the front parts of all lines, worn or not [mm]; ``points`` (n, 3) [mm]."""
+        across, owner, tails = self._all_segments
+        spans = across @ points
+        lengths = np.sqrt(np.einsum("ij,ij->i", spans, spans))
+        return tuple((np.bincount(owner, lengths, len(self.lines)) + tails).tolist())
+
+    @cached_property
+    def _all_segments(self) -> tuple[sparse.csr_array, Indices, Floats]:
+        owner = np.repeat(np.arange(len(self.lines)), [len(line.rest_lengths) for line in self.lines])
+        tails = np.array([line.tail_length for line in self.lines])
+        return _joined(self.lines, len(self.tensegric.rest)), owner, tails
+
+    @cached_property
+    def tapes(self) -> Floats:
+        """Stiffness of each line as a whole, its segments in a row, shape (lines,) [1]; 0 if not worn."""
+        give = self.sums(1.0 / self.segments.stiffness)
+        return np.where(give > 0.0, 1.0 / np.where(give > 0.0, give, 1.0), 0.0)
+
+    @cached_property
+    def pulling(self) -> Indices:
+        """The lines that act on a point which can move, ascending."""
+        return np.unique(self.owner)
+
+
+def constrained_model(
+    control: ControlMesh,
+    *,
+    worn: Collection[str] | None = None,
+    back_lengths: Mapping[str, float] | None = None,
+    tail_lengths: Mapping[str, float] | None = None,
+    mechanics: Mechanics | None = None,
+    own_stiffness: Mapping[str, float] | None = None,
+) -> ConstrainedModel:
+    """Build the model of a control mesh with a line on each of its paths.
+
+    ``worn`` names the lines that act (all of them if None), the others are only measured; ``back_lengths``
+    and ``tail_lengths`` [mm] see ``Line``, ``own_stiffness`` [1] see ``assemble``.
+    """
+    tensegric = tensegric_model(control.mesh, control.fixed, mechanics)
+    backs, tails, points = back_lengths or {}, tail_lengths or {}, control.mesh.vertices
+    through = [
+        line_on(name, path, points, tensegric.free, backs.get(name, 0.0))
+        for name, path in control.paths.items()
+    ]
+    between = [
+        free_line(name, embedded.weights, points, tensegric.free, embedded.steps)
+        for name, embedded in control.embedded.items()
+    ]
+    lines = tuple(replace(line, tail_length=tails.get(line.name, 0.0)) for line in (*through, *between))
+    columns = control.column[control.mesh.faces].sum(axis=1)
+    volume = volume_measure(control.mesh, tensegric.free, columns > 0)
+    worn = control.line_names if worn is None else worn
+    return assemble(tensegric, lines, volume, worn, own_stiffness or {})
+
+
+def assemble(
+    tensegric: TensegricModel,
+    lines: tuple[Line, ...],
+    volume: VolumeMeasure,
+    worn: Collection[str],
+    own_stiffness: Mapping[str, float] = MappingProxyType({}),
+) -> ConstrainedModel:
+    """Join the parts of a model.
+
+    A line that is not worn, or lies on fixed points alone, is measured but does not pull. Its stiffness per
+    mm is the same all along; a segment from control point to control point has the mechanics'
+    ``line_stiffness`` on the mean, or that of ``own_stiffness`` [1] if it names the line (ours).
+    """
+    usual, unit = tensegric.mechanics.line_stiffness, tensegric.mean_stiffness
+    pulling = [(index, line) for index, line in enumerate(lines) if line.constrains and line.name in worn]
+    counts = [len(line.rest_lengths) for _, line in pulling]
+    owner = np.repeat([i for i, _ in pulling], counts).astype(np.int64)
+    none = np.empty(0)
+    beyond = np.concatenate([none, *(_beyond(line) for _, line in pulling)])
+    tapes = np.concatenate([none, *(line.rest_lengths for _, line in pulling)]) + beyond
+    each = np.array([own_stiffness.get(line.name, usual) * unit * line.spacing for _, line in pulling])
+    across = _joined([line for _, line in pulling], len(tensegric.rest))
+    segments = members(tensegric.rest, tensegric.place, across, np.repeat(each, counts) / tapes)
+    return ConstrainedModel(tensegric, lines, volume, segments, owner, frozen(beyond))
+
+
+def _joined(lines: Sequence[Line], count: int) -> sparse.csr_array:
+    """Return the ``across`` of all lines one after the other, shape (s, count)."""
+    none = sparse.csr_array((0, count))
+    return sparse.csr_array(sparse.vstack([none, *(line.across for line in lines)], format="csr"))
+
+
+def _beyond(line: Line) -> Floats:
+    """Return what goes on beyond each segment of a line, (s,) [mm]: the tail beyond the last."""
+    beyond = np.zeros(len(line.rest_lengths))
+    beyond[-1] = line.tail_length
+    return beyond

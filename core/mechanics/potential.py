@@ -1,0 +1,137 @@
+"""The potential of a constrained model and what is held exactly, with all derivatives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.geometry.mesh import Floats, Points
+from core.mechanics.model import ConstrainedModel
+from core.mechanics.springs import stretch_blocks
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """A model looked at in one place: all first-order figures of it.
+
+    ``moved`` (f, 3) [mm]; ``inner`` and ``line`` (f, 3) the derivatives of the energy of body and lines;
+    ``held`` (h,) what is held less what is wanted, [mm] and volumes over ``Potential.area``; ``slopes``
+    (h, 3 f) their derivatives.
+    """
+
+    moved: Points
+    points: Points
+    spans: Points
+    lengths: Floats
+    inner: Points
+    line: Points
+    held: Floats
+    slopes: Floats
+
+    @property
+    def gradient(self) -> Floats:
+        """The derivative of the whole energy, shape (3 f,)."""
+        return (self.inner + self.line).ravel()
+
+
+class Potential:
+    """Energy of body and lines for line ``ratios``, and the volumes and lengths that are held exactly.
+
+    ``excess`` (2,) [mm^3] is what the left and the right volume are to have beyond rest (dense correction).
+    """
+
+    def __init__(
+        self, model: ConstrainedModel, ratios: tuple[float, ...], excess: Floats | None = None
+    ) -> None:
+        self.model = model
+        self.natural = model.natural_lengths(ratios)
+        hold = model.mechanics.line_hold == "held"
+        self.tape = np.zeros(len(self.natural)) if hold else model.segments.stiffness
+        self.held_lines = model.pulling if hold else model.pulling[:0]
+        together = model.volume.closed or model.mechanics.volume_of == "both"
+        self.sides = np.ones((1, 2)) if together else np.eye(2)
+        self.area = abs(model.volume.rest_volume) ** (2.0 / 3.0)
+        volumes = model.rest_sides + (0.0 if excess is None else excess)
+        self.wanted = np.concatenate(
+            [self.sides @ volumes / self.area, model.sums(self.natural)[self.held_lines]]
+        )
+        self.tolerance = 1e-13 * np.concatenate(
+            [np.full(len(self.sides), self.area**0.5), 10.0 * self.wanted[len(self.sides) :]]
+        )
+
+    def energy(self, place: Place) -> float:
+        """Return the energy above that of the slack rest shape."""
+        longer = place.lengths - self.natural
+        return self.model.tensegric.energy(place.moved) + 0.5 * float(self.tape @ (longer * longer))
+
+    def _held(
+        self, volumes: Floats, gradients: Floats, spans: Points, lengths: Floats
+    ) -> tuple[Floats, Floats]:
+        values, slopes = self.sides @ volumes / self.area, self.sides @ gradients.reshape(2, -1) / self.area
+        if len(self.held_lines):
+            u = spans / lengths[:, None]
+            each = [np.where(self.model.owner[:, None] == line, u, 0.0) for line in self.held_lines]
+            values = np.concatenate([values, self.model.sums(lengths)[self.held_lines]])
+            slopes = np.concatenate([slopes, *(self.model.segments.sum(u).reshape(1, -1) for u in each)])
+        return values - self.wanted, slopes
+
+    def at(self, moved: Points) -> Place:
+        """Return all first-order figures at displacements of the free points, shape (f, 3) [mm]."""
+        spans, lengths = self.model.segments.spans(moved)
+        force = (self.tape * (1.0 - self.natural / lengths))[:, None] * spans
+        points = self.model.tensegric.expand(moved)
+        held, slopes = self._held(*self.model.volume.measure(points), spans, lengths)
+        inner, line = self.model.tensegric.gradient(moved), self.model.segments.sum(force)
+        return Place(moved, points, spans, lengths, inner, line, held, slopes)
+
+    def line_blocks(self, place: Place, multipliers: Floats, clip: bool) -> Floats:
+        """Return the second derivative of each line segment's energy and held length, shape (s, 3, 3)."""
+        across = self.tape * (1.0 - self.natural / place.lengths)
+        tensions = np.zeros(len(self.model.lines))
+        tensions[self.held_lines] = -multipliers[len(self.sides) :]
+        across = across + tensions[self.model.owner] / place.lengths
+        if clip:
+            across = np.maximum(across, 0.0)
+        return stretch_blocks(place.spans / place.lengths[:, None], self.tape, across)
+
+    def amiss(self, place: Place, multipliers: Floats) -> float:
+        """Return the largest of the unbalanced forces over the mean stiffness and of what is held [mm]."""
+        forces = np.abs(place.gradient - multipliers @ place.slopes).max(initial=0.0)
+        away = np.abs(place.held).max(initial=0.0)
+        return float(max(forces / self.model.tensegric.mean_stiffness, away))
+
+    def residual(self, place: Place, forces: Floats) -> float:
+        """Return the largest of the unbalanced ``forces`` (3 f,) over the mean stiffness [mm].
+
+        It is infinite as long as anything that is held is not what it should be.
+        """
+        if (np.abs(place.held) > 1e3 * self.tolerance).any():
+            return float("inf")
+        return float(np.abs(forces).max(initial=0.0)) / self.model.tensegric.mean_stiffness
+
+    def pressures(self, multipliers: Floats) -> Floats:
+        """Return the left and the right pressure, shape (2,)."""
+        return np.asarray(multipliers[: len(self.sides)] @ self.sides / self.area)
+
+    def tensions(self, multipliers: Floats) -> Floats:
+        """Return the tensions of the lines that are held, shape (lines,) [mm]; 0 for others."""
+        tensions = np.zeros(len(self.model.lines))
+        tensions[self.held_lines] = -multipliers[len(self.sides) :]
+        return tensions
+
+    def hessian(
+        self, place: Place, multipliers: Floats, *, clip: bool, curved: bool, lines: bool = True
+    ) -> Floats:
+        """Return the lower band of the second derivative of energy less multipliers times what is held.
+
+        ``clip`` leaves out what compressed members take from it, ``curved`` = False the volume's share,
+        ``lines`` = False that of the lines.
+        """
+        parts = self.model.tensegric.hessian_figures(place.moved, clip)
+        blocks = self.line_blocks(place, multipliers, clip) if lines else np.zeros(9 * len(self.natural))
+        centred = (place.points - self.model.volume.centre).ravel()
+        layout = self.model.layout
+        push = -self.pressures(multipliers) if curved else np.zeros(2)
+        parts += [blocks.ravel(), push[0] * centred, push[1] * centred]
+        return np.asarray(layout.constant + layout.changing @ np.concatenate(parts))

@@ -1,0 +1,206 @@
+"""Runs side by side: the turn-based volume controls in lockstep on the same targets, beside the exact answer.
+
+All runs see the same lengths at the same turn, so their curves can be laid over each other even while a
+slider moves.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from core.mechanics.convergence import Verdict, judge
+from core.mechanics.dense_volume import BodyChange, solve_body_exact
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.iteration import Record, State, Targets, Watch, at_rest, record, turn
+from core.mechanics.mesh_quality import Condition, RestShape
+from core.mechanics.model import ConstrainedModel
+from core.mechanics.newton import Balance
+
+TURN_CONTROLS = ("adaptive", "conventional")
+"""The controls that are always compared; another joins when it is the chosen one."""
+
+NEAR = 0.05
+"""Lengths that change by no more than this let the exact answer start from the last one [1]."""
+
+CALM_ERROR, CALM_STEP = 0.05, 20.0
+"""Volume error [1] and largest move in a turn [mm] below which a state of a diverging run can be shown."""
+
+MOST_TURNS = 300
+"""Turns after a change of the targets at which a run is left as it is, settled or not."""
+
+
+class Run:
+    """One volume control at work: its state, all its records, and its motion since the targets changed."""
+
+    def __init__(self, model: ConstrainedModel, control: str, state: State, watch: Watch | None) -> None:
+        self.control = control
+        self.state = self._calm = state
+        self.records: list[Record] = [record(model, state, 0.0, watch)]
+        self.watch_anew()
+
+    def watch_anew(self) -> None:
+        """Judge only what comes from now on."""
+        self.changed_at = self.state.turn
+        self.verdict = judge([])
+
+    def restart(self, model: ConstrainedModel) -> None:
+        """Go back to rest, turns counted on."""
+        self.state = self._calm = replace(at_rest(model), turn=self.state.turn)
+
+    def take(self, state: State, measured: Record) -> None:
+        """Take the next turn."""
+        self.state = state
+        if abs(measured.error) < CALM_ERROR and measured.step < CALM_STEP:
+            self._calm = state
+        self.records.append(measured)
+        self.verdict = judge(self.records[self.changed_at - self.records[0].turn + 1 :])
+
+    @property
+    def resting(self) -> bool:
+        """Whether there is nothing more to see: settled, diverging, or long enough watched."""
+        turns = self.state.turn - self.changed_at
+        return turns > 0 and (turns >= MOST_TURNS or self.verdict.motion in ("settled", "diverging"))
+
+    @property
+    def ended(self) -> bool:
+        """Whether it came to an end that says something: one that did not converge is at a chance place.
+
+        Collapsed meshes come back from there hardly or never, whatever lengths are asked for then.
+        """
+        return not (self.resting and self.verdict.motion == "settling")
+
+    @property
+    def sane(self) -> bool:
+        """Whether the run can be gone on from: a diverging one starts again at rest."""
+        return self.verdict.motion != "diverging"
+
+    @property
+    def shown(self) -> State:
+        """The state to show: of a diverging run the last calm one, not a body torn apart."""
+        return self.state if self.sane else self._calm
+
+
+class Comparison:
+    """The runs of the compared controls and the exact answer, for one model whose targets may move."""
+
+    def __init__(
+        self,
+        model: ConstrainedModel,
+        targets: Targets,
+        watch: Watch | None = None,
+        body_change: BodyChange | None = None,
+    ) -> None:
+        self.model = model
+        self.targets = targets
+        self.watch = watch
+        self.runs: dict[str, Run] = {}
+        self._body_change = body_change
+        self._shape = shape_of(model)
+        self._solve(None)
+        self._set_runs(fresh=True)
+
+    def retarget(self, model: ConstrainedModel, targets: Targets, fresh: bool = False) -> None:
+        """Take new targets, warm: every run goes on from where it is, unless it diverged or never converged.
+
+        ``model`` may differ in the lines that are worn, not in its control points. ``fresh`` begins new
+        records at turn 0.
+        """
+        near, same = None, model is self.model and targets == self.targets
+        if model is self.model and self.exact.found:
+            moved = np.abs(np.subtract(targets.ratios, self.targets.ratios)).max(initial=0.0)
+            near = self.exact if moved <= NEAR else None
+        if model is not self.model:
+            for run in self.runs.values():
+                run.state = carried(run.state, self.model, model)
+        self.model, self.targets = model, targets
+        self._solve(near)
+        self._set_runs(fresh, same)
+
+    def _solve(self, near: Balance | None) -> None:
+        """Find the exact answer; from one near by it is quicker, and the first Newton step is its tangent."""
+        self._exact_is_near = near is not None
+        if self._body_change is None:
+            self.exact = solve_exact(self.model, self.targets.ratios, near=near)
+        else:
+            self.exact = solve_body_exact(self.model, self.targets.ratios, self._body_change, near=near)
+
+    @property
+    def main(self) -> Run | None:
+        """The run of the chosen control; None when the exact answer is shown."""
+        return self.runs.get(self.targets.control)
+
+    @property
+    def shown(self) -> State:
+        """The state to show: that of the chosen control's run, or the exact answer."""
+        return self.main.shown if self.main else self.exact.state
+
+    @property
+    def verdict(self) -> Verdict:
+        """How the chosen control stands, and in what condition the mesh is that is shown."""
+        verdict = self.main.verdict if self.main else judge_balance(self.model, self.exact)
+        points = self.model.tensegric.expand(self.shown.moved)
+        return replace(verdict, condition=self._shape.condition(points))
+
+    @property
+    def resting(self) -> bool:
+        """Whether every run rests, and the exact answer is that which is found from rest."""
+        return not self._exact_is_near and self._runs_rest
+
+    @property
+    def _runs_rest(self) -> bool:
+        return all(run.resting for run in self.runs.values())
+
+    def advance(self) -> None:
+        """Make one turn in every run that does not rest; when all do, find the exact answer from rest.
+
+        Where there is more than one balance the answer must not depend on the way that a slider took.
+        """
+        if self._runs_rest:
+            self._solve(None)
+        for run in self.runs.values():
+            if not run.resting:
+                targets = replace(self.targets, control=run.control)
+                run.take(*turn(self.model, targets, run.state, self.watch))
+
+    def _set_runs(self, fresh: bool, same: bool = False) -> None:
+        """Let runs go on from where they are, or from rest where that is no place to go on from.
+
+        With the ``same`` targets one that has not converged yet does.
+        """
+        wanted = dict.fromkeys([*TURN_CONTROLS, self.targets.control])
+        wanted.pop("exact", None)
+        runs = {}
+        for control in wanted:
+            old = self.runs.get(control)
+            warm = old is not None and old.sane and (old.ended or same)
+            if old is None or fresh:
+                state = replace(old.state, turn=0) if old and warm else at_rest(self.model)
+                runs[control] = Run(self.model, control, state, self.watch)
+            else:
+                if not warm:
+                    old.restart(self.model)
+                old.watch_anew()
+                runs[control] = old
+        self.runs = runs
+
+
+def carried(state: State, old: ConstrainedModel, new: ConstrainedModel) -> State:
+    """Return a state of the ``old`` model for the ``new`` one: the same places and the same pressure.
+
+    Tensions of held lines begin anew, for they may be those of other lines.
+    """
+    pressure = replace(state.pressure, value=state.pressure.value * old.pressure_unit / new.pressure_unit)
+    return State(state.moved, pressure, state.turn)
+
+
+def judge_balance(model: ConstrainedModel, balance: Balance, condition: Condition | None = None) -> Verdict:
+    """Return the verdict of an exact answer: settled if the balance was found."""
+    error = record(model, balance.state, 0.0).error
+    return Verdict("settled" if balance.found else "settling", balance.steps, error, condition=condition)
+
+
+def shape_of(model: ConstrainedModel) -> RestShape:
+    """Return the control mesh of a model at rest."""
+    return RestShape(model.tensegric.rest, model.volume.faces, model.tensegric.cables)

@@ -1,0 +1,122 @@
+"""How an exact answer moves with what lines are made of: derivatives by stiffness and force curves (ours).
+
+A line's own force, a little more of it, is what a little more stiffness adds to the balance; the matrix is
+that of the lengths (``core.mechanics.sensitivity``). A line made of elastic has the secant of its curve at the
+elongation it comes to, which moves too: how far is one small system more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from core.geometry.mesh import Floats, Indices
+from core.mechanics.sensitivity import Answer, Rates
+
+_NEAR = 1e-6  # of the elongation, for the slope of a curve of straight pieces
+
+Kept = Callable[[Rates], Rates]
+"""What rates become where more is held than the balance itself holds."""
+
+
+class Curved(Protocol):
+    """What is asked of an elastic."""
+
+    def secant(self, elongation: float) -> float:
+        """Return force over elongation [N]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Changes:
+    """What each of p settings does to the lines, both (lines, p).
+
+    ``stiffer`` is the change of the logarithm of each line's stiffness, of an elastic at the same elongation
+    and length; ``ratios`` that of its length.
+    """
+
+    stiffer: Floats
+    ratios: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Answers:
+    """What ``Changes`` do: ``moved`` (3 f, p) [mm], and ``pulls`` (s, p), that of each segment's tension.
+
+    Tensions are in the model's unit.
+    """
+
+    moved: Floats
+    pulls: Floats
+
+
+def by_stiffness(answer: Answer, lines: Indices) -> Rates:
+    """Return the rates by the logarithm of the stiffness of ``lines`` (p,); of held lines none."""
+    potential = answer.potential
+    pull = potential.tape * (1.0 - potential.natural / answer.place.lengths)
+    return answer.by_forces(answer.by_line(pull, lines))
+
+
+def answers_to(
+    answer: Answer,
+    changes: Changes,
+    elastics: Mapping[int, Curved],
+    ratios: Floats,
+    kept: Kept = lambda r: r,
+    beside: Floats | None = None,
+) -> Answers:
+    """Return what ``changes`` do to a balance; ``elastics`` by the number of their line follow their curves.
+
+    ``ratios`` (lines,) are the lengths of the lines. ``kept`` see ``Kept``. ``beside`` (3 f, p) [mm] is how
+    the points move with what the settings do to other things than lines, if to any.
+    """
+    model = answer.potential.model
+    every = np.arange(len(model.lines))
+    longer, stiffer = kept(answer.by_ratio(every)).moved, kept(by_stiffness(answer, every)).moved
+    made = [line for line in elastics if line in set(model.pulling.tolist())]
+    stiff = changes.stiffer.copy()
+    other = np.zeros((len(longer), stiff.shape[1])) if beside is None else beside
+    if made and not len(answer.potential.held_lines):
+        along = _lengths(answer, made)
+        natural = ratios[made] * np.array([model.lines[line].rest_length for line in made])
+        lengths = model.sums(answer.place.lengths + model.beyond)
+        reached = lengths[made]
+        stretch = along / natural[:, None]
+        bend = np.array(
+            [_bend(elastics[line], at) for line, at in zip(made, reached / natural - 1.0, strict=True)]
+        )
+        own = changes.ratios[made] / ratios[made, None]
+        given = stretch @ (stiffer @ changes.stiffer + longer @ changes.ratios + other)
+        right = bend[:, None] * (given - (reached / natural)[:, None] * own) - own
+        system = np.eye(len(made)) - bend[:, None] * (stretch @ stiffer[:, made])
+        stiff[made] += np.linalg.solve(system, right)
+    moved = stiffer @ stiff + longer @ changes.ratios + other
+    return Answers(moved, _pulls(answer, moved, stiff, changes.ratios))
+
+
+def _lengths(answer: Answer, lines: list[int]) -> Floats:
+    """Return the slopes of the lengths of ``lines`` by the free points, shape (p, 3 f) [1]."""
+    segments, owner = answer.potential.model.segments, answer.potential.model.owner
+    along = answer.place.spans / answer.place.lengths[:, None]
+    return np.stack([segments.sum(np.where(owner[:, None] == line, along, 0.0)).ravel() for line in lines])
+
+
+def _bend(elastic: Curved, elongation: float) -> float:
+    """Return how the logarithm of an elastic's secant changes with its elongation [1]."""
+    low, high = (elastic.secant(elongation + step) for step in (-_NEAR, _NEAR))
+    return float(np.log(high / low)) / (2.0 * _NEAR)
+
+
+def _pulls(answer: Answer, moved: Floats, stiff: Floats, ratios: Floats) -> Floats:
+    """Return what becomes of the tension of each segment that springs, shape (s, p)."""
+    potential, place = answer.potential, answer.place
+    model = potential.model
+    along = place.spans / place.lengths[:, None]
+    steps = np.stack(
+        [np.sum(along * (model.segments.signs @ column.reshape(-1, 3)), axis=1) for column in moved.T], axis=1
+    )
+    natural = model.tapes_at_rest[:, None] * ratios[model.owner]
+    tension = potential.tape * (place.lengths - potential.natural)
+    return np.asarray(potential.tape[:, None] * (steps - natural) + tension[:, None] * stiff[model.owner])

@@ -1,0 +1,174 @@
+"""The volume of the control mesh, its gradient and curvature, and the laws that hold it.
+
+Source: paper sections 4 and 5.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from scipy import sparse
+
+from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points, frozen
+from core.mechanics.banded_matrix import Entries, Operator, compact, joined
+
+CONTROLS = ("none", "conventional", "accumulating", "adaptive", "exact")
+"""The volume controls by name; ``exact`` is no law of turns but the answer that they aim at."""
+
+
+@dataclass(frozen=True, eq=False)
+class VolumeMeasure:
+    """The volume between the control mesh and the fan from the centre of its border.
+
+    A closed mesh may have any centre.
+    The border is fixed, so a volume *difference* does not depend on the centre; ``rest_volume`` [mm^3] and
+    with it every percentage does. ``faces`` (m, 3) are the triangles that can move, ``left`` (m,) those of
+    the subject's left breast; ``still_volume`` [mm^3] is the share of all other triangles. ``closed`` tells
+    that there is no border, and no sides that could be told apart. ``gather`` (3 m, 2 f) sums a
+    sixth of what corners of the left and of the right triangles get at the free points.
+    """
+
+    centre: Floats
+    faces: Faces
+    left: Flags
+    still_volume: float
+    rest_volume: float
+    closed: bool
+    gather: Operator
+    free_count: int
+
+    def volume(self, points: Points) -> float:
+        """Return the volume of the control points, shape (n, 3) [mm^3]."""
+        return self.still_volume + float(self.side_volumes(points).sum())
+
+    def side_volumes(self, points: Points) -> Floats:
+        """Return the moving triangles' volume on the subject's left and right, shape (2,) [mm^3]."""
+        corners = (points - self.centre).ravel().take(self._cycle[:, :3])
+        areas = corners[1:4, 1] * corners[2:5, 2] - corners[2:5, 1] * corners[1:4, 2]
+        return np.asarray(self._sides @ (corners[:3, 0] * areas).sum(axis=0))
+
+    def gradient(self, points: Points) -> Points:
+        """Return dV/dx at the free points, shape (f, 3) [mm^2]: the direction of the volume force."""
+        return np.asarray(self.side_gradients(points).sum(axis=0))
+
+    def side_gradients(self, points: Points) -> Floats:
+        """Return dV/dx of the left and of the right volume, shape (2, f, 3) [mm^2]."""
+        return self.measure(points)[1]
+
+    def measure(self, points: Points) -> tuple[Floats, Floats]:
+        """Return ``side_volumes`` and ``side_gradients`` of control points, shape (n, 3) [mm], at once."""
+        corners = (points - self.centre).ravel().take(self._cycle)
+        # What stands one and two further on in both axes and corners makes the cross products of all corners.
+        areas = corners[1:4, 1:4] * corners[2:5, 2:5]
+        areas -= corners[2:5, 1:4] * corners[1:4, 2:5]
+        each = (corners[:3, 0] * areas[:, 0]).sum(axis=0)
+        sums = areas.reshape(3, -1) @ self.gather
+        return self._sides @ each, np.asarray(sums.T.reshape(2, self.free_count, 3))
+
+    @cached_property
+    def _cycle(self) -> Indices:
+        """Where x, y, z, x, y of the corners 0, 1, 2, 0, 1 stand among all coordinates, shape (5, 5, m)."""
+        round_ = np.array([0, 1, 2, 0, 1])
+        return np.ascontiguousarray(3 * self.faces.T[round_][None] + round_[:, None, None])
+
+    @cached_property
+    def _sides(self) -> Floats:
+        return np.array([self.left, ~self.left]) / 6.0
+
+    def curvature(self, place: Indices) -> Entries:
+        """Return where the second derivative of both side volumes lies.
+
+        Its figures are the places (points - centre), shape (3 n,) [mm], times the left pressure, then times
+        the right one. V is cubic: the block of points i and j of a triangle (i, j, k) is -[x_k]_x / 6, its
+        mirror the transpose. ``place`` (n,) is the row of each point among the free ones, else -1.
+        """
+        count = 3 * len(place)
+        sides = [
+            _curvature(self.faces[self.left], place, 0),
+            _curvature(self.faces[~self.left], place, count),
+        ]
+        return joined(sides, 2 * count)
+
+
+def volume_measure(mesh: Mesh, free: Indices, left: Flags | None = None) -> VolumeMeasure:
+    """Prepare the volume of a control mesh; ``left``, shape (m,), marks the triangles of the left breast."""
+    loops = mesh.boundary_loops
+    centre = mesh.vertices[loops[0]].mean(axis=0) if loops else mesh.vertices.mean(axis=0)
+    if left is None:
+        left = mesh.vertices[mesh.faces].mean(axis=1)[:, 0] > centre[0]
+    place = np.full(len(mesh.vertices), -1, dtype=np.int64)
+    place[free] = np.arange(len(free))
+    moving = (place[mesh.faces] >= 0).any(axis=1)
+    faces, left = mesh.faces[moving], left[moving]
+    still = Mesh(mesh.vertices, mesh.faces[~moving]).enclosed_volume(centre)
+    rest = mesh.enclosed_volume(centre)
+    gather = _gather(faces, left, place, len(free))
+    return VolumeMeasure(frozen(centre), faces, left, still, rest, not loops, gather, len(free))
+
+
+def _gather(faces: Faces, left: Flags, place: Indices, free_count: int) -> Operator:
+    at = place[faces.T] + np.where(left, 0, free_count)
+    moves = np.flatnonzero((place[faces.T] >= 0).ravel())
+    where = (moves, at.ravel()[moves])
+    return compact(
+        sparse.csr_array((np.full(len(moves), 1.0 / 6.0), where), shape=(faces.size, 2 * free_count))
+    )
+
+
+def _curvature(faces: Faces, place: Indices, offset: int) -> Entries:
+    parts = []
+    # Entries (a, b) of the matrix [v]_x, each with the component of v that stands there and its sign.
+    skew = ((0, 1, 2, -1.0), (0, 2, 1, 1.0), (1, 0, 2, 1.0), (1, 2, 0, -1.0), (2, 0, 1, -1.0), (2, 1, 0, 1.0))
+    for turn in range(3):
+        i, j, k = (faces[:, (turn + step) % 3] for step in range(3))
+        both = (place[i] >= 0) & (place[j] >= 0)
+        pi, pj, k = 3 * place[i[both]], 3 * place[j[both]], 3 * k[both]
+        for a, b, component, sign in skew:
+            value = np.full(len(k), -sign / 6.0)
+            parts.append(Entries(pi + a, pj + b, offset + k + component, value, 0))
+            parts.append(Entries(pj + b, pi + a, offset + k + component, value, 0))
+    return joined(parts, 0)
+
+
+ADAPTIVE_STEP = 0.8
+ADAPTIVE_DAMPING = 0.8
+ACCUMULATING_STEP = 0.5
+_FLIP = 0.3
+_QUIET = 1e-7
+
+
+@dataclass(frozen=True)
+class Pressure:
+    """The volume force of the coming turn, and what its law remembers.
+
+    ``value`` [1] in probe units: 1 is the pressure that would change the whole volume by 100 % in one turn;
+    ``error`` is that of the last turn, (V0 - V) / V0; ``step`` is the present step length of the adaptive
+    law.
+    """
+
+    value: float = 0.0
+    error: float = 0.0
+    step: float = ADAPTIVE_STEP
+
+
+def next_pressure(control: str, pressure: Pressure, error: float, gain: float) -> Pressure:
+    """Return the pressure after a turn that ended with volume ``error`` = (V0 - V) / V0.
+
+    ``conventional`` (paper section 4): proportional to the error, times ``gain``. ``adaptive`` (in the spirit
+    of section 5; the formula is ours): the push grows by the error and shrinks by how fast the volume is
+    already coming home, and its step is halved whenever the volume flips. ``accumulating`` (ours) is the
+    plain baseline between them: half of every error is added.
+    """
+    if control == "none":
+        return replace(pressure, error=error)
+    if control == "conventional":
+        return replace(pressure, value=gain * error, error=error)
+    if control == "accumulating":
+        return replace(pressure, value=pressure.value + ACCUMULATING_STEP * error, error=error)
+    before = pressure.error
+    flips = error * before < 0.0 and abs(error) > _FLIP * abs(before) and abs(error) > _QUIET
+    step = pressure.step / 2.0 if flips else min(ADAPTIVE_STEP, 1.05 * pressure.step)
+    push = step * (error + ADAPTIVE_DAMPING * (error - before))
+    return Pressure(pressure.value + push, error, step)

@@ -1,1 +1,0 @@
-"""What pulls inside the control mesh, and its stiffness in band storage."""

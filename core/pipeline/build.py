@@ -1,0 +1,297 @@
+"""From a design to everything that precedes solving; a stage whose inputs are equal is reused."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import Any, Literal, TypeVar
+
+import numpy as np
+
+from core.control_mesh.back_length import Back, back_of
+from core.control_mesh.fit import ControlMesh, fit_control_mesh
+from core.control_mesh.straps import Tail
+from core.control_mesh.template import read_template
+from core.deformation.blend_region import Patch, patch_fade
+from core.deformation.incremental_normals import MovingFaces, moving_faces
+from core.deformation.tffd import Binding, Weights, bind, uncollared
+from core.document.design import Design, ScanSource
+from core.document.line_notation import with_own_lines
+from core.document.storage.project_file import ScanFile, read_scan_file
+from core.errors import FitError, LandmarkError, LineError, UserError
+from core.geometry.mesh import Floats, Mesh, Points
+from core.landmarks.detect import FINDING, find_landmarks
+from core.landmarks.manual import PLACED, PlacedMark, in_mm
+from core.landmarks.types import Landmark, Landmarks
+from core.mechanics.gain_limit import gain_limit
+from core.mechanics.iteration import Marks, Targets
+from core.mechanics.model import ConstrainedModel, constrained_model
+from core.mechanics.options import Mechanics
+from core.pipeline.build_shares import PARTS, SHARES, UNKNOWN
+from core.pipeline.elastic_model import elastic_model
+from core.pipeline.line_routes import Route, routes_of, tails_of
+from core.pipeline.observables import BodyWatch
+from core.progress import Progress, quiet
+from core.scan.body import Body, RefusedError, body_of
+from core.scan.edited_body import KEEP_MORE, NO_BUST, edited
+from core.scan.edits import UNEDITED
+
+GAIN_SHARE = 0.97
+"""The default conventional gain in parts of the limit at rest: just calm, so that excess makes it vibrate."""
+
+T = TypeVar("T")
+Memo = Mapping[str, tuple[tuple[Any, ...], Any]]
+
+
+@dataclass(frozen=True, eq=False)
+class Stages:
+    """The results that a design leads to before any turn is made.
+
+    ``backs`` complete the lines of the template to whole bands, ``tails`` own lines to straps; ``routes`` are
+    where all of them run at rest. ``gain`` is the conventional gain in force,
+    ``gain_limit`` the one at which it begins to vibrate at rest (probe units [1]); ``seconds`` what each
+    stage took when it was last made; ``memo`` holds each stage's inputs and result for reuse.
+    """
+
+    design: Design
+    scan: ScanFile
+    body: Body
+    landmarks: Landmarks
+    control: ControlMesh
+    patch: Patch
+    binding: Binding
+    moving: MovingFaces
+    watch: BodyWatch
+    backs: Mapping[str, Back]
+    tails: Mapping[str, Tail]
+    routes: Mapping[str, Route]
+    model: ConstrainedModel
+    gain_limit: float
+    seconds: Mapping[str, float]
+    memo: Memo
+
+    @property
+    def gain(self) -> float:
+        """The conventional gain in force [probe units]."""
+        return GAIN_SHARE * self.gain_limit if self.design.gain is None else self.design.gain
+
+    @cached_property
+    def rest_marks(self) -> Marks:
+        """What is watched, at rest."""
+        return self.watch(self.control.mesh.vertices)
+
+    def shape(self, control_points: Points) -> tuple[Points, Points]:
+        """Return places [mm] and normals [1] of ``moving.vertices``, each of shape (r, 3).
+
+        ``control_points`` have shape (n, 3) [mm].
+        """
+        places = self.binding.operator.added(self.binding.change(control_points), self.moving.rest)
+        return places, self.moving.normals(places)
+
+    def body_change(self, control_points: Points) -> Floats:
+        """Return the volumes that the body's left and right have gained since rest, shape (2,) [mm^3]."""
+        return BodyFollows(self.binding, self.moving)(control_points)
+
+
+@dataclass(frozen=True, eq=False)
+class BodyFollows:
+    """Tells what the body's left and right have gained [mm^3], (2,), when it follows the control points."""
+
+    binding: Binding
+    moving: MovingFaces
+
+    def __call__(self, control_points: Points) -> Floats:
+        """Return it for control points, shape (n, 3) [mm]."""
+        places = self.binding.operator.added(self.binding.change(control_points), self.moving.rest)
+        return self.moving.side_volume_changes(places)
+
+
+class StuckError(UserError):
+    """A ``body`` was read, and no bust found on it or no control mesh laid: it can be shown and corrected.
+
+    ``kind``: one that is "refused" is shown as it lies in its file, one that is "unsure" may stand otherwise,
+    and one of "landmarks" lacks those alone. ``landmarks`` by name were found, or at least placed;
+    ``seconds`` and ``memo`` are those of the stages that were made, as in ``Stages``.
+    """
+
+    def __init__(self, problem: UserError, body: Body, design: Design, stage: _Stager) -> None:
+        super().__init__(problem.message, problem.hint)
+        self.body = body
+        self.design = design
+        self.landmarks = stage.landmarks(body, design)
+        self.seconds: Mapping[str, float] = stage.seconds
+        self.memo: Memo = stage.memo
+        told = body.pose.sure or (design.scan.up and design.scan.front)  # then asking again tells no more
+        self.kind: Literal["refused", "unsure", "landmarks"] = "landmarks" if told else "unsure"
+        if isinstance(problem, RefusedError):
+            self.kind = "refused"
+
+
+class _Stager:
+    """Makes stages in order, taking each from the previous build if its inputs are the same."""
+
+    def __init__(self, previous: Stages | StuckError | None, progress: Progress) -> None:
+        self._old: Memo = previous.memo if previous else {}
+        self._old_seconds: Mapping[str, float] = previous.seconds if previous else {}
+        self._progress = progress
+        self._done = 0.0
+        self.memo: dict[str, tuple[tuple[Any, ...], Any]] = {}
+        self.seconds: dict[str, float] = {}
+
+    def __call__(self, name: str, make: Callable[..., T], *inputs: Any) -> T:
+        begun, self._done = self._done, self._done + SHARES.get(name, 0.02)
+        known = self._old.get(name)
+        if known is not None and _same(known[0], inputs):
+            self.memo[name], self.seconds[name] = known, self._old_seconds[name]
+            return known[1]  # type: ignore[no-any-return]
+        self._progress(name, begun)
+        start = time.perf_counter()
+        result = make(*inputs)
+        self.seconds[name] = time.perf_counter() - start
+        self.memo[name] = (inputs, result)
+        return result
+
+    def landmarks(self, body: Body, design: Design) -> Mapping[str, Landmark]:
+        """Return what was found before it went wrong; of landmarks those at least that were placed."""
+        if "find landmarks" in self.memo:
+            found: Landmarks = self.memo["find landmarks"][1]
+            return found.points
+        placed = in_mm(design.placed, body.pose.file_to_mm)
+        return {name: Landmark(name, place, 1.0, PLACED, by_hand=True) for name, place in placed.items()}
+
+    def inside(self, what: str, share: float) -> None:
+        """Hear how far a part of one of the first stages is."""
+        start, end = PARTS.get(what, UNKNOWN)
+        self._progress(what, start + share * (end - start))
+
+
+def _same(old: tuple[Any, ...], new: tuple[Any, ...]) -> bool:
+    # Arrays are never changed in place: the same array is the same input, without a look at its figures.
+    return all(a is b or (not isinstance(a, np.ndarray) and a == b) for a, b in zip(old, new, strict=True))
+
+
+def build(design: Design, previous: Stages | StuckError | None = None, progress: Progress = quiet) -> Stages:
+    """Build all stages of ``design``; ``progress`` hears the name of each stage that is made anew.
+
+    ``previous`` is what was built last, or how far that came. Raises the UserError of the stage that fails,
+    or Cancelled; ``previous`` then still stands.
+    """
+    stage = _Stager(previous, progress)
+    try:
+        source = replace(design.scan, edits=UNEDITED)
+        scan, body = stage("read scan", partial(_read_upright, progress=stage.inside), source)
+    except RefusedError as refusal:
+        stuck = StuckError(refusal, refusal.body, design, stage)
+    else:
+        try:
+            body = stage("edit scan", partial(edited, progress=stage.inside), body, design.scan.edits)
+            return _stages(stage, design, scan, body)
+        except (LandmarkError, FitError) as problem:
+            stuck = StuckError(problem, body, design, stage)
+    # Raised out here it has no context: what the window keeps would keep all that was read and tried.
+    raise stuck
+
+
+def _stages(stage: _Stager, design: Design, scan: ScanFile, body: Body) -> Stages:
+    landmarks = stage(FINDING, partial(find, progress=stage.inside), body, design.placed)
+    template = stage("read template", read_template, design.template)
+    control = stage("fit control mesh", fit_control_mesh, template, body, landmarks, design.line_height)
+    patch = stage("find patch", patch_fade, body.mesh, control)
+    weights = design.weights, design.scaled_normals
+    binding = stage("bind body", _bind, body.mesh, control, patch.fade, *weights)
+    middle = float(control.mesh.vertices[control.border, 0].mean())
+    moving = stage("prepare normals", moving_faces, body.mesh, binding.moving, middle)
+    watch = stage("watch body", BodyWatch, binding, control, landmarks)
+    backs = stage("measure bands", _backs, body, control)
+    laid = stage("lay own lines", with_own_lines, control, design.own_lines)
+    tails = stage("lead straps", tails_of, body.mesh, laid, design.own_lines, backs)
+    routes = stage("trace lines", routes_of, body.mesh, laid, backs, tails)
+    lengths = (*({name: part.length for name, part in each.items()} for each in (backs, tails)),)
+    chosen = design.worn(), design.mechanics, design.own_stiffness()
+    model = stage("build model", _model, laid, *lengths, *chosen)
+    elastics = design.worn_elastics()
+    if elastics and design.line_hold == "spring":  # a held line has its length, whatever it is made of
+        change = stage("follow body", BodyFollows, binding, moving) if design.dense_volume else None
+        made = design.lines, elastics, design.tissue_stiffness, design.own_stiffness()
+        model = stage("fit elastics", elastic_model, model, *made, change)
+    limit = stage("probe gain", gain_limit, model)
+    fitted = scan, body, landmarks, control, patch, binding, moving, watch
+    return Stages(design, *fitted, backs, tails, routes, model, limit, stage.seconds, stage.memo)
+
+
+def targets_of(design: Design, stages: Stages) -> Targets:
+    """Return what the design asks of the solver."""
+    return Targets(tuple(design.ratio(line.name) for line in stages.model.lines), design.volume, stages.gain)
+
+
+def read_body(source: ScanSource, progress: Progress = quiet) -> tuple[ScanFile, Body]:
+    """Return a scan as it came and the body read from it, edited.
+
+    Raises ScanError, ProjectError, LandmarkError or Cancelled.
+    """
+    scan, body = _read_upright(source, progress)
+    return scan, edited(body, source.edits, progress)
+
+
+def _read_upright(source: ScanSource, progress: Progress) -> tuple[ScanFile, Body]:
+    scan = read_scan_file(source, progress)
+    told = {"unit": source.unit, "up": source.up, "front": source.front}
+    return scan, body_of(scan.name, scan.data, **told, progress=progress)
+
+
+def find(body: Body, placed: tuple[PlacedMark, ...], progress: Progress = quiet) -> Landmarks:
+    """Return the landmarks of a body, with those placed by hand. Raises LandmarkError, Cancelled."""
+    try:
+        return find_landmarks(body, in_mm(placed, body.pose.file_to_mm), progress)
+    except LandmarkError as problem:
+        if not body.cut or placed:
+            raise
+        raise LandmarkError(NO_BUST, KEEP_MORE) from problem
+
+
+def _bind(body: Mesh, control: ControlMesh, fade: Floats, weights: Weights, scaled_normals: bool) -> Binding:
+    loose = len(uncollared(control.mesh, control.fixed))
+    if loose:
+        raise FitError(
+            f"Triangles at the border of the control mesh can move: {loose}.",
+            "Choose a template whose two outermost rings of points are fixed.",
+        )
+    # Single precision is exact to 1e-4 mm here, far below what a scan resolves, and read in half the time.
+    return bind(
+        body,
+        control.mesh,
+        fade,
+        weights,
+        scaled_normals=scaled_normals,
+        fixed=control.fixed,
+        single=True,
+    )
+
+
+def _backs(body: Body, control: ControlMesh) -> dict[str, Back]:
+    return {name: back_of(body.calm, control, name) for name in control.paths}
+
+
+def _model(
+    control: ControlMesh,
+    backs: Mapping[str, float],
+    tails: Mapping[str, float],
+    worn: frozenset[str],
+    mechanics: Mechanics,
+    own_stiffness: Mapping[str, float],
+) -> ConstrainedModel:
+    unknown = sorted(worn - set(control.line_names))
+    if unknown:
+        raise LineError(
+            f"There is no line '{unknown[0]}'.", f"The lines are: {', '.join(control.line_names)}."
+        )
+    return constrained_model(
+        control,
+        worn=worn,
+        back_lengths=backs,
+        tail_lengths=tails,
+        mechanics=mechanics,
+        own_stiffness=own_stiffness,
+    )

@@ -1,0 +1,29 @@
+"""A design solved to its rest as the window solves it, for views beside the one that is worked on."""
+
+from __future__ import annotations
+
+from threadpoolctl import threadpool_limits
+
+from core.document.design import Design
+from core.mechanics.solver_comparison import MOST_TURNS, Comparison
+from core.pipeline.build import Stages, build, targets_of
+from core.pipeline.frame import Frame, make_frame
+from core.progress import Progress, quiet
+
+
+def settled_frame(design: Design, near: Stages, progress: Progress = quiet) -> Frame:
+    """Return the frame at which the runs of a design rest; what it shares with ``near`` is not built again.
+
+    Raises the UserError of the stage that fails, or Cancelled.
+    """
+    # Two BLAS threads make these small products many times slower.
+    with threadpool_limits(1):
+        stages = build(design, near, progress)
+        change = stages.body_change if design.dense_volume else None
+        comparison = Comparison(stages.model, targets_of(design, stages), stages.watch, change)
+        turns = 0
+        while not comparison.resting:
+            progress("turns", min(turns / MOST_TURNS, 1.0))
+            comparison.advance()
+            turns += 1
+        return make_frame(0, stages, comparison)

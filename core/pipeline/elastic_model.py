@@ -1,0 +1,57 @@
+"""The model of a design whose lines are made of elastics: they pull as the curves of these say."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from core.document.elastic import Elastic
+from core.document.lines import WornLine
+from core.errors import LineError
+from core.mechanics.dense_volume import BodyChange, solve_body_exact
+from core.mechanics.elastic_lines import ElasticLines, Fitted, fit_elastics
+from core.mechanics.exact_solution import solve_exact
+from core.mechanics.force_units import newtons_per_unit
+from core.mechanics.model import ConstrainedModel
+from core.mechanics.newton import Balance
+
+
+def elastic_model(
+    model: ConstrainedModel,
+    lines: tuple[WornLine, ...],
+    elastics: Mapping[str, Elastic],
+    tissue_stiffness: float,
+    own_stiffness: Mapping[str, float],
+    body_change: BodyChange | None = None,
+) -> ConstrainedModel:
+    """Return the model in which worn ``lines`` pull as their ``elastics`` do, by line.
+
+    The natural length of such a line is what its elastic measures unstretched. ``tissue_stiffness`` [N/m]
+    gives the newtons; see ``core.mechanics.elastic_lines``. ``body_change`` is for answers that hold the
+    volume of the body itself. Raises LineError where an elastic would be stretched beyond its curve, or
+    nothing balances.
+    """
+    worn = {line.name: line.ratio for line in lines}
+    ratios = {line.name: worn.get(line.name, 1.0) for line in model.lines}
+    newtons = newtons_per_unit(model, tissue_stiffness)
+    wish = ElasticLines(model, ratios, elastics, newtons, own_stiffness)
+    fitted = fit_elastics(wish, _solver(tuple(ratios.values()), body_change))
+    for name, elongation in fitted.elongations.items():
+        if elongation > elastics[name].reach:
+            raise elastics[name].overstretched(elongation, name, worn.get(name))
+    if not fitted.agreed:
+        raise _no_agreement(fitted)
+    return fitted.model
+
+
+def _solver(ratios: tuple[float, ...], change: BodyChange | None) -> Callable[[ConstrainedModel], Balance]:
+    if change is None:
+        return lambda model: solve_exact(model, ratios)
+    return lambda model: solve_body_exact(model, ratios, change)
+
+
+def _no_agreement(fitted: Fitted) -> LineError:
+    """Return what to say when the body and the elastics do not come to rest together."""
+    return LineError(
+        f"No balance was found with {', '.join(fitted.elongations)} made of elastic.",
+        "Set the lines nearer to 100 %, or choose no elastic.",
+    )

@@ -1,0 +1,110 @@
+"""A design solved to the end in one go, for the command line, pictures and tests."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from threadpoolctl import threadpool_limits
+
+from core.deformation.tffd import deform
+from core.geometry.mesh import Mesh, Points
+from core.mechanics.convergence import Verdict, judge
+from core.mechanics.dense_volume import solve_body_exact
+from core.mechanics.exact_solution import NEWTON_LIMIT, newton
+from core.mechanics.iteration import Record, State, at_rest, iterate, record
+from core.mechanics.solver_comparison import judge_balance, shape_of
+from core.pipeline.build import Stages, targets_of
+from core.progress import Progress, quiet
+
+MOST_TURNS = 300
+"""Turns after which a run is left as it is, settled or not."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """What came out: all records, the last state and the verdict.
+
+    ``rest`` is the record before the first turn; ``seconds`` what the solving took.
+    """
+
+    stages: Stages
+    rest: Record
+    records: tuple[Record, ...]
+    state: State
+    verdict: Verdict
+    seconds: float
+
+    @property
+    def last(self) -> Record:
+        """The last record."""
+        return self.records[-1] if self.records else self.rest
+
+    @property
+    def control_points(self) -> Points:
+        """The control points at the end, shape (n, 3) [mm]."""
+        return self.stages.model.tensegric.expand(self.state.moved)
+
+    @cached_property
+    def body(self) -> Mesh:
+        """The reshaped body."""
+        return self.stages.body.mesh.moved(deform(self.stages.binding, self.control_points))
+
+    @property
+    def body_change(self) -> float:
+        """The volume that the body has gained [ml]."""
+        return float(self.stages.body_change(self.control_points).sum()) / 1000.0
+
+
+def run(stages: Stages, turns: int | None = None, progress: Progress = quiet) -> Solution:
+    """Solve the design of ``stages`` from rest.
+
+    Makes exactly ``turns`` turns, or as many as it takes to settle (at most MOST_TURNS) if None; the exact
+    control makes Newton steps in their place. ``progress`` hears each step; raises Cancelled.
+    """
+    start = time.perf_counter()
+    rest = record(stages.model, at_rest(stages.model), 0.0, stages.watch)
+    solve = _run_exact if stages.design.volume == "exact" else _run_turns
+    # Two BLAS threads make these small products many times slower.
+    with threadpool_limits(1):
+        records, state, verdict = solve(stages, rest, turns, progress)
+    condition = shape_of(stages.model).condition(stages.model.tensegric.expand(state.moved))
+    verdict = replace(verdict, condition=condition)
+    return Solution(stages, rest, tuple(records), state, verdict, time.perf_counter() - start)
+
+
+def _run_turns(
+    stages: Stages, rest: Record, turns: int | None, progress: Progress
+) -> tuple[list[Record], State, Verdict]:
+    targets = targets_of(stages.design, stages)
+    records: list[Record] = []
+    state = at_rest(stages.model)
+    most = MOST_TURNS if turns is None else turns
+    for now, measured in iterate(stages.model, lambda: targets, turns=most, watch=stages.watch):
+        state = now
+        records.append(measured)
+        progress("solving", len(records) / most)
+        if turns is None and judge(records).motion in ("settled", "diverging"):
+            break
+    return records, state, judge(records)
+
+
+def _run_exact(
+    stages: Stages, rest: Record, turns: int | None, progress: Progress
+) -> tuple[list[Record], State, Verdict]:
+    ratios = targets_of(stages.design, stages).ratios
+    records: list[Record] = []
+    before = at_rest(stages.model)
+    limit = NEWTON_LIMIT if turns is None else turns
+    if stages.design.dense_volume:
+        balances = iter([solve_body_exact(stages.model, ratios, stages.body_change, limit)])
+    else:
+        balances = newton(stages.model, ratios, limit)
+    for balance in balances:
+        progress("solving", balance.steps / limit)
+        if balance.steps:
+            step = float(((balance.state.moved - before.moved) ** 2).sum(axis=1).max() ** 0.5)
+            records.append(record(stages.model, balance.state, step, stages.watch))
+        before = balance.state
+    return records, balance.state, judge_balance(stages.model, balance)

@@ -1,0 +1,1 @@
+"""From a scan's file to a clean, upright body in millimetres."""

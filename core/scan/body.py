@@ -1,0 +1,199 @@
+"""A body: the skin of a scan, cleaned, upright and in millimetres."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from core.errors import ScanError
+from core.geometry.mesh import Faces, Indices, Mesh, Points
+from core.progress import Progress, quiet
+from core.scan.edits import UNEDITED, ScanEdits
+from core.scan.orientation.pose import STANDING, Pose, find_pose
+from core.scan.orientation.unit_detection import MILLIMETRES
+from core.scan.readers.colors import is_plain, laid_on
+from core.scan.readers.raw_scan import Colours, RawScan
+from core.scan.readers.registry import no_memory, read_raw, scan_bytes
+from core.scan.reconstruction.point_cloud import FEWEST_POINTS, is_cloud, surface_of
+from core.scan.repair.denoise import calmed, noise_of
+from core.scan.repair.editable_mesh import Skin
+from core.scan.repair.hole_filling import mended
+from core.scan.repair.holes import Hole, find_holes
+from core.scan.repair.repair import repair
+
+TORSO = 600.0
+"""About how high the scan of a torso is [mm]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """The skin in the canonical frame [mm], wound outward; ``repairs`` holds one sentence a repair.
+
+    ``rebuilt``: the file held points only, and the skin was laid through them. ``edits`` are those of the
+    scan that were applied, ``cut`` the heights of its crop [mm], ``estimated`` the vertices, shape (k,), that
+    fill holes, ``whole`` the lowest and the highest level before a crop, if there was one [mm]. ``colours``
+    are those of the scan at the vertices, shape (n, 4), None without any.
+    """
+
+    mesh: Mesh
+    pose: Pose
+    repairs: tuple[str, ...]
+    name: str
+    rebuilt: bool = False
+    edits: ScanEdits = UNEDITED
+    cut: tuple[float, ...] = ()
+    estimated: Indices = field(default_factory=lambda: np.empty(0, dtype=np.int64))
+    whole: tuple[float, float] | None = None
+    colours: Colours | None = None
+
+    @property
+    def heights(self) -> tuple[float, float]:
+        """The lowest and the highest level of the whole scan, before a crop [mm]."""
+        if self.whole is not None:
+            return self.whole
+        z = self.mesh.vertices[:, 2]
+        return float(z.min()), float(z.max())
+
+    @cached_property
+    def calm(self) -> Mesh:
+        """The skin without the noise of the scanner: what is measured [mm]."""
+        return calmed(self.mesh)
+
+    def calm_down(self, progress: Progress) -> None:
+        """Work out ``calm`` now, telling how far it is: a large skin takes seconds. Raises Cancelled."""
+        if "calm" not in vars(self):
+            vars(self)["calm"] = calmed(self.mesh, progress)
+
+    @cached_property
+    def noise(self) -> float:
+        """The noise of the scanner, its standard deviation along each axis [mm]."""
+        return noise_of(self.mesh)
+
+    @cached_property
+    def holes(self) -> tuple[Hole, ...]:
+        """The holes that stay open, longest first; where a neck, an arm or the hips were cut is none."""
+        return tuple(hole for hole in find_holes(self.mesh) if not hole.opening and not self._is_cut(hole))
+
+    def _is_cut(self, hole: Hole) -> bool:
+        """Return whether most of a border is where the scan was cropped."""
+        z = self.mesh.vertices[hole.border, 2]
+        return any(float((np.abs(z - level) < 1e-6).mean()) > 0.5 for level in self.cut)
+
+
+class RefusedError(ScanError):
+    """It cannot be told how a scan stands; ``body`` is what it holds as it lies in its file, z up."""
+
+    def __init__(self, problem: ScanError, body: Body) -> None:
+        super().__init__(problem.message, problem.hint)
+        self.body = body
+
+
+def read_scan(
+    path: str | Path,
+    *,
+    unit: str | None = None,
+    up: str | None = None,
+    front: str | None = None,
+    progress: Progress = quiet,
+) -> Body:
+    """Read a scan from its file; see ``body_of``. Raises ScanError, Cancelled."""
+    path = Path(path)
+    return body_of(path.name, scan_bytes(path, progress), unit=unit, up=up, front=front, progress=progress)
+
+
+def body_of(
+    name: str,
+    data: bytes,
+    *,
+    unit: str | None = None,
+    up: str | None = None,
+    front: str | None = None,
+    progress: Progress = quiet,
+) -> Body:
+    """Take the bytes of a scan, clean it and bring it upright, facing -y, in mm.
+
+    ``name`` is that of the file and ``data`` what it holds; ``unit`` ("mm", "cm", "m", "inch"), ``up`` and
+    ``front`` ("+x" .. "-z", axes of the file) overrule what the shape tells. Raises ScanError, Cancelled.
+    """
+    try:
+        return _body_of(name, data, unit, up, front, progress)
+    except MemoryError:
+        raise no_memory(name) from None
+
+
+def _body_of(
+    name: str, data: bytes, unit: str | None, up: str | None, front: str | None, progress: Progress
+) -> Body:
+    scan = read_raw(name, data, progress)
+    rebuilt = is_cloud(scan)
+    said = scan.notes
+    shape = scan.vertices, scan.faces
+    if rebuilt:
+        said = (f"Laid a surface through {len(scan.vertices):,} points.", *said)
+        shape = _surface(name, scan, progress)
+    vertices, faces, repairs = repair(*shape, progress)
+    if len(faces) == 0:
+        raise ScanError(f"{name} has no sound triangles.", "Export the scan again.")
+    progress(STANDING, 0.0)
+    try:
+        pose = find_pose(vertices, faces, unit=unit, up=up, front=front, progress=progress)
+    except ScanError as refusal:
+        lies = as_it_lies(vertices, unit)
+        mesh = Mesh(vertices @ lies.file_to_mm[:3, :3].T, faces)
+        raise RefusedError(
+            refusal, Body(mesh, lies, (*said, *repairs), scan_name(name), rebuilt)
+        ) from refusal
+    progress(STANDING, 1.0)
+    turn = pose.file_to_mm[:3, :3]
+    skin, cut = _off_the_stand(Skin(vertices @ turn.T, faces), pose.stand)
+    mesh, mendings = mended(Mesh(skin.vertices, skin.faces), progress)
+    colours = _colours(mesh, scan, pose)
+    return Body(mesh, pose, (*said, *repairs, *cut, *mendings), scan_name(name), rebuilt, colours=colours)
+
+
+def _colours(mesh: Mesh, scan: RawScan, pose: Pose) -> Colours | None:
+    """Return the colours of a scan on the skin that was made of it, None where they show nothing."""
+    if scan.colours is None or is_plain(scan.colours):
+        return None
+    return laid_on(mesh.vertices, scan.vertices @ pose.file_to_mm[:3, :3].T, scan.colours)
+
+
+def _off_the_stand(skin: Skin, level: float) -> tuple[Skin, tuple[str, ...]]:
+    """Cut away what lies under a level [mm], and say so."""
+    body = skin.vertices[:, 2] > level
+    if body.all():
+        return skin, ()
+    return skin.with_vertices(body).compact(), ("Cut away the stand that the body is mounted on.",)
+
+
+def as_it_lies(vertices: Points, unit: str | None) -> Pose:
+    """Return the pose of what is only looked at: z up, in the unit told or that which makes it a torso."""
+    height = max(float(np.ptp(vertices[:, 2])), 1e-9)
+    likely = min(MILLIMETRES, key=lambda each: abs(np.log(height * MILLIMETRES[each] / TORSO)))
+    unit = unit if unit in MILLIMETRES else likely
+    scale = np.diag([*[MILLIMETRES[unit]] * 3, 1.0])
+    return Pose(unit, "+z", "-y", scale, False, "It is shown as it lies in its file.", 0.0)
+
+
+def scan_name(name: str) -> str:
+    """Return the name of a scan without what its file's name ends in."""
+    path = Path(name)
+    return (path.with_suffix("") if path.suffix.lower() == ".gz" else path).stem
+
+
+def _surface(name: str, scan: RawScan, progress: Progress) -> tuple[Points, Faces]:
+    if len(scan.vertices) < FEWEST_POINTS:
+        raise ScanError(
+            f"{name} has no sound triangles, and too few points for a surface: {len(scan.vertices):,}.",
+            f"Scan with at least {FEWEST_POINTS:,} points, better 30,000.",
+        )
+    try:
+        return surface_of(scan.vertices, scan.normals, progress)
+    except (ArithmeticError, ValueError, IndexError) as problem:
+        raise ScanError(
+            f"No surface can be laid through the points of {name}.",
+            "Mesh the points first, in the program of the scanner.",
+        ) from problem

@@ -1,0 +1,1 @@
+"""Orientation and unit of a scan."""

@@ -1,0 +1,229 @@
+"""glTF files, as text or as GLB: the triangles of all meshes where their nodes put them."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from core.errors import ScanError
+from core.geometry.mesh import Faces, Floats, Indices
+from core.progress import Progress
+from core.scan.readers.colors import UNREADABLE, coloured, full_of, sampled, texture
+from core.scan.readers.gltf_buffers import MOST_MARKS, MOST_NODES, cut_short, marks
+from core.scan.readers.raw_scan import (
+    FREE,
+    TIMES,
+    Colours,
+    RawScan,
+    check_size,
+    fans,
+    joined,
+    no_faces,
+    strips,
+    too_much,
+    vectors,
+)
+
+_KINDS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
+_TRIANGLES, _STRIP, _FAN = 4, 5, 6
+_DEEPEST = 100
+_WHOLE = "Put that file beside it, or export all as one GLB file."
+
+Json = Any
+Matrix = Floats
+
+
+def read_gltf(name: str, data: bytes, progress: Progress) -> RawScan:
+    """Read a glTF or GLB file. Raises ScanError, ValueError and the like if it is damaged.
+
+    Nothing but the file itself is read: buffers in other files are put in before, by ``with_buffers``.
+    Source: Khronos, glTF 2.0 specification.
+    """
+    document, binary = _glb(name, data) if data[:4] == b"glTF" else (data, memoryview(b""))
+    if marks(document) > MOST_MARKS:
+        raise too_much(name)
+    reader = _Reader(name, json.loads(document), binary, len(data))
+    parts, points, triangles = list[RawScan](), 0, 0
+    for primitive, matrix in reader.placed():
+        progress("reading", len(parts) / (len(parts) + 1))
+        parts.append(reader.part(primitive, matrix))
+        points, triangles = points + len(parts[-1].vertices), triangles + len(parts[-1].faces)
+        check_size(name, points, triangles, len(data))
+        if len(parts) > MOST_NODES:
+            raise too_much(name)
+    return joined(parts)
+
+
+def _packed(name: str) -> ScanError:
+    return ScanError(
+        f"{name} is compressed in a way that Busk does not read.", "Export it without mesh compression."
+    )
+
+
+def _glb(name: str, data: bytes) -> tuple[bytes, memoryview]:
+    """Return the two chunks of a GLB file: the description, and what it describes."""
+    if int.from_bytes(data[4:8], "little") != 2:
+        raise ScanError(f"{name} is a glTF file of an old kind.", "Export it as glTF 2.0.")
+    whole, chunks, at = memoryview(data), dict[bytes, memoryview](), 12
+    while at + 8 <= len(data):
+        size = int.from_bytes(data[at : at + 4], "little")
+        if at + 8 + size > len(data):
+            raise cut_short(name)
+        chunks.setdefault(data[at + 4 : at + 8], whole[at + 8 : at + 8 + size])
+        at += 8 + size
+    return bytes(chunks[b"JSON"]), chunks.get(b"BIN\0", memoryview(b""))
+
+
+class _Reader:
+    """What a file of ``size`` bytes describes, taken apart on demand."""
+
+    def __init__(self, name: str, document: Json, binary: memoryview, size: int) -> None:
+        self.name, self.json = name, document
+        if document["asset"]["version"].split(".")[0] != "2":
+            raise ScanError(f"{name} is a glTF file of an old kind.", "Export it as glTF 2.0.")
+        needed = document.get("extensionsRequired", [])
+        if any("draco" in each or "meshopt" in each for each in needed):
+            raise _packed(name)
+        self._pixels: dict[int, Colours | None] = {}
+        self._size = size
+        self._buffers = [self._buffer(each, binary) for each in document.get("buffers", [])[:MOST_NODES]]
+
+    def _buffer(self, buffer: Json, binary: memoryview) -> bytes | memoryview:
+        uri = buffer.get("uri")
+        if uri is None:
+            return binary
+        head, comma, _ = uri[:200].partition(",")
+        if not uri.startswith("data:") or not head.endswith(";base64") or not comma:
+            raise ScanError(f"{self.name} keeps its triangles in another file.", _WHOLE)
+        return base64.b64decode(uri[len(head) + 1 :], validate=True)
+
+    def placed(self) -> Iterator[tuple[Json, Matrix]]:
+        """Give each part of the scene's meshes, and the matrix that puts it there, shape (4, 4)."""
+        nodes = self.json.get("nodes", [])
+        scenes = self.json.get("scenes", [])
+        if scenes:
+            roots = scenes[self.json.get("scene", 0)].get("nodes", [])
+        else:
+            children = {child for node in nodes for child in node.get("children", [])}
+            roots = [k for k in range(len(nodes)) if k not in children]
+        waiting, visited = [(root, np.eye(4), 0) for root in roots], 0
+        while waiting:
+            k, above, depth = waiting.pop()
+            visited += 1
+            if visited > MOST_NODES or depth > _DEEPEST:
+                raise too_much(self.name)
+            matrix = above @ _matrix(nodes[k])
+            if "mesh" in nodes[k]:
+                for primitive in self.json["meshes"][nodes[k]["mesh"]]["primitives"]:
+                    yield primitive, matrix
+            waiting += [(child, matrix, depth + 1) for child in nodes[k].get("children", [])]
+
+    def part(self, primitive: Json, matrix: Matrix) -> RawScan:
+        """Return one part of a mesh in the frame of the scene."""
+        if any("draco" in each for each in primitive.get("extensions", {})):
+            raise _packed(self.name)
+        named = primitive["attributes"]
+        vertices = vectors(self._values(named["POSITION"]))
+        turn = matrix[:3, :3]
+        faces = self._faces(primitive, len(vertices))
+        if np.linalg.det(turn) < 0.0:
+            faces = faces[:, ::-1]
+        normals = None
+        if "NORMAL" in named:
+            normals = vectors(self._values(named["NORMAL"])) @ np.linalg.pinv(turn)
+        colours, notes = None, tuple[str, ...]()
+        try:
+            colours = self._colours(primitive, len(vertices))
+        except Exception:  # malformed in any way, they leave the shape as it is
+            colours, notes = None, (UNREADABLE,)
+        return RawScan(vertices @ turn.T + matrix[:3, 3], faces, normals, colours, notes)
+
+    def _colours(self, primitive: Json, count: int) -> Colours | None:
+        """Return the colours of the vertices of a part, else those of its texture there, None without any."""
+        named = primitive["attributes"]
+        if "COLOR_0" in named:
+            values = self._values(named["COLOR_0"], count)
+            return coloured(values[:, :3].astype(np.float64), full_of(values.dtype) or 1.0)
+        if "material" not in primitive:
+            return None
+        surface = self.json["materials"][primitive["material"]].get("pbrMetallicRoughness", {})
+        used = surface.get("baseColorTexture")
+        if used is None:
+            return None
+        places = self._values(named[f"TEXCOORD_{used.get('texCoord', 0)}"], count)
+        return sampled(self._image(self.json["textures"][used["index"]]["source"]), places.astype(np.float64))
+
+    def _image(self, index: int) -> Colours:
+        """Return the pixels of an image, tried once. Raises ValueError."""
+        if index not in self._pixels:
+            self._pixels[index] = None
+            image = self.json["images"][index]
+            if "bufferView" in image:
+                view = self.json["bufferViews"][image["bufferView"]]
+                start = view.get("byteOffset", 0)
+                data = bytes(self._buffers[view["buffer"]][start : start + view["byteLength"]])
+            else:
+                data = bytes(self._buffer(image, memoryview(b"")))
+            held = sum(pixels.nbytes for pixels in self._pixels.values() if pixels is not None)
+            self._pixels[index] = texture(data, FREE + TIMES * self._size - held)
+        pixels = self._pixels[index]
+        if pixels is None:
+            raise ValueError("an image that cannot be read")
+        return pixels
+
+    def _faces(self, primitive: Json, count: int) -> Faces:
+        mode = primitive.get("mode", _TRIANGLES)
+        if mode not in (_TRIANGLES, _STRIP, _FAN):
+            return no_faces()
+        corners: Indices = np.arange(count)
+        if "indices" in primitive:
+            corners = self._values(primitive["indices"]).ravel().astype(np.int64)
+        if mode == _TRIANGLES:
+            return corners.reshape(-1, 3)
+        return (strips if mode == _STRIP else fans)(corners, np.array([len(corners)]))
+
+    def _values(self, index: int, needed: int | None = None) -> npt.NDArray[np.generic]:
+        """Return the rows of an accessor, shape (count, width). Raises ValueError if there are others."""
+        accessor = self.json["accessors"][index]
+        if needed not in (None, accessor["count"]):
+            raise ValueError("values of other vertices")
+        kind, width = np.dtype(_KINDS[accessor["componentType"]]), _WIDTHS[accessor["type"]]
+        if "sparse" in accessor or "bufferView" not in accessor:
+            raise ScanError(f"{self.name} is written in a way that Busk does not read.", "Export it as PLY.")
+        view = self.json["bufferViews"][accessor["bufferView"]]
+        buffer = self._buffers[view["buffer"]]
+        start, row = view.get("byteOffset", 0) + accessor.get("byteOffset", 0), kind.itemsize * width
+        stride, count = view.get("byteStride", row), accessor["count"]
+        if (
+            min(start, count) < 0
+            or stride < row
+            or start + max(count - 1, 0) * stride + row * (count > 0) > len(buffer)
+        ):
+            raise cut_short(self.name)
+        check_size(self.name, count // (1 if width == 3 else 3))
+        values = np.ndarray((count, width), kind, buffer, start, (stride, kind.itemsize)).copy()
+        if accessor.get("normalized") and kind.kind in "iu":
+            return values.astype(np.float64) / np.iinfo(kind).max
+        return values
+
+
+def _matrix(node: Json) -> Matrix:
+    """Return how a node is placed under the one above it, shape (4, 4)."""
+    if "matrix" in node:
+        return np.array(node["matrix"], dtype=np.float64).reshape(4, 4).T
+    x, y, z, w = (float(part) for part in node.get("rotation", (0, 0, 0, 1)))
+    turn = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.array(turn) * np.array(node.get("scale", (1, 1, 1)), dtype=np.float64)
+    matrix[:3, 3] = np.array(node.get("translation", (0, 0, 0)), dtype=np.float64)
+    return matrix

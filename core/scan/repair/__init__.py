@@ -1,0 +1,1 @@
+"""Repair of a scan's surface: holes, loose pieces, noise, hidden layers."""

@@ -1,1 +1,0 @@
-"""What is sewn: elastics, what they pull with, and how long they are cut."""

@@ -1,1 +1,0 @@
-"""Rooms of ``core.sizes``: what a table of sizes is, how its file is read, the rule in words."""

@@ -1,1 +1,0 @@
-"""Level curves of the trunk alone: over holes and gaps, without arms."""

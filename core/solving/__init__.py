@@ -1,1 +1,0 @@
-"""The parts of a run: turns, gains and the exact answer."""

@@ -1,1 +1,0 @@
-"""Rooms of what is written for other programs: curves, strips and measures."""
