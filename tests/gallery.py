@@ -26,7 +26,7 @@ from app.gui.features.landmarks.panel import LandmarksPanel, LandmarkView
 from app.gui.features.lines.panel import LinesPanel, LineView
 from app.gui.features.measurements.panel import ResultPanel
 from app.gui.features.model.panel import ModelPanel
-from app.gui.features.scan.panel import ScanPanel, ScanView
+from app.gui.features.scan.panel import ScanPanel
 from app.gui.plots.convergence_panel import Strip
 from app.gui.status_bar import StatusBar
 from app.gui.step_navigation import Rail
@@ -39,7 +39,7 @@ from app.i18n.catalog import tr
 from app.presenters.measurement_views import MeasureView
 from app.presenters.model_options import defaults
 from app.presenters.plot_series import Exact, Track
-from app.presenters.scan import GROUPS, kind_of, landmark_title
+from app.presenters.scan import GROUPS, ScanView, kind_of, landmark_title
 from app.rendering.palette import LINE_COLORS
 
 LINES = (

@@ -13,7 +13,7 @@ from pytestqt.qtbot import QtBot
 
 from app.gui.features.lines.slider import LengthSlider
 from app.gui.plots.convergence_panel import Strip
-from app.gui.plots.status_chip import SHORTEST_SHOW_MS, TONES, VerdictChip
+from app.gui.plots.status_chip import SHORTEST_SHOW_MS, VerdictChip
 from app.gui.status_bar import StatusBar
 from app.gui.step_navigation import Rail
 from app.gui.theme.stylesheet import apply_theme, tokens_of
@@ -21,6 +21,7 @@ from app.gui.viewport.toolbar import VIEWS, CompareTools, ViewTools
 from app.gui.widgets.line_widgets import LineChip
 from app.presenters.assessment import IDLE
 from app.presenters.plot_series import Exact, Track
+from app.presenters.states import TONES
 from core.garment.assessment import LEVELS
 from core.mechanics.convergence import STATES
 

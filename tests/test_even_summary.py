@@ -7,10 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.gui.features.symmetry.card import EvenSummary
 from app.i18n.catalog import speaking
 from app.presenters.samples import sample_design
-from app.presenters.symmetry import asks_to_be_even, even_summary, evened_words, map_note
+from app.presenters.symmetry import EvenSummary, asks_to_be_even, even_summary, evened_words, map_note
 from core.analysis.inverse_design.quantities import Goal
 from core.analysis.inverse_design.solve import Reply
 from core.analysis.symmetry.compare import BeforeAfter, Evenness, evenness

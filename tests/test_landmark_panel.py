@@ -13,7 +13,7 @@ from test_landmarks import found, sample, truth
 from test_landmarks_damaged import body
 
 from app.gui.features.landmarks.panel import LandmarksPanel
-from app.gui.features.landmarks.row import LandmarkView
+from app.presenters.landmarks import LandmarkView
 from app.presenters.scan import landmark_view, spot_of
 from core.landmarks.bust_point import NIPPLE
 from core.landmarks.detect import find_landmarks

@@ -8,7 +8,6 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.gui.features.lines.row import LineRow, LineView
-from app.gui.features.variants.panel import Figure
 from app.gui.widgets.length_edit import NumberField
 from app.gui.widgets.value_edit import FigureField
 from app.i18n.catalog import say, use_language
@@ -16,6 +15,7 @@ from app.i18n.lengths import length, read_length, use_unit
 from app.presenters.bust_shift import up_words
 from app.presenters.measurement_views import MeasureView, length_off
 from app.presenters.measurements import as_table
+from app.presenters.variants import Figure
 from app.report.text import figure
 
 UNITS = ("mm", "cm", "in")

@@ -15,8 +15,8 @@ from app.gui.widgets.option_field import AmountField, MenuField, SegmentField
 from app.presenters.model_options import consequences, defaults, groups, summary
 from core.document.design import Design, ScanSource
 from core.document.lines import OwnLine
-from core.export.solution_report import kept_volume
 from core.pipeline.live_solver import Frame
+from core.pipeline.warnings import kept_volume
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -14,9 +14,9 @@ from core.document.line_notation import own_line, place_of, with_own_lines
 from core.document.lines import OwnLine
 from core.document.serialization import from_json, to_json
 from core.errors import LineError
-from core.export.solution_report import still_lines
 from core.mechanics.exact_solution import solve_exact
 from core.pipeline.build import Stages, build
+from core.pipeline.warnings import still_lines
 
 BIG, SMALL = read_template("168"), read_template("120")
 

@@ -12,12 +12,12 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.gui.plots.axes import round_ticks
 from app.gui.plots.convergence_panel import Strip
-from app.gui.plots.live_plot import LivePlot, Quantity
+from app.gui.plots.live_plot import LivePlot
 from app.gui.theme.stylesheet import apply_theme
 from app.presenters.curves import Curve, Event, envelope, flips_every_turn
-from app.presenters.plot_series import Exact, Track, tolerance_of
+from app.presenters.plot_series import Exact, Quantity, Track, tolerance_of
+from app.presenters.ticks import round_ticks
 
 ERROR = Quantity("error_percent", "Volume error", "%", 0.4)
 

@@ -25,7 +25,6 @@ from app.report.pages import pages_of
 from core.document.presets import built_in, with_preset
 from core.export.report_data import Heading, Sheet, sheet_of, with_spread
 from core.export.report_data_file import sheet_csv, sheet_json
-from core.export.solution_report import Shown
 from core.garment.elastic_library import find_elastic
 from core.measurements.uncertain_value import (
     AFTER,
@@ -42,6 +41,7 @@ from core.measurements.uncertain_value import (
 )
 from core.pipeline.build import Stages, build
 from core.pipeline.solve import Solution, run
+from core.pipeline.warnings import Shown
 
 OFFS = {"before:bust_girth": 3.7, "after:bust_girth": 4.2, "change:bust_girth": 0.7, "lift": 0.1}
 

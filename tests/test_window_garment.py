@@ -17,8 +17,8 @@ from app.gui.main_window import MainWindow
 from app.gui.widgets import table_export as tables
 from app.i18n.catalog import number
 from app.presenters.bust_shift import bust_move
-from core.export.solution_report import still_lines
 from core.garment.elastic_options import FIRST_STRETCH, KEEP_CUT
+from core.pipeline.warnings import still_lines
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

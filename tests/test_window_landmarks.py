@@ -14,8 +14,8 @@ from window_tools import Script, run_main, settled
 
 import app.gui.document_controller
 from app.gui.features.landmarks.panel import LandmarksPanel
-from app.gui.features.landmarks.row import LandmarkView
 from app.gui.main_window import MainWindow
+from app.presenters.landmarks import LandmarkView
 from core.geometry.mesh import Points
 from core.landmarks.manual import nearest_skin
 

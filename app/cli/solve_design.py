@@ -12,7 +12,6 @@ from app.presenters.assessment import assessment_lines
 from core.document.design import Design
 from core.document.elastic import ElasticError
 from core.errors import LineError
-from core.export.solution_report import shape_warnings
 from core.garment.assessment import Assessment, assessed
 from core.garment.elastic_options import KEEP_CUT, KEEP_FIT
 from core.garment.match_shape import as_worn
@@ -20,6 +19,7 @@ from core.garment.tension import ran_away
 from core.pipeline.build import Stages, build
 from core.pipeline.exact import NoBalanceError
 from core.pipeline.solve import Solution, run
+from core.pipeline.warnings import shape_warnings
 
 
 @dataclass(frozen=True)

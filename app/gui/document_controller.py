@@ -27,8 +27,8 @@ from app.presenters.status import facts
 from core.document.design import Design
 from core.document.storage.project_file import is_protected
 from core.errors import UserError
-from core.export.solution_report import kept_volume, warnings
 from core.pipeline.live_solver import Frame
+from core.pipeline.warnings import kept_volume, warnings
 
 if TYPE_CHECKING:
     from app.gui.main_window import MainWindow

@@ -6,15 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.gui.plots.status_chip import state_title
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length, length_number
 from app.presenters.assessment import AssessmentView
 from app.presenters.bust_shift import bust_move, sides_words, step_words, ups
-from core.export.solution_report import kept_volume
+from app.presenters.states import state_title
 from core.garment.pressure_list import PressList
 from core.mechanics.mesh_quality import Condition
 from core.pipeline.live_solver import Frame
+from core.pipeline.warnings import kept_volume
 
 _WATCHED = 24  # turns over which a swing is measured
 _STEADY = 5e-4  # a swing that changes by less a turn stays as large as it is [1]

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
 
-from app.gui.features.measurements.custom_measure_editor import Draft
 from app.i18n.catalog import number, say, tr
 from app.i18n.lengths import length, length_number
 from app.presenters.scan import landmark_title
@@ -91,3 +91,39 @@ def _free(name: str, taken: Collection[str]) -> str:
     """Return a name that is not taken, with a number if need be."""
     numbered = (f"{name[: LONGEST_NAME - 4]} {count}" for count in range(2, 1000))
     return name if name not in taken else next(each for each in numbered if each not in taken)
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A measure that is being made: as long as no place is chosen for an end, that is empty.
+
+    A girth lies ``level`` [mm] above the landmark ``at``, or above the lowest point of the scan if that is
+    empty. An empty ``name`` leaves it to Busk.
+    """
+
+    name: str = ""
+    kind: str = "straight"
+    ends: tuple[str, str] = ("", "")
+    at: str = ""
+    level: float = 0.0
+
+    def picked(self, mark: str) -> Draft:
+        """Return it with a landmark that was clicked: the next end, or given up if it was one already."""
+        if self.kind == "girth":
+            return replace(self, at=mark, level=self.level if self.at else 0.0)
+        start, end = self.ends
+        if mark in self.ends:
+            return replace(self, ends=("" if start == mark else start, "" if end == mark else end))
+        return replace(self, ends=(mark, end) if not start else (start, mark))
+
+    def stepped_back(self) -> Draft:
+        """Return it without the landmark that was chosen last."""
+        if self.kind == "girth":
+            return replace(self, at="", level=0.0)
+        start, end = self.ends
+        return replace(self, ends=(start, "") if end else ("", ""))
+
+    @property
+    def marks(self) -> tuple[str, ...]:
+        """The landmarks it is taken at so far."""
+        return tuple(mark for mark in ((self.at,) if self.kind == "girth" else self.ends) if mark)

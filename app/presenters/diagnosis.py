@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from app.gui.plots.status_chip import state_title
 from app.i18n.catalog import joined, listed, number, tr
 from app.i18n.lengths import length
 from app.presenters.assessment import assessment_view
 from app.presenters.lines import line_title, row_title
+from app.presenters.states import state_title
 from core.analysis.diagnosis.candidate_changes import Change
 from core.analysis.diagnosis.diagnose import Diagnosis
 from core.analysis.diagnosis.fix import Cure

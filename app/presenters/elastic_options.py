@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
-from app.gui.features.garment.elastic_chooser import AdviceView, ChoiceView
 from app.i18n.catalog import joined, number, say, tr
 from app.i18n.lengths import length, length_number
 from app.presenters.lines import titled
@@ -188,3 +188,32 @@ def _said(sentence: str, design: Design) -> str:
 def title_of(elastic: Elastic | None) -> str:
     """Return what an elastic is called, or that there is none."""
     return say(elastic.name) if elastic is not None else tr("No elastic")
+
+
+@dataclass(frozen=True)
+class ChoiceView:
+    """One elastic as it is read: stretch [%], lengths to cut and on the body, lift, and a note on it.
+
+    One that is not ``usable`` is grey, and its note states why. A value that is not known is an empty text.
+    """
+
+    title: str
+    stretch: str = ""
+    cut: str = ""
+    reached: str = ""
+    lift: str = ""
+    note: str = ""
+    usable: bool = False
+    far: bool = False
+
+
+@dataclass(frozen=True)
+class AdviceView:
+    """What the marked elastic does, or what to do where it cannot be used.
+
+    ``offers`` are choices by one click: label, row, and whether it is used at its limit.
+    """
+
+    words: str
+    offers: tuple[tuple[str, int, bool], ...] = ()
+    tone: str = ""

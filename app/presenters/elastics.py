@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
-from app.gui.features.garment.elastics_dialog import TOLD_AT, ElasticView
 from app.i18n.catalog import number, say, tr
 from app.i18n.lengths import width, width_number
 from core.document.elastic import Elastic
@@ -46,3 +46,27 @@ def _view(elastic: Elastic, where: str, own: bool) -> ElasticView:
 def kind_title(elastic: Elastic) -> str:
     """Return what an elastic that comes with Busk is called without its width."""
     return say(elastic.name).removesuffix(width(elastic.width_mm)).strip()
+
+
+TOLD_AT = (0.2, 0.4, 0.6, 0.8)
+"""Elongations that the table has forces at [1]."""
+
+
+@dataclass(frozen=True)
+class ElasticView:
+    """One elastic: its ``name`` as it is kept and ``title`` as it is shown, ``where`` it comes from.
+
+    ``curve`` are points (elongation [1], force [N]); ``forces`` those at TOLD_AT as they are read, empty
+    beyond the end of the curve. ``own`` ones can be taken away.
+    """
+
+    name: str
+    title: str
+    where: str
+    width: str
+    forces: tuple[str, ...]
+    allowance: str
+    source: str
+    estimate: bool
+    own: bool
+    curve: tuple[tuple[float, float], ...]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from app.gui.features.maps.legend import MapKind
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length, shown_value
 from app.presenters.bust_shift import BustMove, BustStep, bust_sentence, forward_words, offs_of, step_words
@@ -175,3 +175,25 @@ def sides_words(axis: str, pairs: Sequence[tuple[Floats, Floats]]) -> str:
         way = forward_words(-float(steps[0][1]))
         return tr("Foremost place left, against right: {way}").format(way=way)
     return ""
+
+
+Mark = tuple[float, str, str]
+"""A limit that is marked on the bar: value, tone and word."""
+
+
+@dataclass(frozen=True)
+class MapKind:
+    """A map that can be chosen: title, unit, what it means, in words a tooltip long, and a line below.
+
+    ``both_ways``: its values go both ways from zero, and so does its range. ``marks`` are limits on its
+    bar: value, tone and word.
+    """
+
+    name: str
+    title: str
+    unit: str
+    tip: str
+    note: str
+    digits: int = 1
+    both_ways: bool = False
+    marks: tuple[Mark, ...] = ()

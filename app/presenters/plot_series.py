@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.gui.plots.live_plot import Quantity
 from app.i18n.catalog import tr
 from app.i18n.lengths import length_unit, shown_value
 from app.presenters.curves import Numbers
@@ -62,3 +61,13 @@ def tolerance_of(quantity: str, track: Track | None) -> float:
         return 0.0
     furthest = int(np.where(known, percent, 0.0).argmax())
     return TOLERANCE_PERCENT * float(abs(track.error_ml[furthest]) / percent[furthest])
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What can be plotted: ``name`` of the values, title, unit, the least span worth seeing."""
+
+    name: str
+    title: str
+    unit: str
+    least_span: float

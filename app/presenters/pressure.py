@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from app.gui.features.garment.pressure_card import TONES, LightLimits, PressureSummary
 from app.i18n.catalog import joined, language, listed, number, say, tr
 from app.i18n.lengths import length
 from app.presenters.cut_list_views import PressureView
@@ -157,3 +156,42 @@ def total_words(listed: PressList) -> str:
 
 def _nothing(why: str) -> PressureSummary:
     return PressureSummary("", "", "", "", "", why, "", ())
+
+
+TONES = {"green": "ok", "amber": "warn", "red": "bad"}
+"""The tones in which lights are shown."""
+
+
+@dataclass(frozen=True)
+class LightLimits:
+    """From which pressures [kPa] the light is amber and red, what the lights are called, and how sure it is.
+
+    ``source`` is the first of the ``sources``, short; those and what is ``left_out`` are sentences.
+    """
+
+    amber_kpa: float
+    red_kpa: float
+    words: tuple[str, str, str]
+    source: str
+    sources: tuple[str, ...]
+    left_out: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class PressureSummary:
+    """What all bands press with: the ``largest`` pressure, its ``light`` with a ``word``, what that ``says``.
+
+    ``place`` is where it is, short, ``place_tip`` longer; ``force`` all of the force.
+
+    ``marks`` are the lines with a pressure, each its title, colour and largest pressure [kPa]. Without any
+    ``largest`` is empty and ``says`` tells why.
+    """
+
+    largest: str
+    light: str
+    word: str
+    place: str
+    place_tip: str
+    says: str
+    force: str
+    marks: tuple[tuple[str, str, float], ...]

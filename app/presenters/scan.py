@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from dataclasses import dataclass
 
-from app.gui.features.landmarks.row import LandmarkView
-from app.gui.features.scan.edits import EditsView, HoleView
-from app.gui.features.scan.lean_editor import LeanView
-from app.gui.features.scan.panel import ScanView
 from app.i18n.catalog import say, tr
 from app.i18n.lengths import length
+from app.presenters.landmarks import LandmarkView
 from core.document.design import ScanSource
 from core.geometry.mesh import Points
 from core.landmarks.types import CERTAIN, NAMES, Landmark, Landmarks
 from core.landmarks.warnings import ESSENTIAL, edit_doubts
 from core.scan.body import Body
+from core.scan.edits import ScanEdits
 from core.scan.orientation.lean_angles import lean_angles
 from core.scan.repair.holes import NAMED, hole_sentence, hole_sentences
 
@@ -181,3 +180,56 @@ def work_steps() -> list[str]:
         "preparing the view",
     )
     return [work_words(name) for name in names]
+
+
+@dataclass(frozen=True)
+class HoleView:
+    """An open hole: its sentence and its centre (x, y, z) [mm]."""
+
+    text: str
+    centre: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class EditsView:
+    """The edits of a scan that is ``height`` high [mm], and its open holes, the largest first."""
+
+    edits: ScanEdits
+    height: float
+    holes: tuple[HoleView, ...] = ()
+    more: str = ""
+
+
+@dataclass(frozen=True)
+class ScanView:
+    """What is shown of a scan: ``reason`` why this ``unit``; ``up`` and ``front`` are axes of the file.
+
+    ``notes`` are further sentences on it; ``told`` names what was not found but told: unit, up, front.
+    ``edits`` and ``lean`` are None for a scan that cannot be edited, as it is not upright.
+    """
+
+    file: str
+    unit: str
+    reason: str
+    sure: bool
+    up: str
+    front: str
+    triangles: int
+    repairs: tuple[str, ...]
+    notes: tuple[str, ...] = ()
+    told: frozenset[str] = frozenset()
+    edits: EditsView | None = None
+    coloured: bool = False
+    lean: LeanView | None = None
+
+
+@dataclass(frozen=True)
+class LeanView:
+    """The lean of a body in its file that is corrected, ``forward`` and to its ``left`` [degrees].
+
+    ``upright`` is the up direction "x,y,z" that sets a leaning body upright; empty if it does not lean.
+    """
+
+    forward: float
+    left: float
+    upright: str = ""

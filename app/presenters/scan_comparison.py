@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
-from app.gui.features.scan_comparison.page import FigureRow, NumberRow
 from app.i18n.catalog import joined, listed, number, tr
 from app.i18n.lengths import length, length_number
 from app.presenters.lines import told_title
@@ -198,3 +198,24 @@ def notes_of(worn: Worn | None, pending: bool) -> Iterator[str]:
         yield tr("Compare with a worn scan first: File menu.")
     elif pending:
         yield tr("Compared anew as soon as the run rests.")
+
+
+@dataclass(frozen=True)
+class FigureRow:
+    """Predicted less real of some skin, as it is written: mean, root of the mean square, 95 % [mm]."""
+
+    title: str
+    mean: str
+    rms: str
+    most: str
+
+
+@dataclass(frozen=True)
+class NumberRow:
+    """A number that was found, as it is written: before, after, its ±; and whether it is ``told`` well."""
+
+    title: str
+    before: str
+    after: str
+    plus_minus: str
+    told: bool = True

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from html import escape
 
-from app.gui.features.measurements.size_card import SizeView
 from app.i18n.catalog import colon, joined, language, listed, say, tr
 from app.i18n.lengths import length
 from core.measurements.letter_sizes import letter_sizes
@@ -90,3 +91,34 @@ def _away(neighbour: Neighbour) -> str:
     """Return how far a size beside this one is, and which it is."""
     missing = neighbour.missing_mm if neighbour.up else -neighbour.missing_mm
     return f"{length(missing, signed=True)}{colon()}{neighbour.label or neighbour.name}"
+
+
+@dataclass(frozen=True)
+class SizeView:
+    """The size in one system: how it is written, the rule that found it, and what lies ``near`` it.
+
+    ``short`` is the system in a few letters, ``system`` its name; ``doubts`` are what is uncertain in it.
+    Where others may find quite another size, ``caution`` says so in a few words and ``doubt`` in a sentence.
+    ``within`` says which other sizes lie within what the girths may be off.
+    """
+
+    key: str
+    short: str
+    size: str
+    rule: str
+    near: tuple[str, ...]
+    system: str
+    doubts: tuple[str, ...]
+    caution: str = ""
+    doubt: str = ""
+    within: str = ""
+
+    @property
+    def title(self) -> str:
+        """System and size, as one says them."""
+        return f"{self.short} {self.size}"
+
+    @property
+    def tip(self) -> str:
+        """What is told under the pointer, wrapped as it is rich."""
+        return "".join(f"<p>{escape(each)}</p>" for each in (self.system, *self.doubts))

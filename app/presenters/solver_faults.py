@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from app.gui.plots.status_chip import state_title
 from app.i18n.catalog import tr
 from app.presenters.convergence import StripVerdict
+from app.presenters.states import state_title
 
 
 def solver_fault_words(error: Exception) -> tuple[str, str]:

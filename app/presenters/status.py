@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 
-from app.gui.plots.status_chip import state_title
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length, length_unit
 from app.presenters.lines import line_colours, line_title
+from app.presenters.states import state_title
 from app.rendering.band import OFF_WIDTH, Band, band_width
 from core.document.design import Design
 from core.pipeline.build import Stages

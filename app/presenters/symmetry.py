@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.gui.features.symmetry.card import EvenSummary, EvenView
 from app.i18n.catalog import joined, listed, number, say, tr
 from app.i18n.lengths import length, length_number, length_unit, shown_digits, shown_unit, shown_value
 from app.presenters.lines import row_title
@@ -245,3 +245,35 @@ def _way(name: str, before: float, after: float, said: str) -> str:
         said = tr("{figure} {before} → {other} {after}")
         values["before"] = length(abs(before))
     return said.format(figure=one, other=other, **values)
+
+
+@dataclass(frozen=True)
+class EvenView:
+    """One figure: its title, the ``before`` and ``after`` as they are written, and what is told of it.
+
+    ``shares`` say how far the bar goes before and after, -1 to 1: positive towards the left; None where
+    there is no side or it is not known. ``off`` is how far it may be off, as it is written; a difference
+    ``within`` that may be none.
+    """
+
+    title: str
+    before: str
+    after: str
+    tip: str
+    shares: tuple[float | None, float | None] = (None, None)
+    off: str = ""
+    within: bool = False
+
+
+@dataclass(frozen=True)
+class EvenSummary:
+    """What the card says: a sentence, figures, ``notes`` on them, and what making it even begins with.
+
+    ``hint`` says what is done first, or why nothing can be; ``possible`` whether anything can.
+    """
+
+    says: str
+    views: tuple[EvenView, ...]
+    notes: tuple[str, ...]
+    hint: str
+    possible: bool

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from app.gui.features.uncertainty.card import SpreadView
 from app.i18n.catalog import joined, language, listed, number, say, tr
 from app.i18n.lengths import length, shown_unit
 from app.presenters.measurement_views import MeasureView, length_off, plus_minus
@@ -114,3 +113,16 @@ def _contact(spread: Spread) -> str:
     between = tr("The truth lies between the two, and no ± holds it.")
     told = said.format(up=up, out=out)
     return f"{told} {between}" if language() == "en" else f"{told}{between}"
+
+
+@dataclass(frozen=True)
+class SpreadView:
+    """What stands in the card: what ± means, or why there is none yet; what the other skin ``contact`` makes.
+
+    ``faint`` words are of a former shape. ``short`` stands at the head of the measures and leads here.
+    """
+
+    meaning: str
+    contact: str = ""
+    faint: bool = False
+    short: str = ""

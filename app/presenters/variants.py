@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
-from app.gui.features.variants.panel import Figure, FigureRow, Told, VariantsView
-from app.i18n.catalog import say, tr
+from app.i18n.catalog import number, say, tr
+from app.i18n.lengths import length_number, shown_unit
 from app.presenters.assessment import AssessmentView
 from app.presenters.bust_shift import bust_move, bust_sentence
 from app.presenters.convergence import is_result
 from app.presenters.lines import line_colours, line_title, row_title
 from core.document.design import Design
-from core.export.solution_report import kept_volume
 from core.garment.cut_list import CutRow, cut_list
 from core.garment.pressure_list import PressList
 from core.pipeline.live_solver import Frame
+from core.pipeline.warnings import kept_volume
 
 Variants = Sequence[tuple[str, Design, Frame | None]]
 """Variants by name, with the frame of those that are solved."""
@@ -194,3 +195,74 @@ def _results(variants: Variants) -> list[FigureRow]:
             ("ml", 1, lambda frame: kept_volume(frame)[1]),
         ),
     ]
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One figure of each variant in ``unit``, None where it is not known; a change is ``signed``."""
+
+    unit: str
+    digits: int
+    signed: bool
+    values: tuple[float | None, ...]
+
+    def written(self, place: int) -> str:
+        """Return the figure of a variant, ready to read."""
+        value = self.values[place]
+        return "–" if value is None else f"{self._number(value)} {shown_unit(self.unit)}"
+
+    def _number(self, value: float) -> str:
+        written = length_number if self.unit == "mm" else number
+        return written(value, self.digits, self.signed)
+
+    def apart(self, place: int) -> float | None:
+        """Return by how much a variant differs from the first, if both are known."""
+        value, first = self.values[place], self.values[0]
+        return None if value is None or first is None else value - first
+
+    def cells(self) -> list[str]:
+        """Return the figures and what the others differ by from the first, for a table."""
+        told = [*self.values, *(self.apart(place) for place in range(1, len(self.values)))]
+        return ["" if each is None else f"{each:.{self.digits}f}" for each in told]
+
+
+@dataclass(frozen=True)
+class Told:
+    """Words for each variant, empty where there are none: they have no unit and differ by nothing."""
+
+    values: tuple[str, ...]
+    unit: str = ""
+    digits: int = 0
+
+    def written(self, place: int) -> str:
+        """Return the words of a variant."""
+        return self.values[place] or "–"
+
+    def apart(self, place: int) -> None:
+        """Words differ by nothing."""
+
+    def cells(self) -> list[str]:
+        """Return the words, for a table."""
+        return [*self.values, *[""] * (len(self.values) - 1)]
+
+
+@dataclass(frozen=True)
+class FigureRow:
+    """What the figures are of: the first of them counts, a second says it in another unit."""
+
+    label: str
+    figures: tuple[Figure | Told, ...]
+
+
+@dataclass(frozen=True)
+class VariantsView:
+    """Variants by name, which of them is shown, their figures, and the level and headline of each verdict.
+
+    A variant that is not solved yet has an empty level.
+    """
+
+    names: tuple[str, ...]
+    shown: int
+    levels: tuple[str, ...]
+    verdicts: tuple[str, ...]
+    rows: tuple[FigureRow, ...]

@@ -11,8 +11,8 @@ from app.presenters.status import bands
 from app.rendering.camera import View
 from app.rendering.offscreen import Picture, Studio, on_nothing
 from app.report.document import SHOT_SIZES, SHOTS
-from core.export.solution_report import Shown
 from core.geometry.mesh import Floats
+from core.pipeline.warnings import Shown
 from core.progress import Pieces, part_of
 
 DOTS = 300.0 / 25.4

@@ -11,7 +11,6 @@ import numpy as np
 
 from core import __version__
 from core.deformation.tffd import deform
-from core.export.solution_report import Shown, kept_volume, shape_warnings, still_lines, warnings
 from core.garment.assessment import Assessment, assessment_of
 from core.garment.cut_list import CutList, cut_list
 from core.garment.pressure import LEFT_OUT
@@ -27,6 +26,7 @@ from core.measurements.uncertain_value import BEFORE, SOURCES, Spread
 from core.mechanics.convergence import SOUND
 from core.mechanics.iteration import Marks, Record
 from core.pipeline.build import Stages
+from core.pipeline.warnings import Shown, kept_volume, shape_warnings, still_lines, warnings
 from core.progress import Progress, quiet
 
 AROUND = 12.0

@@ -10,54 +10,21 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from core import __version__
 from core.document.serialization import to_json
 from core.export.mesh import write_control_points, write_mesh
 from core.files.atomic_write import whole_file, write_text
-from core.geometry.mesh import Points
 from core.mechanics.constraint_lines import Line
-from core.mechanics.convergence import Verdict
 from core.mechanics.iteration import Marks, Record
 from core.mechanics.mesh_quality import Condition
 from core.pipeline.build import Stages
 from core.pipeline.solve import Solution
+from core.pipeline.warnings import shape_warnings, still_lines, warnings
 
 _LIBRARIES = ("numpy", "scipy", "trimesh")
 _SETTINGS = ("template", "line_height", "weights", "scaled_normals", "dense_volume", "tissue_stiffness")
-
-
-class Shown(Protocol):
-    """A body as it is shown, a ``Frame`` or a ``Solution``: control points (n, 3) [mm], and how it stands."""
-
-    @property
-    def stages(self) -> Stages:
-        """What it was made of."""
-
-    @property
-    def control_points(self) -> Points:
-        """Where the control points are [mm]."""
-
-    @property
-    def verdict(self) -> Verdict:
-        """How the run stands."""
-
-
-def kept_volume(shown: Shown) -> tuple[float, float]:
-    """Return how far the volume that is kept is from the one at rest, of that of the control mesh [%, ml].
-
-    It is the body's own where the exact answer keeps that, else that of the control mesh; while it swings,
-    the mean of its swing.
-    """
-    stages, rest = shown.stages, shown.stages.model.volume.rest_volume
-    if shown.verdict.state == "vibrating":
-        change = shown.verdict.error * rest
-    elif stages.design.dense_volume and stages.design.volume == "exact":
-        change = float(stages.body_change(shown.control_points).sum())
-    else:
-        change = stages.model.volume.volume(shown.control_points) - rest
-    return 100.0 * change / rest, change / 1000.0
 
 
 def write_solution(solution: Solution, folder: Path, more: Mapping[str, Any] | None = None) -> dict[str, Any]:
@@ -205,43 +172,6 @@ def notes(stages: Stages) -> list[str]:
         "Not modelled: friction between garment and skin, gravity, stiffness of real tissue, and of real "
         "elastic where a line is made of none.",
     ]
-
-
-def shape_warnings(shown: Shown) -> list[str]:
-    """Return in a sentence what is wrong with a folded or overstrained shape."""
-    condition, state = shown.verdict.condition, shown.verdict.state
-    if condition is None or state not in ("folded", "overstrained"):
-        return []
-    if state == "folded":
-        turn = f"{condition.largest_turn:.0f}"
-        said = f"The shape is folded: a triangle of the control mesh has turned by {turn} degrees."
-    else:
-        low, high = f"{100.0 * condition.shortest:.0f}", f"{100.0 * condition.longest:.0f}"
-        said = f"The shape is overstrained: edges of the mesh have {low} to {high} % of their rest lengths."
-    return [" ".join((said, "It does not tell how a body would look."))]
-
-
-def still_lines(stages: Stages) -> list[str]:
-    """Return a sentence for each line that is worn where no length can move anything.
-
-    One that is made of an elastic is there to be cut: of it there is nothing to be told.
-    """
-    own = {line.name for line in stages.design.own_lines}
-    still = [line.name for line in stages.model.lines if not line.constrains]
-    return [
-        f"{name} lies on points that do not move: it is measured, and no length that is set moves it."
-        if name in own
-        else f"{name} lies on the rib cage: it is measured, and no length that is set moves it."
-        for name in still
-        if name in stages.design.worn() and name not in stages.design.worn_elastics()
-    ]
-
-
-def warnings(stages: Stages) -> list[str]:
-    """Return in sentences what did not go as well as it should on the way to the model."""
-    patch = stages.patch
-    faded = [] if patch.rule == "flood" else [f"The reshaped part fades by distance: {patch.reason}"]
-    return [*stages.control.warnings, *faded]
 
 
 def _line_report(line: Line, stages: Stages, reached: float) -> dict[str, Any]:

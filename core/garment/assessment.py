@@ -10,13 +10,13 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from core.export.solution_report import Shown, warnings
 from core.garment.cut_list import CutList, CutRow, cut_list
 from core.garment.pressure_limits import AMBER, GREEN, comfort
 from core.garment.pressure_list import PressList, PressRow, press_list
 from core.landmarks.warnings import doubts
 from core.mechanics.convergence import Verdict
 from core.pipeline.build import Stages
+from core.pipeline.warnings import Shown, warnings
 
 GOOD, PENDING, CAUTION, BAD = LEVELS = ("good", "pending", "caution", "bad")
 """Levels from the best to the worst; one that is still being computed is better than none that is known."""

@@ -13,9 +13,9 @@ from app.presenters.export_preview import check, make_ready
 from app.presenters.export_request import Manner, Outcome
 from core.document.design import Design
 from core.errors import UserError
-from core.export.solution_report import shape_warnings
 from core.garment.assessment import assessed
 from core.pipeline.build import build
+from core.pipeline.warnings import shape_warnings
 from core.progress import in_one_go, quiet
 
 KINDS = ("body", "control", "lines", "flat", "measures", "turntable")

@@ -9,11 +9,11 @@ from typing import Any
 from app.presenters.assessment import assessment_lines
 from core.analysis.length_limits.limits import Length, Limits
 from core.analysis.length_limits.zones import GREEN, Leeway, leeway
-from core.export.solution_report import still_lines
 from core.garment.assessment import Assessment
 from core.garment.pressure_limits import comfort
 from core.mechanics.constraint_lines import RATIO_LIMITS
 from core.pipeline.build import Stages
+from core.pipeline.warnings import still_lines
 
 MEANING = {
     "strained": "edges outside 80 to 120 %",

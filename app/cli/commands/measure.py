@@ -12,11 +12,11 @@ from app.presenters.assessment import assessment_lines
 from core import __version__
 from core.document.design import Design
 from core.export.csv_cells import csv_text
-from core.export.solution_report import shape_warnings
 from core.garment.assessment import assessed
 from core.landmarks.warnings import doubts
 from core.measurements.table import before_after, measure_rows, measures
 from core.pipeline.build import build, find, read_body
+from core.pipeline.warnings import shape_warnings
 
 COLUMNS = (
     *("key", "title", "side", "unit", "before", "after", "difference", "plus_minus"),

@@ -10,12 +10,13 @@ from typing import Any
 from app.cli.options import dressed, made_of
 from app.presenters.assessment import assessment_lines
 from core.document.design import Design
-from core.export.solution_report import shape_warnings, still_lines, write_solution
+from core.export.solution_report import write_solution
 from core.garment.assessment import assessed
 from core.landmarks.warnings import doubts
 from core.pipeline.build import build
 from core.pipeline.exact import NoBalanceError
 from core.pipeline.solve import Solution, run
+from core.pipeline.warnings import shape_warnings, still_lines
 
 RAN_AWAY = "The turns ran away: what is written is no body. Set line_stiffness lower, or --volume exact."
 

@@ -21,11 +21,11 @@ from core.document.document import Document
 from core.document.storage.backups import backed_up
 from core.document.storage.project_file import SUFFIX, is_project, open_project, save_project
 from core.errors import UserError
-from core.export.solution_report import shape_warnings
 from core.garment.assessment import Assessment, assessed
 from core.landmarks.warnings import edit_doubts
 from core.pipeline.build import Stages, build
 from core.pipeline.solve import Solution, run
+from core.pipeline.warnings import shape_warnings
 
 TITLES = {
     "higher": "bust point higher",

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QActionGroup, QColor, QFontMetrics, QPainter, QPaintEvent, QPen
@@ -18,16 +17,7 @@ from app.gui.widgets.menu import Menu
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 from app.presenters.curves import Curve, Event, Plotted
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """What can be plotted: ``name`` of the values, title, unit, the least span worth seeing."""
-
-    name: str
-    title: str
-    unit: str
-    least_span: float
+from app.presenters.plot_series import Quantity
 
 
 class LivePlot(QWidget):

@@ -13,27 +13,7 @@ from app.gui.theme.icons import paint_icon, pixmap
 from app.gui.theme.stylesheet import font, tokens_of
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
-
-TONES = {
-    "settled": ("ok", "check-circle"),
-    "strained": ("warn", "overstrained"),
-    "settling": ("info", "arc"),
-    "vibrating": ("warn", "wave"),
-    "diverging": ("bad", "arrow-up-right"),
-    "folded": ("bad", "folded"),
-    "overstrained": ("bad", "overstrained"),
-    "stale": ("plain", "clock-counter-clockwise"),
-    "paused": ("plain", "pause"),
-    "good": ("ok", "check-circle"),
-    "pending": ("info", "arc"),
-    "caution": ("warn", "warning"),
-    "bad": ("bad", "warning-octagon"),
-    "idle": ("plain", "lines"),
-}
-"""Tone and drawing of each state of a run, and of each level of an overall verdict."""
-
-TROUBLED = ("caution", "bad", "strained", "overstrained", "folded", "vibrating", "diverging")
-"""States that there is more to say of: a click asks for it."""
+from app.presenters.states import TONES, TROUBLED, state_title
 
 _SPINNING = ("settling", "pending")
 
@@ -43,21 +23,6 @@ SHORTEST_SHOW_MS = 250
 _TURN_MS, _STEP_MS = 1200, 150
 _CARET = 11
 _GAP = "     "
-
-
-def state_title(state: str) -> str:
-    """Return the word for a state of a run in ``TONES``."""
-    return {
-        "settled": tr("Settled"),
-        "strained": tr("Settled, strained"),
-        "settling": tr("Settling"),
-        "vibrating": tr("Vibrating"),
-        "diverging": tr("Diverging"),
-        "folded": tr("Folded"),
-        "overstrained": tr("Overstrained"),
-        "stale": tr("Stale"),
-        "paused": tr("Paused"),
-    }[state]
 
 
 class VerdictChip(QAbstractButton):

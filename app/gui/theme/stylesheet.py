@@ -12,7 +12,6 @@ from PySide6.QtWidgets import QApplication, QLabel, QWidget
 
 from app.i18n.catalog import held_together, let_apart
 from app.rendering.palette import DARK, LIGHT, Tokens
-from core.landmarks.types import CERTAIN
 
 FAMILIES = ("Inter", "Inter Variable", "Noto Sans JP")
 """Type in the order in which a letter is looked for."""
@@ -99,11 +98,6 @@ def tokens_of(widget: QWidget) -> Tokens:
     """Return the colours of the theme that ``widget`` is shown in; ask again on a palette change."""
     # A style sheet rewrites the colours of window, button and text in a widget's palette, but never this one.
     return DARK if widget.palette().color(_OUTLINE).lightness() < 128 else LIGHT
-
-
-def tone_of(confidence: float) -> str:
-    """Return the tone of a landmark's confidence 0..1: ok if certain, bad below 0.3, warn between them."""
-    return "ok" if confidence >= CERTAIN else "warn" if confidence >= 0.3 else "bad"
 
 
 def apply_theme(app: QApplication, dark: bool) -> None:

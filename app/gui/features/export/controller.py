@@ -11,7 +11,6 @@ from PySide6.QtCore import QObject
 
 from app.gui.features.export.dialog import ExportSheet
 from app.gui.features.export.worker import ExportWork
-from app.gui.plots.status_chip import state_title
 from app.gui.session.jobs import Job
 from app.gui.session.settings import wish, wish_for
 from app.gui.widgets.file_dialogs import ask_save
@@ -23,6 +22,7 @@ from app.presenters.export_formats import exports, format_title
 from app.presenters.export_preview import Ready, make_ready
 from app.presenters.export_request import Manner, Outcome
 from app.presenters.export_settings import Choices
+from app.presenters.states import state_title
 from core.errors import UserError
 from core.files.atomic_write import still_written
 from core.garment.assessment import BAD

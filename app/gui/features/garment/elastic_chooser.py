@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QColor, QKeyEvent
@@ -22,40 +21,12 @@ from app.gui.widgets.dialog import Sheet
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 from app.i18n.lengths import length_unit
+from app.presenters.elastic_options import AdviceView, ChoiceView
 
 TITLE, STRETCH, CUT, REACHED, LIFT, NOTE = range(6)
 """The columns of the table."""
 
 _RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
-
-
-@dataclass(frozen=True)
-class ChoiceView:
-    """One elastic as it is read: stretch [%], lengths to cut and on the body, lift, and a note on it.
-
-    One that is not ``usable`` is grey, and its note states why. A value that is not known is an empty text.
-    """
-
-    title: str
-    stretch: str = ""
-    cut: str = ""
-    reached: str = ""
-    lift: str = ""
-    note: str = ""
-    usable: bool = False
-    far: bool = False
-
-
-@dataclass(frozen=True)
-class AdviceView:
-    """What the marked elastic does, or what to do where it cannot be used.
-
-    ``offers`` are choices by one click: label, row, and whether it is used at its limit.
-    """
-
-    words: str
-    offers: tuple[tuple[str, int, bool], ...] = ()
-    tone: str = ""
 
 
 class ElasticChooser(Sheet):

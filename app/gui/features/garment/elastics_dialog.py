@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QPolygonF
@@ -25,31 +24,9 @@ from app.gui.widgets.notification_bar import NoticeBar
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length_unit
-
-TOLD_AT = (0.2, 0.4, 0.6, 0.8)
-"""Elongations that the table has forces at [1]."""
+from app.presenters.elastics import TOLD_AT, ElasticView
 
 _NAME = Qt.ItemDataRole.UserRole
-
-
-@dataclass(frozen=True)
-class ElasticView:
-    """One elastic: its ``name`` as it is kept and ``title`` as it is shown, ``where`` it comes from.
-
-    ``curve`` are points (elongation [1], force [N]); ``forces`` those at TOLD_AT as they are read, empty
-    beyond the end of the curve. ``own`` ones can be taken away.
-    """
-
-    name: str
-    title: str
-    where: str
-    width: str
-    forces: tuple[str, ...]
-    allowance: str
-    source: str
-    estimate: bool
-    own: bool
-    curve: tuple[tuple[float, float], ...]
 
 
 class ElasticsSheet(Sheet):

@@ -3,7 +3,6 @@
 # ruff: noqa: N802 - Qt names its events and says what they are
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import inf
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
@@ -15,50 +14,14 @@ from app.gui.widgets.basic import ToolButton, button, hairline, sentence
 from app.gui.widgets.folded_list import folded_list
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr
+from app.presenters.pressure import TONES, LightLimits, PressureSummary
 
 LIGHTS = ("green", "amber", "red")
 """The lights, the best first."""
 
-TONES = {"green": "ok", "amber": "warn", "red": "bad"}
-"""The tones in which lights are shown."""
 
 _ZONES = {"green": "zone_ok", "amber": "zone_warn", "red": "zone_bad"}
 _FADED = 0.4  # how strongly figures of a former shape are seen
-
-
-@dataclass(frozen=True)
-class LightLimits:
-    """From which pressures [kPa] the light is amber and red, what the lights are called, and how sure it is.
-
-    ``source`` is the first of the ``sources``, short; those and what is ``left_out`` are sentences.
-    """
-
-    amber_kpa: float
-    red_kpa: float
-    words: tuple[str, str, str]
-    source: str
-    sources: tuple[str, ...]
-    left_out: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class PressureSummary:
-    """What all bands press with: the ``largest`` pressure, its ``light`` with a ``word``, what that ``says``.
-
-    ``place`` is where it is, short, ``place_tip`` longer; ``force`` all of the force.
-
-    ``marks`` are the lines with a pressure, each its title, colour and largest pressure [kPa]. Without any
-    ``largest`` is empty and ``says`` tells why.
-    """
-
-    largest: str
-    light: str
-    word: str
-    place: str
-    place_tip: str
-    says: str
-    force: str
-    marks: tuple[tuple[str, str, float], ...]
 
 
 class LightMark(QWidget):

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QEvent, QObject, QSettings, Qt, QTimer
 from PySide6.QtGui import QCursor, QKeyEvent
 
-from app.gui.theme.stylesheet import tone_of
 from app.gui.widgets.tooltip import show_tip
 from app.i18n.catalog import joined, say, tr
 from app.i18n.lengths import arrow_step
+from app.presenters.landmarks import tone_of
 from app.presenters.scan import kind_of, landmark_title, landmark_views, other_side, spot_of
 from core.document.design import Design
 from core.geometry.mesh import Points

@@ -9,12 +9,13 @@ from PySide6.QtCore import QElapsedTimer, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QApplication, QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
-from app.gui.features.landmarks.row import LandmarkRow, LandmarkView
+from app.gui.features.landmarks.row import LandmarkRow
 from app.gui.theme.stylesheet import label, tokens_of
 from app.gui.widgets.basic import Disclosure, EmptyState, ToolButton, button, hairline, sentence
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import joined, say, tr
 from app.i18n.lengths import arrow_step, length
+from app.presenters.landmarks import LandmarkView
 
 
 def keys_in_words() -> list[tuple[str, str]]:

@@ -15,9 +15,7 @@ from app.gui.widgets.tooltip import set_tip
 from app.gui.widgets.value_edit import FigureField
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import shown_digits, shown_value
-
-Mark = tuple[float, str, str]
-"""A limit that is marked on the bar: value, tone and word."""
+from app.presenters.maps import Mark
 
 TICKS = 5
 """Numbers beside the bar, those at its ends included."""

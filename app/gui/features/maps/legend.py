@@ -4,42 +4,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from PySide6.QtCore import QEvent, Signal
 from PySide6.QtWidgets import QHBoxLayout, QMenu, QVBoxLayout, QWidget
 
-from app.gui.features.maps.color_bar import LegendBar, Mark
-from app.gui.plots.live_plot import PullTitle, Quantity
+from app.gui.features.maps.color_bar import LegendBar
+from app.gui.plots.live_plot import PullTitle
 from app.gui.theme.stylesheet import label
 from app.gui.widgets.basic import FloatingPanel, ToolButton
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 from app.i18n.lengths import shown_unit
+from app.presenters.maps import MapKind
+from app.presenters.plot_series import Quantity
 
 WIDTH = 152
 """Width of what is inside the panel, whatever map it is [px]."""
 
 SIZES = "full", "small", "folded"
 """How much room it takes, the usual first."""
-
-
-@dataclass(frozen=True)
-class MapKind:
-    """A map that can be chosen: title, unit, what it means, in words a tooltip long, and a line below.
-
-    ``both_ways``: its values go both ways from zero, and so does its range. ``marks`` are limits on its
-    bar: value, tone and word.
-    """
-
-    name: str
-    title: str
-    unit: str
-    tip: str
-    note: str
-    digits: int = 1
-    both_ways: bool = False
-    marks: tuple[Mark, ...] = ()
 
 
 class Legend(FloatingPanel):

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from PySide6.QtCore import QEvent, Qt, Signal
 from PySide6.QtGui import QKeyEvent
@@ -16,43 +16,8 @@ from app.gui.widgets.landmark_combo import MarkField
 from app.gui.widgets.tooltip import set_tip
 from app.gui.widgets.value_edit import FigureField
 from app.i18n.catalog import tr
+from app.presenters.custom_measures import Draft
 from core.document.custom_measures import FURTHEST, LONGEST_NAME
-
-
-@dataclass(frozen=True)
-class Draft:
-    """A measure that is being made: as long as no place is chosen for an end, that is empty.
-
-    A girth lies ``level`` [mm] above the landmark ``at``, or above the lowest point of the scan if that is
-    empty. An empty ``name`` leaves it to Busk.
-    """
-
-    name: str = ""
-    kind: str = "straight"
-    ends: tuple[str, str] = ("", "")
-    at: str = ""
-    level: float = 0.0
-
-    def picked(self, mark: str) -> Draft:
-        """Return it with a landmark that was clicked: the next end, or given up if it was one already."""
-        if self.kind == "girth":
-            return replace(self, at=mark, level=self.level if self.at else 0.0)
-        start, end = self.ends
-        if mark in self.ends:
-            return replace(self, ends=("" if start == mark else start, "" if end == mark else end))
-        return replace(self, ends=(mark, end) if not start else (start, mark))
-
-    def stepped_back(self) -> Draft:
-        """Return it without the landmark that was chosen last."""
-        if self.kind == "girth":
-            return replace(self, at="", level=0.0)
-        start, end = self.ends
-        return replace(self, ends=(start, "") if end else ("", ""))
-
-    @property
-    def marks(self) -> tuple[str, ...]:
-        """The landmarks it is taken at so far."""
-        return tuple(mark for mark in ((self.at,) if self.kind == "girth" else self.ends) if mark)
 
 
 class MeasureEditor(QWidget):

@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, cast
 
 from PySide6.QtCore import QObject, QPointF
 
-from app.gui.features.measurements.custom_measure_editor import Draft
 from app.gui.features.measurements.panel import ResultPanel
 from app.gui.session.jobs import Job
 from app.gui.viewport.drawing_tool import Hand
 from app.i18n.catalog import say, tr
-from app.presenters.custom_measures import draft_of, measure_of, said_of, suggested_name
+from app.presenters.custom_measures import Draft, draft_of, measure_of, said_of, suggested_name
 from app.presenters.scan import landmark_title
 from core.document.custom_measures import OwnMeasure
 from core.errors import UserError

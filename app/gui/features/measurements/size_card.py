@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from html import escape
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
@@ -15,41 +13,11 @@ from app.gui.widgets.tooltip import set_tip
 from app.gui.widgets.value_edit import FigureField
 from app.i18n.catalog import tr
 from app.i18n.lengths import length, length_number
+from app.presenters.sizes import SizeView
 from core.measurements.sizes import ALLOWANCE
 
 COLUMNS = 3
 """Other systems that stand beside each other."""
-
-
-@dataclass(frozen=True)
-class SizeView:
-    """The size in one system: how it is written, the rule that found it, and what lies ``near`` it.
-
-    ``short`` is the system in a few letters, ``system`` its name; ``doubts`` are what is uncertain in it.
-    Where others may find quite another size, ``caution`` says so in a few words and ``doubt`` in a sentence.
-    ``within`` says which other sizes lie within what the girths may be off.
-    """
-
-    key: str
-    short: str
-    size: str
-    rule: str
-    near: tuple[str, ...]
-    system: str
-    doubts: tuple[str, ...]
-    caution: str = ""
-    doubt: str = ""
-    within: str = ""
-
-    @property
-    def title(self) -> str:
-        """System and size, as one says them."""
-        return f"{self.short} {self.size}"
-
-    @property
-    def tip(self) -> str:
-        """What is told under the pointer, wrapped as it is rich."""
-        return "".join(f"<p>{escape(each)}</p>" for each in (self.system, *self.doubts))
 
 
 class SizeCard(QWidget):

@@ -12,12 +12,12 @@ from PySide6.QtGui import QImage, QImageReader
 from PySide6.QtWidgets import QMenu
 
 from app.gui.features.project.project_card import ProjectView
-from app.gui.plots.status_chip import state_title
 from app.gui.session.project_thumbnail import STATE
 from app.gui.session.settings import wish
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 from app.presenters.assessment import headline
+from app.presenters.states import state_title
 from core.document.storage.project_file import is_project, picture_bytes
 from core.garment.assessment import BAD, CAUTION
 from core.mechanics.convergence import STATES

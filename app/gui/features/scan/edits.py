@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
@@ -14,26 +14,9 @@ from app.gui.widgets.tooltip import set_tip
 from app.gui.widgets.value_edit import FigureField
 from app.i18n.catalog import joined, say, tr
 from app.i18n.lengths import length
+from app.presenters.scan import EditsView, HoleView
 from core.errors import UserError
 from core.scan.edits import UNEDITED, ScanEdits
-
-
-@dataclass(frozen=True)
-class HoleView:
-    """An open hole: its sentence and its centre (x, y, z) [mm]."""
-
-    text: str
-    centre: tuple[float, float, float]
-
-
-@dataclass(frozen=True)
-class EditsView:
-    """The edits of a scan that is ``height`` high [mm], and its open holes, the largest first."""
-
-    edits: ScanEdits
-    height: float
-    holes: tuple[HoleView, ...] = ()
-    more: str = ""
 
 
 class LevelField(FigureField):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
@@ -12,21 +10,10 @@ from app.gui.widgets.basic import button
 from app.gui.widgets.tooltip import set_tip
 from app.gui.widgets.value_edit import FigureField
 from app.i18n.catalog import tr
+from app.presenters.scan import LeanView
 
 MOST = 45.0
 """The largest lean that can be typed [degrees]."""
-
-
-@dataclass(frozen=True)
-class LeanView:
-    """The lean of a body in its file that is corrected, ``forward`` and to its ``left`` [degrees].
-
-    ``upright`` is the up direction "x,y,z" that sets a leaning body upright; empty if it does not lean.
-    """
-
-    forward: float
-    left: float
-    upright: str = ""
 
 
 class AngleField(FigureField):

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from html import escape
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QScrollArea, QVBoxLayout, QWidget
 
-from app.gui.features.scan.edits import EditsView, ScanEditor
-from app.gui.features.scan.lean_editor import LeanEditor, LeanView
+from app.gui.features.scan.edits import ScanEditor
+from app.gui.features.scan.lean_editor import LeanEditor
 from app.gui.theme.stylesheet import label, set_tag
 from app.gui.widgets.basic import EmptyState, Segment, button, hairline, sentence
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, say, tr
+from app.presenters.scan import LeanView, ScanView
 from app.presenters.scan_formats import KINDS
 
 UNITS = ("mm", "cm", "m", "inch")
@@ -23,29 +23,6 @@ UNITS = ("mm", "cm", "m", "inch")
 
 AXES = tuple(f"{sign}{name}" for name in "xyz" for sign in "+-")
 """Axes of a file, as a scan is told them."""
-
-
-@dataclass(frozen=True)
-class ScanView:
-    """What is shown of a scan: ``reason`` why this ``unit``; ``up`` and ``front`` are axes of the file.
-
-    ``notes`` are further sentences on it; ``told`` names what was not found but told: unit, up, front.
-    ``edits`` and ``lean`` are None for a scan that cannot be edited, as it is not upright.
-    """
-
-    file: str
-    unit: str
-    reason: str
-    sure: bool
-    up: str
-    front: str
-    triangles: int
-    repairs: tuple[str, ...]
-    notes: tuple[str, ...] = ()
-    told: frozenset[str] = frozenset()
-    edits: EditsView | None = None
-    coloured: bool = False
-    lean: LeanView | None = None
 
 
 class ScanPanel(QWidget):

@@ -15,28 +15,8 @@ from app.gui.widgets.tooltip import set_tip
 from app.gui.widgets.value_edit import FigureField
 from app.i18n.catalog import tr
 from app.i18n.lengths import length_unit
+from app.presenters.scan_comparison import FigureRow, NumberRow
 from core.analysis.calibration.api import THICKEST
-
-
-@dataclass(frozen=True)
-class FigureRow:
-    """Predicted less real of some skin, as it is written: mean, root of the mean square, 95 % [mm]."""
-
-    title: str
-    mean: str
-    rms: str
-    most: str
-
-
-@dataclass(frozen=True)
-class NumberRow:
-    """A number that was found, as it is written: before, after, its ±; and whether it is ``told`` well."""
-
-    title: str
-    before: str
-    after: str
-    plus_minus: str
-    told: bool = True
 
 
 @dataclass(frozen=True)

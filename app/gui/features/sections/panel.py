@@ -9,7 +9,7 @@ from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPainterPath, QPaintEvent, QPen, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QSlider, QStyle, QStyleOptionSlider, QVBoxLayout, QWidget
 
-from app.gui.plots.live_plot import PullTitle, Quantity
+from app.gui.plots.live_plot import PullTitle
 from app.gui.plots.section_plot import Drawn, ProfilePlot
 from app.gui.plots.uncertainty_band import paint_band
 from app.gui.session.settings import wish, wish_for
@@ -20,6 +20,7 @@ from app.gui.widgets.tooltip import set_tip
 from app.gui.widgets.value_edit import FigureField
 from app.i18n.catalog import tr
 from app.i18n.lengths import arrow_step, length, length_unit
+from app.presenters.plot_series import Quantity
 
 STEPS = 2
 """Places of the slider in a step of an arrow key."""

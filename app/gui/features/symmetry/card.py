@@ -3,8 +3,6 @@
 # ruff: noqa: N802 - Qt names its events and says what they are
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWidget
@@ -13,42 +11,11 @@ from app.gui.theme.stylesheet import font, label, set_tag, tokens_of
 from app.gui.widgets.basic import Disclosure, button, hairline, sentence
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
+from app.presenters.symmetry import EvenSummary, EvenView
 
 _FADED = 0.4  # how strongly bars of a former shape are seen
 _BAR = QSize(26, 20)
 _HEAD = 4  # figures that are always seen, the most telling first
-
-
-@dataclass(frozen=True)
-class EvenView:
-    """One figure: its title, the ``before`` and ``after`` as they are written, and what is told of it.
-
-    ``shares`` say how far the bar goes before and after, -1 to 1: positive towards the left; None where
-    there is no side or it is not known. ``off`` is how far it may be off, as it is written; a difference
-    ``within`` that may be none.
-    """
-
-    title: str
-    before: str
-    after: str
-    tip: str
-    shares: tuple[float | None, float | None] = (None, None)
-    off: str = ""
-    within: bool = False
-
-
-@dataclass(frozen=True)
-class EvenSummary:
-    """What the card says: a sentence, figures, ``notes`` on them, and what making it even begins with.
-
-    ``hint`` says what is done first, or why nothing can be; ``possible`` whether anything can.
-    """
-
-    says: str
-    views: tuple[EvenView, ...]
-    notes: tuple[str, ...]
-    hint: str
-    possible: bool
 
 
 class EvenBar(QWidget):

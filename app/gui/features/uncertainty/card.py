@@ -2,27 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.gui.theme.stylesheet import label, set_tag
 from app.gui.widgets.basic import hairline, sentence
 from app.gui.widgets.folded_list import folded_list
 from app.i18n.catalog import tr
-
-
-@dataclass(frozen=True)
-class SpreadView:
-    """What stands in the card: what ± means, or why there is none yet; what the other skin ``contact`` makes.
-
-    ``faint`` words are of a former shape. ``short`` stands at the head of the measures and leads here.
-    """
-
-    meaning: str
-    contact: str = ""
-    faint: bool = False
-    short: str = ""
+from app.presenters.uncertainty import SpreadView
 
 
 class SpreadCard(QWidget):

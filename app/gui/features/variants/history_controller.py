@@ -11,16 +11,16 @@ from PySide6.QtCore import QObject, Qt, QTimer
 from PySide6.QtGui import QImage
 
 from app.gui.features.variants.history_panel import HistoryPanel
-from app.gui.plots.status_chip import TONES
 from app.gui.widgets.thumbnail_list import PictureRow
 from app.i18n.catalog import colon, number, tr
 from app.presenters.bust_shift import bust_move, bust_sentence
 from app.presenters.convergence import is_result
+from app.presenters.states import TONES
 from core.document.design import Design
 from core.document.document import Document
-from core.export.solution_report import kept_volume
 from core.garment.assessment import PENDING
 from core.pipeline.frame import Frame
+from core.pipeline.warnings import kept_volume
 
 if TYPE_CHECKING:
     from app.gui.main_window import MainWindow

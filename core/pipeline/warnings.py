@@ -1,0 +1,78 @@
+"""Warnings about a solution and its shape, in sentences."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from core.geometry.mesh import Points
+from core.mechanics.convergence import Verdict
+from core.pipeline.build import Stages
+
+
+class Shown(Protocol):
+    """A body as it is shown, a ``Frame`` or a ``Solution``: control points (n, 3) [mm], and how it stands."""
+
+    @property
+    def stages(self) -> Stages:
+        """What it was made of."""
+
+    @property
+    def control_points(self) -> Points:
+        """Where the control points are [mm]."""
+
+    @property
+    def verdict(self) -> Verdict:
+        """How the run stands."""
+
+
+def kept_volume(shown: Shown) -> tuple[float, float]:
+    """Return how far the volume that is kept is from the one at rest, of that of the control mesh [%, ml].
+
+    It is the body's own where the exact answer keeps that, else that of the control mesh; while it swings,
+    the mean of its swing.
+    """
+    stages, rest = shown.stages, shown.stages.model.volume.rest_volume
+    if shown.verdict.state == "vibrating":
+        change = shown.verdict.error * rest
+    elif stages.design.dense_volume and stages.design.volume == "exact":
+        change = float(stages.body_change(shown.control_points).sum())
+    else:
+        change = stages.model.volume.volume(shown.control_points) - rest
+    return 100.0 * change / rest, change / 1000.0
+
+
+def shape_warnings(shown: Shown) -> list[str]:
+    """Return in a sentence what is wrong with a folded or overstrained shape."""
+    condition, state = shown.verdict.condition, shown.verdict.state
+    if condition is None or state not in ("folded", "overstrained"):
+        return []
+    if state == "folded":
+        turn = f"{condition.largest_turn:.0f}"
+        said = f"The shape is folded: a triangle of the control mesh has turned by {turn} degrees."
+    else:
+        low, high = f"{100.0 * condition.shortest:.0f}", f"{100.0 * condition.longest:.0f}"
+        said = f"The shape is overstrained: edges of the mesh have {low} to {high} % of their rest lengths."
+    return [" ".join((said, "It does not tell how a body would look."))]
+
+
+def still_lines(stages: Stages) -> list[str]:
+    """Return a sentence for each line that is worn where no length can move anything.
+
+    One that is made of an elastic is there to be cut: of it there is nothing to be told.
+    """
+    own = {line.name for line in stages.design.own_lines}
+    still = [line.name for line in stages.model.lines if not line.constrains]
+    return [
+        f"{name} lies on points that do not move: it is measured, and no length that is set moves it."
+        if name in own
+        else f"{name} lies on the rib cage: it is measured, and no length that is set moves it."
+        for name in still
+        if name in stages.design.worn() and name not in stages.design.worn_elastics()
+    ]
+
+
+def warnings(stages: Stages) -> list[str]:
+    """Return in sentences what did not go as well as it should on the way to the model."""
+    patch = stages.patch
+    faded = [] if patch.rule == "flood" else [f"The reshaped part fades by distance: {patch.reason}"]
+    return [*stages.control.warnings, *faded]
