@@ -28,9 +28,10 @@ setup:  ## prepare the system libraries and .venv, nothing else
 setup-test:
 	@sh packaging/setup.sh test
 
-lint: setup  ## style: ruff check and ruff format --check
+lint: setup  ## style and import rules: ruff check, ruff format --check, lint-imports
 	@$(python) -m ruff check .
 	@$(python) -m ruff format --check .
+	@.venv/bin/lint-imports --no-cache --config pyproject.toml
 
 types: setup  ## types: mypy, strict in core
 	@$(python) -m mypy

@@ -13,7 +13,7 @@ from contextlib import chdir
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
+sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "helpers")]
 
 from app.rendering.display import off_screen  # noqa: E402
 

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 import trimesh
 
-sys.path[:0] = [str(Path(__file__).parent.parent), str(Path(__file__).parent.parent / "tests")]
+sys.path[:0] = [str(Path(__file__).parent.parent), str(Path(__file__).parent.parent / "tests" / "helpers")]
 
 import altered_bodies as shape  # noqa: E402
 import worn_scans as worn  # noqa: E402

@@ -11,10 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path[:0] = [str(Path(__file__).parent.parent), str(Path(__file__).parent.parent / "tests")]
+sys.path[:0] = [str(Path(__file__).parent.parent), str(Path(__file__).parent.parent / "tests" / "helpers")]
 
 from breast_shapes import cap  # noqa: E402 - the shapes of the tests
-from test_geodesic import BALL, between, cone, length, ring, sheet, tube  # noqa: E402
 
 from app.research.ground_truth import Truth, read_truths  # noqa: E402
 from core.geometry.geodesic import shortest_way  # noqa: E402
@@ -22,6 +21,7 @@ from core.geometry.mesh import Mesh  # noqa: E402
 from core.landmarks.torso.cross_sections import trunk_levels  # noqa: E402
 from core.measurements.breast_volume import breast_of  # noqa: E402
 from core.scan.body import read_scan  # noqa: E402
+from tests.core.geometry.test_geodesic import BALL, between, cone, length, ring, sheet, tube  # noqa: E402
 
 
 def girths(folder: Path, truth: Truth) -> Iterator[tuple[str, float, float]]:

@@ -3,7 +3,7 @@
     python packaging/release_files.py           tests/releases/VERSION: the projects and their figures
     python packaging/release_files.py again 0.1.0    the figures alone, as the present program finds them
 
-Later versions open every one of them: tests/test_releases.py. Once a version is published its projects are
+Later versions open every one of them: tests/end_to_end. Once a version is published its projects are
 never written again; its figures are only where the method was changed on purpose, which the list of changes
 then says.
 """

@@ -1,4 +1,4 @@
-"""The menus of the window and the one way to add to them; what is asked of it stands in ``app.gui.actions``."""
+"""The menus of the window and the one way to add to them; what is asked of it stands in ``actions``."""
 
 from __future__ import annotations
 

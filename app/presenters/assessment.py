@@ -16,7 +16,7 @@ IDLE = "idle"
 
 @dataclass(frozen=True)
 class AssessmentView:
-    """An overall verdict: ``level`` is IDLE or one of ``core.garment.assessment.LEVELS``, ``headline`` its words.
+    """An overall verdict: ``level`` is IDLE or one of ``LEVELS``, ``headline`` its words.
 
     ``reasons`` are ranked, the worst first: what is wrong, and what to do, which may be empty.
     ``waiting`` names what is being computed, or is empty.

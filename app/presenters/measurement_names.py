@@ -10,7 +10,7 @@ from core.measurements.custom import OWN
 
 
 def measure_title(row: Mapping[str, Any]) -> str:
-    """Return what a row of ``core.measurements.table.measure_rows`` is called; names of one's own as they are."""
+    """Return what a row of ``measure_rows`` is called; names of one's own as they are."""
     sides = {"left": tr("{what}, left"), "right": tr("{what}, right")}
     title = row["title"] if row["key"].startswith(OWN) else say(row["title"])
     return sides.get(row["side"], "{what}").format(what=title)

@@ -21,7 +21,7 @@ SAME_WAY = 0.3
 BACKWARD = -0.5
 """A triangle whose cosine is below this faces backward; deep in a fold it may face either way.
 
-A few that lie across the skin do no harm: bodies over them reshape without spikes (tests/test_fit_troubles).
+A few that lie across the skin do no harm: bodies over them reshape without spikes.
 """
 
 SHARPEST = 130.0

@@ -20,7 +20,7 @@ WELL = 0.05
 
 @dataclass(frozen=True)
 class FoundNumber:
-    """One number that was found: ``name`` as ``core.analysis.calibration.parameters`` says it, ``after`` with its ±.
+    """One number that was found: ``name`` as ``parameters`` says it, ``after`` with its ±.
 
     Both in the unit of the setting. ``kept`` tells that the scans could not tell it, so it stayed.
     """

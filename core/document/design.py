@@ -42,7 +42,7 @@ class Design:
     mid-bust line runs between fold (0) and bust point (1). ``gain`` [probe units] is that of the conventional
     force; None stands for 0.97 of the limit at which it starts to vibrate at rest. ``scaled_normals`` lets
     what stands off the control mesh grow with it; ``dense_volume`` lets the exact answer hold the volume of
-    the body itself and not that of the control mesh. For the choices of the model see ``core.mechanics.options``.
+    the body itself and not that of the control mesh. For the choices of the model see ``options``.
     ``own_lines`` are lines beside those of the template, ``traits`` how lines are treated where that is
     not as usual, ``placed`` the landmarks that were placed by hand, ``own_measures`` what is measured beside
     the usual, ``elastics`` those that lines are made of, with their curves, so that a project opens

@@ -38,7 +38,7 @@ class OwnLine:
     """A line of the designer's own; "closed" goes round.
 
     It runs through control points of the template, by number, or is a free line through ``places`` between
-    them, by row and column of the template (``core.control_mesh.embedding``). One that goes ``over_shoulder`` runs on from
+    them, by row and column of the template (``embedding``). One that goes ``over_shoulder`` runs on from
     its upper end down the back to the under-bust band. Raises LineError if it has no name, does not go from
     point to point, or is closed and goes over the shoulder.
     """

@@ -20,7 +20,7 @@ from core.pipeline.build import Stages
 class PressRow:
     """What one worn line presses with, or why that is not known: then its figures are None.
 
-    ``where`` is the place that is pressed most, see ``core.garment.body_location``, ``height_mm`` that above the
+    ``where`` is the place that is pressed most, see ``body_location``, ``height_mm`` that above the
     lowest point of the scan, ``place`` the same as x, y, z [mm]. ``light`` is "green", "amber" or "red".
     ``force_n`` is all that the band presses with, whichever way; ``notes`` are sentences.
     """

@@ -1,7 +1,7 @@
 """How an exact answer moves with the tissue: its tie to the chest, the prestress of its cables (ours).
 
 Each enters the balance by a force that its change alone makes; the rest is the linear system that
-``core.mechanics.sensitivity`` solves. For stiffness and lengths of lines see ``core.mechanics.stiffness_sensitivity``.
+``sensitivity`` solves. For stiffness and lengths of lines see ``stiffness_sensitivity``.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from core.mechanics.sensitivity import Answer, Rates
 def by_ground(answer: Answer, ground: Floats) -> Rates:
     """Return the rates by ``Mechanics.firm_chest`` [mm / 1].
 
-    ``ground`` (f,) ties each free point to its rest where that is 1; see ``core.mechanics.tensegrity.firm_ground``.
+    ``ground`` (f,) ties each free point to its rest where that is 1; see ``firm_ground``.
     """
     return answer.by_forces((ground[:, None] * answer.place.moved).reshape(-1, 1))
 
@@ -34,6 +34,6 @@ def by_prestress(answer: Answer) -> Rates:
 def by_net(prestress: float) -> float:
     """Return how the logarithm of what a net of prestressed cables resists with goes with it [1].
 
-    See ``core.mechanics.force_units.net_stiffness``: an elastic of so many newtons is softer beside a stiffer net.
+    See ``net_stiffness``: an elastic of so many newtons is softer beside a stiffer net.
     """
     return 1.0 / (3.0 + prestress)

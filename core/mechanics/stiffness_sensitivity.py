@@ -1,7 +1,7 @@
 """How an exact answer moves with what lines are made of: derivatives by stiffness and force curves (ours).
 
 A line's own force, a little more of it, is what a little more stiffness adds to the balance; the matrix is
-that of the lengths (``core.mechanics.sensitivity``). A line made of elastic has the secant of its curve at the
+that of the lengths (``sensitivity``). A line made of elastic has the secant of its curve at the
 elongation it comes to, which moves too: how far is one small system more.
 """
 

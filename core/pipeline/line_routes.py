@@ -32,7 +32,7 @@ class Route:
 def tails_of(
     skin: Mesh, control: ControlMesh, own: tuple[OwnLine, ...], backs: Mapping[str, Back]
 ) -> dict[str, Tail]:
-    """Return the tails of those ``own`` lines that go over the shoulder, by line; see ``core.control_mesh.straps``."""
+    """Return the tails of those ``own`` lines that go over the shoulder, by line; see ``straps``."""
     tails = {}
     for line in own:
         if line.over_shoulder:

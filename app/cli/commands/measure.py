@@ -26,7 +26,7 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class Measured:
-    """The rows of ``core.measurements.table.measure_rows``, whether there is an after, and what to look at."""
+    """The rows of ``measure_rows``, whether there is an after, and what to look at."""
 
     rows: list[dict[str, Any]]
     solved: bool

@@ -45,7 +45,7 @@ WORDS = {"glued": "sticks to the skin", "sliding": "slides over it"}
 
 @dataclass(frozen=True)
 class Figure:
-    """One figure as it stands in a list: ``key`` see ``core.measurements.uncertain_value``; None where not known."""
+    """One figure as it stands in a list: ``key`` see ``uncertain_value``; None where not known."""
 
     key: str
     title: str

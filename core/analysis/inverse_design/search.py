@@ -1,6 +1,6 @@
 """The search for the lengths of lines that lead to what is wished, with least tension (ours).
 
-The exact answer tells how each figure moves with each length (``core.mechanics.sensitivity``), so a few answers
+The exact answer tells how each figure moves with each length (``sensitivity``), so a few answers
 lead to the wished one. First the nearest that the lines can do is found; if that is what was wished, the
 least tension among all lengths that do it.
 """

@@ -1,7 +1,7 @@
 """How far the figures of a solved design may be off: a standard deviation for each, and a band for its skin.
 
 What is not known exactly is a number in ``resources/spread.json``; it is propagated to all figures by
-derivatives (``core.analysis.uncertainty.linear_propagation``), or sampled by solving designs anew (``core.analysis.uncertainty.monte_carlo``).
+derivatives (``linear_propagation``), or sampled by solving designs anew (``monte_carlo``).
 """
 
 from __future__ import annotations

@@ -26,7 +26,7 @@ LIFT_TOLD = 0.2
 class ElasticChoice(QObject):
     """Makes lines of elastics, as one undo step.
 
-    The length of a line is then that of its elastic unstretched; see ``core.garment.elastic_options`` for what
+    The length of a line is then that of its elastic unstretched; see ``elastic_options`` for what
     is kept. What was asked for goes with the design it was asked of: another document, variant or an undo
     lets go of it.
     """

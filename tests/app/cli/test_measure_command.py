@@ -1,0 +1,125 @@
+"""`busk measure`: what it prints and writes of a scan and of a project."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+from pages_alike import alike
+
+from app.cli.main import main
+from core.document.custom_measures import OwnMeasure
+from core.document.design import Design, ScanSource
+from core.document.document import Document
+from core.document.storage.project_file import open_project, read_scan_file, save_project
+from core.measurements.definitions import DEFINITIONS, KEYS
+
+DOCS = Path(__file__).parents[3] / "docs"
+GORE = OwnMeasure("Gore", "straight", ("bust_point_left", "bust_point_right"))
+
+
+@pytest.fixture(scope="module")
+def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    sample = Path(__file__).parents[3] / "resources" / "samples" / "mannequin.ply"
+    source = ScanSource(str(sample))
+    design = Design(source, volume="exact").with_line("mid-bust", 0.95).with_own_measure(GORE)
+    path = tmp_path_factory.mktemp("measure") / "anna.busk"
+    save_project(path, Document.of(design), read_scan_file(source), b"")
+    return path
+
+
+def test_a_scan_is_measured_before_only(person: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["measure", str(person), "--own", "Ribs=girth:fold_left-30", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["measures"]
+    assert list(found) == [*(key for key in KEYS if key != "apex_lift"), "own:Ribs"]
+    assert 850.0 < found["bust_girth"]["before"] < 950.0
+    assert found["bust_girth"]["after"] is None
+    assert found["waist_girth"]["before"] is None
+    assert "no waist" in found["waist_girth"]["note"]
+    assert found["breast_volume_left"]["estimate"] is True
+    assert found["bust_girth"]["iso"] == "Bust girth"
+
+
+def test_a_project_is_measured_before_and_after(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["measure", str(project), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["measures"]
+    assert set(KEYS) < set(found)
+    assert found["apex_lift"]["after"] > 1.0
+    bust = found["bust_girth"]
+    assert bust["difference"] == pytest.approx(bust["after"] - bust["before"])
+    assert bust["difference"] < -2.0
+    assert found["own:Gore"]["after"] == found["bust_point_distance"]["after"]
+    assert found["own:Gore"]["definition"] == GORE.text
+    assert open_project(project).design.own_measures == (GORE,)
+
+
+def test_the_page_shows_what_is_printed_and_every_definition(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = (DOCS / "measures.md").read_text("utf-8")
+    assert main(["measure", str(project)]) == 0
+    shown = page.split("```text\n")[1].split("```")[0]
+    told = capsys.readouterr()
+    assert alike(shown, told.out + told.err)
+    for each in DEFINITIONS.values():
+        title = f"{each.title}, left and right" if each.sided else each.title
+        assert f"| {title} | {each.unit} | {each.iso or '-'} | {each.text} |" in page
+        picture = f"pictures/measures/{each.key}.png"
+        assert f"| ![{each.title}]({picture}) | {title} |" in page
+        assert (DOCS / picture).is_file()
+
+
+def test_a_long_name_of_ones_own_keeps_the_columns(person: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    name = "Bust point left to the middle of the front, straight"
+    assert main(["measure", str(person), "--own", f"{name}=straight:bust_point_left,front_centre"]) == 0
+    heading, first, *_, last = capsys.readouterr().out.splitlines()
+    assert last.startswith(f"{name} ")
+    assert first.index(" mm") == last.index(" mm") == len(heading)
+
+
+def test_text_and_table_tell_the_same(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["measure", str(project)]) == 0
+    text = capsys.readouterr().out.splitlines()
+    assert text[0].startswith("Verdict: ")
+    text = text[next(row for row, line in enumerate(text) if "before" in line) :]
+    assert main(["measure", str(project), "--csv"]) == 0
+    rows = list(csv.DictReader(capsys.readouterr().out.splitlines()))
+    assert len(text) == len(rows) + 1
+    for line, row in zip(text[1:], rows, strict=True):
+        assert line.startswith(row["title"])
+        if row["after"]:
+            assert f"{float(row['after']):z.1f}" in line
+        else:
+            assert row["note"] in line
+
+
+def test_it_is_written_whole_by_the_ending_of_its_name(person: Path, tmp_path: Path) -> None:
+    for name in ("a.json", "a.csv", "a.txt"):
+        assert main(["measure", str(person), "--out", str(tmp_path / name)]) == 0
+    assert json.loads((tmp_path / "a.json").read_text("utf-8"))["versions"]
+    assert len(list(csv.DictReader((tmp_path / "a.csv").read_text("utf-8").splitlines()))) == len(KEYS) - 1
+    assert "Bust girth" in (tmp_path / "a.txt").read_text("utf-8")
+
+
+def test_a_wished_form_counts_more_than_the_ending(person: Path, tmp_path: Path) -> None:
+    assert main(["measure", str(person), "--json", "--out", str(tmp_path / "a.txt")]) == 0
+    assert json.loads((tmp_path / "a.txt").read_text("utf-8"))["versions"]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--own", "Gore=straight:nose,chin"], "no landmark nose"),
+        (["--out", " "], "has no name"),
+        (["--own", "A=girth:900", "--own", "B=straight:a"], "no landmark a"),
+    ],
+)
+def test_bad_words_get_one_sentence(
+    person: Path, capsys: pytest.CaptureFixture[str], words: list[str], said: str
+) -> None:
+    assert main(["measure", str(person), *words]) == 2
+    told = capsys.readouterr().err
+    assert said in told
+    assert told.count("\n") == 1

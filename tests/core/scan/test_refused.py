@@ -1,0 +1,90 @@
+"""What is no upper body is refused with its reason, at any size and tilt; a body worn hard is not."""
+
+import numpy as np
+import pytest
+from odd_objects import objects, pieces
+from scipy.spatial.transform import Rotation
+
+from core.errors import UserError
+from core.geometry.mesh import Mesh
+from core.landmarks.detect import find_landmarks
+from core.scan.body import Body
+from core.scan.orientation.pose import find_pose
+from core.scan.readers.registry import read_triangles
+from tests.core.scan.test_upright import SAMPLES, angle_between
+
+OBJECTS = objects()
+TILTED = Rotation.from_euler("xyz", (25.0, -20.0, 70.0), degrees=True).as_matrix()
+
+
+def sample(name):
+    path = SAMPLES / f"{name}.ply"
+    return read_triangles(path.name, path.read_bytes())
+
+
+PIECES = pieces(sample("mannequin"), fold=299.0, bust=347.0)
+
+
+def understood(vertices, faces):
+    """Take a shape through pose and landmarks. Raises UserError."""
+    pose = find_pose(vertices, faces)
+    turn = pose.file_to_mm[:3, :3]
+    find_landmarks(Body(Mesh(vertices @ turn.T, faces), pose, (), "thing"))
+
+
+@pytest.mark.parametrize("name", OBJECTS)
+def test_things_are_refused_at_any_size_and_tilt(name):
+    vertices, faces = OBJECTS[name]
+    for size in (1.0, 1.5):  # so that its size alone cannot refuse it
+        with pytest.raises(UserError, match=r"\.$"):
+            understood(size * vertices @ TILTED.T, faces)
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("left half", "Only a half|not alike"),
+        ("right half", "Only a half|not alike"),
+        ("front half", "Only a half|too flat"),
+        ("back half", "Only a half|too flat"),
+        ("belly", "Too little is here|no fold"),
+        ("above the bust", "no bust"),
+    ],
+)
+def test_a_piece_of_a_body_is_refused_with_its_reason(name, words):
+    with pytest.raises(UserError, match=words):
+        understood(*PIECES[name])
+
+
+def holes(vertices, faces, radius=28.0):
+    """Cut round holes, one of them large, under a breast."""
+    middles = np.array(
+        [(105.0, -190.0, 285.0), (-60.0, 0.0, 350.0), (0.0, -200.0, 150.0), (90.0, -30.0, 450.0)]
+    )
+    away = np.linalg.norm(vertices[:, None] - middles, axis=2) - [20.0, 0.0, 0.0, 0.0]
+    return vertices, faces[(away.min(axis=1) > radius)[faces].all(axis=1)]
+
+
+def without_left_breast(vertices, faces):
+    """Press the left breast flat."""
+    out = vertices.copy()
+    near = (
+        (np.abs(vertices[:, 0] - 95.0) < 85.0)
+        & (np.abs(vertices[:, 2] - 345.0) < 85.0)
+        & (vertices[:, 1] < -90.0)
+    )
+    out[near, 1] = np.maximum(vertices[near, 1], -165.0)
+    return out, faces
+
+
+def with_a_gap(vertices, faces):
+    """Take out a level of the trunk, all round, as if a belt had hidden it."""
+    return vertices, faces[(np.abs(vertices[:, 2] - 200.0) > 8.0)[faces].all(axis=1)]
+
+
+@pytest.mark.parametrize("worn", [holes, without_left_breast, with_a_gap])
+def test_a_body_that_was_worn_hard_is_understood(worn):
+    vertices, faces = worn(*sample("mannequin"))
+    pose = find_pose(vertices @ TILTED.T, faces)
+    assert pose.unit == "mm"
+    assert angle_between(pose, TILTED) < 3.0

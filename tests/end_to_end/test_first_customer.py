@@ -1,0 +1,201 @@
+"""The walk of docs/first.md through the real window: from a scan file to the sheet and the saved project."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from garment_tools import at_rest, cut_rows, pick
+from pdf_tools import Pdf
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+from window_tools import Script, drag, run_main, settled, undrawn
+
+from app.gui.main_window import MainWindow
+from app.gui.widgets.elastic_button import ElasticPull
+from app.presenters.bust_shift import bust_move, move_between
+from app.presenters.samples import lifted_sample
+from core.document.design import ScanSource
+from core.document.storage.project_file import open_project
+from core.garment.cut_list import cut_list
+from core.garment.match_shape import reached_points
+from core.garment.pressure_limits import comfort
+from core.garment.pressure_list import press_list
+from core.pipeline.build import Stages, build
+from tests.end_to_end.test_model_panel import choose
+from tests.end_to_end.test_window_scan import pull
+
+DOCS = Path(__file__).parents[2] / "docs"
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+@pytest.fixture(autouse=True)
+def own_house(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, person: Path) -> None:
+    """A customer's scan, and answers to the dialogs of files."""
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+    shutil.copy(person, tmp_path / "anna.ply")
+    monkeypatch.setattr("app.gui.document_controller.ask_open", lambda *_: str(tmp_path / "anna.ply"))
+    monkeypatch.setattr("app.gui.document_controller.ask_save", lambda *_: str(tmp_path / "anna.busk"))
+    monkeypatch.setattr("app.gui.features.report.controller.ask_save", lambda *_: str(tmp_path / "anna.pdf"))
+
+
+def test_the_first_customer_as_the_guide_tells_it(tmp_path: Path) -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        yield from opened(window)
+        yield from corrected(window)
+        yield from banded(window)
+        yield from cut(window)
+        yield from pressed(window)
+        yield from printed(window, tmp_path)
+        yield from kept(window, tmp_path)
+
+    assert run_main([], script) == 0
+
+
+def opened(window: MainWindow) -> Script:
+    """Steps 1 to 3: the tour is there and skipped, the scan is opened and understood."""
+    mark = window.start_desk.tour.mark
+    yield mark.isVisible
+    QTest.keyClick(mark, Qt.Key.Key_Escape)
+    assert not mark.isVisible()
+    window.actions_.open.trigger()
+    yield lambda: window.session.design is not None and "anna" in window.session.design.scan.path
+    yield settled(window)
+    assert window.rail.current() == "scan", "unit and front are looked at first"
+    assert window.inspector.isVisible()
+    frame = window.session.frame
+    assert frame is not None
+    assert frame.stages.body.pose.unit == "mm"
+    assert frame.stages.body.pose.front == "-y"
+    assert frame.stages.design.worn() == set(), "a scan is opened with no line set"
+
+
+def corrected(window: MainWindow) -> Script:
+    """Steps 4 and 5: a pin is dragged, seen from the front."""
+    window.rail.items["landmarks"].click()
+    window.view.viewport.set_view("front")
+    assert window.session.frame is not None
+    before = window.session.frame.stages.landmarks.position("bust_point_left")
+    pull(window, "bust_point_left", QPoint(0, -6))
+    yield settled(window)
+    assert window.session.frame is not None
+    landmarks = window.session.frame.stages.landmarks
+    assert landmarks.points["bust_point_left"].by_hand
+    assert 2.0 < float(np.linalg.norm(landmarks.position("bust_point_left") - before)) < 25.0
+
+
+def banded(window: MainWindow) -> Script:
+    """Steps 6 to 10: a wide elastic band that slides is put on and dragged shorter; the bust rises."""
+    window.rail.items["lines"].click()
+    window.desk.show_model()
+    choose(window, "line_contact", "sliding")
+    choose(window, "line_height", "70")
+    yield settled(window)
+    design = window.session.design
+    assert (design.line_contact, design.line_height) == ("sliding", 0.7)
+    window.inspector.open("lines")
+    window.desk.select_line("mid-bust")
+    window.lines.rows["mid-bust"].details.findChild(ElasticPull).click()
+    yield from pick(window, "Power-net band 80 mm")
+    yield settled(window)
+    drag(window, "mid-bust", -40)
+    yield settled(window)
+    assert window.session.design.worn_elastics().keys() == {"mid-bust"}
+    assert window.session.frame is not None
+    lift = bust_move(window.session.frame).mean.up
+    assert lift > 0.2
+    window.lines_desk.commit_length("mid-bust", 0.68)
+    yield settled(window)
+    assert bust_move(window.session.frame).mean.up > lift + 1.0
+    # The word stands a while before another takes its place.
+    yield lambda: window.strip.chip.state() not in ("pending", "bad")
+    for shown in (1.0, 0.0):
+        window.actions_.flip.trigger()
+        assert window.view.compare.isVisible(), shown
+
+
+def cut(window: MainWindow) -> Script:
+    """Steps 11 and 12: how long to cut it."""
+    window.inspector.open("garment")
+    yield at_rest(window)
+    row = cut_rows(window)["mid-bust"]
+    assert row.cut_mm
+    assert window.garment.rows["mid-bust"].cut.text() == f"{row.cut_mm:,.0f}"
+
+
+def pressed(window: MainWindow) -> Script:
+    """Steps 13 and 14: the band can be worn; a shorter one lifts and presses more."""
+    desk = window.pressure_desk
+    yield lambda: desk.shown is not None and at_rest(window)()
+    assert window.session.frame is not None
+    before = most(window)
+    assert before < comfort().red_kpa
+    lift = bust_move(window.session.frame).mean.up
+    window.lines_desk.commit_length("mid-bust", 0.6)
+    yield lambda: at_rest(window)() and before < most(window) < comfort().red_kpa
+    assert bust_move(window.session.frame).mean.up > lift + 1.0
+
+
+def most(window: MainWindow) -> float:
+    """The largest contact pressure [kPa]."""
+    return max(row.max_kpa or 0.0 for row in window.pressure_desk.shown.rows)
+
+
+def printed(window: MainWindow, folder: Path) -> Script:
+    """Steps 15 to 17: the customer is named, the sheet saved."""
+    desk = window.report_desk
+    window.top.primary.click()
+    desk.page.customer.setFocus()
+    QTest.keyClicks(desk.page.customer, "Anna 0412")
+    QTest.keyClick(desk.page.customer, Qt.Key.Key_Return)
+    yield desk.page.does["pdf"].isEnabled
+    desk.page.does["pdf"].click()
+    text = Pdf(folder / "anna.pdf").text()
+    assert "Anna 0412" in text
+    for row in cut_rows(window).values():
+        assert f"{row.cut_mm:,.0f}" in text
+    QTest.keyClick(window, Qt.Key.Key_Escape)
+    assert not desk.is_open
+
+
+def kept(window: MainWindow, folder: Path) -> Script:
+    """Step 18: the project is saved and opened again as it was left."""
+    window.actions_.save.trigger()
+    assert window.session.finish_saving()
+    design = window.session.design
+    assert open_project(folder / "anna.busk").customer == "Anna 0412"
+    there = []
+    window.session.opened.connect(there.append)
+    window.session.open(str(folder / "anna.busk"))
+    yield lambda: bool(there) and settled(window)()
+    assert window.session.design.lines == design.lines
+    assert window.session.design.placed == design.placed
+    assert window.session.document.customer == "Anna 0412"
+
+
+def test_the_figures_of_the_guide_are_those_of_its_steps(person: Path) -> None:
+    """Of steps 1 and 8 to 14, on the sample as the pictures show it."""
+    design = replace(lifted_sample("person"), scan=ScanSource(str(person)))
+    band = build(design)
+    (row,) = cut_list(band, reached_points(band)).rows
+    shorter = build(design.with_line("mid-bust", 0.6), band)
+    figures = [f"{row.cut_mm:.0f} mm", f"{100.0 * design.ratio('mid-bust'):.0f} %"]
+    for each in (band, shorter):
+        (most,) = press_list(each, reached_points(each)).rows
+        figures += [f"{lift(each):.1f} mm", f"{most.max_kpa:.1f} kPa"]
+    for page in ("first.md", "ja/first.md"):
+        text = (DOCS / page).read_text("utf-8")
+        assert [each for each in figures if each not in text] == []
+    for page in ("screens.md", "ja/screens.md", "install.md"):
+        assert f"{lift(band):.1f} mm" in (DOCS / page).read_text("utf-8"), page
+
+
+def lift(stages: Stages) -> float:
+    """How far the bust points stand above where they are at rest [mm]."""
+    return move_between(stages.rest_marks, stages.watch(reached_points(stages))).mean.up

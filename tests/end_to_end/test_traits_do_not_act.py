@@ -1,0 +1,66 @@
+"""Names, colours, locks and links of lines, and own measures, do not act on the model: runs go on."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from window_tools import Script, run_main, undrawn
+from window_tools import settled as at_rest
+
+from app.gui.main_window import MainWindow
+from core.document.custom_measures import OwnMeasure
+from core.document.design import Design, ScanSource
+from core.document.lines import LineTraits
+from core.pipeline.live_solver import LiveSolver
+from tests.core.pipeline.test_live import Built, settled, solver
+
+__all__ = ["solver"]
+
+RIBS = OwnMeasure("Ribs", "girth", ("fold_left",), -30.0)
+DESIGN = Design(ScanSource("a.ply")).with_line("mid-bust", 0.95)
+
+
+@pytest.mark.parametrize(
+    "what", [{"title": "Mine"}, {"colour": "#e5536b"}, {"locked": True}, {"linked": False}]
+)
+def test_what_a_line_is_called_does_not_act_and_its_stiffness_does(what: dict[str, object]) -> None:
+    assert DESIGN.acts_as(DESIGN.with_traits(LineTraits("mid-bust", **what)))  # type: ignore[arg-type]
+    assert not DESIGN.acts_as(DESIGN.with_traits(LineTraits("mid-bust", stiffness=3.0)))
+    assert not DESIGN.acts_as(DESIGN.with_line("mid-bust", 0.94))
+    assert not DESIGN.acts_as(replace(DESIGN, volume="exact"))
+
+
+def test_a_run_goes_on_over_a_new_name_and_a_measure(solver: LiveSolver, built: Built) -> None:
+    design = built("mannequin").design.with_line("mid-bust", 0.95)
+    before = settled(solver, solver.submit(design, fresh=True))
+    named = design.with_traits(LineTraits("mid-bust", "Mine"))
+    for alike in (named, named.with_own_measure(RIBS)):
+        assert design.acts_as(alike)
+        after = settled(solver, solver.submit(alike))
+        assert after.stages.design == alike
+        for control, records in before.tracks.items():
+            assert after.tracks[control] == records, "no turn is made, and none is forgotten"
+
+
+@pytest.mark.usefixtures("empty_house")
+def test_the_plots_stay_when_a_line_is_renamed_locked_or_undone() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield at_rest(window)
+        window.lines.length_committed.emit("mid-bust", 0.9)
+        yield at_rest(window)
+        frame = window.session.frame
+        assert frame is not None
+        turns = {control: len(records) for control, records in frame.tracks.items()}
+        for trait, value in (("title", "Mine"), ("colour", "#e5536b"), ("locked", True)):
+            window.lines_desk.decide("mid-bust", trait, value)
+            yield at_rest(window)
+        window.actions_.undo.trigger()
+        yield at_rest(window)
+        frame = window.session.frame
+        assert frame is not None
+        assert {control: len(records) for control, records in frame.tracks.items()} == turns
+        assert len(window.plot_desk._events) == 1, "only what acts has a mark on the axis"
+
+    assert run_main([], script) == 0

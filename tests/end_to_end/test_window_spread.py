@@ -1,0 +1,125 @@
+"""± in the real window: beside the measures, below them, round the curve of the section; faint when stale."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.window_tools import Script, run_main, settled, undrawn
+
+import app.gui.features.uncertainty.controller
+import core.analysis.uncertainty.estimate
+from app.gui.main_window import MainWindow
+from app.presenters.uncertainty import left_out_sentences
+from core.analysis.uncertainty.input_uncertainty import assumed
+from core.errors import UserError
+from core.measurements.uncertain_value import Spread
+from core.progress import Progress
+
+
+@pytest.fixture(autouse=True)
+def quick(empty_house: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Landmarks are taken as known: a fit for each takes too long for a test of the window."""
+    known = replace(assumed(), landmark_mm=0.0, unsure_landmark_mm=0.0)
+    monkeypatch.setattr(core.analysis.uncertainty.estimate, "assumed", lambda: known)
+    monkeypatch.setattr(app.gui.features.uncertainty.controller, "PAUSE", 50)
+
+
+def whole(window: MainWindow) -> bool:
+    spread, faint = window.spread_desk.shown
+    return spread is not None and not faint and bool(window.result.measured) and not window.result.stale
+
+
+def test_it_is_told_where_it_is_looked_at_and_fades_while_a_line_moves() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        desk, card = window.spread_desk, window.spread_desk.card
+        assert desk._asked is None, "nobody has looked"
+        window.desk.go_to("result")
+        yield lambda: whole(window)
+        views = {view.key: view for view in window.result.measured}
+        waist, volume = views["waist_girth"], views["breast_volume_left"]
+        assert waist.off[0] == pytest.approx(2.5, abs=0.1)
+        assert "scan 100 %" in waist.told()
+        assert views["hip_girth"].off == (), "what is not known has none"
+        assert volume.caption == "an estimate", "the ± stands beside it, with all sources"
+        assert any(view.moves == "lift" and view.off[2] for view in window.result.rows)
+        assert "twice the standard deviation" in card.meaning.text()
+        assert "slid over the skin" in card.contact.text()
+        card.folds[1].click()
+        assert all(
+            any(sentence in words.text() for words in card.findChildren(type(card.meaning)))
+            for sentence in left_out_sentences()
+        )
+        window.section_desk.set_on(True)
+        yield lambda: bool(window.section_desk.panel.plot._drawn.bands)
+        drawn = window.section_desk.panel.plot._drawn
+        assert len(drawn.bands["after"]) == len(drawn.curves["after"])
+        outline, curve = drawn.bands["after"][0], drawn.curves["after"][0]
+        gap = np.linalg.norm(outline[: len(curve)] - curve, axis=1)
+        assert gap.min() == pytest.approx(0.4, abs=0.01)  # the scan alone
+        assert gap.max() > 0.6
+        window.session.preview_line("mid-bust", 0.9)
+        yield lambda: not window.is_settled()
+        assert desk.shown[1], "of a former shape"
+        window.session.cancel_preview()
+        yield lambda: whole(window)
+
+    run_main([], script)
+
+
+def test_nothing_is_shown_before_all_sources_are_in(monkeypatch: pytest.MonkeyPatch) -> None:
+    reached, go, known = (
+        threading.Event(),
+        threading.Event(),
+        core.analysis.uncertainty.estimate.Spreading.whole,
+    )
+
+    def waiting(self: core.analysis.uncertainty.estimate.Spreading, progress: Progress) -> Spread:
+        self.quick(progress)
+        reached.set()
+        go.wait(60.0)
+        return known(self, progress)
+
+    monkeypatch.setattr(core.analysis.uncertainty.estimate.Spreading, "whole", waiting)
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.desk.go_to("result")
+        yield reached.is_set
+        yield lambda: bool(window.result.measured)
+        assert window.spread_desk.shown == (None, True)
+        assert all(view.off == () for view in window.result.measured), "what is known by then is too small"
+        go.set()
+        yield lambda: whole(window)
+        waist = next(view for view in window.result.measured if view.key == "waist_girth")
+        assert "narrowest" in waist.label
+        assert "several centimetres" in waist.told()
+
+    run_main([], script)
+
+
+def test_where_it_is_given_up_there_is_none_and_the_reason_stands_there(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def refused(*_: object) -> object:
+        raise UserError("No balance was found with the lines at these lengths.", "Set them nearer to 100 %.")
+
+    monkeypatch.setattr(core.analysis.uncertainty.estimate.Spreading, "whole", refused)
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        desk, card = window.spread_desk, window.spread_desk.card
+        window.desk.go_to("result")
+        yield lambda: "No balance was found" in card.meaning.text()
+        assert card.meaning.text().startswith("How far they may be off was not worked out.")
+        assert desk.shown == (None, True), "without the landmarks it would be too small for good"
+        yield lambda: bool(window.result.measured)
+        assert all(view.off == () for view in window.result.measured)
+
+    run_main([], script)

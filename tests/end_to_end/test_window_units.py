@@ -1,0 +1,192 @@
+"""Lengths in the real window are in the unit in use: wherever one is written, painted, read out or a tip."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from ask_tools import answered
+from garment_tools import chooser_of
+from PySide6.QtCore import QObject, QSettings
+from PySide6.QtGui import QPainter
+from PySide6.QtWidgets import QComboBox, QStyle, QStyleOptionFrame, QTreeWidget
+from window_tools import Script, points, run_main, settled
+
+import app.gui.features.uncertainty.controller
+import core.analysis.uncertainty.estimate
+from app.gui.main_window import MainWindow
+from app.gui.widgets.inline_edit import TypedField
+from app.i18n.catalog import LANGUAGES
+from core.analysis.uncertainty.input_uncertainty import assumed, origins
+from core.document.custom_measures import OwnMeasure
+from core.document.document import Document
+from core.document.storage.project_file import open_project, save_project
+from core.garment.elastic_library import built_in
+from core.pipeline.build import build
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+WRITTEN = ("text", "toolTip", "accessibleName", "accessibleDescription", "whatsThis", "statusTip")
+IN_MM = re.compile(r"(?<![A-Za-z])mm(?![A-Za-z])|millimetre|ミリ", re.IGNORECASE)
+MEANT = re.compile(
+    r"^(mm|Millimetres|ミリメートル)$"  # the unit of a file, to be chosen
+    r"|in mm, z-up|mm、z が上|Read in mm|mm で読む"  # as files hold it
+    r"|points in mm|制御点の表（mm）|in millimetres\.|プロッター用（mm）"
+    r"|−20mm, 440mm|−20mm、440mm"  # what can be typed, whatever unit is shown
+    r"|for every millimetre|1 ミリごとに"  # how cables answer
+)
+
+
+@pytest.fixture(autouse=True)
+def quick(empty_house: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Landmarks are taken as known: a fit for each takes too long for a test of the window."""
+    known = replace(assumed(), landmark_mm=0.0, unsure_landmark_mm=0.0)
+    monkeypatch.setattr(core.analysis.uncertainty.estimate, "assumed", lambda: known)
+
+
+@pytest.fixture
+def design(tmp_path: Path) -> str:
+    """A small body with two lines, one of an elastic, and a girth at a height."""
+    small = open_project(Path(__file__).parents[1] / "releases/0.1.0/first.busk").design
+    own = (OwnMeasure("Ribs", "girth", ("waist_front",), 60.0), OwnMeasure("Chest", "girth", (), 250.0))
+    worn = replace(small, own_measures=own).with_line("mid-bust", 0.93).with_line("full-bust", 0.95)
+    elastic = next(each for each in built_in() if each.width_mm == 12.0)
+    worn = worn.with_elastic("mid-bust", elastic)
+    path = tmp_path / "plan.busk"
+    save_project(path, Document.of(worn), build(worn).scan, None)
+    return str(path)
+
+
+@pytest.fixture
+def painted(monkeypatch: pytest.MonkeyPatch) -> set[str]:
+    """Return what is painted letter by letter, as it comes: it is no text of a widget."""
+    found: set[str] = set()
+    draw = QPainter.drawText
+
+    def heard(painter: QPainter, *what: object) -> object:
+        found.update(each for each in what if isinstance(each, str))
+        return draw(painter, *what)
+
+    monkeypatch.setattr(QPainter, "drawText", heard)
+    return found
+
+
+def written(root: QObject) -> Iterator[str]:
+    """Give all that is written on, and told of, a widget and what is in it."""
+    for each in (root, *root.findChildren(QObject)):
+        for name in WRITTEN:
+            if isinstance(text := each.property(name), str):
+                yield text
+        if isinstance(each, QComboBox):
+            yield from (each.itemText(place) for place in range(each.count()))
+        if isinstance(each, QTreeWidget):
+            rows = [each.headerItem(), *(each.topLevelItem(row) for row in range(each.topLevelItemCount()))]
+            yield from (row.text(column) for row in rows if row for column in range(each.columnCount()))
+
+
+def too_narrow(root: QObject) -> Iterator[str]:
+    """Give what a field has no room for."""
+    for field in root.findChildren(TypedField):
+        option = QStyleOptionFrame()
+        field.initStyleOption(option)
+        inside = field.style().subElementRect(QStyle.SubElement.SE_LineEditContents, option, field)
+        room = (
+            inside.width() - field.textMargins().right() - field.textMargins().left() - 4
+        )  # Qt's own margin
+        if field.isVisible() and field.fontMetrics().horizontalAdvance(field.text()) > room:
+            yield field.text()
+
+
+@pytest.mark.parametrize(("unit", "language"), [("in", "en"), ("cm", "ja")])
+def test_no_length_is_left_in_millimetres(
+    design: str, painted: set[str], unit: str, language: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(app.gui.features.uncertainty.controller, "PAUSE", 50)
+    QSettings().setValue("unit", unit)
+    QSettings().setValue("language", language)
+    seen: dict[str, str] = {}
+    cut_off: set[str] = set()
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        for where in every_part(window):
+            if not isinstance(where, str):
+                yield where
+                continue
+            for _ in range(6):
+                yield lambda: True
+            for text in (*written(window), *painted):
+                seen.setdefault(text, where)
+            painted.clear()
+            cut_off.update(f"{where}: {each}" for each in too_narrow(window))
+
+    assert run_main([design], script) == 0
+    left = [f"{where}: {text}" for text, where in seen.items() if IN_MM.search(without_meant(text))]
+    assert left == []
+    assert sorted(cut_off) == []
+    assert len([text for text in seen if re.search(rf"\d {unit}(?![A-Za-z])", text)]) > 60, "it was seen"
+
+
+def without_meant(text: str) -> str:
+    """Return a text without what is said of files, of what can be typed, and of measured values of others."""
+    plain = text.replace("\N{WORD JOINER}", "")
+    for code in LANGUAGES:
+        for words in origins().values():
+            plain = plain.replace(words.told(code), "")
+    return MEANT.sub("", plain)
+
+
+def every_part(window: MainWindow) -> Iterator[str | Callable[[], bool]]:
+    """Show one part of the window after the other: gives its name once it is shown, or what to wait for."""
+    for step in window.rail.items:
+        window.desk.go_to(step)
+        yield step
+    for name in ("garment", "variants", "history", "worn"):
+        window.inspector.open(name)
+        yield name
+    window.garment.rows["mid-bust"].elastic.click()
+    yield lambda: not window.jobs.at_work()
+    yield "chooser of elastics"
+    chooser_of(window).close()
+    window.desk.show_model()
+    yield "model"
+    for name in window.lines.rows:
+        window.desk.select_line(name)
+        yield name
+    for name in window.landmarks.rows:
+        window.desk.select_landmark(name)
+        yield name
+    for name in ("displacement", "strain", "sides", "pull", "pressure"):
+        window.map_desk.choose(name)
+        window.map_desk.pin(points(window)[0], "")
+        yield name
+    window.section_desk.set_on(True)
+    for axis in "xyz":
+        window.section_desk.choose_axis(axis)
+        yield f"section {axis}"
+    window.section_desk.set_on(False)
+    window.desk.go_to("result")
+    yield lambda: window.spread_desk.shown[0] is not None and not window.spread_desk.shown[1]
+    yield "measures"
+    window.own_measures_desk.action.trigger()
+    yield "own measures"
+    window.ask_door.click()
+    yield answered(window)
+    yield "targets"
+    window.ask_desk.card.cancel.click()
+    yield settled(window)
+    window.garment.elastics_asked.emit()
+    yield "elastics"
+    window.elastics_desk.sheet.close()
+    window.export_desk.show()
+    for what in window.export_desk.sheet.items:
+        window.export_desk._choose_export(what)
+        yield lambda: not window.jobs.at_work()
+        yield f"export {what}"
+    window.export_desk.sheet.close()
+    window.report_desk.open()
+    yield window.report_desk.page.does["pdf"].isEnabled
+    yield "sheet"
