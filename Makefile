@@ -31,7 +31,7 @@ setup-test:
 lint: setup  ## style and import rules: ruff check, ruff format --check, lint-imports
 	@$(python) -m ruff check .
 	@$(python) -m ruff format --check .
-	@.venv/bin/lint-imports --no-cache --config pyproject.toml
+	@.venv/bin/lint-imports --no-cache pyproject.toml
 
 types: setup  ## types: mypy, strict in core
 	@$(python) -m mypy

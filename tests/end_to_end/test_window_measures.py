@@ -9,7 +9,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QLineEdit
-from tests.window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_main, settled, undrawn
 
 from app.gui.features.measurements.table import MeasureTable
 from app.gui.main_window import MainWindow

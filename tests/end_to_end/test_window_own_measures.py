@@ -12,7 +12,7 @@ from PySide6.QtCore import QPoint, QPointF, QSettings, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 from tests.test_window_access import shortcomings
-from tests.window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_main, settled, undrawn
 
 from app.gui.features.measurements.table import MeasureTable
 from app.gui.main_window import MainWindow

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_main, settled, undrawn
 
 import app.gui.features.uncertainty.controller
 import core.analysis.uncertainty.estimate
