@@ -11,7 +11,7 @@ import pytest
 from PySide6.QtCore import QPoint, QPointF, QSettings, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
-from tests.test_window_access import shortcomings
+from tests.end_to_end.test_window_access import shortcomings
 from window_tools import Script, run_main, settled, undrawn
 
 from app.gui.features.measurements.table import MeasureTable
