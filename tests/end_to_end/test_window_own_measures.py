@@ -11,7 +11,6 @@ import pytest
 from PySide6.QtCore import QPoint, QPointF, QSettings, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
-from tests.end_to_end.test_window_access import shortcomings
 from window_tools import Script, run_main, settled, undrawn
 
 from app.gui.features.measurements.table import MeasureTable
@@ -21,6 +20,7 @@ from app.gui.widgets.landmark_combo import MarkField
 from app.i18n.catalog import use_language
 from core.document.custom_measures import OwnMeasure
 from core.measurements.table import before_after
+from tests.end_to_end.test_window_access import shortcomings
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
