@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pyvista as pv
 
-from app.presenters.status import bands
+from app.presenters.lines import bands
 from app.rendering.ambient_occlusion import bake_occlusion
 from app.rendering.display import off_screen
 from app.rendering.offscreen import Studio

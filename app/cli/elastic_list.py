@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from app.cli.options import dressed, made_of
 from app.cli.output import told
 from app.i18n.catalog import joined
-from app.presenters.elastic_options import choice_view, effect_words, mode_words, next_step, title_of
+from app.presenters.elastics import choice_view, effect_words, mode_words, next_step, title_of
 from core.document.design import Design
 from core.document.elastic import ElasticError
 from core.errors import LineError, UserError

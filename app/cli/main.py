@@ -155,7 +155,7 @@ def report(options: argparse.Namespace) -> int:
 def export(options: argparse.Namespace) -> int:
     """Write what other programs open: a body, its lines, strips, measures, a turntable."""
     from app.cli.commands.export import KINDS, run_export
-    from app.presenters.export_request import Manner
+    from app.presenters.export import Manner
 
     files = {kind: getattr(options, kind) for kind in KINDS}
     told = ("axes", "before", "frames", "seconds", "size", "dark", "beside")

@@ -10,7 +10,7 @@ from typing import NoReturn
 from app.cli.options import ELASTIC_HELP, help_text
 from app.cli.parser_analysis import add_assumptions, add_cure, add_evening, add_wishes, add_worn_scan
 from app.cli.scan_summary import add_scan
-from app.presenters.scan_formats import KINDS
+from app.presenters.scan import KINDS
 from core import __version__
 from core.document.custom_measures import HELP as MEASURE_HELP
 from core.document.line_notation import HELP as LINE_HELP

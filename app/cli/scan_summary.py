@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from app.presenters.scan_formats import KINDS, PACKED
+from app.presenters.scan import KINDS, PACKED
 from core.landmarks.manual import HELP as LANDMARK_HELP
 from core.scan.edits import SIDES
 from core.scan.orientation.pose import MILLIMETRES

@@ -20,10 +20,9 @@ from app.gui.widgets.loss_dialogs import ask_overwrite
 from app.gui.widgets.notification_bar import FAULT, FILES, REFUSED, SCAN
 from app.i18n.catalog import tr
 from app.presenters.lines import titled
-from app.presenters.plot_data import PLOT_INTERVAL, exact_answer, tracks
+from app.presenters.plots import PLOT_INTERVAL, exact_answer, tracks
 from app.presenters.samples import lifted_sample
-from app.presenters.solver_faults import fault_words, solver_fault_words
-from app.presenters.status import facts
+from app.presenters.status import facts, fault_words, solver_fault_words
 from core.document.design import Design
 from core.document.storage.project_file import is_protected
 from core.errors import UserError

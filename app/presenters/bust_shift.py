@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from app.i18n.catalog import listed, tr
 from app.i18n.lengths import length_number, length_unit
-from app.presenters.measurement_views import length_off
+from app.presenters.measurements import length_off
 from core.geometry.mesh import Floats
 from core.measurements.uncertain_value import LIFT, OUT, Spread
 from core.mechanics.iteration import Marks

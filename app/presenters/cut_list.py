@@ -1,10 +1,11 @@
-"""What the window says of the cut list: pieces, notes, and the list as plain cells."""
+"""Format the cut list: pieces, notes, and the list as plain cells."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from app.i18n.catalog import joined, number, say, tr
 from app.i18n.lengths import length_number
-from app.presenters.cut_list_views import CutView, GarmentView
 from app.presenters.lines import line_colours, line_title, titled
 from app.rendering.band import band_width
 from core.document.design import Design
@@ -107,3 +108,42 @@ def _cells(row: CutRow, kpa: float | None, design: Design) -> list[str]:
     notes = joined(told(note, design, "mm") for note in row.notes)
     estimate = tr("yes") if row.estimate else tr("no")
     return [line_title(row.line, design), say(row.elastic, "mm"), *written, estimate, notes]
+
+
+@dataclass(frozen=True)
+class CutView:
+    """One piece to cut: of which ``line``, of what, how long [mm], how far stretched [%], its tension [N].
+
+    ``elastic`` is what it is called here, empty for none. What is not known is an empty text; ``notes`` are
+    sentences that say why, or what to look at. ``stretch_percent`` is a number where the designer sets it.
+    The lengths of one that is ``front_only`` are no whole piece; one that is ``far`` is stretched further
+    than usual.
+    """
+
+    line: str
+    title: str
+    color: str
+    width_mm: float
+    elastic: str
+    cut: str = ""
+    stretch: str = ""
+    tension: str = ""
+    notes: tuple[str, ...] = ()
+    stretch_percent: float | None = None
+    front_only: bool = False
+    far: bool = False
+
+
+@dataclass(frozen=True)
+class GarmentView:
+    """All pieces, and what holds for all of them; ``tissue`` [N/m] is what the newtons rest on.
+
+    ``worn`` tells whether any line is: bands on points that do not move can be cut all the same. ``bare``
+    that no line is made of an elastic yet.
+    """
+
+    rows: tuple[CutView, ...]
+    notes: tuple[str, ...] = ()
+    tissue: float = 0.0
+    worn: bool = False
+    bare: bool = False

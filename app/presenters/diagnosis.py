@@ -8,7 +8,7 @@ from app.i18n.catalog import joined, listed, number, tr
 from app.i18n.lengths import length
 from app.presenters.assessment import assessment_view
 from app.presenters.lines import line_title, row_title
-from app.presenters.states import state_title
+from app.presenters.status import state_title
 from core.analysis.diagnosis.candidate_changes import Change
 from core.analysis.diagnosis.diagnose import Diagnosis
 from core.analysis.diagnosis.fix import Cure

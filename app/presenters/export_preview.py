@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from app.i18n.catalog import listed, number, say, tr
 from app.i18n.lengths import length
-from app.presenters.export_request import Manner, Outcome
-from app.presenters.measurement_names import measure_title
+from app.presenters.export import Manner, Outcome
+from app.presenters.measurements import measure_title
 from core import __version__
 from core.errors import UserError
 from core.export.band_geometry import (
@@ -248,7 +248,7 @@ def _turntable_of(manner: Manner) -> Turntable:
 
 @contextmanager
 def _studio(outcome: Outcome, manner: Manner) -> Iterator[Studio]:
-    from app.presenters.status import bands  # noqa: PLC0415 (brings Qt along)
+    from app.presenters.lines import bands  # noqa: PLC0415
     from app.rendering.offscreen import Studio  # noqa: PLC0415 (brings VTK along)
 
     shown = bands(outcome.stages, outcome.hidden)

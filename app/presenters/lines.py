@@ -1,16 +1,15 @@
-"""What the window says about lines: titles, colours, widths and the rows of the list."""
+"""Format lines: titles, colours, widths, rows of the list, labels on the body."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache
 
-from app.i18n.catalog import listed, say, tr
+from app.i18n.catalog import listed, number, say, tr
 from app.i18n.lengths import length
-from app.presenters.lines_views import LineView, SideView
-from app.rendering.band import band_width
+from app.rendering.band import OFF_WIDTH, Band, band_width
 from app.rendering.palette import LINE_COLORS
 from core.analysis.length_limits.zones import Leeway
 from core.control_mesh.embedding import embed
@@ -20,6 +19,7 @@ from core.document.design import Design
 from core.document.lines import partner_of
 from core.document.split_lines import can_split, is_split
 from core.mechanics.constraint_lines import Line
+from core.pipeline.build import Stages
 from core.pipeline.live_solver import Frame
 
 LINE_COLOURS = {"full-bust": "#0A5F73", "mid-bust": "#E5536B", "under-bust": "#5A3F94"}
@@ -224,3 +224,133 @@ def _strap_words(tail: Tail) -> str:
 @cache
 def _template(name: str) -> Template:
     return read_template(name)
+
+
+@dataclass(frozen=True)
+class SideView:
+    """One line of a linked pair: its side in words, its length at rest and the one reached [mm]."""
+
+    title: str
+    rest_mm: float
+    reached_mm: float | None
+
+
+@dataclass(frozen=True)
+class LineView:
+    """What a row shows of a line; lengths [mm], ``ratio`` = set over rest length [1].
+
+    ``rest_mm`` is the rest length of the free front part, ``whole_mm`` that of the whole closed band.
+    ``reached_mm`` is None before a run. A line that is not ``constrained`` is only measured; an ``own`` one
+    can be removed and led elsewhere. ``partner`` names its line of the other side, if there is one; the row
+    of a linked pair has both ``sides``, and means of their lengths. ``own_title`` is empty for the usual one.
+    One that is ``tried`` has a length that is only shown, and was not taken.
+    One that ``splits`` goes across both sides and can be split into a left and a right line.
+    One that was ``parted`` is off, and its two halves are worn in its place.
+    ``apart`` is the side, "left" or "right", of a line that is set apart from its partner; ``pair_title``
+    what both are called together.
+    ``elastic`` is what it is made of, if anything: its length is then that of the elastic unstretched.
+    ``pressed`` is what the line presses with and what that means, in the ``tone`` of its light; empty
+    while it is not known.
+    ``leeway`` is how far it can go, None while that is not known; ``stale`` that of the design before.
+    ``strap`` is where it goes on over the shoulder, as words; its lengths are then those of all of it.
+    ``over_shoulder``: whether it does, None for a line that cannot.
+    ``width_mm`` is that of its band; ``stiffness`` [1] its own, or None for the ``usual_stiffness``.
+    """
+
+    name: str
+    title: str
+    color: str
+    ratio: float
+    rest_mm: float
+    reached_mm: float | None
+    constrained: bool
+    visible: bool
+    whole_mm: float
+    own: bool = False
+    partner: str = ""
+    sides: tuple[SideView, ...] = ()
+    locked: bool = False
+    own_title: str = ""
+    width_mm: float = 12.0
+    stiffness: float | None = None
+    usual_stiffness: float = 16.0
+    leeway: Leeway | None = None
+    stale: bool = False
+    apart: str = ""
+    pair_title: str = ""
+    elastic: str = ""
+    pressed: str = ""
+    tone: str = ""
+    splits: bool = False
+    tried: bool = False
+    parted: bool = False
+    strap: str = ""
+    over_shoulder: bool | None = None
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The lines that this row stands for."""
+        return (self.name, self.partner) if self.sides else (self.name,)
+
+    @property
+    def settable(self) -> bool:
+        """Whether its length can be set."""
+        return self.constrained and not self.locked
+
+
+@dataclass(frozen=True)
+class _Drawn:
+    """How a line is drawn; as long as all are the same, nothing has to be laid on the body anew."""
+
+    name: str
+    course: bytes
+    colour: str
+    width: float
+    off: bool
+
+
+def drawn(stages: Stages) -> tuple[_Drawn, ...]:
+    """Return how the lines of a body are drawn, in the order of the list."""
+    names, design = [line.name for line in stages.model.lines], stages.design
+    # What cannot pull is not put on and taken off: it measures, and is drawn as it lies.
+    off = {line.name for line in stages.model.lines if line.constrains} - design.worn()
+    return tuple(
+        _Drawn(
+            name,
+            stages.routes[name].path.tobytes() + stages.routes[name].back.tobytes(),
+            colour,
+            OFF_WIDTH if name in off else band_width(name, design),
+            name in off,
+        )
+        for name, colour in line_colours(names, design).items()
+    )
+
+
+def bands(stages: Stages, hidden: Collection[str]) -> list[Band]:
+    """Return what is drawn of the lines that are not ``hidden``.
+
+    Those with a back are drawn as whole bands and straps over the shoulder; the others end where they end.
+    """
+    shown = [(line, stages.routes[line.name]) for line in drawn(stages) if line.name not in hidden]
+    return [
+        Band(line.name, route.path, line.colour, line.width, route.back, line.off, route.drawn)
+        for line, route in shown
+    ]
+
+
+def band_label(design: Design, frame: Frame, name: str) -> tuple[str, str]:
+    """Return what stands beside a line on the body: its name and length, and how much shorter that is.
+
+    Of an elastic, which is stretched far, the length that it reaches.
+    """
+    line = next(line for line in frame.stages.model.lines if line.name == name)
+    title = line_title(name, design)
+    if not line.constrains:
+        return title, length(line.rest_length)
+    ratio = design.ratio(name)
+    if design.traits_of(name).elastic:
+        stretch = frame.lengths[name] / (ratio * line.rest_length) - 1.0
+        said = tr("stretched by {value}").format(value=f"{number(100.0 * stretch)} %")
+        return f"{title} {length(frame.lengths[name])}", said
+    change = (ratio - 1.0) * line.rest_length
+    return f"{title} {number(100.0 * ratio)} %", length(change, signed=True)

@@ -1,21 +1,22 @@
-"""The table of measures before and after: those of the body, those of the model, and all as plain cells."""
+"""Format measurements before and after: values, table, and custom measurements."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
-from app.i18n.catalog import say, tr
-from app.presenters.custom_measures import own_words
+from app.i18n.catalog import colon, number, say, tr
+from app.i18n.lengths import decimal_length, length, length_number, shown_digits, shown_unit, shown_value
+from app.presenters.landmarks import landmark_title
 from app.presenters.lines import line_title
-from app.presenters.measurement_names import measure_title
-from app.presenters.measurement_views import MeasureView
-from core.document.custom_measures import OwnMeasure
+from core.document.custom_measures import LONGEST_NAME, OwnMeasure
+from core.errors import UserError
+from core.landmarks.types import CERTAIN
 from core.measurements.custom import OWN
-from core.measurements.definitions import definition_of
+from core.measurements.definitions import Measure, definition_of
 from core.measurements.table import Measures, measure_rows
-from core.measurements.uncertain_value import LIFT, OUT
+from core.measurements.uncertain_value import LIFT, OUT, digits, rounded
 from core.mechanics.iteration import Marks
 from core.pipeline.live_solver import Frame
 
@@ -133,3 +134,253 @@ def _up(marks: Marks) -> float:
 
 def _out(marks: Marks) -> float:
     return 0.5 * (marks.nipple_left_out + marks.nipple_right_out)
+
+
+@dataclass(frozen=True)
+class MeasureView:
+    """One measure before and after, in ``unit``; what is not known is None, and ``note`` may say why.
+
+    ``reference`` says from where it is counted, ``tip`` how it is taken, ``iso`` what the standard calls it.
+    An ``estimate`` may be off by ``plus_minus``; what it was taken from is ``sure`` to that share [1], if
+    that is known. ``key`` is that of a measure of the body, ``own`` if it is the designer's; ``group`` is
+    its heading. The change of an ``exact`` one is told elsewhere too: it is the same figure everywhere.
+    ``off`` is how far before, after and change may be off, ``off_faint`` if that is of a former shape;
+    ``off_told`` says from what, or that it is not known. ``moves`` names how bust points moved, where that
+    is the change.
+    """
+
+    label: str
+    unit: str
+    before: float | None
+    after: float | None
+    reference: str = ""
+    key: str = ""
+    group: str = ""
+    note: str = ""
+    plus_minus: float = 0.0
+    estimate: bool = False
+    tip: str = ""
+    iso: str = ""
+    sure: float | None = None
+    own: bool = False
+    exact: bool = False
+    off: tuple[float | None, ...] = ()
+    off_faint: bool = False
+    off_told: tuple[str, ...] = ()
+    moves: str = ""
+
+    @property
+    def change(self) -> float | None:
+        """By how much it grew, if that is known: as it is written, so that the columns of a table agree."""
+        if self.after is None or self.before is None or self.exact:
+            return self.change_at(digits_of(self.unit))
+        shown = [round(shown_value(each, self.unit), self._digits) for each in (self.after, self.before)]
+        return (shown[0] - shown[1]) / shown_value(1.0, self.unit)
+
+    def change_at(self, digits: int) -> float | None:
+        """Return by how much it grew where so many decimals are written."""
+        if self.after is None or self.before is None:
+            return None
+        if self.exact:
+            return self.after - self.before
+        return round(self.after, digits) - round(self.before, digits)
+
+    @property
+    def known(self) -> bool:
+        """Whether it was measured at all."""
+        return self.before is not None or self.after is not None
+
+    @property
+    def caption(self) -> str:
+        """What stands under it: from where it is counted, how sure it is, or why it is missing."""
+        if not self.known:
+            return self.note
+        if not self.estimate:
+            return self.reference
+        if not self.plus_minus or self.off:  # what is off stands beside it, with all sources
+            return tr("an estimate")
+        off = self.written(self.plus_minus)
+        return tr("an estimate, ± {off} {unit}").format(off=off, unit=self.unit_shown)
+
+    @property
+    def details(self) -> tuple[str, ...]:
+        """What is told where there is room: how it is taken, its name in the standard, how sure it is."""
+        if not self.key:
+            return self.off_told
+        named = tr("ISO 8559-1: {name}").format(name=self.iso) if self.iso else tr("Not in ISO 8559-1")
+        sure = tr("What it is taken from is sure to {percent} %")
+        said = (
+            self.tip,
+            "" if self.own else named,
+            "" if self.sure is None or not self.known else sure.format(percent=number(100 * self.sure, 0)),
+            "" if self.note == self.caption else self.note,
+        )
+        return (*(each for each in said if each), *self.off_told)
+
+    def written(self, value: float | None, signed: bool = False) -> str:
+        """Return a value as it stands in the table."""
+        return "" if value is None else number(shown_value(value, self.unit), self._digits, signed)
+
+    def written_off(self, off: float) -> str:
+        """Return how far a value may be off as it stands in the table."""
+        return length_off(off) if self.unit == "mm" else plus_minus(off)
+
+    @property
+    def unit_shown(self) -> str:
+        """The unit in which values are written."""
+        return shown_unit(self.unit)
+
+    @property
+    def _digits(self) -> int:
+        return shown_digits(digits_of(self.unit), self.unit)
+
+    def told(self) -> str:
+        """Return all that is told of it under the pointer."""
+        return "\n".join((self.label, *self.details))
+
+    def spoken(self) -> str:
+        """Return it as it is read out."""
+        values = [
+            f"{self.written(each)} {self.unit_shown}"
+            for each in (self.before, self.after)
+            if each is not None
+        ]
+        return f"{self.label}{colon()}{' → '.join(values)} {self.caption}".rstrip()
+
+
+def plus_minus(off: float) -> str:
+    """Return how far a figure may be off as it is written."""
+    return f"± {number(rounded(off), digits(off))}"
+
+
+def length_off(off: float) -> str:
+    """Return how far a length [mm] may be off as it is written, in the unit in use; never as nothing."""
+    told, least = rounded(off), 10.0 ** -shown_digits(digits(off)) / shown_value(1.0)
+    return f"± {decimal_length(max(told, least), digits(off))}"
+
+
+def digits_of(unit: str) -> int:
+    """Return how many decimals are written in a unit."""
+    return 0 if unit == "ml" else 1
+
+
+def measure_title(row: Mapping[str, Any]) -> str:
+    """Return what a row of ``measure_rows`` is called; names of one's own as they are."""
+    sides = {"left": tr("{what}, left"), "right": tr("{what}, right")}
+    title = row["title"] if row["key"].startswith(OWN) else say(row["title"])
+    return sides.get(row["side"], "{what}").format(what=title)
+
+
+def own_words(own: OwnMeasure) -> str:
+    """Return how a measure of the designer's own is taken."""
+    places = [landmark_title(name) for name in own.marks]
+    if own.kind != "girth":
+        ways = {
+            "straight": tr("Yours: straight from {start} to {end}."),
+            "skin": tr("Yours: the shortest way over the skin from {start} to {end}."),
+        }
+        return ways[own.kind].format(start=places[0], end=places[1])
+    if not places:
+        return tr("Yours: a tape, level, {length} above the lowest point of the scan.").format(
+            length=length(own.level, 0)
+        )
+    at, above, below = (
+        tr("Yours: a tape, level, at {place}."),
+        tr("Yours: a tape, level, {length} above {place}."),
+        tr("Yours: a tape, level, {length} below {place}."),
+    )
+    words = above if own.level > 0.0 else below if own.level < 0.0 else at
+    return words.format(place=places[0], length=length(abs(own.level), 0))
+
+
+def draft_of(own: OwnMeasure) -> Draft:
+    """Return a measure as the form shows it."""
+    if own.kind != "girth":
+        return Draft(own.name, own.kind, (own.marks[0], own.marks[1]))
+    at = own.marks[0] if own.marks else ""
+    return Draft(own.name, own.kind, at=at, level=own.level)
+
+
+def measure_of(draft: Draft, suggested: str, taken: Collection[str]) -> OwnMeasure | None:
+    """Return the measure of a draft, None while a place is missing.
+
+    Without a name it gets the ``suggested`` one. Raises UserError if its name is ``taken``.
+    """
+    if draft.kind != "girth" and not all(draft.ends):
+        return None
+    if draft.kind == "girth" and not draft.at and not draft.level:
+        return None
+    name = draft.name or _free(suggested, taken)
+    if name in taken:
+        raise UserError(f"There is a measure {name} already.", "Give it a name of its own.")
+    return OwnMeasure(name, draft.kind, draft.marks, draft.level if draft.kind == "girth" else 0.0)
+
+
+def suggested_name(draft: Draft, titles: Mapping[str, str]) -> str:
+    """Return what a measure may be called if no name is typed, as far as it is known where it is taken."""
+    if draft.kind != "girth":
+        ends = [titles.get(mark, "") for mark in draft.ends]
+        return f"{ends[0]} → {ends[1]}"[:LONGEST_NAME] if all(ends) else ""
+    level = length(draft.level, 0, signed=bool(draft.at))
+    if not draft.at:
+        return tr("Girth at {height}").format(height=level) if draft.level else ""
+    place = titles.get(draft.at, draft.at)
+    if draft.level:
+        place = f"{place} {level}"
+    return tr("Girth, {place}").format(place=place)[:LONGEST_NAME]
+
+
+def said_of(before: Measure, after: Measure) -> tuple[str, str, str]:
+    """Return what a measure is now, what is said of it, and what is doubtful in it or why it is missing."""
+    if before.value is None or after.value is None:
+        return "", "", say(before.note or after.note)
+    values = f"{length_number(before.value)} → {length(after.value)}"
+    said = tr("before → after, {change}").format(
+        change=length(round(after.value, 1) - round(before.value, 1), signed=True)
+    )
+    sure = min(before.confidence, after.confidence)
+    unsure = tr("What it is taken from is sure to {percent} %").format(percent=number(100 * sure, 0))
+    doubts = (unsure if sure < CERTAIN else "", say(after.note))
+    return values, said, "\n".join(each for each in doubts if each)
+
+
+def _free(name: str, taken: Collection[str]) -> str:
+    """Return a name that is not taken, with a number if need be."""
+    numbered = (f"{name[: LONGEST_NAME - 4]} {count}" for count in range(2, 1000))
+    return name if name not in taken else next(each for each in numbered if each not in taken)
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A measure that is being made: as long as no place is chosen for an end, that is empty.
+
+    A girth lies ``level`` [mm] above the landmark ``at``, or above the lowest point of the scan if that is
+    empty. An empty ``name`` leaves it to Busk.
+    """
+
+    name: str = ""
+    kind: str = "straight"
+    ends: tuple[str, str] = ("", "")
+    at: str = ""
+    level: float = 0.0
+
+    def picked(self, mark: str) -> Draft:
+        """Return it with a landmark that was clicked: the next end, or given up if it was one already."""
+        if self.kind == "girth":
+            return replace(self, at=mark, level=self.level if self.at else 0.0)
+        start, end = self.ends
+        if mark in self.ends:
+            return replace(self, ends=("" if start == mark else start, "" if end == mark else end))
+        return replace(self, ends=(mark, end) if not start else (start, mark))
+
+    def stepped_back(self) -> Draft:
+        """Return it without the landmark that was chosen last."""
+        if self.kind == "girth":
+            return replace(self, at="", level=0.0)
+        start, end = self.ends
+        return replace(self, ends=(start, "") if end else ("", ""))
+
+    @property
+    def marks(self) -> tuple[str, ...]:
+        """The landmarks it is taken at so far."""
+        return tuple(mark for mark in ((self.at,) if self.kind == "girth" else self.ends) if mark)

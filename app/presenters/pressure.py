@@ -6,9 +6,7 @@ from dataclasses import dataclass, replace
 
 from app.i18n.catalog import joined, language, listed, number, say, tr
 from app.i18n.lengths import length
-from app.presenters.cut_list_views import PressureView
-from app.presenters.lines import line_colours, line_title, titled
-from app.presenters.lines_views import LineView
+from app.presenters.lines import LineView, line_colours, line_title, titled
 from core.document.design import Design
 from core.garment.assessment import UNKNOWN_PRESSURE
 from core.garment.pressure import LEFT_OUT, NOT_FOR_STRAPS, mmhg
@@ -195,3 +193,18 @@ class PressureSummary:
     says: str
     force: str
     marks: tuple[tuple[str, str, float], ...]
+
+
+@dataclass(frozen=True)
+class PressureView:
+    """What a line presses with: ``kpa`` as it is read, ``light`` "green", "amber" or "red", empty for none.
+
+    ``word`` says in short what the light means, ``tip`` where it comes from. ``stale`` figures are those of
+    a former shape.
+    """
+
+    kpa: str
+    light: str
+    word: str
+    tip: str
+    stale: bool = False

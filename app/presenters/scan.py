@@ -1,104 +1,29 @@
-"""What the window says about a scan and its landmarks: plain values for the panels."""
+"""Format a scan: facts, edits, open holes, and the steps of its processing."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 from app.i18n.catalog import say, tr
 from app.i18n.lengths import length
-from app.presenters.landmarks import LandmarkView
 from core.document.design import ScanSource
 from core.geometry.mesh import Points
-from core.landmarks.types import CERTAIN, NAMES, Landmark, Landmarks
-from core.landmarks.warnings import ESSENTIAL, edit_doubts
+from core.landmarks.types import Landmarks
+from core.landmarks.warnings import edit_doubts
 from core.scan.body import Body
 from core.scan.edits import ScanEdits
 from core.scan.orientation.lean_angles import lean_angles
+from core.scan.readers.registry import FORMATS
 from core.scan.repair.holes import NAMED, hole_sentence, hole_sentences
 
-GROUPS = {
-    "bust_point": "bust",
-    "lowest": "bust",
-    "fold": "under",
-    "root_inner": "under",
-    "root_outer": "under",
-}
-"""The group of each kind of landmark in the list; all others are further ones."""
+PACKED = ".gz"
+"""Any scan may be packed."""
 
-PINNED = ("bust_point", "lowest", "fold")
-"""The kinds of landmarks that always have a pin at the Landmarks step."""
+KINDS = ", ".join(kind.upper() for kind in FORMATS if f".{kind}" != PACKED)
+"""The formats in a row: PLY, OBJ and so on."""
 
-
-Spot = tuple[str, tuple[float, ...]]
-"""A landmark's name and where it lies, to a tenth of a millimetre."""
-
-
-def spot_of(mark: Landmark) -> Spot:
-    """Return by what a landmark is known again once all of them have been found anew."""
-    return mark.name, tuple(mark.position.round(1).tolist())
-
-
-def kind_of(name: str) -> str:
-    """Return a landmark's name without its side."""
-    return name.removesuffix("_left").removesuffix("_right")
-
-
-def landmark_title(name: str) -> str:
-    """Return a landmark's name in the window's language."""
-    titles = {
-        "bust_point": tr("Bust point"),
-        "fold": tr("Under-bust fold"),
-        "lowest": tr("Lowest point"),
-        "root_inner": tr("Inner breast root"),
-        "root_outer": tr("Outer breast root"),
-        "front_centre": tr("Centre front, bust"),
-        "front_centre_underbust": tr("Centre front, under-bust"),
-        "back_centre": tr("Centre back, bust"),
-        "back_centre_underbust": tr("Centre back, under-bust"),
-        "side": tr("Side"),
-        "armpit": tr("Armpit"),
-        "waist_front": tr("Waist, front"),
-        "hip_front": tr("Hip, front"),
-        "neck_front": tr("Neck, front"),
-        "neck_back": tr("Neck, back"),
-    }
-    kind = kind_of(name)
-    sides = {"_left": tr("{name} left"), "_right": tr("{name} right")}
-    return sides.get(name[len(kind) :], "{name}").format(name=titles.get(kind, kind.replace("_", " ")))
-
-
-def other_side(name: str) -> str:
-    """Return the same landmark of the other side, or an empty text if it has no side."""
-    for side, other in (("_left", "_right"), ("_right", "_left")):
-        if name.endswith(side):
-            return name.removesuffix(side) + other
-    return ""
-
-
-def landmark_views(points: Mapping[str, Landmark], accepted: Collection[Spot] = ()) -> list[LandmarkView]:
-    """Return the rows of the list of landmarks, those of the bust first; the absent ones are among them.
-
-    What is ``accepted`` need not be looked at again.
-    """
-    order = list(GROUPS)
-    known = sorted(
-        NAMES, key=lambda name: order.index(kind_of(name)) if kind_of(name) in order else len(order)
-    )
-    return [landmark_view(name, points.get(name), accepted) for name in known]
-
-
-def landmark_view(name: str, mark: Landmark | None, accepted: Collection[Spot] = ()) -> LandmarkView:
-    """Return what is shown of a landmark, ``mark`` if it was found: in the list and on its pin alike."""
-    title, group = landmark_title(name), GROUPS.get(kind_of(name), "further")
-    if mark is None:
-        return LandmarkView(name, title, 0.0, tr("The scan does not show it."), group, absent=True)
-    unsure = kind_of(name) in ESSENTIAL and not mark.by_hand and mark.confidence < CERTAIN
-    weak = unsure or (mark.off > 0.0 and spot_of(mark) not in accepted)
-    traced, off = len(mark.evidence) > 0, mark.off
-    return LandmarkView(
-        name, title, mark.confidence, mark.rule, group, mark.by_hand, weak=weak, traced=traced, off_mm=off
-    )
+PATTERNS = " ".join(f"*.{kind}" for kind in FORMATS)
+"""What their names look like."""
 
 
 def scan_view(

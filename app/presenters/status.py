@@ -1,76 +1,56 @@
-"""What the window says about a design and its frame: plain values for the panels, worked out in one place."""
+"""Format the status of the solver: state, values of the convergence panel, faults."""
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from app.i18n.catalog import number, tr
-from app.i18n.lengths import length, length_unit
-from app.presenters.lines import line_colours, line_title
-from app.presenters.states import state_title
-from app.rendering.band import OFF_WIDTH, Band, band_width
-from core.document.design import Design
-from core.pipeline.build import Stages
+from app.i18n.lengths import length, length_number, length_unit
+from app.presenters.assessment import AssessmentView
+from app.presenters.bust_shift import bust_move, sides_words, step_words, ups
+from core.garment.pressure_list import PressList
+from core.mechanics.mesh_quality import Condition
 from core.pipeline.live_solver import Frame
+from core.pipeline.warnings import kept_volume
+
+TONES = {
+    "settled": ("ok", "check-circle"),
+    "strained": ("warn", "overstrained"),
+    "settling": ("info", "arc"),
+    "vibrating": ("warn", "wave"),
+    "diverging": ("bad", "arrow-up-right"),
+    "folded": ("bad", "folded"),
+    "overstrained": ("bad", "overstrained"),
+    "stale": ("plain", "clock-counter-clockwise"),
+    "paused": ("plain", "pause"),
+    "good": ("ok", "check-circle"),
+    "pending": ("info", "arc"),
+    "caution": ("warn", "warning"),
+    "bad": ("bad", "warning-octagon"),
+    "idle": ("plain", "lines"),
+}
+"""Tone and drawing of each state of a run, and of each level of an overall verdict."""
 
 
-@dataclass(frozen=True)
-class _Drawn:
-    """How a line is drawn; as long as all are the same, nothing has to be laid on the body anew."""
-
-    name: str
-    course: bytes
-    colour: str
-    width: float
-    off: bool
+TROUBLED = ("caution", "bad", "strained", "overstrained", "folded", "vibrating", "diverging")
+"""States that there is more to say of: a click asks for it."""
 
 
-def drawn(stages: Stages) -> tuple[_Drawn, ...]:
-    """Return how the lines of a body are drawn, in the order of the list."""
-    names, design = [line.name for line in stages.model.lines], stages.design
-    # What cannot pull is not put on and taken off: it measures, and is drawn as it lies.
-    off = {line.name for line in stages.model.lines if line.constrains} - design.worn()
-    return tuple(
-        _Drawn(
-            name,
-            stages.routes[name].path.tobytes() + stages.routes[name].back.tobytes(),
-            colour,
-            OFF_WIDTH if name in off else band_width(name, design),
-            name in off,
-        )
-        for name, colour in line_colours(names, design).items()
-    )
-
-
-def bands(stages: Stages, hidden: Collection[str]) -> list[Band]:
-    """Return what is drawn of the lines that are not ``hidden``.
-
-    Those with a back are drawn as whole bands and straps over the shoulder; the others end where they end.
-    """
-    shown = [(line, stages.routes[line.name]) for line in drawn(stages) if line.name not in hidden]
-    return [
-        Band(line.name, route.path, line.colour, line.width, route.back, line.off, route.drawn)
-        for line, route in shown
-    ]
-
-
-def band_label(design: Design, frame: Frame, name: str) -> tuple[str, str]:
-    """Return what stands beside a line on the body: its name and length, and how much shorter that is.
-
-    Of an elastic, which is stretched far, the length that it reaches.
-    """
-    line = next(line for line in frame.stages.model.lines if line.name == name)
-    title = line_title(name, design)
-    if not line.constrains:
-        return title, length(line.rest_length)
-    ratio = design.ratio(name)
-    if design.traits_of(name).elastic:
-        stretch = frame.lengths[name] / (ratio * line.rest_length) - 1.0
-        said = tr("stretched by {value}").format(value=f"{number(100.0 * stretch)} %")
-        return f"{title} {length(frame.lengths[name])}", said
-    change = (ratio - 1.0) * line.rest_length
-    return f"{title} {number(100.0 * ratio)} %", length(change, signed=True)
+def state_title(state: str) -> str:
+    """Return the word for a state of a run in ``TONES``."""
+    return {
+        "settled": tr("Settled"),
+        "strained": tr("Settled, strained"),
+        "settling": tr("Settling"),
+        "vibrating": tr("Vibrating"),
+        "diverging": tr("Diverging"),
+        "folded": tr("Folded"),
+        "overstrained": tr("Overstrained"),
+        "stale": tr("Stale"),
+        "paused": tr("Paused"),
+    }[state]
 
 
 def facts(frame: Frame, current: bool = True) -> list[str]:
@@ -80,3 +60,180 @@ def facts(frame: Frame, current: bool = True) -> list[str]:
         tr("{count} triangles").format(count=number(len(frame.stages.body.mesh.faces), 0)),
         *([] if current else [state_title("stale")]),
     ]
+
+
+_WATCHED = 24  # turns over which a swing is measured
+_STEADY = 5e-4  # a swing that changes by less a turn stays as large as it is [1]
+
+
+@dataclass(frozen=True)
+class StripVerdict:
+    """What the strip shows: ``level`` and ``headline`` of the overall verdict, and the ``state`` of the run.
+
+    ``effort`` says what the ``pace`` took.
+    """
+
+    level: str
+    headline: str
+    state: str
+    numbers: list[tuple[str, str]]
+    hint: str
+    pace: str
+    effort: str
+    settling: bool
+
+
+def state_of(frame: Frame) -> str:
+    """Return the word for a frame: its verdict's, but skin that strains beyond what is calm is told too."""
+    return frame.verdict.told
+
+
+def is_result(frame: Frame) -> bool:
+    """Return whether the figures of a frame can be worked with, or will be when it has settled."""
+    return frame.verdict.sound
+
+
+def strip_verdict(
+    frame: Frame,
+    overall: AssessmentView,
+    girths: tuple[float, float] | None = None,
+    pressed: PressList | None = None,
+) -> StripVerdict:
+    """Return how a frame stands under its ``overall`` verdict, with the values that matter then.
+
+    ``girths`` at the bust points before and after [mm], and contact pressures, as far as they are known.
+    """
+    state, seconds = state_of(frame), tr("{seconds} s").format(seconds=number(frame.seconds))
+    return StripVerdict(
+        overall.level,
+        overall.headline,
+        state,
+        _figures(frame, girths, pressed),
+        overall.first,
+        tr("{state} · {seconds}").format(state=state_title(state), seconds=seconds),
+        _effort(frame),
+        frame.verdict.motion == "settling",
+    )
+
+
+def doubt_of(frame: Frame) -> str:
+    """Return why the figures of a frame are no result, or nothing."""
+    if is_result(frame):
+        return ""
+    state = state_title(state_of(frame))
+    return tr("{state}: these figures are no result to sew for.").format(state=state)
+
+
+def swing_mm(frame: Frame) -> tuple[float, float]:
+    """Return the middle of the height that the bust points swing about, and half of how far [mm]."""
+    rows = frame.tracks.get(frame.stages.design.volume, ())[-_WATCHED:]
+    marks = [row.marks for row in rows if row.marks is not None]
+    heights = np.array([(each.nipple_left_z, each.nipple_right_z) for each in marks]).reshape(-1, 2)
+    up = ups(frame.stages.rest_marks, *heights.T)
+    if not len(up):
+        return 0.0, 0.0
+    return 0.5 * float(up.max() + up.min()), 0.5 * float(np.ptp(up))
+
+
+def plain_sentence(frame: Frame) -> str:
+    """Return what it means that a run swings or runs away, or that a shape is no body; else nothing."""
+    return {
+        "vibrating": tr("The calculation does not come to rest: the bust point swings by ±{swing}."),
+        "diverging": tr("The calculation runs away: the body is shown as it was before."),
+        "folded": tr("The skin folds over: this is no body any more."),
+        "overstrained": tr("Skin pressed or stretched by over 30 %: no shape to sew for."),
+    }.get(frame.verdict.state, "").format(swing=length(swing_mm(frame)[1]))
+
+
+def _effort(frame: Frame) -> str:
+    """Return how many rounds it took, or steps to the exact answer."""
+    exact, turns = frame.stages.design.volume == "exact", frame.verdict.turns
+    if exact and turns == 1:
+        return tr("Worked out in one Newton step")
+    text = (
+        tr("Worked out in {turns} Newton steps")
+        if exact
+        else tr("Worked out in {turns} turns: in each, every control point goes once to its own balance")
+    )
+    return text.format(turns=number(turns, 0))
+
+
+def _figures(
+    frame: Frame, girths: tuple[float, float] | None, pressed: PressList | None
+) -> list[tuple[str, str]]:
+    verdict, state = frame.verdict, state_of(frame)
+    if state == "diverging":
+        return []  # the figures would be those of the body shown, as it was before
+    if state == "vibrating":
+        return _swing_figures(frame)
+    error, ml = kept_volume(frame)
+    kept = (tr("Volume error"), f"{number(error, 2, signed=True)} % · {number(ml, 1, signed=True)} ml")
+    if verdict.condition and state == "folded":
+        return [kept, (tr("Turned skin"), f"{number(verdict.condition.largest_turn, 0)}°")]
+    if verdict.condition and state == "overstrained":
+        return [kept, (tr("Skin"), _strain(verdict.condition))]
+    move = bust_move(frame)
+    told = [(tr("Bust point"), step_words(move.mean))]
+    if girths is not None:
+        change = f"{length_number(girths[0])} → {length(girths[1])}"
+        told.append((tr("Bust girth"), change))
+    hardest = None if pressed is None else pressed.hardest
+    if hardest is not None and hardest.max_kpa is not None:
+        told.append((tr("Highest pressure"), f"{number(hardest.max_kpa)} kPa"))
+    elif move.differs:
+        told.append((tr("Left · right"), " · ".join(sides_words(move))))
+    return [*told, kept]
+
+
+def _swing_figures(frame: Frame) -> list[tuple[str, str]]:
+    verdict, (middle, swing) = frame.verdict, swing_mm(frame)
+    growth = verdict.growth - 1.0
+    grows = tr("grows") if growth > _STEADY else tr("fades") if growth < -_STEADY else tr("stays as large")
+    percent = f"{number(100.0 * verdict.error, 2)} ± {number(100.0 * verdict.amplitude, 2)} %"
+    return [
+        (tr("Volume error"), percent),
+        (tr("Bust point"), f"{length_number(middle, signed=True)} ± {length(swing)}"),
+        (tr("The swing"), grows),
+    ]
+
+
+def _strain(condition: Condition) -> str:
+    """Return how far the skin is pressed together and stretched at the worst places."""
+    return _percents(100.0 * (condition.shortest - 1.0), 100.0 * (condition.longest - 1.0))
+
+
+def _percents(pressed: float, stretched: float) -> str:
+    return tr("{pressed} to {stretched} %").format(
+        pressed=number(pressed, 0, signed=True), stretched=number(stretched, 0, signed=True)
+    )
+
+
+def solver_fault_words(error: Exception) -> tuple[str, str]:
+    """Return what failed while a shape was computed, and what to do."""
+    if isinstance(error, MemoryError):
+        return (
+            tr("There is not enough memory to compute the shape."),
+            tr("Your design is kept and can be saved. Close other programs, then try again."),
+        )
+    return (
+        tr("An error inside Busk stopped the computation of the shape."),
+        tr("Your design is kept and can be saved. The view shows the last computed shape."),
+    )
+
+
+def fault_words(error: Exception) -> tuple[str, str]:
+    """Return what failed in any other work, and what to do."""
+    if isinstance(error, MemoryError):
+        return tr("There is not enough memory for this."), tr("Close other programs, then try again.")
+    return tr("Something went wrong inside Busk."), tr("Your design is kept. The log tells more.")
+
+
+def not_computed() -> str:
+    """Return that there are no results of the present design, because its shape was not computed."""
+    return tr("Not computed: the view shows the last computed shape.")
+
+
+def out_of_date(verdict: StripVerdict) -> StripVerdict:
+    """Return the verdict on a frame that is not that of the present design, marked as such."""
+    title = state_title("stale")
+    return replace(verdict, level="stale", headline=title, state="stale", hint=not_computed(), settling=False)

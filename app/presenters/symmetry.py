@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from app.i18n.catalog import joined, listed, number, say, tr
 from app.i18n.lengths import length, length_number, length_unit, shown_digits, shown_unit, shown_value
 from app.presenters.lines import row_title
-from app.presenters.measurement_views import length_off, plus_minus
+from app.presenters.measurements import length_off, plus_minus
 from app.presenters.target_shape import figure_title, is_met, is_signed, reasons_words
 from core.analysis.inverse_design.balance_quantity import FURTHER_OUT, HIGHER
 from core.analysis.inverse_design.bust_quantity import LIFT, OUT

@@ -1,4 +1,4 @@
-"""What the window says while the result is asked for: figures, answers, changes."""
+"""Format target shapes: targets, reachability, conflicts, line changes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app.i18n.catalog import colon, listed, number, tr
-from app.i18n.lengths import length, length_number
+from app.i18n.lengths import length, length_number, length_unit
 from app.presenters.lines import told_title
 from core.analysis.inverse_design.balance_quantity import FURTHER_OUT, HIGHER
 from core.analysis.inverse_design.bust_quantity import LIFT, OUT
@@ -19,7 +19,9 @@ from core.document.design import Design
 from core.geometry.mesh import Floats
 
 if TYPE_CHECKING:
+    from core.analysis.inverse_design.conflicts import Conflict
     from core.analysis.inverse_design.solve import Reply
+
 
 _MET = 0.05  # [mm]
 _LIKE = 0.5  # of a profile [mm]
@@ -283,3 +285,76 @@ def _rows(names: Iterable[str], design: Design) -> list[tuple[str, str]]:
     for name in names:
         rows.setdefault(told_title(name, design), name)
     return list(rows.items())
+
+
+def value_words(value: float | None, signed: bool) -> str:
+    """Return what a figure is now [mm], without its unit; nothing before it is known."""
+    return "" if value is None else length_number(value, 1, signed=signed)
+
+
+def result_words(now: Mapping[str, float], then: Mapping[str, float], name: str) -> str:
+    """Return what a figure comes to with its change, as "+0.4 (+0.2)"; nothing before it is known."""
+    if name not in then or name not in now:
+        return ""
+    return _with_change(then[name], then[name] - now[name], is_signed(name))
+
+
+def _with_change(value: float, change: float, signed: bool) -> str:
+    return f"{length_number(value, 1, signed=signed)} ({length_number(change, 1, signed=True)})"
+
+
+def pressure_words(now: Mapping[str, float], then: Mapping[str, float]) -> tuple[str, str]:
+    """Return what lines press with at most now [kPa], and what they come to with its change."""
+    before = number(most := max(now.values())) if now else ""
+    if not now or not then:
+        return before, ""
+    result = max(then.values())
+    return before, f"{number(result)} ({number(result - most, 1, True)})"
+
+
+def conflict_words(conflicts: Iterable[Conflict]) -> tuple[str, ...]:
+    """Return one sentence per target that is missed: its value alone, and what another one loses."""
+    return tuple(map(_sentence, conflicts))
+
+
+def _sentence(conflict: Conflict) -> str:
+    name, alone = figure_title(conflict.name), _value(conflict.name, conflict.alone)
+    if not conflict.against:
+        return tr("{target}: {value} is the nearest even as the only target.").format(
+            target=name, value=alone
+        )
+    words = tr(
+        "{target} conflicts with {other}: as the only target {value}, with {other} at {lost} instead of "
+        "{kept} ({price} {unit} per {unit})."
+    )
+    lost, kept = (_value(conflict.against, value) for value in (conflict.lost, conflict.kept))
+    other, price = figure_title(conflict.against), number(conflict.price, 2)
+    values = {"value": alone, "lost": lost, "kept": kept, "price": price, "unit": length_unit()}
+    return words.format(target=name, other=other, **values)
+
+
+def _value(name: str, value: float) -> str:
+    size = length(value, 1, signed=is_signed(name))
+    return tr("{length} off").format(length=size) if section_of(name) else size
+
+
+def unlimited_words(free: Reply, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
+    """Return what targets come to without a limit of pressure, and what lines press with then."""
+    most = number(max(free.pressure.values(), default=0.0))
+    if is_met(free, goals):
+        return tr("All targets are met without the pressure limit, with {kpa} kPa.").format(kpa=most)
+    words = tr("Nearest without the pressure limit: {figures}, with {kpa} kPa.")
+    return words.format(figures=nearest_words(free, goals, now), kpa=most)
+
+
+def switched_words(before: Design, after: Design) -> str:
+    """Return which lines an answer switches on, if it does."""
+    lines = _titles(sorted(after.worn() - before.worn()), after)
+    return tr("Switched on: {lines}.").format(lines=lines) if lines else ""
+
+
+def inactive_words(design: Design, names: Iterable[str]) -> str:
+    """Return which lines that are off may be switched on; empty if there are none."""
+    lines = _titles(sorted(names), design)
+    words = tr("Switch on inactive lines where they bring the targets nearer: {lines}")
+    return words.format(lines=lines) if lines else ""

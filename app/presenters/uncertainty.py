@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from app.i18n.catalog import joined, language, listed, number, say, tr
 from app.i18n.lengths import length, shown_unit
-from app.presenters.measurement_views import MeasureView, length_off, plus_minus
+from app.presenters.measurements import MeasureView, length_off, plus_minus
 from core.analysis.uncertainty.input_uncertainty import origins
 from core.export.report_data import NOT_MODELLED
 from core.garment.pressure import LEFT_OUT

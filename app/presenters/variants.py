@@ -9,8 +9,8 @@ from app.i18n.catalog import number, say, tr
 from app.i18n.lengths import length_number, shown_unit
 from app.presenters.assessment import AssessmentView
 from app.presenters.bust_shift import bust_move, bust_sentence
-from app.presenters.convergence import is_result
 from app.presenters.lines import line_colours, line_title, row_title
+from app.presenters.status import is_result
 from core.document.design import Design
 from core.garment.cut_list import CutRow, cut_list
 from core.garment.pressure_list import PressList

@@ -9,7 +9,7 @@ import numpy as np
 
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length, length_number, length_unit, shown_value
-from app.presenters.ticks import digits_of, round_ticks
+from app.presenters.plots import digits_of, round_ticks
 from app.rendering.palette import LIGHT
 from app.report.document import Handout
 from app.report.header import WIDE

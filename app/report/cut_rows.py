@@ -8,7 +8,7 @@ from math import inf, sqrt
 
 from app.i18n.catalog import joined, listed, number, say, tr
 from app.i18n.lengths import length_number, length_unit, width, width_number
-from app.presenters.measurement_views import length_off
+from app.presenters.measurements import length_off
 from app.presenters.pressure import light_word
 from app.report.text import NOTHING, figure, piece_title
 from core.export.report_data import Sheet

@@ -6,7 +6,7 @@ from app.i18n.catalog import joined, number, say, tr
 from app.i18n.lengths import length_number, length_unit
 from app.presenters.assessment import IDLE, AssessmentView
 from app.presenters.bust_shift import forward_words
-from app.presenters.measurement_views import length_off
+from app.presenters.measurements import length_off
 from app.rendering.palette import LIGHT
 from app.report.cut_rows import cut_pieces
 from app.report.document import SHOT_SIZES, SHOTS, Handout

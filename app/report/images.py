@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from PySide6.QtGui import QColor, QImage, QPainter
 
-from app.presenters.status import bands
+from app.presenters.lines import bands
 from app.rendering.camera import View
 from app.rendering.offscreen import Picture, Studio, on_nothing
 from app.report.document import SHOT_SIZES, SHOTS

@@ -10,8 +10,7 @@ from app.i18n.catalog import colon, listed, number, say, tr
 from app.i18n.lengths import shown_digits, shown_value
 from app.presenters.assessment import AssessmentView, assessment_view
 from app.presenters.lines import line_title
-from app.presenters.measurement_names import measure_title
-from app.presenters.measurement_views import length_off, plus_minus
+from app.presenters.measurements import length_off, measure_title, plus_minus
 from app.presenters.pressure import light_word
 from core.document.lines import partner_of
 from core.export.report_data import Sheet

@@ -18,8 +18,8 @@ import ezdxf
 
 from app.cli.commands.cut import Cut, cut_text
 from app.cli.solve_design import Worn, run_to_body
+from app.presenters.export import Manner, Outcome
 from app.presenters.export_preview import make_ready
-from app.presenters.export_request import Manner, Outcome
 from core.document.custom_measures import OwnMeasure
 from core.document.design import Design, ScanSource
 from core.document.document import Document

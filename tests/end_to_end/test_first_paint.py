@@ -50,7 +50,7 @@ import sys
 import numpy as np
 from PySide6.QtWidgets import QApplication
 from app.gui.plots.canvas import PlotCanvas
-from app.presenters.curves import Curve, Plotted
+from app.presenters.plots import Curve, Plotted
 from app.gui.plots.section_plot import Drawn, ProfilePlot
 
 app = QApplication(["busk", "-platform", "offscreen"])

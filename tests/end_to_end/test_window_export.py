@@ -19,7 +19,7 @@ import app.gui.features.export.controller
 import app.rendering.offscreen
 from app.gui.features.export.dialog import ExportSheet
 from app.gui.main_window import MainWindow
-from app.presenters.export_formats import exports
+from app.presenters.export import exports
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

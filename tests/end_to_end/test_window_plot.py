@@ -16,7 +16,7 @@ from window_tools import Script, drag, run_main, settled
 import app.gui.plots.controller
 from app.gui.main_window import MainWindow
 from app.presenters.measurements import measure_views
-from app.presenters.plot_data import PLOTTED_TURNS, tracks
+from app.presenters.plots import PLOTTED_TURNS, tracks
 from core.pipeline.live_solver import Frame
 
 pytestmark = pytest.mark.usefixtures("empty_house")

@@ -36,10 +36,11 @@ from app.gui.viewport.toolbar import CompareTools, ViewTools
 from app.gui.widgets.notification_bar import NoticeBar
 from app.i18n import catalog as words
 from app.i18n.catalog import tr
-from app.presenters.measurement_views import MeasureView
+from app.presenters.landmarks import GROUPS, kind_of, landmark_title
+from app.presenters.measurements import MeasureView
 from app.presenters.model_options import defaults
-from app.presenters.plot_series import Exact, Track
-from app.presenters.scan import GROUPS, ScanView, kind_of, landmark_title
+from app.presenters.plots import Exact, Track
+from app.presenters.scan import ScanView
 from app.rendering.palette import LINE_COLORS
 
 LINES = (

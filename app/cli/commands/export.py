@@ -9,8 +9,8 @@ from pathlib import Path
 from app.cli.options import dressed, made_of
 from app.cli.solve_design import run_to_body
 from app.presenters.assessment import assessment_lines
+from app.presenters.export import Manner, Outcome
 from app.presenters.export_preview import check, make_ready
-from app.presenters.export_request import Manner, Outcome
 from core.document.design import Design
 from core.errors import UserError
 from core.garment.assessment import assessed

@@ -33,8 +33,8 @@ def draw_picture(
 ) -> None:
     """Write a PNG of the reshaped body from one side. Raises UserError."""
     _check_name(out)
+    from app.presenters.export import Manner, Outcome
     from app.presenters.export_preview import make_ready
-    from app.presenters.export_request import Manner, Outcome
     from app.rendering.camera import VIEWS
     from core.pipeline.build import build
     from core.pipeline.solve import run

@@ -14,7 +14,7 @@ from core.document.document import Document
 
 if TYPE_CHECKING:
     from app.gui.main_window import MainWindow
-    from app.presenters.export_request import Outcome
+    from app.presenters.export import Outcome
     from core.pipeline.build import Stages
     from core.pipeline.solve import Solution
 
@@ -53,7 +53,7 @@ class Bench:
     @cached_property
     def outcome(self) -> Outcome:
         """What files are written of."""
-        from app.presenters.export_request import Outcome  # noqa: PLC0415
+        from app.presenters.export import Outcome  # noqa: PLC0415
 
         return Outcome(self.solution.stages, self.solution.control_points, self.solution.records)
 

@@ -27,7 +27,7 @@ _FRAMES = 4
 
 def drawing(bench: Bench) -> str:
     """Draw the reshaped body off-screen: there must be a body in the picture; tell what has drawn it."""
-    from app.presenters.export_request import Manner  # noqa: PLC0415
+    from app.presenters.export import Manner  # noqa: PLC0415
 
     pixels = _exported(bench, "picture", "body.png", Manner(size=(400, 480)))
     covered = float((pixels[..., 3] > 250).mean())
@@ -57,7 +57,7 @@ def exports(bench: Bench) -> str:
     """Write drawings, a body and measures for other programs, and open them again."""
     import ezdxf  # noqa: PLC0415
 
-    from app.presenters.export_request import Manner  # noqa: PLC0415
+    from app.presenters.export import Manner  # noqa: PLC0415
 
     _exported(bench, "lines", "lines.dxf", Manner())
     drawn = len(ezdxf.readfile(bench.folder / "lines.dxf").modelspace())
@@ -78,7 +78,7 @@ def turntable(bench: Bench) -> str:
     """Write a GIF of a few pictures, and open it again."""
     from PIL import Image, ImageSequence  # noqa: PLC0415
 
-    from app.presenters.export_request import Manner  # noqa: PLC0415
+    from app.presenters.export import Manner  # noqa: PLC0415
 
     _exported(bench, "turntable", "turntable.gif", Manner(frames=_FRAMES, seconds=1.0, size=(160, 200)))
     with Image.open(bench.folder / "turntable.gif") as moving:

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from PySide6.QtCore import QRectF
 from PySide6.QtGui import QPainterPath
 
-from app.presenters.curves import Numbers
-from app.presenters.ticks import round_ticks
+from app.presenters.plots import Numbers, round_ticks
 
 _ROOM = 0.08  # of the range of values, above and below
 _END = 0.02  # of the turns, behind the last

@@ -23,7 +23,7 @@ from app.gui.plots.axes import Scale, load_curves
 from app.gui.plots.painting import ROLE_COLORS, paint_dot, paint_plot, plot_area
 from app.gui.theme.stylesheet import font, tokens_of
 from app.i18n.catalog import number, tr
-from app.presenters.curves import Plotted
+from app.presenters.plots import Plotted
 
 Turns = tuple[float, float]
 

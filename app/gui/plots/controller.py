@@ -12,8 +12,7 @@ from app.gui.plots.figure_export import figure_bytes
 from app.gui.widgets.basic import ToolButton
 from app.gui.widgets.file_dialogs import ask_save
 from app.i18n.catalog import tr
-from app.presenters.curves import Event
-from app.presenters.plot_data import table_of
+from app.presenters.plots import Event, table_of
 from core.document.design import Design
 from core.errors import UserError
 from core.files.atomic_write import whole_file

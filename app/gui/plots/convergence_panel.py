@@ -21,8 +21,7 @@ from app.gui.widgets.menu import Menu
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 from app.i18n.lengths import shown_value
-from app.presenters.curves import Curve, Event
-from app.presenters.plot_series import Exact, Track, error_quantities, height_quantities, tolerance_of
+from app.presenters.plots import Curve, Event, Exact, Track, error_quantities, height_quantities, tolerance_of
 
 _HIGH, _LOW, _FOLDED = 184, 150, 36
 

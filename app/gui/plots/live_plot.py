@@ -16,8 +16,7 @@ from app.gui.theme.stylesheet import font, tokens_of
 from app.gui.widgets.menu import Menu
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
-from app.presenters.curves import Curve, Event, Plotted
-from app.presenters.plot_series import Quantity
+from app.presenters.plots import Curve, Event, Plotted, Quantity
 
 
 class LivePlot(QWidget):

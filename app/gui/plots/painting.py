@@ -9,8 +9,7 @@ from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen
 from app.gui.plots.axes import Scale
 from app.gui.theme.stylesheet import font
 from app.i18n.catalog import number, tr
-from app.presenters.curves import Curve, Plotted, envelope, flips_every_turn
-from app.presenters.ticks import digits_of
+from app.presenters.plots import Curve, Plotted, digits_of, envelope, flips_every_turn
 from app.rendering.palette import Tokens
 
 LEFT, BOTTOM, RIGHT, TOP = 38.0, 18.0, 12.0, 2.0

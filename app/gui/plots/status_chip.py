@@ -13,7 +13,7 @@ from app.gui.theme.icons import paint_icon, pixmap
 from app.gui.theme.stylesheet import font, tokens_of
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
-from app.presenters.states import TONES, TROUBLED, state_title
+from app.presenters.status import TONES, TROUBLED, state_title
 
 _SPINNING = ("settling", "pending")
 

@@ -13,7 +13,7 @@ UNTIL_THEN = {
     "material": "clay",  # one of app.rendering.material.MATERIALS
     "motion": "full",  # or reduced
     "autosave": "10",  # seconds after an edit
-    "export": "{}",  # what was chosen to export, as app.presenters.export_settings keeps it
+    "export": "{}",  # what was chosen to export, as app.presenters.export keeps it
     "section_folded": "no",  # whether the section's panel shows its place alone
     "size_system": "jp",  # the key of a table of sizes
 }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.gui.viewport.viewport import Viewport
-from app.presenters.status import band_label, bands, drawn
+from app.presenters.lines import band_label, bands, drawn
 from app.rendering.render_mesh_parts import NONE
 from core.control_mesh.fit import ControlMesh
 from core.geometry.mesh import Floats, Indices

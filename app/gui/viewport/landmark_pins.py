@@ -9,7 +9,7 @@ import numpy as np
 from app.gui.viewport.overlay import Pin
 from app.gui.viewport.viewport import Viewport
 from app.i18n.catalog import tr
-from app.presenters.scan import PINNED, Spot, kind_of, landmark_title, landmark_view
+from app.presenters.landmarks import PINNED, Spot, kind_of, landmark_title, landmark_view
 from core.geometry.mesh import Points
 from core.landmarks.types import Landmark
 

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 from app.gui.widgets.last_folders import free_name, last_folder, remember_folder
 from app.gui.widgets.message_box import ask
 from app.i18n.catalog import tr
-from app.presenters.scan_formats import PATTERNS
+from app.presenters.scan import PATTERNS
 
 _ENDING = re.compile(r"\*(\.\w+)")
 

@@ -10,7 +10,7 @@ import pytest
 import pyvista as pv
 
 from app.gui.features.maps.band_coloring import BandPainter, BandValues, pressures_on, pulls_on
-from app.presenters.status import bands
+from app.presenters.lines import bands
 from app.rendering.appearance import rgb
 from app.rendering.scene import Scene
 from app.rendering.vertex_colors import Ramp

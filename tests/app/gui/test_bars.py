@@ -20,8 +20,8 @@ from app.gui.theme.stylesheet import apply_theme, tokens_of
 from app.gui.viewport.toolbar import VIEWS, CompareTools, ViewTools
 from app.gui.widgets.line_widgets import LineChip
 from app.presenters.assessment import IDLE
-from app.presenters.plot_series import Exact, Track
-from app.presenters.states import TONES
+from app.presenters.plots import Exact, Track
+from app.presenters.status import TONES
 from core.garment.assessment import LEVELS
 from core.mechanics.convergence import STATES
 

@@ -11,8 +11,7 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.gui.features.landmarks.panel import LandmarksPanel
-from app.presenters.landmarks import LandmarkView
-from app.presenters.scan import landmark_view, spot_of
+from app.presenters.landmarks import LandmarkView, landmark_view, spot_of
 from core.landmarks.bust_point import NIPPLE
 from core.landmarks.detect import find_landmarks
 from core.landmarks.types import CERTAIN, Landmark, Landmarks

@@ -10,8 +10,7 @@ from pytestqt.qtbot import QtBot
 
 from app.gui.features.measurements.table import HEAD, TOP, MeasureTable
 from app.gui.features.measurements.table_row import ROW, cells
-from app.presenters.measurement_views import MeasureView
-from app.presenters.measurements import as_table
+from app.presenters.measurements import MeasureView, as_table
 from app.presenters.uncertainty import spread_views
 from core.measurements.uncertain_value import SOURCES, Doubt, Spread
 

@@ -11,7 +11,7 @@ from app.gui.plots.convergence_panel import Strip
 from app.gui.step_navigation import Rail
 from app.gui.theme.stylesheet import apply_theme, load_fonts
 from app.i18n.catalog import speaking
-from app.presenters.convergence import StripVerdict
+from app.presenters.status import StripVerdict
 
 NUMBERS = {
     "en": [("Bust point", "0.2 mm up, 1.2 mm back"), ("Bust girth", "895.4 mm"), ("Pressure", "12.8 kPa")],

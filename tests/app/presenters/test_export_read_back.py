@@ -17,10 +17,8 @@ import pytest
 import pyvista as pv
 
 from app.i18n.catalog import speaking
-from app.presenters.export_formats import exports
+from app.presenters.export import Choices, Manner, Outcome, exports
 from app.presenters.export_preview import CONTROL_FORMATS, make_ready
-from app.presenters.export_request import Manner, Outcome
-from app.presenters.export_settings import Choices
 from core.control_mesh.template import read_template
 from core.document.custom_measures import OwnMeasure
 from core.document.design import Design, ScanSource

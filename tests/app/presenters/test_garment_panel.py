@@ -14,7 +14,8 @@ from app.gui.features.garment.panel import GarmentPanel
 from app.gui.inspector import Inspector
 from app.gui.theme.stylesheet import apply_theme
 from app.i18n.catalog import LANGUAGES, tr, use_language
-from app.presenters.cut_list_views import CutView, GarmentView, PressureView
+from app.presenters.cut_list import CutView, GarmentView
+from app.presenters.pressure import PressureView
 
 STRAP = CutView("strap left", "Strap left", "#E2A32F", 15.0, "Strap 15 mm", "432", "+43 %", "5.0")
 BAND = CutView("under-bust", "Under-bust", "#5A3F94", 18.0, "Bra band", "627", "", "2.6", (), 25.0)

@@ -13,8 +13,7 @@ from app.gui.widgets.value_edit import FigureField
 from app.i18n.catalog import say, use_language
 from app.i18n.lengths import length, read_length, use_unit
 from app.presenters.bust_shift import up_words
-from app.presenters.measurement_views import MeasureView, length_off
-from app.presenters.measurements import as_table
+from app.presenters.measurements import MeasureView, as_table, length_off
 from app.presenters.variants import Figure
 from app.report.text import figure
 

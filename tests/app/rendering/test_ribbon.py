@@ -10,7 +10,7 @@ import pyvista as pv
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
-from app.presenters.status import bands
+from app.presenters.lines import bands
 from app.rendering.band import OFF_WIDTH, Band, band_width
 from app.rendering.band_actors import Bands, RibbonActor
 from app.rendering.picking import Sight

@@ -14,7 +14,7 @@ from app.gui.theme.stylesheet import apply_theme
 from app.gui.viewport.screenshot import fine_picture
 from app.gui.viewport.split_view import Panes
 from app.gui.viewport.viewport import Viewport
-from app.presenters.status import bands
+from app.presenters.lines import bands
 from app.rendering import render_mesh_parts as piece_module
 from app.rendering import ribbon_mesh as ribbon_module
 from app.rendering.band import Band

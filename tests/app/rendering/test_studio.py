@@ -6,7 +6,7 @@ import pyvista as pv
 from PIL import Image
 
 import app.rendering.offscreen as room
-from app.presenters.status import bands
+from app.presenters.lines import bands
 from app.rendering.display import off_screen
 from app.rendering.offscreen import Studio, on_ground, on_nothing, write_picture
 from app.rendering.scene import Scene

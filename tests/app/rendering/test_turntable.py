@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from app.presenters.status import bands
+from app.presenters.lines import bands
 from app.rendering.offscreen import Studio, on_ground
 from app.rendering.turntable import FORMATS, Turntable, turn_round, write_turntable
 from core.errors import UserError

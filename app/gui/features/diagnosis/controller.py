@@ -15,8 +15,8 @@ from app.gui.widgets.notification_bar import REFUSED, Action
 from app.i18n.catalog import joined, say, tr
 from app.presenters import diagnosis as words
 from app.presenters.assessment import AssessmentView, assessment_view, tone
-from app.presenters.convergence import plain_sentence, state_of, swing_mm
 from app.presenters.lines import titled
+from app.presenters.status import plain_sentence, state_of, swing_mm
 from core.analysis.diagnosis.diagnose import Diagnosis, diagnose
 from core.document.design import Design
 from core.errors import UserError

@@ -10,8 +10,7 @@ from PySide6.QtCore import QObject, Signal
 from app.i18n.catalog import tr
 from app.presenters.assessment import IDLE, AssessmentView, assessment_view
 from app.presenters.bust_shift import bust_girths
-from app.presenters.convergence import StripVerdict, strip_verdict
-from app.presenters.solver_faults import out_of_date
+from app.presenters.status import StripVerdict, out_of_date, strip_verdict
 from core.garment.assessment import BAD, CAUTION, GOOD, PENDING, assessment_of
 from core.garment.cut_list import CutList, cut_list
 from core.pipeline.live_solver import Frame

@@ -17,12 +17,9 @@ from app.gui.widgets.file_dialogs import ask_save
 from app.gui.widgets.last_folders import free_name, last_folder
 from app.gui.widgets.message_box import ask
 from app.i18n.catalog import colon, joined, say, tr
-from app.presenters.convergence import is_result, state_of
-from app.presenters.export_formats import exports, format_title
+from app.presenters.export import Choices, Manner, Outcome, exports, format_title
 from app.presenters.export_preview import Ready, make_ready
-from app.presenters.export_request import Manner, Outcome
-from app.presenters.export_settings import Choices
-from app.presenters.states import state_title
+from app.presenters.status import is_result, state_of, state_title
 from core.errors import UserError
 from core.files.atomic_write import still_written
 from core.garment.assessment import BAD

@@ -25,7 +25,7 @@ from app.gui.widgets.dialog import Sheet
 from app.gui.widgets.option_field import Field, field_of
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
-from app.presenters.export_formats import Export
+from app.presenters.export import Export
 from app.presenters.model_options import Choice
 
 SIZE = (800, 620)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 from app.gui.session.jobs import Job
 from app.i18n.catalog import tr
+from app.presenters.export import Manner, Outcome
 from app.presenters.export_preview import Ready, make_ready
-from app.presenters.export_request import Manner, Outcome
 from core.progress import Progress
 
 if TYPE_CHECKING:

@@ -9,9 +9,8 @@ from PySide6.QtCore import QObject
 from app.gui.features.garment.panel import GarmentPanel
 from app.gui.widgets.table_export import copy_table, save_table
 from app.i18n.catalog import number, say, tr
-from app.presenters.convergence import doubt_of
-from app.presenters.cut_list import as_table, garment_view
-from app.presenters.cut_list_views import GarmentView
+from app.presenters.cut_list import GarmentView, as_table, garment_view
+from app.presenters.status import doubt_of
 from core.errors import LineError
 from core.garment.cut_list import cut_list
 from core.pipeline.live_solver import Frame

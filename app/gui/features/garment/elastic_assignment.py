@@ -10,7 +10,7 @@ from app.gui.features.garment.elastic_offer import Asked, ElasticOffer
 from app.gui.session.jobs import Job
 from app.i18n.catalog import number, tr
 from app.presenters.bust_shift import up_words
-from app.presenters.elastic_options import title_of
+from app.presenters.elastics import title_of
 from app.presenters.lines import row_title
 from core.document.design import Design
 from core.document.elastic import Elastic

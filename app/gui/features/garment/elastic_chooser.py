@@ -21,7 +21,7 @@ from app.gui.widgets.dialog import Sheet
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 from app.i18n.lengths import length_unit
-from app.presenters.elastic_options import AdviceView, ChoiceView
+from app.presenters.elastics import AdviceView, ChoiceView
 
 TITLE, STRETCH, CUT, REACHED, LIFT, NOTE = range(6)
 """The columns of the table."""

@@ -13,7 +13,7 @@ from app.gui.features.garment.elastic_chooser import ElasticChooser
 from app.gui.features.garment.elastic_list import Entry, elastic_entries
 from app.gui.session.jobs import Job
 from app.i18n.catalog import joined, say, tr
-from app.presenters.elastic_options import ChoiceView, advice_view, choice_view, mode_titles, mode_words
+from app.presenters.elastics import ChoiceView, advice_view, choice_view, mode_titles, mode_words
 from app.presenters.lines import row_title
 from core.document.design import Design
 from core.document.elastic import Elastic

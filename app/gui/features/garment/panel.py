@@ -16,7 +16,8 @@ from app.gui.widgets.basic import EmptyState, button, sentence
 from app.gui.widgets.button_row import press_row
 from app.i18n.catalog import tr
 from app.i18n.lengths import length_unit
-from app.presenters.cut_list_views import GarmentView, PressureView
+from app.presenters.cut_list import GarmentView
+from app.presenters.pressure import PressureView
 
 
 class GarmentPanel(QWidget):

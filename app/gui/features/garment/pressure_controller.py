@@ -10,9 +10,8 @@ from PySide6.QtCore import QObject, Signal
 from app.gui.features.garment.panel import GarmentPanel
 from app.gui.features.garment.pressure_card import PressureCard
 from app.i18n.catalog import tr
-from app.presenters.convergence import doubt_of
 from app.presenters.pressure import light_limits, pressure_summary, pressure_views, unknown_pressure
-from app.presenters.solver_faults import not_computed
+from app.presenters.status import doubt_of, not_computed
 from core.garment.pressure_list import PressList, press_list
 from core.pipeline.live_solver import Frame
 

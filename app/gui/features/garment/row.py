@@ -15,7 +15,8 @@ from app.gui.widgets.tooltip import set_tip
 from app.gui.widgets.value_edit import FigureField
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length_unit
-from app.presenters.cut_list_views import CutView, PressureView
+from app.presenters.cut_list import CutView
+from app.presenters.pressure import PressureView
 
 CHIP, CUT, NEWTONS, PRESSURE = 20, 54, 52, 56
 """Room of the columns [px]; the name has the rest."""

@@ -12,8 +12,7 @@ from PySide6.QtGui import QCursor, QKeyEvent
 from app.gui.widgets.tooltip import show_tip
 from app.i18n.catalog import joined, say, tr
 from app.i18n.lengths import arrow_step
-from app.presenters.landmarks import tone_of
-from app.presenters.scan import kind_of, landmark_title, landmark_views, other_side, spot_of
+from app.presenters.landmarks import kind_of, landmark_title, landmark_views, other_side, spot_of, tone_of
 from core.document.design import Design
 from core.geometry.mesh import Points
 from core.landmarks.manual import in_file, mirrored, nearest_skin

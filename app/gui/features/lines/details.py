@@ -16,7 +16,7 @@ from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length, length_number, length_unit
 from app.presenters.length_limits import tone_at
-from app.presenters.lines_views import LineView, SideView
+from app.presenters.lines import LineView, SideView
 
 _OFF = 5e-6  # a set length nearer to the rest length than this means that the line is not worn
 

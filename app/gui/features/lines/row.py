@@ -18,7 +18,7 @@ from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length
 from app.presenters.length_limits import length_tip
-from app.presenters.lines_views import LineView
+from app.presenters.lines import LineView
 
 __all__ = ["LineRow", "LineView"]
 

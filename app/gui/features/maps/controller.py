@@ -17,8 +17,7 @@ from app.gui.viewport.body_view import BodyView
 from app.gui.viewport.value_labels import ValueFlag, ValueFlags
 from app.i18n.catalog import number
 from app.i18n.lengths import length
-from app.presenters.body_state import BodyNow
-from app.presenters.maps import LINE_MAPS, MAPS, automatic_range, bridge_words, map_kinds, ramp_of
+from app.presenters.maps import LINE_MAPS, MAPS, BodyNow, automatic_range, bridge_words, map_kinds, ramp_of
 from app.rendering.framing import framing_place
 from app.rendering.material import look_of
 from app.rendering.vertex_colors import Ramp

@@ -16,7 +16,7 @@ from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 from app.i18n.lengths import shown_unit
 from app.presenters.maps import MapKind
-from app.presenters.plot_series import Quantity
+from app.presenters.plots import Quantity
 
 WIDTH = 152
 """Width of what is inside the panel, whatever map it is [px]."""

@@ -11,8 +11,7 @@ from app.gui.features.symmetry.controller import EvenDesk
 from app.gui.viewport.body_view import BodyView
 from app.gui.viewport.comparison import Beside
 from app.i18n.catalog import tr
-from app.presenters.body_state import BodyNow
-from app.presenters.maps import pressure_note
+from app.presenters.maps import BodyNow, pressure_note
 from core.garment.pressure_list import PressList
 from core.geometry.mesh import Floats
 from core.pipeline.live_solver import Frame

@@ -13,11 +13,9 @@ from app.gui.session.settings import wish, wish_for
 from app.gui.widgets.table_export import copy_table, save_table
 from app.i18n.catalog import tr
 from app.i18n.lengths import length
-from app.presenters.convergence import doubt_of
-from app.presenters.measurement_views import MeasureView
-from app.presenters.measurements import as_table, measure_views, measured_views
+from app.presenters.measurements import MeasureView, as_table, measure_views, measured_views
 from app.presenters.sizes import size_views
-from app.presenters.solver_faults import not_computed
+from app.presenters.status import doubt_of, not_computed
 from app.presenters.uncertainty import spread_views
 from core.geometry.mesh import Points
 from core.measurements.definitions import Measure

@@ -16,7 +16,7 @@ from app.gui.widgets.landmark_combo import MarkField
 from app.gui.widgets.tooltip import set_tip
 from app.gui.widgets.value_edit import FigureField
 from app.i18n.catalog import tr
-from app.presenters.custom_measures import Draft
+from app.presenters.measurements import Draft
 from core.document.custom_measures import FURTHEST, LONGEST_NAME
 
 

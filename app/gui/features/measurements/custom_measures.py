@@ -12,8 +12,8 @@ from app.gui.features.measurements.panel import ResultPanel
 from app.gui.session.jobs import Job
 from app.gui.viewport.drawing_tool import Hand
 from app.i18n.catalog import say, tr
-from app.presenters.custom_measures import Draft, draft_of, measure_of, said_of, suggested_name
-from app.presenters.scan import landmark_title
+from app.presenters.landmarks import landmark_title
+from app.presenters.measurements import Draft, draft_of, measure_of, said_of, suggested_name
 from core.document.custom_measures import OwnMeasure
 from core.errors import UserError
 from core.landmarks.types import NAMES

@@ -16,7 +16,7 @@ from app.gui.theme.stylesheet import font, set_tag
 from app.gui.widgets.basic import EmptyState, button, sentence
 from app.gui.widgets.button_row import press_row
 from app.i18n.catalog import tr
-from app.presenters.measurement_views import MeasureView
+from app.presenters.measurements import MeasureView
 
 
 class ResultPanel(QStackedWidget):

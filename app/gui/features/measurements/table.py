@@ -15,7 +15,7 @@ from app.gui.theme.stylesheet import font, tokens_of
 from app.gui.widgets.accessibility import announce
 from app.gui.widgets.button_row import press_row
 from app.i18n.catalog import tr
-from app.presenters.measurement_views import MeasureView
+from app.presenters.measurements import MeasureView
 
 TOP, HEAD = 24, 30
 """Heights of the titles of the columns and of the heading of a group [px]."""

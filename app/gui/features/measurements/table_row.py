@@ -9,7 +9,7 @@ from PySide6.QtCore import QPoint, QRect, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QPainter
 
 from app.gui.theme.stylesheet import faded, font
-from app.presenters.measurement_views import MeasureView
+from app.presenters.measurements import MeasureView
 from app.rendering.palette import Tokens
 
 ROW, NAME, FOOT, EDGE = 30, 20, 30, 4

@@ -11,7 +11,7 @@ from app.gui.theme.icons import paint_icon
 from app.gui.theme.stylesheet import font, tokens_of
 from app.gui.widgets.basic import IconLabel, button, sentence
 from app.i18n.catalog import tr
-from app.presenters.scan_formats import KINDS
+from app.presenters.scan import KINDS
 
 
 class DropZone(QFrame):

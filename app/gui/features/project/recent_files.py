@@ -17,7 +17,7 @@ from app.gui.session.settings import wish
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 from app.presenters.assessment import headline
-from app.presenters.states import state_title
+from app.presenters.status import state_title
 from core.document.storage.project_file import is_project, picture_bytes
 from core.garment.assessment import BAD, CAUTION
 from core.mechanics.convergence import STATES

@@ -15,8 +15,7 @@ from app.gui.theme.stylesheet import label, set_tag
 from app.gui.widgets.basic import EmptyState, Segment, button, hairline, sentence
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, say, tr
-from app.presenters.scan import LeanView, ScanView
-from app.presenters.scan_formats import KINDS
+from app.presenters.scan import KINDS, LeanView, ScanView
 
 UNITS = ("mm", "cm", "m", "inch")
 """Units that a scan can be in."""

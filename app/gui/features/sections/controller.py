@@ -16,11 +16,10 @@ from app.gui.viewport.viewport import Viewport
 from app.gui.widgets.file_dialogs import ask_save
 from app.i18n.catalog import tr
 from app.i18n.lengths import length
-from app.presenters.body_state import BodyNow
 from app.presenters.bust_shift import bust_move
-from app.presenters.convergence import is_result
-from app.presenters.maps import section_words, sides_words
-from app.presenters.plot_data import PLOT_INTERVAL
+from app.presenters.maps import BodyNow, section_words, sides_words
+from app.presenters.plots import PLOT_INTERVAL
+from app.presenters.status import is_result
 from core.errors import UserError
 from core.export.mesh import write_profile
 from core.geometry.mesh import Floats

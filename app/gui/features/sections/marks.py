@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from app.i18n.lengths import length_unit
-from app.presenters.body_state import BodyNow
 from app.presenters.bust_shift import bust_move
-from app.presenters.measurement_views import length_off
+from app.presenters.maps import BodyNow
+from app.presenters.measurements import length_off
 from core.geometry.mesh import Floats
 from core.geometry.planar_curves import Curve, Plane, Slicer, apexes
 from core.measurements.uncertain_value import Spread

@@ -20,7 +20,7 @@ from app.gui.widgets.tooltip import set_tip
 from app.gui.widgets.value_edit import FigureField
 from app.i18n.catalog import tr
 from app.i18n.lengths import arrow_step, length, length_unit
-from app.presenters.plot_series import Quantity
+from app.presenters.plots import Quantity
 
 STEPS = 2
 """Places of the slider in a step of an arrow key."""

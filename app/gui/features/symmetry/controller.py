@@ -12,7 +12,7 @@ from app.gui.features.measurements.panel import ResultPanel
 from app.gui.features.symmetry.card import EvenCard
 from app.gui.session.jobs import Job
 from app.i18n.catalog import listed, tr
-from app.presenters.convergence import doubt_of
+from app.presenters.status import doubt_of
 from app.presenters.symmetry import even_summary, left_as_it_is, map_note, parted_titles
 from core.analysis.symmetry.compare import BeforeAfter, evenness
 from core.analysis.symmetry.split_sides import parted

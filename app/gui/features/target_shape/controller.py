@@ -22,8 +22,7 @@ from app.gui.features.target_shape.view_state import AskBack
 from app.gui.features.target_shape.worker import Answer, AskWork, Question
 from app.gui.widgets.accessibility import announce
 from app.i18n.catalog import joined, say, tr
-from app.presenters.target_conflicts import inactive_words
-from app.presenters.target_shape import step_words
+from app.presenters.target_shape import inactive_words, step_words
 from core.analysis.inverse_design.quantities import Goal
 from core.document.design import Design
 from core.errors import UserError

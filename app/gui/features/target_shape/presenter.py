@@ -12,20 +12,24 @@ from app.gui.features.target_shape.targets import PRESSURE, Wishes
 from app.gui.features.target_shape.worker import Answer
 from app.i18n.catalog import joined, listed, tr
 from app.presenters.symmetry import asks_to_be_even, evened_words
-from app.presenters.target_conflicts import conflict_words, switched_words, unlimited_words
 from app.presenters.target_shape import (
     answer_words,
     beside_words,
     change_words,
+    conflict_words,
     figure_title,
     is_met,
     is_near,
     is_signed,
     kept_words,
     off_words,
+    pressure_words,
     profile_title,
+    result_words,
+    switched_words,
+    unlimited_words,
+    value_words,
 )
-from app.presenters.target_values import pressure_words, result_words, value_words
 from core.analysis.inverse_design.quantities import Goal
 from core.document.design import Design
 from core.garment.pressure_limits import comfort

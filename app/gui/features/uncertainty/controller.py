@@ -11,8 +11,7 @@ from app.gui.features.measurements.panel import ResultPanel
 from app.gui.features.uncertainty.card import SpreadCard
 from app.gui.session.jobs import Job
 from app.i18n.catalog import joined, say, tr
-from app.presenters.convergence import doubt_of
-from app.presenters.solver_faults import not_computed
+from app.presenters.status import doubt_of, not_computed
 from app.presenters.uncertainty import left_out_sentences, source_sentences, spread_view
 from core.analysis.uncertainty.estimate import Spreading
 from core.analysis.uncertainty.perturbed_solutions import Trials

@@ -14,8 +14,7 @@ from app.gui.features.variants.history_panel import HistoryPanel
 from app.gui.widgets.thumbnail_list import PictureRow
 from app.i18n.catalog import colon, number, tr
 from app.presenters.bust_shift import bust_move, bust_sentence
-from app.presenters.convergence import is_result
-from app.presenters.states import TONES
+from app.presenters.status import TONES, is_result
 from core.document.design import Design
 from core.document.document import Document
 from core.garment.assessment import PENDING

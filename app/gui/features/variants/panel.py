@@ -13,7 +13,7 @@ from app.gui.theme.stylesheet import font, tokens_of
 from app.gui.widgets.basic import EmptyState, sentence
 from app.gui.widgets.button_row import press_row
 from app.i18n.catalog import number, tr
-from app.presenters.states import TONES
+from app.presenters.status import TONES
 from app.presenters.variants import Figure, FigureRow, Told, VariantsView
 
 

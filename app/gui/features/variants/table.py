@@ -9,7 +9,7 @@ from PySide6.QtCore import QObject, QTimer
 from app.gui.features.variants.panel import VariantsPanel
 from app.gui.widgets.table_export import copy_table, save_table
 from app.i18n.catalog import tr
-from app.presenters.plot_data import PLOT_INTERVAL
+from app.presenters.plots import PLOT_INTERVAL
 from app.presenters.variants import as_table, variant_titles, variants_view
 
 if TYPE_CHECKING:

@@ -1,12 +1,26 @@
-"""What can be exported and how, in plain words: what each kind of file is for, and what opens it."""
+"""Describe exports: kinds, formats and their options, and the choices that are remembered."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
 
 from app.i18n.catalog import tr
+from app.presenters.lines import line_title
 from app.presenters.model_options import Choice
+from app.rendering.band import band_width
+from app.rendering.camera import View
+from core.deformation.tffd import deform
+from core.document.design import Design
 from core.export.units_and_axes import AXES, UNITS
+from core.geometry.mesh import Floats, Mesh, Points
+from core.measurements.table import before_after, measure_rows
+from core.mechanics.iteration import Record
+from core.pipeline.build import Stages
 
 Options = tuple[tuple[str, str], ...]
 
@@ -218,3 +232,162 @@ def _frames() -> Choice:
 def _seconds() -> Choice:
     options = tuple((seconds, tr("{seconds} s").format(seconds=seconds)) for seconds in ("3", "6", "12"))
     return Choice("seconds", tr("Time"), tr("How long one turn takes."), options)
+
+
+@dataclass(frozen=True)
+class Manner:
+    """How something is written; each kind of file asks for what concerns it.
+
+    ``unit`` and ``axes`` are None where the usual ones will do; ``before`` takes the body at rest in place of
+    the reshaped one; ``frames``, ``seconds`` and ``beside`` are those of a turntable, ``size`` [px], ``dark``
+    ground and ``bands`` those of pictures, ``clear`` ground and ``view``, by name or whole, of a single one.
+    """
+
+    unit: str | None = None
+    axes: str | None = None
+    before: bool = False
+    frames: int = 36
+    seconds: float = 6.0
+    size: tuple[int, int] = (640, 720)
+    dark: bool = False
+    beside: bool = False
+    clear: bool = False
+    bands: bool = True
+    view: str | View = "three-quarter"
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """A body at rest and as ``control_points``, (n, 3) [mm], reshape it, with the turns that led there.
+
+    What is worked out for one file is kept for the next. ``hidden`` are lines that pictures leave out,
+    ``material`` what the body looks made of in them, ``named`` project and customer, None as
+    they were opened.
+    """
+
+    stages: Stages
+    control_points: Points
+    records: Sequence[Record] = ()
+    hidden: frozenset[str] = frozenset()
+    material: str = "clay"
+    named: tuple[str, str] | None = None
+
+    @property
+    def whose(self) -> str:
+        """The names of project and customer, as a drawing is headed."""
+        named = self.named or (Path(self.design.scan.path).name, self.design.customer)
+        return " · ".join(filter(None, named))
+
+    @property
+    def design(self) -> Design:
+        """The design that this came out of."""
+        return self.stages.design
+
+    def points(self, before: bool) -> Points:
+        """Return the control points at rest or reshaped, shape (n, 3) [mm]."""
+        return self.stages.control.mesh.vertices if before else self.control_points
+
+    def body(self, before: bool) -> Mesh:
+        """Return the whole body at rest or reshaped."""
+        mesh = self.stages.body.mesh
+        return mesh.moved(deform(self.stages.binding, self.points(before)))
+
+    @cached_property
+    def measures(self) -> list[dict[str, Any]]:
+        """The measures before and after, a row each."""
+        return measure_rows(*before_after(self.stages, self.control_points))
+
+    @cached_property
+    def occlusion(self) -> Floats:
+        """How open to light the body is at each vertex, (n,) [1]."""
+        from app.rendering.ambient_occlusion import bake_occlusion  # noqa: PLC0415 (brings VTK along)
+
+        return bake_occlusion(self.stages.body.mesh)
+
+    @cached_property
+    def looks(self) -> tuple[Mapping[str, str], Mapping[str, float]]:
+        """Titles and widths [mm] of the lines as the window shows them."""
+        names = [line.name for line in self.stages.model.lines]
+        titles = {name: line_title(name, self.design) for name in names}
+        return titles, {name: band_width(name, self.design) for name in names}
+
+
+_OF_FORMAT = ("unit", "axes")  # each program that opens a format asks for its own
+
+
+class Choices:
+    """What was chosen, from the ``text`` of a former session; what in it is no choice is forgotten."""
+
+    def __init__(self, text: str) -> None:
+        self._exports = {export.what: export for export in exports()}
+        try:
+            kept = json.loads(text)
+        except ValueError:
+            kept = {}
+        self._kept: dict[str, object] = kept if isinstance(kept, dict) else {}
+
+    @property
+    def text(self) -> str:
+        """All choices, to be remembered."""
+        return json.dumps(self._kept)
+
+    @property
+    def export(self) -> Export:
+        """What was exported last, at first the body."""
+        return self.find(str(self._kept.get("what")))
+
+    def find(self, what: str) -> Export:
+        """Return what can be exported by its word, else the first."""
+        return self._exports.get(what, next(iter(self._exports.values())))
+
+    def choose_export(self, what: str) -> None:
+        """Export something else."""
+        self._kept["what"] = what
+
+    def kind(self, what: str) -> str:
+        """Return the format that was chosen for something."""
+        formats, kept = self.find(what).formats, self._kept.get(f"{what}/format")
+        return kept if isinstance(kept, str) and kept in formats else next(iter(formats))
+
+    def settings(self, what: str) -> tuple[Choice, ...]:
+        """Return what can be chosen for something in its format."""
+        return settings_of(self.find(what), self.kind(what))
+
+    def values(self, what: str, kind: str = "") -> dict[str, str]:
+        """Return what is chosen for something, in its format or another ``kind``, by the keys of settings."""
+        kind = kind or self.kind(what)
+        chosen = {}
+        for setting in settings_of(self.find(what), kind):
+            kept = self._kept.get(_key(what, kind, setting.key))
+            known = any(kept == value for value, _ in setting.options)
+            chosen[setting.key] = str(kept) if known else usual(what, setting.key)
+        return chosen | {"format": kind}
+
+    def choose(self, what: str, key: str, value: str) -> None:
+        """Remember one choice for something."""
+        self._kept[_key(what, self.kind(what), key)] = value
+
+    def manner(self, what: str, kind: str = "", view: View | None = None) -> Manner:
+        """Return how to write something in its format or another ``kind``; ``view`` is the view now."""
+        chosen = self.values(what, kind)
+        manner = Manner(
+            unit=chosen.get("unit"),
+            axes=chosen.get("axes"),
+            before=chosen.get("shape") == "before",
+            dark=chosen.get("ground") == "dark",
+            beside=chosen.get("shows") == "beside",
+            clear=chosen.get("ground") == "clear",
+            bands=chosen.get("bands") != "none",
+        )
+        if "size" in chosen:
+            wide, high = chosen["size"].split("x")
+            manner = replace(manner, size=(int(wide), int(high)))
+        if "frames" in chosen:
+            manner = replace(manner, frames=int(chosen["frames"]), seconds=float(chosen["seconds"]))
+        if chosen.get("view", "now") != "now":
+            return replace(manner, view=chosen["view"])
+        return manner if view is None else replace(manner, view=view)
+
+
+def _key(what: str, kind: str, key: str) -> str:
+    return f"{what}.{kind}/{key}" if key in _OF_FORMAT else f"{what}/{key}"

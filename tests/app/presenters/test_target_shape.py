@@ -8,7 +8,6 @@ import pytest
 
 from app.i18n.catalog import speaking
 from app.presenters.samples import sample_design
-from app.presenters.target_conflicts import unlimited_words
 from app.presenters.target_shape import (
     answer_words,
     beside_words,
@@ -18,9 +17,12 @@ from app.presenters.target_shape import (
     is_near,
     kept_words,
     off_words,
+    pressure_words,
+    result_words,
     step_words,
+    unlimited_words,
+    value_words,
 )
-from app.presenters.target_values import pressure_words, result_words, value_words
 from core.analysis.inverse_design.girth_quantity import GIRTH
 from core.analysis.inverse_design.profile_quantity import profile_name
 from core.analysis.inverse_design.quantities import Goal

@@ -15,9 +15,17 @@ from pytestqt.qtbot import QtBot
 from app.gui.plots.convergence_panel import Strip
 from app.gui.plots.live_plot import LivePlot
 from app.gui.theme.stylesheet import apply_theme
-from app.presenters.curves import Curve, Event, envelope, flips_every_turn
-from app.presenters.plot_series import Exact, Quantity, Track, tolerance_of
-from app.presenters.ticks import round_ticks
+from app.presenters.plots import (
+    Curve,
+    Event,
+    Exact,
+    Quantity,
+    Track,
+    envelope,
+    flips_every_turn,
+    round_ticks,
+    tolerance_of,
+)
 
 ERROR = Quantity("error_percent", "Volume error", "%", 0.4)
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from app.presenters.assessment import assessment_view
 from app.presenters.bust_shift import bust_girths
-from app.presenters.convergence import StripVerdict, strip_verdict
+from app.presenters.status import StripVerdict, strip_verdict
 from core.garment.assessment import assessment_of
 from core.garment.cut_list import cut_list
 from core.garment.pressure_list import press_list
