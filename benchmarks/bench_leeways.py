@@ -40,7 +40,7 @@ def main() -> None:
 
 def script(window: MainWindow) -> Script:
     yield settled(window)
-    window.desk.select_line("mid-bust")
+    window.selection.select_line("mid-bust")
     for way, changes in WAYS.items():
         window.session.change({**USUAL, **changes}, way)
         yield settled(window)

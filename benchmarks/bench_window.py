@@ -27,8 +27,8 @@ from pyvistaqt import QtInteractor
 
 from app.cli.commands.picture import wait_until
 from app.gui.application import application
-from app.gui.document_controller import Desk
 from app.gui.features.lines.panel import LinesPanel
+from app.gui.frame_dispatch import FrameDispatch, ThrottledDispatch
 from app.gui.main_window import MainWindow
 from app.gui.plots.canvas import PlotCanvas
 from app.gui.startup import open_window
@@ -48,11 +48,11 @@ WATCHED: tuple[tuple[str, Any, str], ...] = (
     ("solver: new lengths", Comparison, "retarget"),
     ("solver: turns", Comparison, "advance"),
     ("solver: frame", live, "make_frame"),
-    ("show frame", Desk, "show_frame"),
+    ("show frame", FrameDispatch, "show_frame"),
     ("  view", ViewArea, "show_frame"),
     ("    ask to draw", Viewport, "request_draw"),
     ("  list of lines", LinesPanel, "set_lines"),
-    ("  plots, figures", Desk, "plot_now"),
+    ("  plots, figures", ThrottledDispatch, "flush"),
     ("paint window", MainWindow, "event"),
     ("  3D", QtInteractor, "paintGL"),
     ("  3D image", PaintedCanvas, "_render"),

@@ -51,7 +51,7 @@ def drawing_a_profile(window: MainWindow) -> None:
 
 def sure(window: MainWindow) -> None:
     """Show how far measures and the curve of a section may be off."""
-    window.desk.go_to("result")
+    window.navigation.show_step("result")
     window.section_desk.set_on(True)
     window.result.select("bust_girth")
     wait_for(lambda: window.spread_desk.shown[0] is not None and not window.jobs.at_work())
@@ -59,7 +59,7 @@ def sure(window: MainWindow) -> None:
 
 def even(window: MainWindow) -> None:
     """Show how left and right differ, in figures and on the body."""
-    window.desk.go_to("result")
+    window.navigation.show_step("result")
     wait_for(lambda: not window.jobs.at_work())
     window.view.viewport.set_view("front")
     window.even_desk.card.look.click()

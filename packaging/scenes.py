@@ -107,7 +107,7 @@ def step(name: str) -> Scene:
     """Go to one of the steps."""
 
     def there(window: MainWindow) -> None:
-        window.desk.go_to(name)
+        window.navigation.show_step(name)
 
     return there
 
@@ -116,10 +116,10 @@ def tab(name: str, line: str = "") -> Scene:
     """Open a tab beside the lines, with a line selected or as it is."""
 
     def there(window: MainWindow) -> None:
-        window.desk.go_to("lines")
-        window.inspector.open(name)
+        window.navigation.show_step("lines")
+        window.navigation.show_panel(name)
         if line:
-            window.desk.select_line(line)
+            window.selection.select_line(line)
         if name == "garment":
             wait_for(lambda: window.pressure_desk.shown is not None)
 
@@ -133,28 +133,28 @@ def with_control_mesh(window: MainWindow) -> None:
 
 def wiped(window: MainWindow) -> None:
     """Wipe between before and after, seen from the front."""
-    window.desk.go_to("result")
+    window.navigation.show_step("result")
     window.view.viewport.set_view("front")
     window.view.compare_by("wipe")
-    window.desk.select_line("")
+    window.selection.select_line("")
 
 
 def mapped(window: MainWindow) -> None:
     """Show a map with the section plane."""
-    window.desk.go_to("result")
+    window.navigation.show_step("result")
     window.map_desk.choose("displacement")
     window.section_desk.set_on(True)
 
 
 def pressed(window: MainWindow) -> None:
     """Look at the place that is pressed most."""
-    window.desk.go_to("result")
-    window.inspector.open("garment")
+    window.navigation.show_step("result")
+    window.navigation.show_panel("garment")
     wait_for(lambda: window.pressure_desk.shown is not None)
     view = window.view.viewport
     view.frame_points(view.scene.bands.spine("mid-bust")[0])
     window.pressure_desk.card.place.click()
-    window.desk.select_line("")
+    window.selection.select_line("")
 
 
 def pressed_most(window: MainWindow) -> None:
@@ -165,7 +165,7 @@ def pressed_most(window: MainWindow) -> None:
 
 def pin_selected(window: MainWindow) -> None:
     """Select a landmark, seen from the front."""
-    window.desk.go_to("landmarks")
+    window.navigation.show_step("landmarks")
     window.view.viewport.set_view("front")
     window.landmarks.rows["bust_point_left"].click()
 
@@ -176,7 +176,7 @@ def variants(window: MainWindow) -> None:
     window.lines_desk.commit_length("mid-bust", 0.9)
     wait_for(window.is_settled)
     window.variant_desk.show_side_by_side()
-    window.inspector.open("variants")
+    window.navigation.show_panel("variants")
 
 
 def start_page(window: MainWindow) -> None:
@@ -200,12 +200,12 @@ def drawing(window: MainWindow) -> None:
 
 def model_page(window: MainWindow) -> None:
     """Open the page of all choices of the model."""
-    window.desk.show_model()
+    window.model_controller.show()
 
 
 def asking(window: MainWindow) -> None:
     """Ask which way the front is."""
-    window.desk.go_to("scan")
+    window.navigation.show_step("scan")
     window.scan_desk.ask()
     wait_for(window.view.question.isVisible)
 

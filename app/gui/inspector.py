@@ -23,7 +23,6 @@ class Inspector(QWidget):
         self._titled: set[str] = set()
         self.tabs = Segment((), wide=True)
         set_tip(self.tabs, tr("What this step shows here: lengths, measures or what was done"))
-        self.tabs.chosen.connect(self.open)
         self._head = QWidget()
         row = QHBoxLayout(self._head)
         row.setContentsMargins(8, 10, 8, 0)

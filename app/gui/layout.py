@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QObject, QSettings, Qt, QTimer
 from PySide6.QtWidgets import QApplication, QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
 
+from app.gui.context import Navigation
 from app.gui.notification_area import NoticePlace
 from app.gui.widgets.accessibility import announce
 from app.gui.widgets.basic import OverCard
@@ -35,6 +37,7 @@ class Layout(QObject):
     """Places the parts: top bar, rail, the work beside it, status bar.
 
     ``pages`` holds the work (view, strip and inspector) and whatever may take its place, such as the start.
+    Esc calls ``closers`` until one returns that it has closed something.
     """
 
     def __init__(self, window: MainWindow) -> None:
@@ -45,6 +48,7 @@ class Layout(QObject):
         self._keeps = QTimer(window, interval=KEPT_AFTER, singleShot=True)
         self._keeps.timeout.connect(self.keep)
         self._restored = False
+        self.closers: Sequence[Callable[[], bool]] = ()
         self._folded_as_low = False
         self.pages = QStackedWidget()
         self._across = Divider(Qt.Orientation.Horizontal, tr("Width of the inspector"))
@@ -57,6 +61,7 @@ class Layout(QObject):
         self._across.splitterMoved.connect(self._note_width)
         self._down.splitterMoved.connect(self._note_height)
         window.strip.folded.connect(self._fit_strip)
+        self._follow(window.navigation)
         window.view.viewport.addAction(window.actions_.alone)
         window.installEventFilter(self)
 
@@ -91,11 +96,24 @@ class Layout(QObject):
         down.addWidget(window.status)
         window.setCentralWidget(central)
 
+    def _follow(self, navigation: Navigation) -> None:
+        """Show what is navigated to."""
+        window = self._window
+        navigation.step_shown.connect(self._show_step)
+        navigation.panel_shown.connect(window.inspector.open)
+        navigation.page_shown.connect(lambda page: self.pages.setCurrentWidget(page or self._across))
+        navigation.panel_focused.connect(self.enter)
+        navigation.step_marked.connect(window.rail.set_state)
+        window.rail.step_chosen.connect(navigation.show_step)
+        window.inspector.tabs.chosen.connect(navigation.show_panel)
+
     # -- what is shown
 
-    def show_work(self) -> None:
-        """Bring view, strip and inspector back, if another page has taken their place."""
-        self.pages.setCurrentWidget(self._across)
+    def _show_step(self, step: str) -> None:
+        if self._window.actions_.alone.isChecked():
+            self.show_alone(False)
+        self._window.rail.set_current(step)
+        self._window.actions_.steps[step].setChecked(True)
 
     def show_inspector(self, shown: bool) -> None:
         """Show or hide the inspector."""
@@ -105,7 +123,7 @@ class Layout(QObject):
     def show_alone(self, alone: bool) -> None:
         """Hide all but the view, or bring the rest back as it was."""
         window = self._window
-        self.show_work()
+        window.navigation.show_page(None)
         for part in (window.rail, window.strip):
             part.setVisible(not alone)
         window.inspector.setVisible(not alone and window.actions_.inspector.isChecked())
@@ -153,7 +171,7 @@ class Layout(QObject):
 
     def go_on_in(self, step: str) -> None:
         """Go to a step by key: the keyboard goes on there, and a ring shows where."""
-        self._window.desk.go_to(step)
+        self._window.navigation.show_step(step)
         self.enter()
         if self._window.inspector.isVisible():
             self._ring.show_round(self._window.inspector)
@@ -161,22 +179,11 @@ class Layout(QObject):
 
     def give_up(self) -> bool:
         """Let Esc take away what lies over the window or in the place of it; returns whether anything did."""
-        window, over = self._window, self._over()
+        over = self._over()
         if over:
             over[-1].given_up.emit()
-        elif window.report_desk.is_open:
-            window.report_desk.leave()
-        elif window.ask_desk.is_open:
-            window.ask_desk.leave()
-        elif window.inspector.panel() is window.model:
-            window.model.left.emit()
-        elif window.inspector.panel() is window.worn_desk.page:
-            window.worn_desk.page.left.emit()
-        elif window.view.beside.way in ("wipe", "side"):
-            window.view.compare_by("after")
-        else:
-            return window.result.unmark()
-        return True
+            return True
+        return any(close() for close in self.closers)
 
     def _over(self) -> list[OverCard]:
         """Return the cards that lie over the whole window."""

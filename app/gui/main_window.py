@@ -14,7 +14,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.gui.actions import Actions
-from app.gui.document_controller import Desk
+from app.gui.context import AppContext, Navigation, Selection
 from app.gui.features.diagnosis.controller import DoctorDesk
 from app.gui.features.diagnosis.step_badges import VerdictDesk
 from app.gui.features.export.controller import ExportDesk
@@ -40,9 +40,11 @@ from app.gui.features.maps.controller import MapDesk
 from app.gui.features.measurements.controller import MeasuresDesk
 from app.gui.features.measurements.custom_measures import OwnMeasuresDesk
 from app.gui.features.measurements.panel import ResultPanel
+from app.gui.features.model.controller import ModelController
 from app.gui.features.model.panel import ModelDoor, ModelPanel
 from app.gui.features.preferences.controller import PreferencesDesk
 from app.gui.features.project.autosave import KeepingDesk
+from app.gui.features.project.controller import ProjectController
 from app.gui.features.project.opening import OpeningDesk
 from app.gui.features.project.recovery import RecoveryDesk
 from app.gui.features.project.start_controller import StartDesk
@@ -59,6 +61,7 @@ from app.gui.features.variants.history_controller import HistoryDesk
 from app.gui.features.variants.history_panel import HistoryPanel
 from app.gui.features.variants.panel import VariantsPanel
 from app.gui.features.variants.table import VariantFigures
+from app.gui.frame_dispatch import FrameDispatch, ThrottledDispatch
 from app.gui.inspector import Inspector
 from app.gui.layout import Layout
 from app.gui.plots.controller import PlotDesk
@@ -66,6 +69,7 @@ from app.gui.plots.convergence_panel import Strip
 from app.gui.progress_controller import JobDesk
 from app.gui.session.gc_control import Housekeeping
 from app.gui.session.jobs import Jobs
+from app.gui.session.notifications import Notifications
 from app.gui.session.session import Session
 from app.gui.status_bar import StatusBar
 from app.gui.step_navigation import Rail
@@ -80,6 +84,9 @@ from app.gui.widgets.navigation_row import Door
 from app.gui.widgets.notification_bar import NoticeBar
 from app.gui.wiring import connect
 from app.i18n.catalog import tr
+from app.presenters.status import facts
+from core.pipeline.live_solver import Frame
+from core.pipeline.warnings import kept_volume
 
 
 class MainWindow(QMainWindow):
@@ -111,15 +118,29 @@ class MainWindow(QMainWindow):
         self.history, self.variants, self.inspector = HistoryPanel(), VariantsPanel(), Inspector()
         self.lines_page = QStackedWidget()  # the lines, or what is asked for in their place
         self._fill_inspector()
+        self.notifications = Notifications(session, self.notices)
+        self.navigation, self.selection = Navigation(self), Selection(self.view.selected_line, self)
+        self.context = AppContext(
+            session, self.jobs, do, self.notifications, self.navigation, self.selection, self.view
+        )
         self.layout_ = Layout(self)
         self.pages = self.layout_.pages
         self._make_desks()
+        self._dispatch()
         connect(self)
+        do.strip.setChecked(True)
+        do.inspector.setChecked(True)
+        self.navigation.show_step("lines")
+        self.project_controller.show_title()
 
     def _make_desks(self) -> None:
         self.job_desk, self.limits_desk = JobDesk(self), LimitsDesk(self)
         self.landmark_desk, self.scan_desk = LandmarkDesk(self), ScanDesk(self)
-        self.desk, self.verdict_desk, self.doctor_desk = Desk(self), VerdictDesk(self), DoctorDesk(self)
+        self.verdict_desk, self.doctor_desk = VerdictDesk(self), DoctorDesk(self)
+        self.project_controller = ProjectController(
+            self.context, lambda frame: self.verdict_desk.of(frame).level
+        )
+        self.model_controller = ModelController(self.context, self.model, self.door)
         self.keeping_desk, self.recovery_desk = KeepingDesk(self), RecoveryDesk(self)
         self.history_desk, self.variant_desk = HistoryDesk(self, self.history), VariantDesk(self)
         self.variant_figures = VariantFigures(self, self.variants)
@@ -133,6 +154,8 @@ class MainWindow(QMainWindow):
         self.opening_desk = OpeningDesk(self)
         self.picture_desk, self.export_desk = PictureDesk(self), ExportDesk(self)
         self.report_desk = ReportDesk(self)
+        for page in (self.start_desk.page, self.report_desk.page):
+            self.pages.addWidget(page)
         self.lines_desk, self.line_maker = LinesDesk(self), LineMaker(self)
         self.line_drawing, self.line_routing = LineDrawing(self), LineRouting(self)
         self.preset_desk, self.band_pull = PresetDesk(self), BandPull(self)
@@ -142,7 +165,89 @@ class MainWindow(QMainWindow):
         self.preferences = PreferencesDesk(self)
         self.rescuer = Rescue(self)
         self.view_desk = ViewDesk(self)
+        self.project_controller.pending += [self.landmark_desk.put_down, self.report_desk.page.tell_name]
         self.housekeeping = Housekeeping(self)
+
+    def _dispatch(self) -> None:
+        """State in which order a frame, and a document that was opened, reach their receivers."""
+        self.throttled = ThrottledDispatch(
+            [
+                self.model_controller.show_frame,
+                self.lines_desk.show_frame,
+                self._show_status,
+                self.verdict_desk.show_frame,
+                self.plot_desk.show_frame,
+                self.measures_desk.show_frame,
+            ],
+            self,
+        )
+        self.frames = FrameDispatch(
+            [
+                self.limits_desk.follow,
+                self.doctor_desk.follow,
+                self.landmark_desk.follow,
+                self.notifications.show_frame,
+                self.scan_desk.show_frame,
+                self.view.show_frame,
+                self.throttled.show_frame,
+                lambda _: self.pressure_desk.follow(),
+                lambda _: self.even_desk.follow(),
+                lambda _: self.worn_desk.follow(),
+                lambda _: self.spread_desk.follow(),
+                self.export_desk.show_frame,
+                lambda _: self.report_desk.follow(),
+                self.garment_desk.follow,
+                lambda _: self.history_desk.note(),
+                lambda _: self.variant_figures.follow(),
+                lambda _: self.opening_desk.follow(),
+                self.plot_desk.mark_edit,
+                # What the view shows of a frame is there before it is coloured and cut.
+                lambda _: self.map_desk.follow(),
+                lambda _: self.section_desk.follow(),
+            ],
+            self,
+        )
+        self.opened = FrameDispatch(
+            [
+                self.project_controller.show_opened,
+                self.scan_desk.show_opened,
+                lambda _: self.report_desk.forget(),
+                lambda _: self.garment_desk.forget(),
+                lambda _: self.keeping_desk.show_opened(),
+                lambda _: self.recovery_desk.show_opened(),
+                lambda _: self.history_desk.show_opened(),
+                lambda _: self.variant_desk.close_side_by_side(),
+                lambda _: self.start_desk.show_opened(),
+            ],
+            self,
+        )
+        self.session.frame_ready.connect(self.frames.show_frame)
+        self.session.opened.connect(self.opened.show_frame)
+        self.layout_.closers = (
+            self.report_desk.close,
+            self.ask_desk.leave,
+            self._close_panel,
+            self.view.close_comparison,
+            self.result.unmark,
+        )
+
+    def _show_status(self, frame: Frame) -> None:
+        self.status.set_volume(*kept_volume(frame))
+        self.status.set_facts(facts(frame, self.session.failure is None))
+
+    def _close_panel(self) -> bool:
+        """Leave a panel that takes the place of another one; returns whether one did."""
+        panels = {"model": self.model.left, "worn": self.worn_desk.page.left}
+        left = panels.get(self.navigation.panel)
+        if left is not None:
+            left.emit()
+        return left is not None
+
+    def _show_page(self, page: QWidget | None) -> None:
+        """Highlight no step and offer no variants where the start page hides what they are about."""
+        at_start = page is self.start_desk.page
+        self.variant_desk.set_shown(not at_start)
+        self.rail.set_current("" if at_start else self.navigation.step)
 
     def _fill_inspector(self) -> None:
         lines = QWidget()
@@ -166,15 +271,8 @@ class MainWindow(QMainWindow):
         self.inspector.add("model", self.model)
 
     def is_settled(self) -> bool:
-        """Tell whether the session's design is solved to the end and shown."""
-        frame, session = self.session.frame, self.session
-        if frame is None or frame.stages.design is not session.design:
-            return False
-        return session.is_answered and not frame.at_work
-
-    def is_at_rest(self) -> bool:
-        """Tell whether what is shown is solved to the end: the session's design, or what is asked for."""
-        return self.is_settled() or self.ask_desk.is_tried_on
+        """Return whether the session's design is solved to the end and shown."""
+        return self.session.is_converged
 
     def tell_graphics(self, why: str) -> None:
         """Say once why the view is drawn safely, if it is, and notice when it has been drawn."""
@@ -227,17 +325,17 @@ class MainWindow(QMainWindow):
         if files:
             event.setDropAction(Qt.DropAction.CopyAction)
             event.accept()
-            self.desk.open_file(files[0])
+            self.project_controller.open_file(files[0])
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
         """Ask about changes; then solver, background work and 3D view end before the window does."""
-        if not self.keeping_desk.leaves and not self.desk.may_leave():
+        if not self.keeping_desk.leaves and not self.project_controller.may_leave():
             event.ignore()
             return
         self.layout_.keep()
         # The solver may be in the middle of reading a scan: nobody has to watch the window wait for it.
         self.hide()
-        self.desk.close()
+        self.throttled.close()
         self.history_desk.close()
         self.recovery_desk.close()
         self.jobs.close()

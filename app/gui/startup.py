@@ -75,7 +75,7 @@ def _at_start() -> str | Design | None:
 def _go_on(window: MainWindow, what: str | Design | None) -> None:
     """Do what takes long, now that the window is there: read the body, load the 3D libraries."""
     _open(window, what)
-    hand_files_to(window.desk.open_file)
+    hand_files_to(window.project_controller.open_file)
     window.view.prepare(window.housekeeping.spare, window.rescuer.note)
 
 

@@ -68,7 +68,7 @@ class Tour(QObject):
         for part in (self._window, self._window.notices):
             part.removeEventFilter(self)
         self.mark.leave()
-        self._window.layout_.enter()
+        self._window.navigation.focus_panel()
         end_first_start()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
@@ -78,7 +78,7 @@ class Tour(QObject):
         return False
 
     def _begin_if_settled(self) -> None:
-        if self._window.is_settled():
+        if self._window.session.is_converged:
             self._window.session.frame_ready.disconnect(self._begin_if_settled)
             self.begin()
 
@@ -92,7 +92,7 @@ class Tour(QObject):
     def _show(self) -> None:
         stops = self._stops()
         stop = stops[self._place]
-        self._window.desk.go_to("lines")
+        self._window.navigation.show_step("lines")
         self._window.strip.set_folded(False)
         if stop.report:
             self._window.report_desk.open()

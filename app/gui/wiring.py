@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.gui.features.project.recent_files import fill_recent_menu
 from app.gui.widgets.inline_edit import forget_refused
 
 if TYPE_CHECKING:
@@ -28,8 +27,6 @@ def connect(window: MainWindow) -> None:
 def _connect_work(window: MainWindow) -> None:
     job_desk = window.job_desk
     window.session.working.connect(job_desk.show_work)
-    window.session.frame_ready.connect(window.limits_desk.follow)
-    window.session.frame_ready.connect(window.doctor_desk.follow)
     window.lines_desk.leeways = window.limits_desk.leeways
     window.jobs.changed.connect(job_desk.show)
     window.view.busy.cancelled.connect(job_desk.cancel)
@@ -39,7 +36,6 @@ def _connect_work(window: MainWindow) -> None:
 
 def _connect_landmarks(window: MainWindow) -> None:
     panel, view, landmark_desk = window.landmarks, window.view.viewport, window.landmark_desk
-    window.session.frame_ready.connect(landmark_desk.follow)
     panel.landmark_selected.connect(landmark_desk.take)
     panel.reset_asked.connect(landmark_desk.reset)
     panel.confirmed.connect(landmark_desk.confirm)
@@ -54,59 +50,32 @@ def _connect_landmarks(window: MainWindow) -> None:
 
 
 def _connect_session(window: MainWindow) -> None:
-    session, desk, scan_desk = window.session, window.desk, window.scan_desk
-    session.opened.connect(desk.show_opened)
-    session.frame_ready.connect(desk.show_frame)
-    session.frame_ready.connect(lambda *_: window.pressure_desk.follow())
-    session.frame_ready.connect(lambda *_: window.even_desk.follow())
-    for changed in (session.frame_ready, session.design_changed):
-        changed.connect(lambda *_: window.worn_desk.follow())
-    for changed in (session.frame_ready, session.design_changed):
-        changed.connect(lambda *_: window.spread_desk.follow())
+    session, scan_desk = window.session, window.scan_desk
+    session.design_changed.connect(lambda *_: window.worn_desk.follow())
+    session.design_changed.connect(lambda *_: window.spread_desk.follow())
     session.failed.connect(lambda *_: window.pressure_desk.found.emit())
     session.failed.connect(lambda *_: window.spread_desk.follow())
     window.spread_desk.found.connect(window.measures_desk.show_spread)
     window.spread_desk.found.connect(window.section_desk.show_spread)
     window.spread_desk.found.connect(window.report_desk.follow)
     window.report_desk.action.triggered.connect(window.spread_desk.follow)
-    session.frame_ready.connect(window.export_desk.show_frame)
-    session.frame_ready.connect(lambda *_: window.report_desk.follow())
     session.design_changed.connect(lambda *_: window.report_desk.follow())
     session.failed.connect(lambda *_: window.report_desk.follow())
-    session.opened.connect(window.report_desk.forget)
-    session.design_changed.connect(desk.show_design)
-    session.failed.connect(desk.show_failure)
+    session.failed.connect(lambda _: window.throttled.repeat() if session.failure is not None else None)
     session.failed.connect(window.doctor_desk.refuse)
     session.failed.connect(scan_desk.show_refused)
-    session.not_saved.connect(desk.show_not_saved)
     session.asked.connect(scan_desk.show_stuck)
-    session.saved.connect(desk.show_saved)
-    session.undo_stack.cleanChanged.connect(desk.show_title)
-    session.undo_stack.indexChanged.connect(desk.note_step)
-    session.opened.connect(window.garment_desk.forget)
-    session.frame_ready.connect(window.garment_desk.follow)
 
 
 def _connect_safe(window: MainWindow) -> None:
-    session, safe, recovery, history = (
-        window.session,
-        window.keeping_desk,
-        window.recovery_desk,
-        window.history_desk,
-    )
+    session, safe, history = window.session, window.keeping_desk, window.history_desk
     stack = session.undo_stack
     stack.indexChanged.connect(lambda _: forget_refused())
-    session.saving.connect(window.desk.show_saving)
-    session.opened.connect(safe.show_opened)
-    session.opened.connect(recovery.show_opened)
-    session.opened.connect(history.show_opened)
-    session.opened.connect(window.variant_desk.close_side_by_side)
     session.saved.connect(safe.show_saved)
     session.design_changed.connect(safe.note)
     session.design_changed.connect(history.show_snapshots)
     session.design_changed.connect(window.variant_desk.show_variants)
-    session.frame_ready.connect(history.note)
-    for changed in (session.frame_ready, session.design_changed, window.variant_desk.solved):
+    for changed in (session.design_changed, window.variant_desk.solved):
         changed.connect(lambda *_: window.variant_figures.follow())
     window.pressure_desk.found.connect(window.verdict_desk.refresh)
     window.pressure_desk.found.connect(window.variant_figures.follow)
@@ -117,14 +86,13 @@ def _connect_safe(window: MainWindow) -> None:
 
 
 def _connect_panels(window: MainWindow) -> None:
-    session, desk, scan_desk = window.session, window.desk, window.scan_desk
-    window.rail.step_chosen.connect(desk.go_to)
+    session, project, scan_desk = window.session, window.project_controller, window.scan_desk
     window.lines.opened.connect(window.lines_desk.show_rows)
     window.pressure_desk.found.connect(window.lines_desk.show_rows)
     window.lines.length_previewed.connect(session.preview_line)
     window.lines.length_committed.connect(window.lines_desk.commit_length)
     window.lines.drag_cancelled.connect(lambda _: session.cancel_preview())
-    window.lines.selected.connect(desk.select_line)
+    window.lines.selected.connect(window.selection.select_line)
     window.lines.visibility_changed.connect(window.lines_desk.set_visible)
     window.lines.decided.connect(window.lines_desk.decide)
     window.lines.reset_all.connect(session.reset_lines)
@@ -134,10 +102,8 @@ def _connect_panels(window: MainWindow) -> None:
     window.lines.draw_asked.connect(window.line_drawing.begin)
     window.lines.path_asked.connect(window.line_routing.begin)
     window.lines.removed.connect(window.lines_desk.remove)
-    window.door.clicked.connect(desk.show_model)
     window.model.left.connect(lambda: window.layout_.go_on_in("lines"))
-    window.model.changed.connect(session.change)
-    window.scan.open_asked.connect(desk.open)
+    window.scan.open_asked.connect(project.open)
     window.scan.told.connect(scan_desk.tell)
     window.scan.edits.edited.connect(scan_desk.edit)
     window.scan.lean.leaned.connect(scan_desk.lean)
@@ -146,18 +112,17 @@ def _connect_panels(window: MainWindow) -> None:
 
 
 def _connect_start(window: MainWindow) -> None:
-    session, desk, start = window.session, window.desk, window.start_desk
-    session.opened.connect(start.show_opened)
-    for changed in (session.working, session.frame_ready, session.failed, session.asked):
+    session, project, start = window.session, window.project_controller, window.start_desk
+    for changed in (session.working, session.failed, session.asked):
         changed.connect(lambda *_: window.opening_desk.follow())
     session.working.connect(start.show_work)
     session.failed.connect(start.show_failure)
     session.asked.connect(start.leave_page)
-    start.page.open_asked.connect(desk.open)
-    start.page.sample_asked.connect(desk.open_sample)
+    start.page.open_asked.connect(project.open)
+    start.page.sample_asked.connect(project.open_sample)
     start.page.tour_asked.connect(start.take_tour)
     start.page.guide_asked.connect(window.help.show_first_steps)
-    start.page.project_chosen.connect(desk.open_file)
+    start.page.project_chosen.connect(project.open_file)
     start.page.locate_asked.connect(start.locate)
     start.page.forget_asked.connect(start.forget)
     start.page.left.connect(start.leave_page)
@@ -165,15 +130,20 @@ def _connect_start(window: MainWindow) -> None:
 
 def _connect_plots(window: MainWindow) -> None:
     plots = window.plot_desk
-    window.session.frame_ready.connect(plots.mark_edit)
     window.strip.export_asked.connect(plots.export)
     window.strip.quantity_chosen.connect(plots.keep_quantity)
     plots.slow.toggled.connect(plots.set_slow)
 
 
 def _connect_view(window: MainWindow) -> None:
-    desk, scan_desk, view = window.desk, window.scan_desk, window.view
-    view.viewport.band_clicked.connect(desk.select_line)
+    scan_desk, view = window.scan_desk, window.view
+    window.navigation.page_shown.connect(window._show_page)
+    selection = window.selection
+    for select in (window.lines.select, window.garment.select, view.select_line):
+        selection.line_selected.connect(select)
+    for select in (window.landmarks.select, view.pins.select):
+        selection.landmark_selected.connect(select)
+    view.viewport.band_clicked.connect(window.selection.select_line)
     view.question.answered.connect(scan_desk.answer)
     view.question.left.connect(scan_desk.leave_question)
     view.tools.view_chosen.connect(view.viewport.set_view)
@@ -197,16 +167,13 @@ def _connect_maps(window: MainWindow) -> None:
     window.landmarks.landmark_selected.connect(section.follow_landmark)
     view.viewport.pin_pressed.connect(section.follow_landmark)
     # What the view shows of a frame is there before it is painted and cut.
-    for shown in (window.session.frame_ready, view.compared, window.lines.visibility_changed):
+    for shown in (view.compared, window.lines.visibility_changed):
         shown.connect(lambda *_: maps.follow())
         shown.connect(lambda *_: section.follow())
 
 
 def _connect_actions(window: MainWindow) -> None:
-    session, desk, do = window.session, window.desk, window.actions_
-    do.open.triggered.connect(desk.open)
-    do.save.triggered.connect(desk.save)
-    do.save_as.triggered.connect(desk.save_as)
+    session, do = window.session, window.actions_
     do.export.triggered.connect(window.export_desk.export_body)
     do.export_any.triggered.connect(window.export_desk.show)
     do.quit.triggered.connect(window.close)
@@ -216,14 +183,8 @@ def _connect_actions(window: MainWindow) -> None:
     window.strip.folded.connect(lambda folded: do.strip.setChecked(not folded))
     do.draw_line.triggered.connect(window.line_drawing.begin)
     do.own_line.triggered.connect(window.line_maker.ask)
-    do.model.triggered.connect(desk.show_model)
-    do.recent.aboutToShow.connect(lambda: fill_recent_menu(do.recent, desk.open_file))
-    for name, action in do.samples.items():
-        action.triggered.connect(lambda _=False, sample=name: desk.open_sample(sample))
     for group, ask in (
         (do.add_lines, window.line_maker.add),
-        (do.controls, session.choose_control),
-        (do.templates, session.choose_template),
         (do.themes, lambda theme: window.preferences.choose("theme", theme)),
         (do.languages, lambda language: window.preferences.choose("language", language)),
     ):

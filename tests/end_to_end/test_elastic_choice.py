@@ -40,7 +40,7 @@ def take(window: MainWindow, line: str) -> None:
 def test_an_elastic_goes_to_no_other_variant_and_to_no_other_document(gate: threading.Event) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.inspector.open("garment")
+        window.navigation.show_panel("garment")
         take(window, "mid-bust")
         assert window.jobs.at_work()
         window.variant_desk.choose("B")
@@ -52,7 +52,7 @@ def test_an_elastic_goes_to_no_other_variant_and_to_no_other_document(gate: thre
         gate.clear()
         window.session.undo_stack.setClean()
         take(window, "mid-bust")
-        window.desk.open_sample("person")
+        window.project_controller.open_sample("person")
         yield lambda: window.session.name == "person" and window.is_settled()
         gate.set()
         yield at_rest(window)
@@ -69,7 +69,7 @@ def test_an_elastic_goes_with_the_next_edit_and_leaves_with_an_undo_and_with_its
         yield settled(window)
         window.line_maker.add("straps")
         window.lines_desk.commit_length("strap left", 0.97)
-        window.inspector.open("garment")
+        window.navigation.show_panel("garment")
         yield at_rest(window)
         take(window, "mid-bust")
         window.actions_.undo.trigger()

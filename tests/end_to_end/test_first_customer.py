@@ -38,8 +38,10 @@ def own_house(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, person: Path) -> 
     """A customer's scan, and answers to the dialogs of files."""
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
     shutil.copy(person, tmp_path / "anna.ply")
-    monkeypatch.setattr("app.gui.document_controller.ask_open", lambda *_: str(tmp_path / "anna.ply"))
-    monkeypatch.setattr("app.gui.document_controller.ask_save", lambda *_: str(tmp_path / "anna.busk"))
+    monkeypatch.setattr("app.gui.features.project.controller.ask_open", lambda *_: str(tmp_path / "anna.ply"))
+    monkeypatch.setattr(
+        "app.gui.features.project.controller.ask_save", lambda *_: str(tmp_path / "anna.busk")
+    )
     monkeypatch.setattr("app.gui.features.report.controller.ask_save", lambda *_: str(tmp_path / "anna.pdf"))
 
 
@@ -93,14 +95,14 @@ def corrected(window: MainWindow) -> Script:
 def banded(window: MainWindow) -> Script:
     """Steps 6 to 10: a wide elastic band that slides is put on and dragged shorter; the bust rises."""
     window.rail.items["lines"].click()
-    window.desk.show_model()
+    window.model_controller.show()
     choose(window, "line_contact", "sliding")
     choose(window, "line_height", "70")
     yield settled(window)
     design = window.session.design
     assert (design.line_contact, design.line_height) == ("sliding", 0.7)
-    window.inspector.open("lines")
-    window.desk.select_line("mid-bust")
+    window.navigation.show_panel("lines")
+    window.selection.select_line("mid-bust")
     window.lines.rows["mid-bust"].details.findChild(ElasticPull).click()
     yield from pick(window, "Power-net band 80 mm")
     yield settled(window)
@@ -122,7 +124,7 @@ def banded(window: MainWindow) -> Script:
 
 def cut(window: MainWindow) -> Script:
     """Steps 11 and 12: how long to cut it."""
-    window.inspector.open("garment")
+    window.navigation.show_panel("garment")
     yield at_rest(window)
     row = cut_rows(window)["mid-bust"]
     assert row.cut_mm

@@ -204,7 +204,7 @@ def test_zones_follow_an_edit_while_the_model_still_settles(monkeypatch: pytest.
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.desk.select_line("full-bust")
+        window.selection.select_line("full-bust")
         row = window.lines.rows["full-bust"]
         yield lambda: row.view.leeway is not None and not row.view.stale
         before = row.view.leeway

@@ -57,7 +57,7 @@ def test_slings_are_listed_drawn_shortened_and_removed() -> None:
         assert np.abs(points(window) - at_start).max() < 0.2
         window.actions_.undo.trigger()
         yield lambda: "sling left" in window.lines.rows
-        window.desk.select_line("sling right")
+        window.selection.select_line("sling right")
         window.activateWindow()
         yield window.isActiveWindow
         window.lines.rows["sling left"].slider.setFocus()
@@ -130,7 +130,7 @@ def test_the_accumulating_force_can_be_chosen() -> None:
         yield settled(window)
         assert set(window.session.frame.tracks) == {"adaptive", "conventional", "accumulating"}
         assert window.session.frame.verdict.state == "settled"
-        window.desk.plot_now()
+        window.throttled.flush()
         segment = window.strip._segment
         assert not any(
             segment.button(name).isChecked() for name in ("adaptive", "conventional", "none", "exact")
@@ -174,7 +174,7 @@ def test_a_handle_in_the_hand_stays_while_lines_come_and_its_preview_goes_with_i
         assert session.design.ratio("mid-bust") == ratio < 0.99
         session.undo_stack.undo()
         yield settled(window)
-        window.desk.plot_now()
+        window.throttled.flush()
         slider = window.lines.rows["strap left"].slider
         assert slider.accessibleName() == "Length of Straps"
         window.lines_desk.decide("strap left", "linked", False)

@@ -126,7 +126,7 @@ def linked_again(window: MainWindow, ratio: float) -> Script:
     assert last(window) == "Straps removed"
     assert session.design.own_lines == (), "both sides of a pair, as one step"
     window.actions_.undo.trigger()
-    window.desk.select_line("strap left")
+    window.selection.select_line("strap left")
     yield settled(window)
 
 
@@ -140,7 +140,7 @@ def treated(window: MainWindow) -> Script:
     yield lambda: row.title.text() == "Lift tape"
     assert last(window) == "Straps renamed"
     assert session.design.traits_of("strap right").title == "Lift tape"
-    window.desk.select_line("strap right")
+    window.selection.select_line("strap right")
     assert window.view.viewport._labels.band[1].startswith("Lift tape, right 9")
     row.details._palette.chosen.emit("#C2571A")
     yield lambda: bands.colour("strap right") == "#C2571A"

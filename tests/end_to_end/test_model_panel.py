@@ -212,12 +212,12 @@ def test_every_choice_has_its_words_and_the_door_says_what_is_not_usual() -> Non
 def test_another_body_is_opened_with_its_lines_in_sight() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        for show, page in ((window.desk.show_model, "lines"), (window.worn_desk.show_page, "result")):
+        for show, page in ((window.model_controller.show, "lines"), (window.worn_desk.show_page, "result")):
             show()
             left = window.inspector.panel()
             before = window.session.frame.stages.body
             window.session.undo_stack.setClean()
-            window.desk.open_sample("person" if page == "lines" else "mannequin")
+            window.project_controller.open_sample("person" if page == "lines" else "mannequin")
             yield lambda before=before: window.session.frame.stages.body is not before
             yield settled(window)
             assert window.inspector.panel() is window.inspector._panels[page] is not left

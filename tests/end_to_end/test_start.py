@@ -12,7 +12,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from window_tools import Script, run_main, settled
 
-import app.gui.document_controller
+import app.gui.features.project.controller
 import app.gui.features.project.start_controller
 from app.gui.features.project.project_card import ProjectCard
 from app.gui.features.project.recent_files import (
@@ -42,7 +42,7 @@ def test_the_first_start_leads_through_the_sample_and_later_ones_go_on(
 ) -> None:
     saved, gone = tmp_path / "customer 0412.busk", tmp_path / "customer 0340.busk"
     answers = iter(["", str(saved)])
-    monkeypatch.setattr(app.gui.document_controller, "ask_save", lambda *_: str(saved))
+    monkeypatch.setattr(app.gui.features.project.controller, "ask_save", lambda *_: str(saved))
     monkeypatch.setattr(app.gui.features.project.start_controller, "ask_open", lambda *_: next(answers))
 
     def first(window: MainWindow) -> Script:
@@ -52,7 +52,7 @@ def test_the_first_start_leads_through_the_sample_and_later_ones_go_on(
         yield lambda: window.start_desk.tour.place == 0
         QTest.keyClick(window.start_desk.tour.mark, Qt.Key.Key_Escape)
         assert not window.start_desk.tour.mark.isVisible()
-        window.desk.save_as()
+        window.project_controller.save_as()
         yield lambda: window.session.path == saved
 
     def second(window: MainWindow) -> Script:
@@ -65,7 +65,7 @@ def test_the_first_start_leads_through_the_sample_and_later_ones_go_on(
         assert at_start(window), "nothing was chosen"
         QTest.keyClick(cards(window)["customer 0340"], Qt.Key.Key_Delete)
         assert recent_files() == [str(saved)]
-        window.desk.open_file(str(gone))
+        window.project_controller.open_file(str(gone))
         yield window.notices.isVisible
         assert at_start(window), "the page stays as long as there is nothing else"
         QTest.keyClick(cards(window)["customer 0412"], Qt.Key.Key_Return)
@@ -73,7 +73,7 @@ def test_the_first_start_leads_through_the_sample_and_later_ones_go_on(
         assert not at_start(window)
         assert window.session.path == saved
         assert window.rail.current() == "lines", "a project was looked at when it was a scan"
-        window.desk.open_file(str(person))
+        window.project_controller.open_file(str(person))
         yield lambda: window.session.name == "person"
         assert recent_files() == [str(saved)], "samples can always be had"
         window.start_desk.show_page()

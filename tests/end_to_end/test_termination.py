@@ -34,7 +34,7 @@ def work(body: Path) -> int:
                 clock.stop()
                 window.session.commit_line("mid-bust", "Mid-bust line", RATIO)
                 print("edited", flush=True)
-                window.desk.open()  # a question stays open: the signal ends it too
+                window.project_controller.open()  # a question stays open: the signal ends it too
 
     clock = QTimer(interval=20)
     clock.timeout.connect(look)

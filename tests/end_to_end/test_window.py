@@ -29,7 +29,7 @@ def test_the_sample_opens_in_a_finished_state() -> None:
         assert frame.verdict.state == "settled"
         assert not gc.isenabled(), "the solver's thread must not look for garbage"
         assert frame.marks.apex_z - frame.stages.rest_marks.apex_z > 1.0
-        window.desk.plot_now()
+        window.throttled.flush()
         yield lambda: window.strip.chip.state() in ("good", "caution", "bad")
         assert window.strip._turns.text().startswith("Settled · ")
         assert set(frame.tracks) == {"adaptive", "conventional"}
@@ -159,7 +159,7 @@ def test_the_conventional_force_vibrates_when_the_line_is_too_short() -> None:
         frame = window.session.frame
         assert frame is not None
         assert frame.verdict.state == "vibrating"
-        window.desk.plot_now()
+        window.throttled.flush()
         yield lambda: window.strip.chip.state() == "bad"
         assert window.strip._turns.text().startswith("Vibrating · ")
 
@@ -174,7 +174,7 @@ def test_the_whole_window_looks_as_it_should() -> None:
         window.resize(1280, 800)
         yield settled(window)
         yield lambda: window.view.is_shaded
-        window.desk.plot_now()
+        window.throttled.flush()
         yield lambda: True
         image = window.grab().toImage().convertToFormat(QImage.Format.Format_RGB888)
         ratio = image.width() / window.width()

@@ -43,8 +43,8 @@ def test_all_that_can_be_used_has_a_name_a_tip_and_room_for_its_words(language: 
         window.strip.set_folded(False)
         lacks = set()
         for show in (
-            *(lambda s=step: window.desk.go_to(s) for step in window.rail.items),
-            window.desk.show_model,
+            *(lambda s=step: window.navigation.show_step(s) for step in window.rail.items),
+            window.model_controller.show,
         ):
             show()
             window.notices.show_notice("bad", "Nothing is wrong.", "Go on.", lasting=True, details="at all")

@@ -162,7 +162,7 @@ def loses_nothing_meanwhile(window: MainWindow, tmp_path: Path) -> Script:
     assert "kPa at most; then Bust point up " in said
     assert desk.card.wishes["lift"].field.text() == "", "it is not what was asked for"
     window.session.undo_stack.setClean()
-    window.desk.open_sample("person")
+    window.project_controller.open_sample("person")
     yield lambda: not desk.is_open
     yield settled(window)
     assert window.session.design.scan.name != "mannequin.ply"
@@ -234,12 +234,12 @@ def sends_to_apply_or_cancel(window: MainWindow) -> Script:
     window.report_desk.open()
     assert "apply what is asked for, or cancel it, first" in window.report_desk.page.state.text()
     window.report_desk.leave()
-    window.desk.go_to("result")
+    window.navigation.show_step("result")
     yield lambda: bool(window.result.measured) and not window.result.stale
     assert desk.is_tried_on
-    window.desk.go_to("landmarks")
+    window.navigation.show_step("landmarks")
     assert not desk.is_open, "its handles are of the reshaped body"
-    window.desk.go_to("lines")
+    window.navigation.show_step("lines")
     yield settled(window)
 
 

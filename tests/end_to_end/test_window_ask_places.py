@@ -54,9 +54,9 @@ def leaves_the_bust_in_sight(window: MainWindow) -> Script:
             assert handle.isVisible()
             assert view.rect().contains(spot)
             assert not any(room.contains(spot) for room in over)
-        window.desk.go_to("result")
+        window.navigation.show_step("result")
         assert desk.is_open, "measures can be looked at meanwhile"
-        window.desk.go_to("lines")
+        window.navigation.show_step("lines")
         assert desk.card.isVisible()
         desk.leave()
     yield settled(window)

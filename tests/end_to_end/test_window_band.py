@@ -52,7 +52,7 @@ def hover(window: MainWindow, at: QPoint) -> Qt.CursorShape:
 def test_the_selected_band_is_pulled_shorter_and_longer() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.session.frame_ready.disconnect(window.limits_desk.follow)
+        window.frames.order.remove(window.limits_desk.follow)
         window.view.viewport.set_view("front")
         yield from a_pull_is_live_and_one_undo_step(window)
         yield from escape_brings_the_band_back(window)
@@ -175,9 +175,9 @@ def test_a_pulled_band_minds_links_locks_and_limits() -> None:
         yield from a_locked_band_says_so_and_stays(window)
         window.line_maker.add("straps")
         yield settled(window)
-        window.desk.plot_now()
+        window.throttled.flush()
         linked_bands_go_together(window)
-        window.desk.select_line("under-bust")
+        window.selection.select_line("under-bust")
         assert hover(window, on_band(window, "under-bust")) == Qt.CursorShape.PointingHandCursor
         yield settled(window)
 
@@ -201,7 +201,7 @@ def the_red_resists_as_in_the_slider(window: MainWindow) -> None:
 
 def a_locked_band_says_so_and_stays(window: MainWindow) -> Script:
     yield settled(window)
-    window.desk.plot_now()
+    window.throttled.flush()
     design, seen = window.session.design, window.view.viewport.scene.view
     at = on_band(window, "mid-bust")
     assert hover(window, at) == Qt.CursorShape.ForbiddenCursor
@@ -213,7 +213,7 @@ def a_locked_band_says_so_and_stays(window: MainWindow) -> Script:
 
 
 def linked_bands_go_together(window: MainWindow) -> None:
-    window.desk.select_line("strap right")
+    window.selection.select_line("strap right")
     pull(window, on_band(window, "strap right"), QPoint(0, -20))
     release(canvas_of(window), QPoint(5, 5))
     assert ratio_of(window, "strap right") == ratio_of(window, "strap left") == pytest.approx(1.0 - 20 * STEP)

@@ -28,10 +28,10 @@ def test_the_colours_of_a_scan_are_shown_where_landmarks_are_placed(tmp_path: Pa
         yield settled(window)
         action = window.view.tools.actions_by_name["colours"]
         assert action.isEnabled()
-        window.desk.go_to("landmarks")
+        window.navigation.show_step("landmarks")
         assert action.isChecked()
         assert reddish(window) > 0.95
-        window.desk.go_to("lines")
+        window.navigation.show_step("lines")
         assert not action.isChecked()
         assert reddish(window) < 0.05
         window.lines_desk.commit_length("mid-bust", 0.95)
@@ -51,7 +51,7 @@ def test_the_colours_of_a_scan_are_shown_where_landmarks_are_placed(tmp_path: Pa
 def test_without_colours_there_is_nothing_to_show() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.desk.go_to("landmarks")
+        window.navigation.show_step("landmarks")
         assert not window.view.tools.actions_by_name["colours"].isEnabled()
         assert reddish(window) < 0.05
 

@@ -64,7 +64,7 @@ def test_no_piece_of_a_former_document_is_listed() -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.inspector.open("garment")
+        window.navigation.show_panel("garment")
         window.session.commit_line("mid-bust", "Mid-bust", 0.9)
         yield settled(window)
         assert window.garment.view.worn
@@ -85,9 +85,9 @@ def test_no_piece_of_a_former_document_is_listed() -> None:
 def test_a_typed_name_is_saved_and_asked_about(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "dora.busk"
     asked = []
-    monkeypatch.setattr("app.gui.document_controller.ask_save", lambda *_: str(path))
+    monkeypatch.setattr("app.gui.features.project.controller.ask_save", lambda *_: str(path))
     monkeypatch.setattr(
-        "app.gui.document_controller.ask_about_changes", lambda *_: asked.append(1) or "discard"
+        "app.gui.features.project.controller.ask_about_changes", lambda *_: asked.append(1) or "discard"
     )
 
     def script(window: MainWindow) -> Script:
@@ -97,10 +97,10 @@ def test_a_typed_name_is_saved_and_asked_about(tmp_path: Path, monkeypatch: pyte
         window.actions_.save.trigger()
         assert window.session.finish_saving()
         assert open_project(path).customer == "Dora"
-        assert window.desk.may_leave()
+        assert window.project_controller.may_leave()
         assert not asked
         typed(window, "E")
-        assert window.desk.may_leave()
+        assert window.project_controller.may_leave()
         assert asked == [1], "what is typed is a change that would be lost"
 
     assert run_main(["resources/samples/mannequin.ply"], script) == 0

@@ -35,7 +35,7 @@ def test_an_elastic_that_cannot_be_used_is_grey_and_the_nearest_that_can_is_one_
     def script(window: MainWindow) -> Script:
         save_elastic(Elastic("weak", 10.0, ((0.0, 0.0), (0.1, 0.05), (0.3, 0.2)), estimate=False))
         yield settled(window)
-        window.inspector.open("garment")
+        window.navigation.show_panel("garment")
         yield at_rest(window)
         before, rows = window.session.design, cut_rows(window)
         window.garment.rows["mid-bust"].elastic.click()
@@ -76,7 +76,7 @@ def test_the_loss_of_lift_is_shown_before_it_is_chosen() -> None:
         yield settled(window)
         window.line_maker.add("straps")
         window.lines_desk.commit_length("strap left", 0.93)
-        window.inspector.open("garment")
+        window.navigation.show_panel("garment")
         yield at_rest(window)
         window.garment.rows["strap left"].elastic.click()
         chooser = chooser_of(window)
@@ -108,7 +108,7 @@ def test_effects_that_come_late_are_dropped_with_the_chooser(monkeypatch: pytest
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.inspector.open("garment")
+        window.navigation.show_panel("garment")
         yield at_rest(window)
         monkeypatch.setattr(elastic_offer, "elastic_option", waits)
         window.garment.rows["mid-bust"].elastic.click()
@@ -131,7 +131,7 @@ def test_effects_that_come_late_are_dropped_with_the_chooser(monkeypatch: pytest
 def test_what_was_edited_while_the_chooser_was_open_is_kept() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.inspector.open("garment")
+        window.navigation.show_panel("garment")
         yield at_rest(window)
         window.garment.rows["mid-bust"].elastic.click()
         yield from mark(window, "Power-net band 80 mm")

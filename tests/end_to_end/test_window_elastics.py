@@ -88,7 +88,7 @@ def test_an_own_elastic_travels_with_its_project_to_where_nobody_has_it(
     def save(window: MainWindow) -> Script:
         save_elastic(Elastic("Roll 9", 14.0, ((0.0, 0.0), (0.4, 5.2), (0.9, 14.0)), 18.0, "mine", False))
         yield settled(window)
-        window.inspector.open("garment")
+        window.navigation.show_panel("garment")
         yield from choose(window, "mid-bust", "Roll 9")
         yield made_of(window, "mid-bust")
         cut.append(window.garment.rows["mid-bust"].cut.text())
@@ -98,7 +98,7 @@ def test_an_own_elastic_travels_with_its_project_to_where_nobody_has_it(
     def reopen(window: MainWindow) -> Script:
         assert not own_folder().exists()
         yield settled(window)
-        window.inspector.open("garment")
+        window.navigation.show_panel("garment")
         yield at_rest(window)
         row = window.garment.rows["mid-bust"]
         assert row.elastic.words == "Roll 9"
@@ -143,7 +143,7 @@ def test_the_keyboard_alone_chooses_an_elastic() -> None:
 def test_an_elastic_beyond_its_table_is_told_in_a_drag_and_anew_at_the_next_edit() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.inspector.open("garment")
+        window.navigation.show_panel("garment")
         yield from choose(window, "mid-bust", "Strap 15 mm")
         yield made_of(window, "mid-bust")
         made = window.session.design
@@ -169,7 +169,7 @@ def test_a_linked_pair_is_made_of_the_same_in_one_step() -> None:
         yield settled(window)
         window.line_maker.add("straps")
         window.lines_desk.commit_length("strap left", 0.9915)
-        window.inspector.open("garment")
+        window.navigation.show_panel("garment")
         yield at_rest(window)
         steps, before = window.session.undo_stack.count(), cut_rows(window)
         yield from choose(window, "strap right", "Strap 12 mm")
@@ -207,7 +207,7 @@ def test_one_that_is_called_as_ours_gets_a_name_of_its_own_and_none_is_called_me
         assert sheet.mark.text() == "An estimate, not measured"
         sheet.reject()
         yield lambda: window.elastics_desk.sheet is None
-        window.inspector.open("garment")
+        window.navigation.show_panel("garment")
         yield from choose(window, "mid-bust", "Strap 15 mm, own")
         yield made_of(window, "mid-bust")
         # Another one of that name, as a newer table has it: the project keeps its own.

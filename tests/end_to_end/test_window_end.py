@@ -17,7 +17,7 @@ from PySide6.QtWidgets import QApplication
 from shiboken6 import isValid
 from window_tools import Script, drag, run_main, settled
 
-import app.gui.document_controller
+import app.gui.features.project.controller
 from app.gui.main_window import MainWindow
 from app.presenters.samples import sample_design
 from core.document.storage.recovery import recovery_folder
@@ -90,7 +90,7 @@ def writing(window: MainWindow) -> Script:
     """A project that is being saved, and edits that are being kept aside, on a slow disk."""
     window.session.commit_line("mid-bust", "Mid-bust", 0.9)
     yield lambda: window.keeping_desk._writing.at_work
-    assert window.desk.save()
+    assert window.project_controller.save()
     window.session.commit_line("mid-bust", "Mid-bust", 0.95)
     assert window.session._saving.at_work
 
@@ -110,8 +110,10 @@ def test_a_closed_window_leaves_nothing(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     sync = os.fsync
-    monkeypatch.setattr(app.gui.document_controller, "ask_save", lambda *_: str(tmp_path / "anna.busk"))
-    monkeypatch.setattr(app.gui.document_controller, "ask_about_changes", lambda *_: "discard")
+    monkeypatch.setattr(
+        app.gui.features.project.controller, "ask_save", lambda *_: str(tmp_path / "anna.busk")
+    )
+    monkeypatch.setattr(app.gui.features.project.controller, "ask_about_changes", lambda *_: "discard")
     if state is writing:
         QSettings().setValue("autosave", 0.01)
         monkeypatch.setattr(os, "fsync", lambda file: (time.sleep(0.3), sync(file)))

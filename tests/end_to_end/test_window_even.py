@@ -36,7 +36,7 @@ def opened(window: MainWindow, mid: float = 0.95, full: float = 0.97) -> Script:
     yield settled(window)
     window.session.edit(lambda d: d.with_line("mid-bust", mid).with_line("full-bust", full), "Worn")
     yield settled(window)
-    window.desk.go_to("result")
+    window.navigation.show_step("result")
     yield lambda: is_fresh(window)
 
 
@@ -165,7 +165,7 @@ def makes_even(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
         yield settled(window)
         if end == desk.leave:
             assert window.session.design is before
-            window.desk.go_to("result")
+            window.navigation.show_step("result")
             yield lambda: is_fresh(window)
     after = window.session.design
     assert after is not None
@@ -176,7 +176,7 @@ def makes_even(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
     window.actions_.undo.trigger()
     yield settled(window)
     assert window.session.design == before
-    window.desk.go_to("result")
+    window.navigation.show_step("result")
     yield lambda: is_fresh(window)
     begun: list[object] = []
     monkeypatch.setattr(desk, "begin", lambda *_: begun.append(_))
@@ -191,7 +191,7 @@ def makes_even(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
 
 def splits(window: MainWindow) -> Script:
     """A line is split by its row, the key and the menu, each as one step."""
-    window.desk.go_to("lines")
+    window.navigation.show_step("lines")
     window.activateWindow()
     yield window.isActiveWindow
     before = window.session.design
@@ -217,7 +217,7 @@ def splits(window: MainWindow) -> Script:
         window.actions_.undo.trigger()
         yield lambda: "mid-bust left" not in window.lines.rows and window.is_settled()
         assert window.session.design == before
-        window.desk.plot_now()
+        window.throttled.flush()
         assert window.view.selected_line == "mid-bust", "it is whole again"
     yield from parted_elsewhere(window)
     window.lines.select("under-bust")
@@ -226,15 +226,15 @@ def splits(window: MainWindow) -> Script:
 
 def parted_elsewhere(window: MainWindow) -> Script:
     """Who looks at a line that something else splits goes on in its left half; the whole tells no gap."""
-    window.desk.select_line("mid-bust")
+    window.selection.select_line("mid-bust")
     window.lines_desk.commit_length("mid-bust", 0.95)
     template = read_template("168")
     window.session.edit(lambda design: split(design, template, "mid-bust"), "Made even")
     yield lambda: "mid-bust left" in window.lines.rows and window.is_settled()
-    window.desk.plot_now()
+    window.throttled.flush()
     assert window.view.selected_line == "mid-bust left"
     assert window.lines.rows["mid-bust left"]._open
-    window.desk.select_line("mid-bust")  # whoever wants to see it can
+    window.selection.select_line("mid-bust")  # whoever wants to see it can
     row = window.lines.rows["mid-bust"]
     assert row._open
     assert row.details._figures[0][3].text() == "–", "a line that does not pull has no gap"
@@ -254,7 +254,7 @@ def test_an_even_body_has_nothing_to_be_made_even_and_a_line_is_split_all_the_sa
         undrawn(window)
         yield settled(window)
         assert not asked, "nobody looks at it"
-        window.desk.go_to("result")
+        window.navigation.show_step("result")
         yield lambda: is_fresh(window)
         card = window.even_desk.card
         assert card.says.text() == "Both bust points lie alike within 0.5 mm."

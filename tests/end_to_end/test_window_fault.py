@@ -10,7 +10,7 @@ from PySide6.QtCore import QSettings
 from PySide6.QtWidgets import QLabel
 from window_tools import Script, drag, run_undrawn, settled
 
-import app.gui.document_controller
+import app.gui.features.project.controller
 from app.gui.main_window import MainWindow
 from core.document.storage.project_file import open_project
 from core.document.storage.recovery import read_kept
@@ -31,7 +31,7 @@ def test_a_solver_that_fails_for_long_loses_nothing(
 ) -> None:
     QSettings().setValue("autosave", 0.05)
     path = tmp_path / "anna.busk"
-    monkeypatch.setattr(app.gui.document_controller, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(app.gui.features.project.controller, "ask_save", lambda *_: str(path))
     caplog.set_level(logging.CRITICAL)
 
     def script(window: MainWindow) -> Script:
@@ -64,11 +64,11 @@ def test_a_solver_that_fails_for_long_loses_nothing(
         yield lambda: keeping._kept is document
         kept = read_kept(keeping._recovery.folder)
         assert kept.document.design.lines == document.design.lines
-        assert window.desk.save()
+        assert window.project_controller.save()
         assert session.finish_saving()
         assert open_project(path).design.lines == document.design.lines
         assert not session.unsaved
-        window.desk.go_to("result")
+        window.navigation.show_step("result")
         window.map_desk.choose("pressure")
         words = [
             each.text() for each in (window.result.sure, *window.findChildren(QLabel)) if each.isVisible()

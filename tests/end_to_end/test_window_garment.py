@@ -36,7 +36,7 @@ def test_an_elastic_is_chosen_and_the_length_to_cut_is_that_of_the_core() -> Non
     def script(window: MainWindow) -> Script:
         yield settled(window)
         window.lines_desk.commit_length("full-bust", 0.985)
-        window.inspector.open("garment")
+        window.navigation.show_panel("garment")
         yield at_rest(window)
         garment, before = window.garment, cut_rows(window)
         assert garment.rows["mid-bust"].cut.text() == "–"
@@ -75,7 +75,7 @@ def test_one_elastic_is_chosen_for_all_and_taken_off_again_without_moving_the_bo
     def script(window: MainWindow) -> Script:
         yield settled(window)
         window.lines_desk.commit_length("full-bust", 0.985)
-        window.inspector.open("garment")
+        window.navigation.show_panel("garment")
         yield at_rest(window)
         before = cut_rows(window)
         assert window.garment.offer.isVisible()
@@ -111,7 +111,7 @@ def test_a_lift_that_goes_with_the_elastic_is_told() -> None:
         yield settled(window)
         window.line_maker.add("straps")
         window.lines_desk.commit_length("strap left", 0.986)
-        window.inspector.open("garment")
+        window.navigation.show_panel("garment")
         yield at_rest(window)
         assert window.session.frame is not None
         before = bust_move(window.session.frame).mean.up
@@ -130,7 +130,7 @@ def test_a_lift_that_goes_with_the_elastic_is_told() -> None:
 def test_the_other_meaning_keeps_the_length_to_cut_and_moves_the_body() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.inspector.open("garment")
+        window.navigation.show_panel("garment")
         yield from choose(window, "mid-bust", "Strap 15 mm")
         yield made_of(window, "mid-bust")
         first, design = cut_rows(window)["mid-bust"], window.session.design
@@ -153,7 +153,7 @@ def test_a_band_on_the_rib_cage_is_cut_as_far_stretched_as_the_designer_says() -
     def script(window: MainWindow) -> Script:
         yield settled(window)
         window.lines_desk.commit_length("mid-bust", 1.0)
-        window.inspector.open("garment")
+        window.navigation.show_panel("garment")
         yield at_rest(window)
         assert list(window.garment.rows) == ["under-bust"]
         assert window.garment.nothing.isVisible()
@@ -199,7 +199,7 @@ def test_a_band_on_the_rib_cage_is_cut_as_far_stretched_as_the_designer_says() -
 def test_a_locked_line_stays_what_it_is() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.inspector.open("garment")
+        window.navigation.show_panel("garment")
         window.lines_desk.decide("mid-bust", "locked", True)
         yield at_rest(window)
         before = window.session.design
@@ -218,7 +218,7 @@ def test_newtons_go_with_the_stiffness_of_tissue_and_the_list_leaves_as_a_table(
 ) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.inspector.open("garment")
+        window.navigation.show_panel("garment")
         yield at_rest(window)
         before = cut_rows(window)["mid-bust"].tension_n or 0.0
         field = window.garment.tissue.field

@@ -50,11 +50,11 @@ def opened(site: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
 def go_everywhere(window: MainWindow) -> None:
     """Ask for the guide in every step, at the garment, at the report and on the start page."""
     for step in window.rail.items:
-        window.desk.go_to(step)
+        window.navigation.show_step(step)
         window.actions_.guide.trigger()
-    window.inspector.open("garment")
+    window.navigation.show_panel("garment")
     window.actions_.guide.trigger()
-    window.desk.show_model()
+    window.model_controller.show()
     window.actions_.guide.trigger()
     window.report_desk.open()
     window.actions_.guide.trigger()

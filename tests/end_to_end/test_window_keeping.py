@@ -14,7 +14,7 @@ import pytest
 from PySide6.QtCore import QLockFile, QSettings
 from window_tools import Script, drag, points, run_main, run_undrawn, settled
 
-import app.gui.document_controller
+import app.gui.features.project.controller
 import app.gui.features.project.recovery
 import app.gui.features.variants.controller
 from app.gui.main_window import MainWindow
@@ -39,12 +39,12 @@ def test_a_crash_loses_nothing_and_the_next_start_offers_it(
 ) -> None:
     QSettings().setValue("autosave", 0.05)
     path = tmp_path / "anna.busk"
-    monkeypatch.setattr(app.gui.document_controller, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(app.gui.features.project.controller, "ask_save", lambda *_: str(path))
     seen = []
 
     def first(window: MainWindow) -> Script:
         yield settled(window)
-        window.desk.save()
+        window.project_controller.save()
         yield path.exists
         drag(window, "mid-bust", -20)
         yield settled(window)
@@ -68,7 +68,7 @@ def test_a_crash_loses_nothing_and_the_next_start_offers_it(
         assert "*" in window.windowTitle(), "it is as unsaved as it was"
         assert window.keeping_desk._recovery is not None
         assert list(recovery_folder().iterdir()) == [window.keeping_desk._recovery.folder]
-        window.desk.save()
+        window.project_controller.save()
         assert window.session.finish_saving()
         assert open_project(path).design.lines == document.design.lines
 
@@ -130,20 +130,20 @@ def test_saving_waits_for_no_disk_and_closing_waits_for_saving(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path, disk = tmp_path / "anna.busk", threading.Event()
-    monkeypatch.setattr(app.gui.document_controller, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(app.gui.features.project.controller, "ask_save", lambda *_: str(path))
     sync = os.fsync
     monkeypatch.setattr(os, "fsync", lambda file: (disk.wait(60), sync(file)))
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
         window.session.commit_line("mid-bust", "Mid-bust line", 0.9)
-        assert window.desk.save()
+        assert window.project_controller.save()
         assert not path.exists()
         window.session.commit_line("mid-bust", "Mid-bust line", 0.8)
         yield settled(window)  # all goes on
         assert window.status._saved.text() == "Saving…"
         threading.Timer(0.2, disk.set).start()
-        monkeypatch.setattr(app.gui.document_controller, "ask_about_changes", lambda *_: "discard")
+        monkeypatch.setattr(app.gui.features.project.controller, "ask_about_changes", lambda *_: "discard")
         assert window.close()
         assert open_project(path).design.ratio("mid-bust") == 0.9
 
@@ -154,40 +154,42 @@ def test_two_windows_and_a_change_from_outside_are_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, project: Path, mannequin: Path
 ) -> None:
     path, asked = tmp_path / "lotte.busk", []
-    monkeypatch.setattr(app.gui.document_controller, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(app.gui.features.project.controller, "ask_save", lambda *_: str(path))
     answers = iter(("overwrite", "stay", "overwrite"))
     monkeypatch.setattr(
-        app.gui.document_controller, "ask_overwrite", lambda *what: asked.append(what[1:]) or next(answers)
+        app.gui.features.project.controller,
+        "ask_overwrite",
+        lambda *what: asked.append(what[1:]) or next(answers),
     )
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.desk.save()
+        window.project_controller.save()
         assert window.session.finish_saving()
         assert not [each for each in backups() if each.project == path]
         other = QLockFile(str(tmp_path / ".lotte.busk.lock"))
         assert not other.tryLock(0), "it is this window's"
         path.write_bytes(project.read_bytes())
         window.session.commit_line("mid-bust", "Mid-bust line", 0.9)
-        window.desk.save()
+        window.project_controller.save()
         assert window.session.finish_saving()
         assert asked == [("lotte", False)]
         (former,) = [each for each in backups() if each.project == path]
         assert former.path.read_bytes() == project.read_bytes(), "what was outside can be had back"
-        window.desk.save()
+        window.project_controller.save()
         assert window.session.finish_saving()
         assert asked == [("lotte", False)], "its own version is no surprise"
         path.chmod(0o400)
         window.session.commit_line("mid-bust", "Mid-bust line", 0.91)
         former = path.read_bytes()
         for written in (False, True):
-            assert bool(window.desk.save()) == written
+            assert bool(window.project_controller.save()) == written
             assert window.session.finish_saving() == written
             assert asked.pop() == ("lotte", True), "who protected it is asked"
             assert (path.read_bytes() != former) == written
         window.keeping_desk._lock.release()
         assert other.tryLock(0)
-        window.desk.open_file(str(path))
+        window.project_controller.open_file(str(path))
         yield lambda: window.notices.notice() is not None
         notice = window.notices.notice()
         assert notice is not None

@@ -86,7 +86,7 @@ def test_a_card_over_the_window_takes_the_keyboard_and_goes_by_esc_or_once_somet
         assert let_go == ["kept for the next start"]
         monkeypatch.setattr(desk, "_offers", [(_Kept(), _Left(let_go))])
         desk.card.offer(RecoveryView("anna", "today", QImage()))
-        window.desk.open_sample("person")
+        window.project_controller.open_sample("person")
         yield lambda: window.session.name == "person" and window.is_settled()
         assert not desk.card.isVisible()
         assert len(let_go) == 2
@@ -98,7 +98,7 @@ def test_enter_presses_the_button_that_has_the_keyboard_and_space_does_not_flip_
     def script(window: MainWindow) -> Script:
         yield from begun(window)
         for key in (Qt.Key.Key_Return, Qt.Key.Key_Space):
-            window.desk.go_to("scan")
+            window.navigation.show_step("scan")
             window.rail.items["scan"].setFocus(Qt.FocusReason.TabFocusReason)
             door = window.rail.items["lines"]
             door.setFocus(Qt.FocusReason.TabFocusReason)
@@ -114,7 +114,7 @@ def test_the_keyboard_stays_with_a_line_whatever_is_done_to_it() -> None:
     def script(window: MainWindow) -> Script:
         yield from begun(window)
         row = window.lines.rows["mid-bust"]
-        window.desk.select_line("mid-bust")
+        window.selection.select_line("mid-bust")
         row.slider.setFocus()
         window.lines.do("lock")
         yield lambda: row.view.locked

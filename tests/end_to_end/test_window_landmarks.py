@@ -11,7 +11,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled
 
-import app.gui.document_controller
+import app.gui.features.project.controller
 from app.gui.features.landmarks.panel import LandmarksPanel
 from app.gui.main_window import MainWindow
 from app.presenters.landmarks import LandmarkView
@@ -45,7 +45,7 @@ def test_the_model_follows_a_pin_before_it_is_let_go_and_escape_brings_all_back(
         yield settled(window)
         window.activateWindow()
         yield window.isActiveWindow
-        window.desk.go_to("landmarks")
+        window.navigation.show_step("landmarks")
         session, stack = window.session, window.session.undo_stack
         frame, design = session.frame, session.design
         assert frame is not None
@@ -76,14 +76,16 @@ def test_the_model_follows_a_pin_before_it_is_let_go_and_escape_brings_all_back(
 def test_linked_sides_are_placed_as_in_a_mirror_in_one_step_and_keys_move_a_pin(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(app.gui.document_controller, "ask_about_changes", lambda *_: "cancel")
-    monkeypatch.setattr(app.gui.document_controller, "ask_save", lambda *_: str(tmp_path / "pins.busk"))
+    monkeypatch.setattr(app.gui.features.project.controller, "ask_about_changes", lambda *_: "cancel")
+    monkeypatch.setattr(
+        app.gui.features.project.controller, "ask_save", lambda *_: str(tmp_path / "pins.busk")
+    )
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
         window.activateWindow()
         yield window.isActiveWindow
-        window.desk.go_to("landmarks")
+        window.navigation.show_step("landmarks")
         session, stack, panel = window.session, window.session.undo_stack, window.landmarks
         frame, before = session.frame, session.design
         assert frame is not None
@@ -128,11 +130,11 @@ def a_pin_in_the_hand_is_saved_and_asked_about(window: MainWindow) -> None:
     session, stack = window.session, window.session.undo_stack
     stack.setClean()
     QTest.keyClick(window.view.viewport, Qt.Key.Key_Down)
-    assert not window.desk.may_leave(), "a pin that was moved a moment ago is not lost unasked"
+    assert not window.project_controller.may_leave(), "a pin that was moved a moment ago is not lost unasked"
     assert stack.count() == 2
     stack.setClean()
     QTest.keyClick(window.view.viewport, Qt.Key.Key_Down)
-    assert window.desk.save()
+    assert window.project_controller.save()
     assert stack.count() == 3
     assert stack.isClean(), "it is in the file"
     assert session.finish_saving()

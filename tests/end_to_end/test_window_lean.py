@@ -45,7 +45,7 @@ def test_a_leaning_body_is_set_upright_in_steps_that_can_be_undone(leaning: Path
         assert notice is not None
         assert "Stand upright" in [words for words, _ in notice.actions]
         assert lean(window) == (0.0, 0.0)
-        window.desk.go_to("scan")
+        window.navigation.show_step("scan")
         assert panel.upright.isVisible()
         panel.upright.click()
         yield settled(window)

@@ -71,20 +71,20 @@ def test_what_is_stopped_says_so_and_is_worked_out_when_it_is_looked_at_again(ga
         state = window.report_desk.page.state
         assert state.text() == "Stopped: the sheet is made when you open it again."
         window.report_desk.leave()
-        window.inspector.open("garment")
+        window.navigation.show_panel("garment")
         stop(window, "Working out the pressure")
         assert window.notices.notice().sentence == "Stopped: Working out the pressure"
         yield lambda: window.strip.chip.state() != "pending"  # nothing is computed any more
         assert "pressure was not computed" in window.strip._hint.text()
         assert "was not computed" in window.pressure_desk.card.says.text()
-        window.desk.go_to("result")
+        window.navigation.show_step("result")
         stop(window, "Measuring the body")
         assert window.result._waiting.text().startswith("Stopped")
         gate.set()
-        window.desk.go_to("lines")
-        window.inspector.open("garment")
+        window.navigation.show_step("lines")
+        window.navigation.show_panel("garment")
         yield lambda: window.pressure_desk.shown is not None
-        window.desk.go_to("result")
+        window.navigation.show_step("result")
         yield lambda: bool(window.result.measured) and not window.result.stale
         window.report_desk.open()
         yield window.report_desk.page.does["pdf"].isEnabled
@@ -122,7 +122,7 @@ def test_what_fails_is_told_and_waits_no_longer(monkeypatch: pytest.MonkeyPatch)
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.desk.go_to("result")
+        window.navigation.show_step("result")
         yield lambda: window.result._waiting.text() == "The body could not be measured."
         assert "inside Busk" in window.notices.notice().sentence
         yield lambda: "pressure was not computed" in window.strip._hint.text()

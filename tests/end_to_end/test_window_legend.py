@@ -47,7 +47,7 @@ def test_the_legend_goes_from_where_it_covers_what_it_explains() -> None:
         yield settled(window)
         window.variant_desk.show_side_by_side()
         yield lambda: len(window.view.beside.bodies) == 2
-        window.desk.select_line("full-bust")
+        window.selection.select_line("full-bust")
         legend.set_size("full")
         floating.move(legend, "top-right")
         assert covers(window, floating.seen(legend)), "where it always was"

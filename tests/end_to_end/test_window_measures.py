@@ -34,7 +34,7 @@ def test_the_body_is_measured_where_it_is_seen_once_the_run_rests() -> None:
         undrawn(window)
         yield settled(window)
         assert not window.result.measured, "nobody has looked"
-        window.desk.go_to("result")
+        window.navigation.show_step("result")
         assert not window.result.measured, "the window does not wait for it"
         yield lambda: measured(window)
         as_the_core_measures(window)
@@ -79,7 +79,7 @@ def test_band_and_cup_follow_the_system_and_the_allowance_that_are_remembered() 
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.desk.go_to("result")
+        window.navigation.show_step("result")
         yield lambda: measured(window)
         card, shown = window.result.sizes, {view.key: view for view in window.result.measured}
         girths = [shown[key].before or 0.0 for key in ("underbust_girth", "bust_girth")]
@@ -131,7 +131,7 @@ def typed(field: QLineEdit, text: str) -> None:
 def test_a_measure_is_shown_on_the_body_until_esc_and_framed_at_a_double_click() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.desk.go_to("result")
+        window.navigation.show_step("result")
         yield lambda: measured(window)
         scene, table = window.view.viewport.scene, window.result.findChild(MeasureTable)
         view = scene.view
@@ -166,7 +166,7 @@ def test_a_measure_is_shown_on_the_body_until_esc_and_framed_at_a_double_click()
         assert not scene.measure.shown, "no curve of a former body"
         yield lambda: measured(window)
         assert scene.measure.shown
-        window.desk.go_to("lines")
+        window.navigation.show_step("lines")
         assert not scene.measure.shown
 
     run_main([], script)
@@ -176,7 +176,7 @@ def test_what_is_opened_is_scrolled_to_with_all_that_it_tells() -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.desk.go_to("result")
+        window.navigation.show_step("result")
         yield lambda: measured(window)
         table = window.result.findChild(MeasureTable)
         for key in ("waist_girth", "asymmetry_volume"):
@@ -196,7 +196,7 @@ def test_side_by_side_and_wiped_each_body_has_its_own_curve() -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.desk.go_to("result")
+        window.navigation.show_step("result")
         yield lambda: measured(window)
         frame = window.session.frame
         assert frame is not None

@@ -21,7 +21,7 @@ def test_of_a_run_that_ran_away_there_is_no_sheet_and_no_light() -> None:
             ),
             "worn",
         )
-        window.inspector.open("garment")
+        window.navigation.show_panel("garment")
         window.pressure_desk.follow()
         card = window.pressure_desk.card
         yield lambda: settled(window)() and window.pressure_desk.shown is not None

@@ -49,7 +49,7 @@ def they_go_with_their_cause(window: MainWindow) -> Script:
     for error in (UserError("Refused.", ""), RuntimeError("a fault")):
         drag(window, "mid-bust", -10)
         yield settled(window)
-        window.desk.show_failure(error)
+        window.notifications.error(error)
         assert notices.notice() is not None
         session.undo_stack.undo()
         assert notices.notice() is None, "what was decided since is another design"

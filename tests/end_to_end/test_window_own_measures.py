@@ -185,7 +185,7 @@ def test_one_is_changed_renamed_and_deleted_by_keys_each_one_step() -> None:
         undrawn(window)
         yield settled(window)
         window.session.edit(lambda design: design.with_own_measure(GORE), "Gore")
-        window.desk.go_to("result")
+        window.navigation.show_step("result")
         yield lambda: listed(window, "Gore")
         table, form = window.result.findChild(MeasureTable), window.result.editor
         window.result.select("own:Gore")
@@ -227,7 +227,7 @@ def test_a_name_that_is_taken_is_refused_and_another_body_ends_it() -> None:
         assert not form.keep.isEnabled()
         QTest.keyClick(form.name, KEY.Key_Return)
         assert window.result.editing
-        window.desk.go_to("lines")
+        window.navigation.show_step("lines")
         assert not window.result.editing
         assert own(window) == (GORE,)
 
@@ -286,7 +286,7 @@ def test_own_measures_are_copied_and_written_with_all_others(
         undrawn(window)
         yield settled(window)
         window.session.edit(lambda design: design.with_own_measure(GORE), "Gore")
-        window.desk.go_to("result")
+        window.navigation.show_step("result")
         yield lambda: listed(window, "Gore")
         window.result.table_asked.emit()
         yield path.exists

@@ -96,7 +96,7 @@ def test_the_view_is_as_before_when_a_picture_fails(monkeypatch: pytest.MonkeyPa
     def script(window: MainWindow) -> Script:
         yield window.is_settled
         window.view.tool_actions["section"].trigger()
-        window.desk.select_line("mid-bust")
+        window.selection.select_line("mid-bust")
         panes, bands = window.view.panes, window.view.viewport.scene.bands
         seen = [each for each in panes.findChildren(QWidget) if not each.isHidden()]
         monkeypatch.setattr(fine_picture, "_rendered", fail)

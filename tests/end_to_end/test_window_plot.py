@@ -57,7 +57,7 @@ def each_turn_is_seen_while_they_are_slow(window: MainWindow) -> Script:
 
 def an_edit_is_marked_where_it_was_made(window: MainWindow) -> Script:
     plot = window.strip.error_plot.canvas
-    window.desk.plot_now()
+    window.throttled.flush()
     (mark,) = plot.plotted.events
     assert mark.turn == 0.0
     assert "90.0 %" in mark.words
@@ -65,7 +65,7 @@ def an_edit_is_marked_where_it_was_made(window: MainWindow) -> Script:
     yield lambda: (frame := window.session.frame) is not None and frame.tracks["adaptive"][-1].turn > 3
     drag(window, "mid-bust", -24)
     yield settled(window)
-    window.desk.plot_now()
+    window.throttled.flush()
     frame, words = window.session.frame, window.session.undo_stack.undoText()
     assert frame is not None
     assert (plot.plotted.events[-1].turn, plot.plotted.events[-1].words) == (frame.changed_at, words)
@@ -95,9 +95,9 @@ def measures_are_worked_out_only_where_they_are_seen(window: MainWindow) -> None
     assert frame is not None
     assert not window.result.isVisible()
     assert list(table.rows) != measure_views(frame), "nobody has seen them yet"
-    window.desk.go_to("result")
+    window.navigation.show_step("result")
     assert list(table.rows) == measure_views(frame)
-    window.desk.go_to("lines")
+    window.navigation.show_step("lines")
 
 
 def the_saved_table_holds_every_turn(window: MainWindow, folder: Path) -> None:

@@ -64,7 +64,7 @@ def test_the_map_of_pressure_is_worked_out_at_rest_and_where_it_is_seen(asked: l
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.inspector.open("history")
+        window.navigation.show_panel("history")
         wear(window)
         yield settled(window)
         yield lambda: not window.jobs.at_work()
@@ -159,13 +159,13 @@ def test_beside_the_cut_list_stands_what_each_line_presses_with(asked: list[floa
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.inspector.open("history")
+        window.navigation.show_panel("history")
         wear(window)
         yield settled(window)
         desk, panel, card = window.pressure_desk, window.garment, window.pressure_desk.card
         yield lambda: asked == [0.95, 0.8]
-        window.desk.go_to("result")
-        window.inspector.open("garment")
+        window.navigation.show_step("result")
+        window.navigation.show_panel("garment")
         yield lambda: desk.shown is not None
         assert asked == [0.95, 0.8], "it is not computed twice"
         listed = known(window)
@@ -208,19 +208,19 @@ def test_an_opened_line_of_elastic_tells_what_it_presses_with(asked: list[float]
         assert asked == [0.95]
         wear(window)
         yield settled(window)
-        window.desk.select_line("mid-bust")
+        window.selection.select_line("mid-bust")
         details = window.lines.rows["mid-bust"].details
         yield lambda: details._pressed.text() != "–"
         assert asked == [0.95, 0.8]
         (row,) = known(window).rows
         assert details._pressed.text() == f"{row.max_kpa:.1f} kPa · gentle"
         assert details._presses.isVisible()
-        window.inspector.open("history")
+        window.navigation.show_panel("history")
         drag(window, "mid-bust", 20)
         yield settled(window)
         yield lambda: not window.jobs.at_work()
         assert len(asked) == 3
-        window.inspector.open("lines")
+        window.navigation.show_panel("lines")
         yield lambda: details._pressed.text() == f"{known(window).rows[0].max_kpa:.1f} kPa · gentle"
 
     run_main([], script)

@@ -14,7 +14,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from window_tools import Script, drag, run_main, run_undrawn, settled
 
-import app.gui.document_controller
+import app.gui.features.project.controller
 import core.pipeline.build
 import core.scan.body
 from app.gui.main_window import MainWindow
@@ -138,7 +138,7 @@ def test_the_reading_of_a_scan_can_be_cancelled(person: Path, monkeypatch: pytes
         design, frame, busy = window.session.design, window.session.frame, window.view.busy
         monkeypatch.setattr(core.pipeline.build, "body_of", slow)
         for way in ("button", "escape"):
-            window.desk.open_file(str(person))
+            window.project_controller.open_file(str(person))
             yield busy.isVisible
             assert window.actions_.cancel.isEnabled()
             if way == "button":
@@ -176,13 +176,13 @@ def test_a_cancelled_edit_of_the_scan_leaves_no_trace(monkeypatch: pytest.Monkey
 
 def test_a_dragged_pin_is_a_correction_that_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "corrected.busk"
-    monkeypatch.setattr(app.gui.document_controller, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(app.gui.features.project.controller, "ask_save", lambda *_: str(path))
     kept: list[Any] = []
 
     def first(window: MainWindow) -> Script:
         window.view.viewport.motion = False
         yield settled(window)
-        window.desk.go_to("landmarks")
+        window.navigation.show_step("landmarks")
         session, stack = window.session, window.session.undo_stack
         frame = session.frame
         assert frame is not None

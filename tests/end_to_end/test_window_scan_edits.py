@@ -40,7 +40,7 @@ def test_a_scan_is_cropped_mirrored_and_filled_step_by_step(tmp_path: Path, pers
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.desk.go_to("scan")
+        window.navigation.show_step("scan")
         panel, stack = window.scan.edits, window.session.undo_stack
         assert len(panel.fills) == 1
         panel.fills[0].findChild(QPushButton).click()

@@ -38,7 +38,7 @@ def test_it_is_told_where_it_is_looked_at_and_fades_while_a_line_moves() -> None
         yield settled(window)
         desk, card = window.spread_desk, window.spread_desk.card
         assert desk._asked is None, "nobody has looked"
-        window.desk.go_to("result")
+        window.navigation.show_step("result")
         yield lambda: whole(window)
         views = {view.key: view for view in window.result.measured}
         waist, volume = views["waist_girth"], views["breast_volume_left"]
@@ -89,7 +89,7 @@ def test_nothing_is_shown_before_all_sources_are_in(monkeypatch: pytest.MonkeyPa
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.desk.go_to("result")
+        window.navigation.show_step("result")
         yield reached.is_set
         yield lambda: bool(window.result.measured)
         assert window.spread_desk.shown == (None, True)
@@ -115,7 +115,7 @@ def test_where_it_is_given_up_there_is_none_and_the_reason_stands_there(
         undrawn(window)
         yield settled(window)
         desk, card = window.spread_desk, window.spread_desk.card
-        window.desk.go_to("result")
+        window.navigation.show_step("result")
         yield lambda: "No balance was found" in card.meaning.text()
         assert card.meaning.text().startswith("How far they may be off was not worked out.")
         assert desk.shown == (None, True), "without the landmarks it would be too small for good"

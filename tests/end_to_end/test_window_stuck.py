@@ -14,7 +14,7 @@ from PySide6.QtTest import QTest
 from trimesh.creation import box
 from window_tools import Script, run_main, settled
 
-import app.gui.document_controller
+import app.gui.features.project.controller
 import app.gui.features.scan.controller
 import app.rendering.orientation_thumbnails
 import core.pipeline.build
@@ -43,8 +43,8 @@ def nothing_unless_placed(body: Body, placed: Any, needed: int = 1, **_: Any) ->
 
 def place(window: MainWindow, name: str, by: QPoint) -> None:
     """Place a landmark that was not found, as a hand does."""
-    window.desk.go_to("landmarks")
-    window.desk.select_landmark(name)
+    window.navigation.show_step("landmarks")
+    window.selection.select_landmark(name)
     QTest.mouseClick(window.landmarks.place, Qt.MouseButton.LeftButton)
     pull(window, name, by)
 
@@ -133,7 +133,9 @@ def test_a_scan_that_only_asks_leaves_the_open_one_alone(
 ) -> None:
     asked: list[str] = []
     monkeypatch.setattr(
-        app.gui.document_controller, "ask_about_changes", lambda _, name: asked.append(name) or "cancel"
+        app.gui.features.project.controller,
+        "ask_about_changes",
+        lambda _, name: asked.append(name) or "cancel",
     )
     monkeypatch.setattr(app.rendering.orientation_thumbnails, "portrait", unpainted)
 
@@ -145,7 +147,7 @@ def test_a_scan_that_only_asks_leaves_the_open_one_alone(
         yield question.isVisible
         leave(window)
         assert window.notices.notice() is None
-        window.desk.go_to("landmarks")
+        window.navigation.show_step("landmarks")
         pull(window, "bust_point_left", QPoint(0, -14))
         yield settled(window)
         assert session.name == "mannequin"
@@ -202,14 +204,14 @@ def test_on_a_refused_scan_nothing_can_be_placed_and_what_was_stays_in_sight(
         assert refused is not None
         assert refused.kind == "refused"
         assert refused.__traceback__ is None, "it holds all that was read"
-        window.desk.go_to("landmarks")
-        window.desk.select_landmark("fold_left")
+        window.navigation.show_step("landmarks")
+        window.selection.select_landmark("fold_left")
         assert panel.isVisible()
         assert not panel.place.isVisible()
         window.session.open_design(refused.design.with_placed("fold_left", (60.0, -110.0, 30.0)))
         yield lambda: desk.stuck is not refused
         assert panel.rows["fold_left"].view.by_hand
-        window.desk.go_to("landmarks")
+        window.navigation.show_step("landmarks")
         assert panel.reset.isVisible()
         placed = desk.stuck
         QTest.mouseClick(panel.reset, Qt.MouseButton.LeftButton)
@@ -263,11 +265,11 @@ def test_a_landmark_that_was_not_found_can_be_placed_and_undone(monkeypatch: pyt
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.desk.go_to("landmarks")
+        window.navigation.show_step("landmarks")
         panel = window.landmarks
         panel.rows["bust_point_left"].click()
         assert not panel.place.isVisible()
-        window.desk.select_landmark("waist_front")
+        window.selection.select_landmark("waist_front")
         assert panel.rows["waist_front"].view.absent
         QTest.mouseClick(panel.place, Qt.MouseButton.LeftButton)
         pull(window, "waist_front", QPoint(0, 20))

@@ -28,7 +28,7 @@ def frame_of(window: MainWindow) -> Frame:
 
 
 def strip_says(window: MainWindow) -> dict[str, str]:
-    window.desk.plot_now()
+    window.throttled.flush()
     return {name.text(): value.text() for name, value in window.strip._pairs if name.text()}
 
 
@@ -59,12 +59,12 @@ def test_the_whole_window_tells_one_lift_that_of_the_bust_points() -> None:
         (main,) = (each for each in window.strip.height_plot.canvas.plotted.curves if each.role == "main")
         assert window.strip.height_plot.title.accessibleName() == "Bust point height mm"
         assert main.values[-1] == up
-        window.desk.go_to("result")
+        window.navigation.show_step("result")
         height, forth = (row_of(window, f"Bust point, {each}") for each in ("height", "forward"))
         assert (height, forth) == (pytest.approx(up, abs=1e-9), pytest.approx(forward, abs=1e-9))
         yield lambda: window.history.snapshots.count() == 1
         assert kept(window).words[1] == f"Bust point {said}"
-        window.inspector.open("variants")
+        window.navigation.show_panel("variants")
         yield (
             lambda: (
                 window.variants.view is not None and not {"", "pending"} & set(window.variants.view.levels)
@@ -96,10 +96,10 @@ def row_of(window: MainWindow, label: str) -> float | None:
 def test_a_settled_body_that_is_strained_says_so_in_one_voice() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.desk.plot_now()
+        window.throttled.flush()
         window.lines_desk.commit_length("mid-bust", 0.9)
         yield settled(window)
-        window.desk.plot_now()
+        window.throttled.flush()
         condition = frame_of(window).verdict.condition
         assert condition is not None
         assert condition.shortest < CALM_RANGE[0]
@@ -112,7 +112,7 @@ def test_a_settled_body_that_is_strained_says_so_in_one_voice() -> None:
         looks = {"caution": "look", "bad": "bad"}[overall.level]
         assert {window.rail.items[step].state() for step in ("lines", "result")} == {looks}
         row = window.lines.rows["mid-bust"]
-        window.desk.select_line("mid-bust")
+        window.selection.select_line("mid-bust")
         yield lambda: row.view.leeway is not None and not row.view.stale
         assert row.view.leeway.at(0.9).tone == "amber"
         assert row.details._figures[0][3].property("tone") == "warn", "the gap is told as the groove is"
@@ -139,7 +139,7 @@ def test_a_run_that_never_rests_is_no_result_and_has_a_way_out() -> None:
         assert "swings by ±3.7 mm" in notice.sentence
         assert strip_says(window)["Bust point"].endswith(" ± 3.7 mm")
         assert window.rail.items["result"].state() == "bad"
-        window.inspector.open("variants")
+        window.navigation.show_panel("variants")
         yield (
             lambda: (
                 window.variants.view is not None and not {"", "pending"} & set(window.variants.view.levels)
@@ -150,7 +150,7 @@ def test_a_run_that_never_rests_is_no_result_and_has_a_way_out() -> None:
         assert table["Bust point, up"][1] is None
         window.variant_desk.flip_side_by_side()
         assert title_of_b(window) == ["Variant B   Do not use", "Mid-bust 60.0 %"]
-        window.desk.go_to("result")
+        window.navigation.show_step("result")
         assert "no result" in window.result.doubt
         yield lambda: window.history.snapshots.count() >= 1
         assert kept(window).words == ("Do not use", "No result to sew for")
@@ -164,7 +164,7 @@ def test_a_run_that_never_rests_is_no_result_and_has_a_way_out() -> None:
         notice = window.notices.notice()
         assert notice is not None
         assert "folds over" in f"{notice.sentence} {notice.hint}", "at 60 % it rests, and is no body"
-        window.desk.plot_now()
+        window.throttled.flush()
         assert window.rail.items["result"].state() == "bad", "its badge is as red as the word"
         assert window.session.undo_stack.undoText() == "Volume control: Adaptive"
         window.actions_.undo.trigger()
@@ -212,7 +212,7 @@ def test_measures_say_from_where_they_count_and_leave_as_a_table(
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.desk.go_to("result")
+        window.navigation.show_step("result")
         body, marks = frame_of(window).stages.body.mesh.vertices, frame_of(window).stages.rest_marks
         rows = {row.label: row for row in window.result.rows}
         assert all(row.reference for row in rows.values())

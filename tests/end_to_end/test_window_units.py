@@ -142,22 +142,22 @@ def without_meant(text: str) -> str:
 def every_part(window: MainWindow) -> Iterator[str | Callable[[], bool]]:
     """Show one part of the window after the other: gives its name once it is shown, or what to wait for."""
     for step in window.rail.items:
-        window.desk.go_to(step)
+        window.navigation.show_step(step)
         yield step
     for name in ("garment", "variants", "history", "worn"):
-        window.inspector.open(name)
+        window.navigation.show_panel(name)
         yield name
     window.garment.rows["mid-bust"].elastic.click()
     yield lambda: not window.jobs.at_work()
     yield "chooser of elastics"
     chooser_of(window).close()
-    window.desk.show_model()
+    window.model_controller.show()
     yield "model"
     for name in window.lines.rows:
-        window.desk.select_line(name)
+        window.selection.select_line(name)
         yield name
     for name in window.landmarks.rows:
-        window.desk.select_landmark(name)
+        window.selection.select_landmark(name)
         yield name
     for name in ("displacement", "strain", "sides", "pull", "pressure"):
         window.map_desk.choose(name)
@@ -168,7 +168,7 @@ def every_part(window: MainWindow) -> Iterator[str | Callable[[], bool]]:
         window.section_desk.choose_axis(axis)
         yield f"section {axis}"
     window.section_desk.set_on(False)
-    window.desk.go_to("result")
+    window.navigation.show_step("result")
     yield lambda: window.spread_desk.shown[0] is not None and not window.spread_desk.shown[1]
     yield "measures"
     window.own_measures_desk.action.trigger()

@@ -47,7 +47,7 @@ def test_the_space_bar_goes_back_to_the_way_it_was_flipped_from(monkeypatch: pyt
             assert view.beside.way == "before"
             QTest.keyRelease(window, SPACE)
             assert view.beside.way == way
-        window.desk.go_to("scan")
+        window.navigation.show_step("scan")
         assert view.beside.way == "before"
         QTest.keyPress(window, SPACE)
         assert view.beside.way == "after", "the wipe was left for good"
@@ -66,7 +66,7 @@ def test_the_figures_of_all_variants_stand_beside_each_other(
         panel, desk = window.variants, window.variant_figures
         undrawn(window)
         yield settled(window)
-        window.inspector.open("variants")
+        window.navigation.show_panel("variants")
         assert panel.view is None, "one variant has nothing to be compared with"
         first = window.session.frame
         window.variant_desk.choose("B")
@@ -102,7 +102,7 @@ def test_variants_that_differ_in_elastics_alone_are_told_apart() -> None:
         panel = window.variants
         undrawn(window)
         yield settled(window)
-        window.inspector.open("variants")
+        window.navigation.show_panel("variants")
         window.variant_desk.choose("B")
         band = find_elastic("plush back 18")
 

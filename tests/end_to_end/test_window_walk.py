@@ -10,7 +10,7 @@ from PySide6.QtCore import QSettings
 from walk_steps import Walker
 from window_tools import Script, run_main, settled, undrawn
 
-import app.gui.document_controller
+import app.gui.features.project.controller
 import app.gui.session.edit_command
 from app.gui.main_window import MainWindow
 
@@ -24,7 +24,7 @@ def test_a_random_walk_through_the_window_ends_where_its_model_does(
 ) -> None:
     monkeypatch.setattr(app.gui.session.edit_command, "PAUSE", -1.0)  # every edit is one step, however quick
     for name in ("ask_save", "ask_open", "ask_about_changes", "ask_overwrite"):
-        monkeypatch.setattr(app.gui.document_controller, name, None)  # brought back after the walk
+        monkeypatch.setattr(app.gui.features.project.controller, name, None)  # brought back after the walk
     QSettings().setValue("autosave", 0.05)
 
     def script(window: MainWindow) -> Script:

@@ -145,7 +145,7 @@ def test_an_edit_ends_what_was_worked_out_for_the_design_before_it(monkeypatch: 
         yield lambda: left == ["left"]
         yield settled(window)
         window.session.undo_stack.setClean()
-        window.desk.open_sample("person")
+        window.project_controller.open_sample("person")
         yield lambda: window.session.name == "person" and settled(window)()
 
     run_main([], script)

@@ -61,7 +61,7 @@ def test_a_worn_scan_is_compared_and_learnt_from(pair: tuple[str, str, str]) -> 
         window.map_desk.choose("worn")
         assert "worn scan first" in window.map_desk.legend._note.text()
         window.map_desk.choose("")
-        window.desk.go_to("result")
+        window.navigation.show_step("result")
         assert desk.door.isVisible(), "it is met under the measures"
         desk.door.click()
         assert window.inspector.panel() is page

@@ -37,8 +37,8 @@ class LinesWalk(WindowWalk):
     def row(self) -> tuple[str, LineRow] | None:
         """Select a line at random; None if the list is one frame behind, and the line is no more."""
         name = self.chance.choice(list(self.window.lines.rows))
-        self.window.desk.go_to("lines")
-        self.window.desk.select_line(name)
+        self.window.navigation.show_step("lines")
+        self.window.selection.select_line(name)
         self.say(name)
         there = {"mid-bust", "full-bust", "under-bust", *(line.name for line in self.design.own_lines)}
         return (name, self.window.lines.rows[name]) if name in there else None

@@ -64,7 +64,7 @@ def _lines_seen(window: MainWindow, design: Design) -> list[str]:
         found.append(f"rows {sorted(rows)} for {sorted(set(led.values()))}")
     for name in set(rows) & set(led.values()):
         row, traits, ratio = rows[name], design.traits_of(name), design.ratio(name)
-        window.desk.select_line(name)  # what is in a closed row nobody sees
+        window.selection.select_line(name)  # what is in a closed row nobody sees
         # The slider ends where longer or shorter lines can still be typed.
         on_slider = min(max(ratio, row.slider.minimum() / 1e5), row.slider.maximum() / 1e5)
         for what, shown, wanted in (

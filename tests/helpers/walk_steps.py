@@ -65,7 +65,7 @@ class Walker(LinesWalk):
         if name not in panel.rows or panel.rows[name].view.absent:
             return
         self.say(name)
-        self.window.desk.go_to("landmarks")
+        self.window.navigation.show_step("landmarks")
         panel.link.setChecked(self.chance.random() < 0.3)
         by_keys = self.chance.random() < 0.5
         if by_keys:

@@ -12,7 +12,7 @@ import numpy as np
 from walk_looks import differences, differences_seen
 from window_tools import Script
 
-import app.gui.document_controller
+import app.gui.features.project.controller
 from app.gui.main_window import MainWindow
 from core.document.design import Design
 from core.document.document import Document
@@ -47,7 +47,7 @@ class WindowWalk:
         self.far, self.refused, self.sent_back = (0.0, 0.0), 0, 0
         self.session._solving.refused.connect(self.refusals.append)
         self.session.failed.connect(self.faults.append)
-        module: Any = app.gui.document_controller
+        module: Any = app.gui.features.project.controller
         module.ask_save = module.ask_open = lambda *_: self.answers["path"]
         module.ask_about_changes = lambda *_: self.answers["changes"]
         module.ask_overwrite = lambda *_: "overwrite"
@@ -138,10 +138,10 @@ class WindowWalk:
 
     def rest(self) -> Script:
         """Let all come to rest, and compare what is seen with what the design alone leads to."""
-        self.window.desk.go_to("lines")
+        self.window.navigation.show_step("lines")
         yield self.is_at_rest
         self.check()
-        self.window.desk.plot_now()
+        self.window.throttled.flush()
         fault = differences_seen(self.window, self.document)
         self.must(not fault, fault)
         shown = self.session.frame

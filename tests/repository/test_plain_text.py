@@ -57,13 +57,13 @@ def test_no_label_and_no_tooltip_of_the_window_is_read_as_html(hostile_project: 
         window.notices.show_notice("bad", HOSTILE, HOSTILE, [(HOSTILE, lambda: None)], lasting=True)
         taken: set[str] = set()
         for step in ("scan", "landmarks", "lines", "result"):
-            window.desk.go_to(step)
+            window.navigation.show_step(step)
             for name in window.lines.rows:
-                window.desk.select_line(name)
+                window.selection.select_line(name)
                 yield lambda: True
             taken |= read_as_html()
         for panel in ("garment", "variants", "history", "model"):
-            window.inspector.open(panel)
+            window.navigation.show_panel(panel)
             yield lambda: True
             taken |= read_as_html()
         window.report_desk.open()

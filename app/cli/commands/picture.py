@@ -87,7 +87,7 @@ def settled_window(
 
     def ready() -> bool:
         view = window.view
-        seen = window.scan_desk.stuck is not None or window.is_settled()
+        seen = window.scan_desk.stuck is not None or window.session.is_converged
         return bool(failures) or (seen and view.is_shaded and not window.scan_desk.painting)
 
     try:
@@ -106,7 +106,7 @@ def save_window(window: MainWindow, out: Path) -> None:
 
     from app.gui.session.project_thumbnail import png_of
 
-    window.desk.plot_now()
+    window.throttled.flush()
     wait_until(lambda: not window.jobs.at_work(), QApplication.processEvents)
     # The view smooths its outlines once it has been still for a while.
     still = time.monotonic() + 0.6

@@ -114,7 +114,7 @@ def file_dialog(bench: Bench) -> str:
     QApplication.setAttribute(plain, True)
     clock.start()
     try:
-        opened.desk.open()
+        opened.project_controller.open()
     finally:
         clock.stop()
         QApplication.setAttribute(plain, before)

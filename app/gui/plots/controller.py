@@ -12,7 +12,7 @@ from app.gui.plots.figure_export import figure_bytes
 from app.gui.widgets.basic import ToolButton
 from app.gui.widgets.file_dialogs import ask_save
 from app.i18n.catalog import tr
-from app.presenters.plots import Event, table_of
+from app.presenters.plots import Event, exact_answer, table_of, tracks
 from core.document.design import Design
 from core.errors import UserError
 from core.files.atomic_write import whole_file
@@ -39,9 +39,14 @@ class PlotDesk(QObject):
         tool = ToolButton("slow-turns", size=16, room=26, action=self.slow)
         tool.setAccessibleName(tr("Turn by turn"))
         window.strip.tools.insertWidget(1, tool)
+        window.session.design_changed.connect(lambda design: window.strip.set_control(design.volume))
         settings = QSettings()
         for plot in window.strip.plots:
             plot.set_quantity(str(settings.value(f"plot/{plot.objectName()}", "")))
+
+    def show_frame(self, frame: Frame) -> None:
+        """Plot the run of a frame."""
+        self._window.strip.set_run(tracks(frame), frame.stages.design.volume, exact_answer(frame))
 
     def set_slow(self, slow: bool) -> None:
         """Make turns at a pace that can be followed, or as fast as they go."""
@@ -88,9 +93,9 @@ class PlotDesk(QObject):
                 with whole_file(Path(path).absolute()) as partial:
                     partial.write_bytes(figure)
         except UserError as error:
-            window.desk.show_failure(error, title)
+            window.notifications.error(error, title)
         else:
-            window.desk.show_written(title, tr("{name} written.").format(name=Path(path).name), path)
+            window.notifications.file_written(title, tr("{name} written.").format(name=Path(path).name), path)
 
     def _last_edit(self) -> str:
         return self._window.session.undo_stack.undoText() or tr("As it was opened")

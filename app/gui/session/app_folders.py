@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from PySide6.QtCore import QSettings
 
 from app.gui.application import log_folder
 from app.gui.session.open_external import open_outside
-from app.gui.widgets.notification_bar import NoticeBar
 from app.i18n.catalog import tr
 from core.document.presets import own_folder
 from core.document.storage.backups import backups_folder
@@ -32,8 +32,8 @@ def shown_folder(folder: Path) -> str:
     return str(Path("~") / folder.relative_to(home)) if folder.is_relative_to(home) else str(folder)
 
 
-def show_folder(folder: Path, notices: NoticeBar) -> None:
+def show_folder(folder: Path, inform: Callable[[str, str], object]) -> None:
     """Show a folder as the desktop does; where that does not go, say where it is."""
     if not (folder.is_dir() and open_outside(folder)):
         said = tr("The folder cannot be opened here."), tr("It is {folder}.").format(folder=folder)
-        notices.show_notice("info", *said)
+        inform(*said)

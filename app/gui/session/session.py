@@ -49,6 +49,7 @@ class Session(Editing):
     that was opened and cannot go on before somebody says how it stands or places its landmarks; ``saving``
     says that a project is being written, or no longer, and ``not_saved`` why this has failed. ``failure`` is
     why the frame is not that of the present document, and stays so until something else is requested.
+    ``trial`` is a design that is previewed as a proposal, until it is applied or rejected.
     """
 
     opened = Signal(object)
@@ -65,6 +66,7 @@ class Session(Editing):
         self.failure: Failure | None = None
         self.path: Path | None = None
         self.stamp: Stamp | None = None
+        self.trial: Design | None = None
         self._opening: _Opening | None = None
         self._saving = Writing(self)
         self._oldest = 0
@@ -122,6 +124,24 @@ class Session(Editing):
     def is_answered(self) -> bool:
         """Whether the frame answers what was asked last; after an undo it may be an older one."""
         return self.frame is not None and self.frame.revision >= self._revision
+
+    @property
+    def is_converged(self) -> bool:
+        """Whether the present design is solved to the end and shown."""
+        frame = self.frame
+        return (
+            frame is not None
+            and frame.stages.design is self.design
+            and self.is_answered
+            and not frame.at_work
+        )
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether what is shown is solved to the end: the present design, or the proposal."""
+        frame, trial = self.frame, self.trial
+        on_trial = frame is not None and trial is not None and frame.stages.design is trial
+        return self.is_converged or (on_trial and frame is not None and not frame.at_work)
 
     @property
     def unsaved(self) -> bool:

@@ -51,7 +51,7 @@ class Termination(QObject):
     def keep(self) -> None:
         """Keep the document aside, if it is not saved."""
         with suppress(Exception):  # an edit that cannot be completed must not prevent the copy
-            self._window.desk.take_in()
+            self._window.project_controller.complete_edits()
         if self._window.session.unsaved:
             self._window.rescue()
 

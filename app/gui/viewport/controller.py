@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 
+from app.gui.context import RESHAPED
 from app.gui.session.settings import wish, wish_for
 from app.gui.viewport.compare_key import FlipKey
 from app.i18n.catalog import tr
@@ -36,6 +37,7 @@ class ViewDesk(QObject):
         for name, action in self.materials.items():
             action.triggered.connect(lambda _=False, name=name: self.choose_material(name))
         self._show_material(wish("material"))
+        window.navigation.step_shown.connect(self._show_step)
 
     def _add_maps(self) -> None:
         """List the maps: each can be asked for by its name."""
@@ -51,9 +53,18 @@ class ViewDesk(QObject):
     def _show_map(self) -> None:
         self.maps[self._maps.name].setChecked(True)
 
+    def _show_step(self, step: str) -> None:
+        """Show the body that a step is about, with its layers."""
+        reshaped = step in RESHAPED
+        self._view.set_after(reshaped)
+        self._view.set_layer("bands", reshaped)
+        self._view.set_layer("landmarks", step == "landmarks")
+        # Colours of the skin and seams help to place landmarks; lines show best on clay.
+        self._view.set_layer("colours", not reshaped)
+
     def _open_tab(self, name: str) -> None:
-        self._window.desk.go_to("lines")
-        self._window.inspector.open(name)
+        self._window.navigation.show_step("lines")
+        self._window.navigation.show_panel(name)
 
     def choose_material(self, name: str) -> None:
         """Show the body in another material, now and in later sessions."""

@@ -46,14 +46,16 @@ class PictureDesk(QObject):
             with whole_file(Path(path).absolute()) as partial:
                 partial.write_bytes(png_of(self._picture()))
         except UserError as problem:
-            window.desk.show_failure(problem, "picture")
+            window.notifications.error(problem, "picture")
         else:
-            window.desk.show_written("picture", tr("{name} written.").format(name=Path(path).name), path)
+            window.notifications.file_written(
+                "picture", tr("{name} written.").format(name=Path(path).name), path
+            )
 
     def copy(self) -> None:
         """Put what the view shows on the clipboard."""
         QGuiApplication.clipboard().setImage(self._picture())
-        self._window.notices.show_notice("ok", tr("The picture is copied."))
+        self._window.notifications.done(tr("The picture is copied."))
 
     def print_out(self) -> None:
         """Ask for a printer and print what the view shows."""
@@ -66,11 +68,11 @@ class PictureDesk(QObject):
         painter = QPainter()
         if not painter.begin(printer):
             said = tr("The picture could not be printed."), tr("Choose another printer.")
-            self._window.desk.show_failure(ProjectError(*said), "print")
+            self._window.notifications.error(ProjectError(*said), "print")
             return
         painter.drawImage(fitted(picture.size(), page.size()), picture)
         painter.end()
-        self._window.notices.withdraw("print")
+        self._window.notifications.withdraw("print")
 
     def _picture(self) -> QImage:
         picture = self._window.view.picture(FINER)

@@ -194,6 +194,13 @@ class ViewArea(QWidget):
         self.beside.show_variants(variants)
         self._beside_changed()
 
+    def close_comparison(self) -> bool:
+        """Show the reshaped body alone if it is compared with the original one; returns whether it was."""
+        compared = self.beside.way in ("wipe", "side")
+        if compared:
+            self.compare_by("after")
+        return compared
+
     def _beside_changed(self) -> None:
         self.compare.set_way(self.beside.way)
         self.pins.set_viewports([body.viewport for body in self.beside.live])

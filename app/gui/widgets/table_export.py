@@ -26,7 +26,7 @@ def copy_table(window: MainWindow, table: Table) -> None:
     """Put a table on the clipboard, its cells apart by tabs as spreadsheets take them."""
     lines = ("\t".join(str(cell(each)) for each in row) for row in table)
     QGuiApplication.clipboard().setText("".join(f"{line}\n" for line in lines))
-    window.notices.show_notice("ok", tr("The table is copied."))
+    window.notifications.done(tr("The table is copied."))
 
 
 def save_table(window: MainWindow, table: Table, title: str, ending: str) -> None:
@@ -42,6 +42,6 @@ def save_table(window: MainWindow, table: Table, title: str, ending: str) -> Non
         ):
             csv.writer(file).writerows([cell(each) for each in row] for row in table)
     except UserError as error:
-        window.desk.show_failure(error, about)
+        window.notifications.error(error, about)
     else:
-        window.desk.show_written(about, tr("{name} written.").format(name=Path(path).name), path)
+        window.notifications.file_written(about, tr("{name} written.").format(name=Path(path).name), path)

@@ -82,7 +82,7 @@ class DoctorDesk(QObject):
         self._closed: _Trouble | None = None
         self._job: Job | None = None
         self._asked = False
-        window.notices.closed.connect(self._note_closed)
+        window.notifications.closed.connect(self._note_closed)
         self._later = QTimer(self, interval=PATIENCE, singleShot=True)
         self._later.timeout.connect(self._look)
         window.strip.why_asked.connect(self.ask)
@@ -166,7 +166,7 @@ class DoctorDesk(QObject):
     def _miss(self, error: Exception) -> None:
         self._job = None
         if isinstance(error, UserError):
-            self._window.desk.show_failure(error, ABOUT)
+            self._window.notifications.error(error, ABOUT)
         else:
             logging.error("the doctor failed", exc_info=error)
 
@@ -223,19 +223,19 @@ class DoctorDesk(QObject):
         """Tell why lengths were refused, and the nearest that are not, in place of the bare refusal."""
         assert isinstance(found, Diagnosis)
         self._job = None
-        notices = self._window.notices
+        notifications = self._window.notifications
         said = say(titled(error.message, error.design))
         fights = words.sentence(found, 0.0) if found.complaint and found.fight.worst else ""
-        notices.withdraw(REFUSED)
+        notifications.withdraw(REFUSED)
         hint = joined((fights, words.hint(found) if found.cure else say(error.hint)))
-        notices.show_notice(
+        notifications.show(
             "bad",
             said,
             hint,
             self._fixes(found),
             lasting=True,
             details=words.details(found),
-            about=REFUSED,
+            topic=REFUSED,
         )
 
     def _show(
@@ -257,16 +257,16 @@ class DoctorDesk(QObject):
             return
         self._withdraw()
         lasting = asked or (trouble is not None and trouble.complaint not in _CALM)
-        self._window.notices.show_notice(tone(level), sentence, hint, actions, lasting, details, ABOUT)
+        self._window.notifications.show(tone(level), sentence, hint, actions, lasting, details, ABOUT)
         self._said = trouble if lasting else None
 
     def _withdraw(self) -> None:
         self._said = None
-        self._window.notices.withdraw(ABOUT)
+        self._window.notifications.withdraw(ABOUT)
 
     def _note_closed(self) -> None:
         """Remember what was closed by hand: it is not told again before something else is wrong."""
-        if self._said is not None and not self._window.notices.says(ABOUT):
+        if self._said is not None and not self._window.notifications.is_shown(ABOUT):
             self._closed, self._said = self._said, None
 
     def _fixes(self, found: Diagnosis) -> list[Action]:

@@ -40,7 +40,7 @@ class VerdictDesk(QObject):
     def of(self, frame: Frame) -> AssessmentView:
         """Return the overall verdict of a frame, as far as it is known; pressures are computed in a job."""
         window, design = self._window, frame.stages.design
-        moves = frame is window.session.frame and not window.is_at_rest()
+        moves = frame is window.session.frame and not window.session.is_at_rest
         running, failed, cuts, pressed = frame.at_work or moves, False, None, None
         if not running and frame.verdict.sound and design.worn():
             cuts = self._cuts.get(frame)
@@ -52,7 +52,7 @@ class VerdictDesk(QObject):
 
     def _strip_verdict(self, frame: Frame, view: AssessmentView) -> StripVerdict:
         """Return the values of the strip; girth and pressure only once the body has come to rest."""
-        if not frame.verdict.sound or frame.at_work or not self._window.is_at_rest():
+        if not frame.verdict.sound or frame.at_work or not self._window.session.is_at_rest:
             return strip_verdict(frame, view)
         if frame not in self._measured:
             self._measure(frame)
@@ -67,7 +67,7 @@ class VerdictDesk(QObject):
             self._girths[frame] = cast(tuple[float, float], girths)
             self.refresh()
 
-        show_failure, words = self._window.desk.show_failure, tr("Measuring the bust girth")
+        show_failure, words = self._window.notifications.error, tr("Measuring the bust girth")
         self._window.jobs.run(words, lambda progress: bust_girths(frame), show, show_failure)
 
     def show_frame(self, frame: Frame) -> None:
@@ -84,6 +84,6 @@ class VerdictDesk(QObject):
         window.strip.set_verdict(out_of_date(verdict) if failed else verdict)
         looks = "available" if failed else _RAIL[view.level]
         count = len(view.reasons) if looks in ("bad", "look") else 0
-        window.rail.set_state("lines", looks, count)
-        window.rail.set_state("result", looks)
+        window.navigation.mark_step("lines", looks, count)
+        window.navigation.mark_step("result", looks)
         self.changed.emit()

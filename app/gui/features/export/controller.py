@@ -62,9 +62,9 @@ class ExportDesk(QObject):
         frame = self._ask_and_write("body", tr("Export body"), reshaped=True)
         doubt = self._doubt(frame) if frame is not None else ""
         if frame is not None:
-            self._window.notices.withdraw(_DOUBT)
+            self._window.notifications.withdraw(_DOUBT)
         if doubt:
-            self._window.notices.show_notice("warn", doubt, lasting=True, about=_DOUBT)
+            self._window.notifications.warn(doubt, topic=_DOUBT)
 
     def show_frame(self, frame: Frame) -> None:
         """Tell of the body as it is now, if somebody looks and it rests."""
@@ -111,7 +111,7 @@ class ExportDesk(QObject):
         if isinstance(error, UserError) and self.sheet is not None:
             self.sheet.show_contents(name, "", joined((say(error.message), say(error.hint))), possible=False)
         else:
-            self._window.desk.show_failure(error)
+            self._window.notifications.error(error)
 
     def _forget(self) -> None:
         self.sheet = self._outcome = None  # a body is much to hold, and quickly worked out again
@@ -141,7 +141,7 @@ class ExportDesk(QObject):
         if what == "turntable" and not self._may_number(Path(path), manner):
             return None
         if any(work.path == Path(path) and work.at_work for work in self._works):
-            self._window.desk.show_failure(still_written(Path(path)), f"export {what}")
+            self._window.notifications.error(still_written(Path(path)), f"export {what}")
             return None
         work = ExportWork(self._window, what, Path(path), self._outcome_of(frame), manner)
         self._works = [*(each for each in self._works if each.at_work), work]

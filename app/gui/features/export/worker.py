@@ -64,10 +64,12 @@ class ExportWork:
         self._job = self._window.jobs.run(said, work, done, self._failed, waited=True)
 
     def _failed(self, error: Exception) -> None:
-        self._window.desk.show_failure(error, self._about)
+        self._window.notifications.error(error, self._about)
 
     def _done(self, ready: Ready, files: list[Path]) -> None:
         first, last = files[0].name, files[-1].name
         name = first if len(files) == 1 else tr("{first} to {last}").format(first=first, last=last)
         said = tr("{name} written, {how}.") if ready.how else tr("{name} written.")
-        self._window.desk.show_written(self._about, said.format(name=name, how=ready.how), str(files[0]))
+        self._window.notifications.file_written(
+            self._about, said.format(name=name, how=ready.how), str(files[0])
+        )

@@ -28,8 +28,8 @@ class GarmentDesk(QObject):
         self._frame: Frame | None = None
         self._shown: Frame | None = None
         panel.opened.connect(self.refresh)
-        panel.selected.connect(window.desk.select_line)
-        panel.lines_asked.connect(lambda: window.inspector.open("lines"))
+        panel.selected.connect(window.selection.select_line)
+        panel.lines_asked.connect(lambda: window.navigation.show_panel("lines"))
         panel.tissue.entered.connect(self._set_tissue)
         panel.copy_asked.connect(lambda: copy_table(window, self._as_table()))
         panel.table_asked.connect(
@@ -51,7 +51,7 @@ class GarmentDesk(QObject):
         frame = self._frame
         if frame is None or frame is self._shown:
             return
-        rests = self._window.is_settled()
+        rests = self._window.session.is_converged
         if rests or self._shown is None:
             self._show(frame)
         if rests:

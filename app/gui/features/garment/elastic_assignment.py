@@ -72,7 +72,7 @@ class ElasticChoice(QObject):
             tr("Computing the cut length…"),
             lambda progress: asked.option(elastic, mode),
             lambda option: self._take(asked, elastic, cast(ElasticOption, option)),
-            self._window.desk.show_failure,
+            self._window.notifications.error,
             waited=True,
         )
 
@@ -108,7 +108,7 @@ class ElasticChoice(QObject):
         if option.outcome is not None or self._session.design is not asked.design:
             self._use(asked, option.outcome, elastic)
         elif option.problem is not None:
-            self._window.desk.show_failure(option.problem)
+            self._window.notifications.error(option.problem)
 
     def _use(self, asked: Asked, outcome: Outcome | None, elastic: Elastic | None) -> None:
         """Make the lines of an elastic, and show what became of the lift where the fit is kept.
@@ -132,7 +132,7 @@ class ElasticChoice(QObject):
         if self._session.design is outcome.design and self._reshapes(asked):
             tone = "ok" if abs(outcome.lift - asked.lift) < LIFT_TOLD else "warn"
             words = _told(asked.lift, outcome.lift, bool(elastic))
-            self._window.notices.show_notice(tone, tr("{text}.").format(text=text), words)
+            self._window.notifications.show(tone, tr("{text}.").format(text=text), words)
 
     def _reshapes(self, asked: Asked) -> bool:
         """Return whether an elastic changes how the lines act, with the fit kept."""

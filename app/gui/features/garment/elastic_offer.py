@@ -167,7 +167,7 @@ class ElasticOffer(QObject):
 
     def _fail(self, error: Exception) -> None:
         self.close()
-        self._window.desk.show_failure(error)
+        self._window.notifications.error(error)
 
     def _use(self, at: int, limited: bool) -> None:
         """Take the option at a place, at its limit if that is wished for."""

@@ -134,9 +134,9 @@ class ElasticsDesk(QObject):
             sheet.notices.show_notice("warn", problem.message, problem.hint, lasting=True)
 
     def _show_cuts(self) -> None:
-        self._window.desk.go_to("lines")
-        self._window.inspector.open("garment")
-        self._window.layout_.enter()
+        self._window.navigation.show_step("lines")
+        self._window.navigation.show_panel("garment")
+        self._window.navigation.focus_panel()
 
     def _forget(self) -> None:
         self.sheet = None

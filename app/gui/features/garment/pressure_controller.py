@@ -52,7 +52,7 @@ class PressureDesk(QObject):
 
         While the body moves it is not: the next frame would be another one.
         """
-        moves = frame is self._window.session.frame and not self._window.is_at_rest()
+        moves = frame is self._window.session.frame and not self._window.session.is_at_rest
         if frame not in self._asked and not frame.at_work and not moves:
             self._asked.add(frame)
             self._window.jobs.run(
@@ -111,12 +111,12 @@ class PressureDesk(QObject):
 
     def _fail(self, frame: Frame, error: Exception) -> None:
         self._failed.add(frame)
-        self._window.desk.show_failure(error)
+        self._window.notifications.error(error)
         self.found.emit()
 
     def _leave_off(self, frame: Frame) -> None:
         self._left.add(frame)
-        self._window.desk.show_left(tr("Working out the pressure"))
+        self._window.notifications.stopped(tr("Working out the pressure"))
         self.found.emit()  # who waits for it does so no longer
 
     def _begin_again(self) -> None:

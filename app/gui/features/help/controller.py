@@ -70,8 +70,8 @@ class HelpDesk(QObject):
         window = self._window
         shown: dict[QWidget | None, str] = {window.report_desk.page: "report", window.start_desk.page: ""}
         panels: dict[QWidget | None, str] = {window.garment: "garment", window.model: "model"}
-        at = panels.get(window.inspector.panel(), window.rail.current())
-        show_page(fitting_page(shown.get(window.pages.currentWidget(), at)), window.notices)
+        at = panels.get(window.inspector.panel(), window.navigation.step)
+        show_page(fitting_page(shown.get(window.navigation.page, at)), window.notices)
 
     def show_first_steps(self) -> None:
         """Show the page for somebody who is here for the first time."""
@@ -80,7 +80,7 @@ class HelpDesk(QObject):
     def show_machine(self) -> None:
         """Show what the program is made of, what draws for it, and where it writes."""
         sheet = DiagnosticsSheet(self._window, machine_facts(self._window), folders())
-        sheet.folder_asked.connect(lambda folder: show_folder(folder, self._window.notices))
+        sheet.folder_asked.connect(lambda folder: show_folder(folder, self._window.notifications.info))
         sheet.open()
 
     def show_about(self) -> None:

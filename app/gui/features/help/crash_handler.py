@@ -73,8 +73,8 @@ class Rescue(QObject):
     def _tell(self, fault: Exception, trace: str) -> None:
         """Keep the design aside, then say what happened; a second fault joins the first."""
         if isinstance(fault, UserError):
-            notices = self._window.notices
-            notices.show_notice("bad", fault.message, fault.hint, lasting=True, details=trace, about=REFUSED)
+            notifications = self._window.notifications
+            notifications.show("bad", fault.message, fault.hint, lasting=True, details=trace, topic=REFUSED)
             return
         if self.sheet is not None:
             self.sheet.add_details(trace)

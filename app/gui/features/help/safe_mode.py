@@ -44,7 +44,7 @@ class SafeMode(QObject):
         }
         hint = tr("All else works as ever, the view more slowly.")
         act = (tr("Normal next time"), graphics_work) if self._why == "failed" else None
-        self._window.notices.show_notice("warn", said[self._why], hint, [act] if act else (), lasting=True)
+        self._window.notifications.warn(said[self._why], hint, [act] if act else ())
 
     def _stop(self) -> None:
         if self._drawn:

@@ -79,9 +79,9 @@ class LandmarkDesk(QObject):
         views = landmark_views(stages.landmarks.points, window.view.pins.accepted)
         window.landmarks.set_landmarks(views, said)
         weak = sum(view.weak for view in views)
-        window.rail.set_state("landmarks", "look" if weak or said else "done", weak)
+        window.navigation.mark_step("landmarks", "look" if weak or said else "done", weak)
         if not (weak or said):
-            window.notices.withdraw(_DOUBT)
+            window.notifications.withdraw(_DOUBT)
 
     def show_unclear(self, stages: Stages) -> None:
         """Say which of the landmarks that the control mesh hangs on could hardly be seen."""
@@ -94,11 +94,11 @@ class LandmarkDesk(QObject):
             spoken_of = first_doubt(stages.landmarks)
             actions = [(tr("Look at it"), lambda: self._look_at(spoken_of))]
             if stages.landmarks.size_doubted:
-                actions.insert(0, (tr("Check unit"), lambda: self._window.desk.go_to("scan")))
+                actions.insert(0, (tr("Check unit"), lambda: self._window.navigation.show_step("scan")))
             if up := stages.landmarks.upright:
                 actions.insert(0, (tr("Stand upright"), lambda: self._stand_upright(up)))
-            self._window.notices.show_notice(
-                "warn", said, joined(map(say, more)), actions, lasting=True, about=_DOUBT
+            self._window.notifications.show(
+                "warn", said, joined(map(say, more)), actions, lasting=True, topic=_DOUBT
             )
 
     def show_stuck(self, stuck: StuckError) -> None:
@@ -107,7 +107,7 @@ class LandmarkDesk(QObject):
         self._carried = {}
         views = landmark_views(stuck.landmarks)
         self._window.landmarks.set_landmarks(views, [stuck.message], placing=not refused)
-        self._window.rail.set_state("landmarks", "missing" if refused else "look")
+        self._window.navigation.mark_step("landmarks", "missing" if refused else "look")
 
     def follow(self, frame: Frame) -> None:
         """Let pins that were put down stand where the landmarks are, once these are found."""
@@ -115,12 +115,12 @@ class LandmarkDesk(QObject):
             self._window.view.pins.drop_back()
 
     def _stand_upright(self, up: str) -> None:
-        self._window.notices.withdraw(_DOUBT)
+        self._window.notifications.withdraw(_DOUBT)
         self._window.scan_desk.stand_upright(up)
 
     def _look_at(self, landmark: str) -> None:
-        self._window.desk.go_to("landmarks")
-        self._window.desk.select_landmark(landmark)
+        self._window.navigation.show_step("landmarks")
+        self._window.selection.select_landmark(landmark)
 
     # -- a pin is carried
 
@@ -133,7 +133,7 @@ class LandmarkDesk(QObject):
         """Take hold of a pin."""
         self.put_down()
         self._refused = False
-        self._window.desk.select_landmark(name)
+        self._window.selection.select_landmark(name)
 
     def carry(self, name: str, place: Points) -> None:
         """Carry a pin to a place of the body at rest, shape (3,) [mm], and let the model follow."""

@@ -46,8 +46,8 @@ class LineMaker(QObject):
         if missing:
             self.take(missing)
         else:
-            self._window.desk.go_to("lines")
-            self._window.desk.select_line(pair[0].name)
+            self._window.navigation.show_step("lines")
+            self._window.selection.select_line(pair[0].name)
 
     def ask(self) -> None:
         """Let a line be drawn, and add it."""
@@ -66,5 +66,5 @@ class LineMaker(QObject):
         first = lines[0].name
         title = pair_title(first, session.design) if len(lines) > 1 else line_title(first, session.design)
         session.add_own_lines(lines, tr("{line} added").format(line=title))
-        self._window.desk.go_to("lines")
-        self._window.desk.select_line(lines[0].name)
+        self._window.navigation.show_step("lines")
+        self._window.selection.select_line(lines[0].name)

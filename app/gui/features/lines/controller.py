@@ -51,9 +51,9 @@ class LinesDesk(QObject):
         before, self._parted = self._parted, {name for name in frame.lengths if is_split(design, name)}
         whole = kind_of(selected)
         if selected in self._parted - before:
-            self._window.desk.select_line(f"{selected} left")
+            self._window.selection.select_line(f"{selected} left")
         elif selected not in frame.lengths and whole in frame.lengths:
-            self._window.desk.select_line(whole)
+            self._window.selection.select_line(whole)
 
     def show_rows(self) -> None:
         """Show the rows anew: something was hidden, or more is known of limits or pressures."""
@@ -115,7 +115,7 @@ class LinesDesk(QObject):
         self._session.edit(lambda before: reduce(Design.without_own_line, names, before), text)
         left = self._session.design
         if left is not None and left is not design:
-            self._window.desk.select_line("mid-bust")
+            self._window.selection.select_line("mid-bust")
 
     def _lead_over_shoulder(self, name: str, design: Design, over: bool) -> None:
         """Let a line and its linked partner run on over the shoulder, or end on the upper chest."""
@@ -135,7 +135,7 @@ class LinesDesk(QObject):
         text = tr("{line} split into left and right").format(line=row_title(name, design))
         template = read_template(design.template)
         self._session.edit(lambda before: split(before, template, name), text)
-        self._window.desk.select_line(f"{name} left")
+        self._window.selection.select_line(f"{name} left")
 
     def _linked_text(self, design: Design, name: str, linked: bool) -> str:
         words = tr("{line} linked") if linked else tr("{line} set apart")
@@ -160,7 +160,7 @@ class LinesDesk(QObject):
         self._window.lines.addAction(remove)
 
     def _row_asked(self, what: str) -> None:
-        self._window.desk.go_to("lines")
+        self._window.navigation.show_step("lines")
         self._window.lines.do(what)
 
 

@@ -74,7 +74,7 @@ class LineDrawing(QObject):
         frame = self._sketching.frame
         if frame is None:
             return
-        self._window.desk.go_to("lines")
+        self._window.navigation.show_step("lines")
         self._places, self._curve, self._found, self._again = [], [], None, again
         self._prepare(frame.stages.body)
         self._sketching.begin(frame)

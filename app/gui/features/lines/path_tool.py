@@ -71,8 +71,8 @@ class LineRouting(QObject):
             self._window.line_drawing.begin_again(own[name])
             return
         self._line, self._steps = own[name], [own[name].points]
-        self._window.desk.go_to("lines")
-        self._window.desk.select_line(name)
+        self._window.navigation.show_step("lines")
+        self._window.selection.select_line(name)
         self._mesh_shown = self._window.view.tools.actions_by_name["control-mesh"].isChecked()
         self._window.view.set_layer("control-mesh", True)
         self._sketching.card.both.hide()

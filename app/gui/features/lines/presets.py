@@ -86,14 +86,14 @@ class PresetDesk(QObject):
             return
         step, title = session.undo_stack.index(), say(preset.title)
         session.edit(lambda design: with_preset(design, preset), tr("Preset {name}").format(name=title))
-        self._window.desk.go_to("lines")
+        self._window.navigation.show_step("lines")
         if session.design is None or session.design is before:
             return
         led = _led_anew(before, session.design)
         if led:
             said = tr("Led as in the preset {name}: {lines}").format(name=title, lines=led)
             undo = tr("Undo"), partial(session.undo_stack.setIndex, step)
-            self._window.notices.show_notice("info", said, say(preset.leaves_out), [undo])
+            self._window.notifications.info(said, say(preset.leaves_out), [undo])
 
     def ask(self) -> None:
         """Ask for a name, and keep the present lines as a preset."""
@@ -123,10 +123,10 @@ class PresetDesk(QObject):
         try:
             path = save_preset(preset_from(session.design, title))
         except UserError as problem:
-            self._window.desk.show_failure(problem, "preset")
+            self._window.notifications.error(problem, "preset")
             return
-        self._window.notices.withdraw("preset")
-        self._window.notices.show_notice("ok", tr("Preset {name} saved.").format(name=title), str(path))
+        self._window.notifications.withdraw("preset")
+        self._window.notifications.done(tr("Preset {name} saved.").format(name=title), str(path))
 
 
 def _goes(preset: Preset, design: Design) -> bool:

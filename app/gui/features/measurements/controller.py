@@ -94,7 +94,7 @@ class MeasuresDesk(QObject):
             self._panel.set_measured([], self._waiting())
         self._panel.set_stale(True)
         self._show_mark()
-        if window.is_at_rest():
+        if window.session.is_at_rest:
             self._asked = frame
             self._job = window.jobs.run(
                 tr("Measuring the body"),
@@ -108,7 +108,7 @@ class MeasuresDesk(QObject):
         """Return why nothing is measured yet."""
         if self._window.session.failure is not None:
             return not_computed()
-        if self._window.is_at_rest():
+        if self._window.session.is_at_rest:
             return tr("Measuring the body")
         return tr("The body is measured as soon as the run rests.")
 
@@ -122,11 +122,11 @@ class MeasuresDesk(QObject):
         self._show_mark()
 
     def _fail(self, error: Exception) -> None:
-        self._window.desk.show_failure(error)
+        self._window.notifications.error(error)
         self._give_up(tr("The body could not be measured."))
 
     def _leave_off(self) -> None:
-        self._window.desk.show_left(tr("Measuring the body"))
+        self._window.notifications.stopped(tr("Measuring the body"))
         self._give_up(tr("Stopped: the body is measured when this list is shown again."))
 
     def _give_up(self, why: str) -> None:

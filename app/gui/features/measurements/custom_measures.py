@@ -72,7 +72,7 @@ class OwnMeasuresDesk(QObject):
             return
         for drawing in (self._window.line_drawing, self._window.line_routing):
             drawing.leave()
-        self._window.desk.go_to("result")
+        self._window.navigation.show_step("result")
         known = next((each for each in design.own_measures if each.name == former), None)
         self._former = former if known else ""
         points = frame.stages.landmarks.points
@@ -155,7 +155,7 @@ class OwnMeasuresDesk(QObject):
             return
         if wished is None:
             self._show(None)
-        elif not self._window.is_at_rest():
+        elif not self._window.session.is_at_rest:
             self._show(None, tr("The body is measured as soon as the run rests."))
         elif (frame, replace(wished, name="?")) != self._asked:
             self._begin_measuring(frame, replace(wished, name="?"))
@@ -173,7 +173,7 @@ class OwnMeasuresDesk(QObject):
         )
 
     def _fail(self, error: Exception) -> None:
-        self._window.desk.show_failure(error)
+        self._window.notifications.error(error)
         self._show(None, tr("The body could not be measured."))
 
     def _show(self, found: tuple[Measure, Measure] | None, why: str = "") -> None:

@@ -55,7 +55,7 @@ class PreferencesDesk(QObject):
             said = tr("The language changes when Busk is started again.")
             if key == "unit":
                 said = tr("The unit of lengths changes when Busk is started again.")
-            self._window.notices.show_notice("info", said, "", [(tr("Restart now"), self.restart)])
+            self._window.notifications.info(said, "", [(tr("Restart now"), self.restart)])
         elif key == "motion":
             self.set_motion()
         elif key == "material":
@@ -65,7 +65,7 @@ class PreferencesDesk(QObject):
     def restart(self) -> None:
         """Start the program again on the same document, after a question about unsaved changes."""
         window = self._window
-        if not window.desk.may_leave():
+        if not window.project_controller.may_leave():
             return
         document, design = window.session.path, window.session.design
         scan = "" if design is None or design.scan.member else design.scan.path
@@ -80,7 +80,7 @@ class PreferencesDesk(QObject):
 
     def open_log(self) -> None:
         """Show the folder of the log, if there is one."""
-        show_folder(log_folder(), self._window.notices)
+        show_folder(log_folder(), self._window.notifications.info)
 
     def _show_choices(self) -> None:
         for key, actions in (

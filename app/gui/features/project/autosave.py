@@ -143,20 +143,20 @@ class KeepingDesk(QObject):
         self._kept = document if fault is None else None
         if fault is None:
             self._told = False
-            self._window.notices.withdraw(_ASIDE)
+            self._window.notifications.withdraw(_ASIDE)
             self.note()
             return
         logging.error("the document could not be kept aside", exc_info=fault)
         if not self._told:
             said = (fault.message, fault.hint) if isinstance(fault, UserError) else (str(fault), "")
-            self._window.notices.show_notice("warn", *said, lasting=True, about=_ASIDE)
+            self._window.notifications.warn(*said, topic=_ASIDE)
         self._told = True
         self._clock.start(60_000)
 
     def _picture(self) -> bytes | None:
         """Return a picture of the view, unless a hand or a run would have to wait for it."""
         view, frame = self._window.view, self._session.frame
-        if frame is None or not view.isVisible() or not self._window.is_settled():
+        if frame is None or not view.isVisible() or not self._window.session.is_converged:
             return None
         if QGuiApplication.mouseButtons() != Qt.MouseButton.NoButton:
             return None
@@ -164,23 +164,23 @@ class KeepingDesk(QObject):
         return project_picture(picture, self._window.verdict_desk.of(frame).level)
 
     def _hold_project(self) -> None:
-        self._window.notices.withdraw(_HELD)
+        self._window.notifications.withdraw(_HELD)
         since = self._lock.take(self._session.path)
         if since is None:
             return
         sentence = tr("{name} is open in another window ({time}).")
-        self._window.notices.show_notice(
+        self._window.notifications.show(
             "warn",
             sentence.format(name=self._session.name, time=day_of(since, time.time())),
             tr("Who saves last replaces what the other has saved."),
             ((tr("Open as a copy"), self._detach), (tr("Open anyway"), _do_nothing)),
             lasting=True,
-            about=_HELD,
+            topic=_HELD,
         )
 
     def _detach(self) -> None:
         self._session.detach()
-        self._window.desk.show_title()
+        self._window.project_controller.show_title()
 
 
 def _do_nothing() -> None:

@@ -43,7 +43,7 @@ class RecoveryDesk(QObject):
     def look(self) -> None:
         """Look for what was left behind, at the start."""
         # Nobody has chosen what the window opens with.
-        self._at_start = self._window.pages.currentWidget() is not self._window.start_desk.page
+        self._at_start = self._window.navigation.page is not self._window.start_desk.page
         self._window.lines_page.currentChanged.connect(lambda _: self._give_way())
         self._offers, self._broken = left_behind()
         self._tell_broken()
@@ -51,7 +51,7 @@ class RecoveryDesk(QObject):
 
     def restore(self) -> None:
         """Open the document that is offered, unsaved as it was."""
-        if self._window.desk.may_leave():
+        if self._window.project_controller.may_leave():
             self._window.session.restore(self._offers[0][0])
 
     def show_opened(self) -> None:
@@ -68,7 +68,7 @@ class RecoveryDesk(QObject):
         elif self._offers and not self._at_start:
             self.close()
             said = tr("What was not saved is offered again at the next start.")
-            self._window.notices.show_notice("info", said)
+            self._window.notifications.info(said)
         self._at_start = False
 
     def discard(self) -> None:
@@ -80,12 +80,12 @@ class RecoveryDesk(QObject):
     def open_backup(self) -> None:
         """Ask for a former version and open it, unsaved, in the place of the project."""
         backup = ask_backup(self._window, self._window.session.path)
-        if backup is None or not self._window.desk.may_leave():
+        if backup is None or not self._window.project_controller.may_leave():
             return
         try:
             document = open_project(backup.path)
         except UserError as error:
-            self._window.desk.show_failure(error)
+            self._window.notifications.error(error)
             return
         self._window.session.open_document(document, backup.project, unsaved=True)
 
@@ -110,7 +110,7 @@ class RecoveryDesk(QObject):
         for folder in self._broken:
             sentence = tr("What was kept of an earlier session cannot be read.")
             hint = tr("It was put aside in {folder}.").format(folder=folder)
-            self._window.notices.show_notice("warn", sentence, hint, lasting=True)
+            self._window.notifications.warn(sentence, hint)
 
     def _offer(self) -> None:
         if not self._offers:

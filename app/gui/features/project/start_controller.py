@@ -30,9 +30,6 @@ class StartDesk(QObject):
         self.page = StartPage()
         self.tour = Tour(window)
         self.veil = DropVeil(window)
-        window.pages.addWidget(self.page)
-        window.pages.currentChanged.connect(self._dress)
-        self._step = ""
         window.installEventFilter(self)
         said = tr("Begin with a scan, or go on with what was open before")
         window.actions_.add("file", tr("Start page"), "Ctrl+Shift+N", said, do=self.show_page)
@@ -47,24 +44,12 @@ class StartDesk(QObject):
             self.tour.end()
         self.page.set_document(window.session.name if window.session.frame is not None else "")
         self.page.set_projects(project_views())
-        window.pages.setCurrentWidget(self.page)
+        window.navigation.show_page(self.page)
         self.page.zone.choose.setFocus()
 
     def leave_page(self) -> None:
         """Show the work again."""
-        if self._window.pages.currentWidget() is self.page:
-            self._window.layout_.show_work()
-            self._window.layout_.enter()
-
-    def _dress(self) -> None:
-        """Light no step and offer no variants where the page hides what they are about."""
-        rail, at_start = self._window.rail, self._window.pages.currentWidget() is self.page
-        self._window.variant_desk.set_shown(not at_start)
-        if at_start:
-            self._step = rail.current()
-            rail.set_current("")
-        elif not rail.current():
-            rail.set_current(self._step)
+        self._window.navigation.close_page(self.page)
 
     def show_work(self, what: str, _share: float) -> None:
         """Leave the page as soon as a body is being read: its progress is shown beside the view."""
@@ -97,7 +82,7 @@ class StartDesk(QObject):
     def _show_lift(self) -> None:
         """Show from near by what the band of a sample does, against the original body."""
         view = self._window.view
-        self._window.desk.select_line(LIFTING_LINE)
+        self._window.selection.select_line(LIFTING_LINE)
         view.set_layer("ghost", True)
         view.viewport.frame_points(view.viewport.scene.bands.spine(LIFTING_LINE)[0])
 
@@ -105,7 +90,7 @@ class StartDesk(QObject):
         """Lead through the window, on what is open or else on the sample."""
         window = self._window
         if window.session.frame is None:
-            window.desk.open_sample(FIRST_SAMPLE)
+            window.project_controller.open_sample(FIRST_SAMPLE)
             self.tour.begin_when_settled()
         else:
             self.leave_page()
@@ -116,7 +101,7 @@ class StartDesk(QObject):
         found = ask_open(self._window)
         if found:
             forget_file(path)
-            self._window.desk.open_file(found)
+            self._window.project_controller.open_file(found)
 
     def forget(self, path: str) -> None:
         """Take a file off the list."""

@@ -59,7 +59,6 @@ class ReportDesk(QObject):
         self._laid: tuple[Handout | None, str] = (None, "")
         self._whole: Frame | None = None  # its figures are of
         self._occlusion: tuple[object, Floats] | None = None
-        window.pages.addWidget(self.page)
         said = tr("Sizes, lengths to cut, measures, pressures and pictures on paper: look, save, print")
         do = window.actions_
         self.action = do.add("file", tr("Report…"), "Ctrl+P", said, do=self.open, of_document=True)
@@ -74,12 +73,12 @@ class ReportDesk(QObject):
     @property
     def is_open(self) -> bool:
         """Whether the sheet stands in the place of the work."""
-        return self._window.pages.currentWidget() is self.page
+        return self._window.navigation.page is self.page
 
     def open(self) -> None:
         """Show the sheet of the design that is shown."""
         self._language = self._language or language()
-        self._window.pages.setCurrentWidget(self.page)
+        self._window.navigation.show_page(self.page)
         self.page.paper.setFocus()
         self.follow()
 
@@ -88,8 +87,13 @@ class ReportDesk(QObject):
         if self.is_open:
             self._window.jobs.cancel(self._job)
             self._job, self._asked, self._refused = None, None, ""
-            self._window.layout_.show_work()
-            self._window.layout_.enter()
+            self._window.navigation.close_page(self.page)
+
+    def close(self) -> bool:
+        """Show the work again; returns whether the sheet took its place."""
+        was_open = self.is_open
+        self.leave()
+        return was_open
 
     def forget(self) -> None:
         """Let go of the sheet of a document that has gone: nobody is to see it under the next one."""
@@ -131,7 +135,7 @@ class ReportDesk(QObject):
         window.jobs.cancel(self._job)
         self._job, self._asked, self._refused = None, None, ""
         self._show()
-        if window.is_settled():
+        if window.session.is_converged:
             self._make(frame)
 
     def _is_of(self, frame: Frame) -> bool:
@@ -139,7 +143,7 @@ class ReportDesk(QObject):
             return False
         former, now = self.handout.sheet.heading, self._heading()
         sizes_alike = (former.system, former.allowance_mm) == (now.system, now.allowance_mm)
-        return sizes_alike and self._window.is_settled() and _alike(self._frame, frame)
+        return sizes_alike and self._window.session.is_converged and _alike(self._frame, frame)
 
     def _make(self, frame: Frame) -> None:
         """Work out the sheet beside the window, then draw its pictures piece by piece."""
@@ -181,7 +185,7 @@ class ReportDesk(QObject):
         if isinstance(error, UserError):
             self._refused = f"{say(error.message)} {say(error.hint)}"
         else:
-            self._window.desk.show_failure(error)
+            self._window.notifications.error(error)
             self._refused = tr("The sheet could not be made.")
         self._show()
 
@@ -209,7 +213,7 @@ class ReportDesk(QObject):
         """Return why there is no sheet yet."""
         if self._window.session.failure is not None:
             return tr("The shape could not be computed: there is no sheet of this design.")
-        if self._window.is_settled():
+        if self._window.session.is_converged:
             return tr("The sheet is being made.")
         return self._window.ask_desk.around.first(tr("The sheet is made as soon as the run rests."))
 
@@ -261,9 +265,11 @@ class ReportDesk(QObject):
         try:
             write()
         except UserError as problem:
-            self._window.desk.show_failure(problem, "sheet")
+            self._window.notifications.error(problem, "sheet")
         else:
-            self._window.desk.show_written("sheet", tr("{name} written.").format(name=Path(path).name), path)
+            self._window.notifications.file_written(
+                "sheet", tr("{name} written.").format(name=Path(path).name), path
+            )
 
     def _print(self) -> None:
         pages = self.pages
@@ -277,7 +283,7 @@ class ReportDesk(QObject):
         painter = QPainter()
         if not painter.begin(printer):
             said = tr("The sheet could not be printed."), tr("Choose another printer.")
-            self._window.desk.show_failure(ProjectError(*said), "print")
+            self._window.notifications.error(ProjectError(*said), "print")
             return
         wished = range(pages.count)
         if printer.printRange() == QPrinter.PrintRange.PageRange:
@@ -290,7 +296,7 @@ class ReportDesk(QObject):
             painter.scale(scale, scale)
             pages.paint(painter, page)
         painter.end()
-        self._window.notices.withdraw("print")
+        self._window.notifications.withdraw("print")
 
 
 def _alike(one: Frame, other: Frame) -> bool:

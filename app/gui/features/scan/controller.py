@@ -12,7 +12,7 @@ from PySide6.QtGui import QColor, QImage
 from app.gui.session.jobs import Job
 from app.gui.theme.stylesheet import tokens_of
 from app.gui.viewport.orientation_card import PICTURE, Answer
-from app.gui.widgets.notification_bar import REFUSED
+from app.gui.widgets.notification_bar import REFUSED, SCAN
 from app.i18n.catalog import tr
 from app.presenters.scan import scan_view
 from app.rendering.appearance import LOOKS
@@ -20,6 +20,8 @@ from app.rendering.orientation_thumbnails import Way, pictures
 from app.rendering.thumbnail import Picture
 from core.document.design import Design, ScanSource
 from core.pipeline.build import Stages, StuckError
+from core.pipeline.live_solver import Frame
+from core.pipeline.warnings import warnings
 from core.scan.body import Body
 from core.scan.edits import ScanEdits
 from core.scan.orientation.lean_angles import corrected_up
@@ -44,6 +46,7 @@ class ScanDesk(QObject):
         self._session = window.session
         self._asked_for: Design | None = None
         self.stuck: StuckError | None = None
+        self._stages: Stages | None = None
         self._painting: Job | None = None
 
     @property
@@ -58,11 +61,24 @@ class ScanDesk(QObject):
         window = self._window
         window.scan.set_scan(scan_view(stages.design.scan, stages.body, landmarks=stages.landmarks))
         sure = stages.body.pose.sure and not stages.landmarks.size_doubted
-        window.rail.set_state("scan", "done" if sure else "look", 1)
+        window.navigation.mark_step("scan", "done" if sure else "look", 1)
         window.landmark_desk.show_found(stages)
 
-    def show_opened(self, stages: Stages) -> None:
-        """Say what is unclear on a scan that has just been opened, and ask how it stands if need be."""
+    def show_opened(self, frame: Frame) -> None:
+        """Show what is unclear on a scan that was opened, and ask for its orientation if need be."""
+        self._check_pose(frame.stages)
+        for sentence in warnings(frame.stages):
+            self._window.notifications.warn(sentence, topic=SCAN)
+
+    def show_frame(self, frame: Frame) -> None:
+        """Show what was found on the scan of a frame, if it is another one; warnings that are over go."""
+        former, self._stages = self._stages, frame.stages
+        if former is None or frame.stages.landmarks is not former.landmarks:
+            self.show_found(frame.stages)
+        if former is not None and frame.stages.control is not former.control:
+            self._window.notifications.keep_only(SCAN, warnings(frame.stages))
+
+    def _check_pose(self, stages: Stages) -> None:
         self._forget_question()
         self.stuck = None
         self._window.landmark_desk.show_unclear(stages)
@@ -71,7 +87,7 @@ class ScanDesk(QObject):
             return
         if source.up and source.front:
             unsure = tr("Busk is not sure of the unit, up or front of this scan.")
-            self._window.notices.show_notice("warn", unsure, pose.reason, lasting=True, about=_QUESTION)
+            self._window.notifications.warn(unsure, pose.reason, topic=_QUESTION)
         else:
             self._ask(stages.body, None)
 
@@ -93,13 +109,13 @@ class ScanDesk(QObject):
         window.landmark_desk.show_stuck(stuck)
         window.scan.set_scan(scan_view(stuck.design.scan, stuck.body, stuck.kind != "refused"))
         window.view.show_stuck(stuck.body, stuck.landmarks)
-        window.desk.go_to("landmarks" if lacks else "scan")
-        window.rail.set_state("scan", "done" if lacks else "look")
+        window.navigation.show_step("landmarks" if lacks else "scan")
+        window.navigation.mark_step("scan", "done" if lacks else "look")
 
     def _say_stuck(self, stuck: StuckError) -> None:
-        notices = self._window.notices
-        notices.withdraw(REFUSED)
-        notices.show_notice("bad", stuck.message, stuck.hint, lasting=True, about=REFUSED)
+        notifications = self._window.notifications
+        notifications.withdraw(REFUSED)
+        notifications.show("bad", stuck.message, stuck.hint, lasting=True, topic=REFUSED)
 
     # -- the user asks
 
@@ -149,8 +165,7 @@ class ScanDesk(QObject):
         """Show the scan as it is after an edit that was refused."""
         frame, design = self._session.frame, self._session.design
         if frame is not None and design is not None and not self.stuck:
-            stages = frame.stages
-            self._window.scan.set_scan(scan_view(stages.design.scan, stages.body, landmarks=stages.landmarks))
+            self.show_found(frame.stages)
 
     def _read_again(self, scan: ScanSource, text: str) -> None:
         if self.stuck:
@@ -170,10 +185,10 @@ class ScanDesk(QObject):
         """Take the answer: the open scan is read again as one undo step, one that waits is opened."""
         waiting, design = self._asked_for, self._session.design
         self._forget_question()
-        self._window.notices.withdraw(_QUESTION)
+        self._window.notifications.withdraw(_QUESTION)
         if waiting is not None:
             # What is open may have been edited while the question waited.
-            if self._window.desk.may_leave():
+            if self._window.project_controller.may_leave():
                 self._session.open_design(replace(waiting, scan=waiting.scan.set_up(up=up, front=front)))
         elif design is not None:
             self._session.change(
@@ -184,7 +199,7 @@ class ScanDesk(QObject):
         """Leave a scan as it is understood; one that waited for the answer is let go, if it is not shown."""
         waiting, frame = self._asked_for, self._session.frame
         self._forget_question()
-        self._window.notices.withdraw(_QUESTION)
+        self._window.notifications.withdraw(_QUESTION)
         if self.stuck:
             self._say_stuck(self.stuck)
         elif waiting is None and frame is not None and not frame.stages.body.pose.sure:
@@ -237,9 +252,9 @@ class ScanDesk(QObject):
         self._say_unsure(tr("Please check it at the Scan step."))
 
     def _say_unsure(self, ask: str) -> None:
-        self._window.notices.withdraw(_QUESTION)
+        self._window.notifications.withdraw(_QUESTION)
         unsure = tr("Busk is not sure how this scan stands.")
-        self._window.notices.show_notice("warn", unsure, ask, lasting=True, about=_QUESTION)
+        self._window.notifications.warn(unsure, ask, topic=_QUESTION)
 
 
 def _words(way: Way) -> str:

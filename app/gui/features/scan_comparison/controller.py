@@ -59,7 +59,7 @@ class WornDesk(QObject):
         page = self.page
         self.door.clicked.connect(lambda _: self.show_page())
         page.asked.connect(self.choose)
-        page.left.connect(lambda: self._window.inspector.open("result"))
+        page.left.connect(lambda: self._window.navigation.show_panel("result"))
         page.told.connect(self._tell_unit)
         page.thickened.connect(self._thicken)
         page.mapped.connect(lambda on: self._window.map_desk.choose(MAP if on else ""))
@@ -76,9 +76,9 @@ class WornDesk(QObject):
 
     def show_page(self) -> None:
         """Show the page in the place of the measures."""
-        self._window.desk.go_to("result")
-        self._window.inspector.open("worn")
-        self._window.layout_.enter()
+        self._window.navigation.show_step("result")
+        self._window.navigation.show_panel("worn")
+        self._window.navigation.focus_panel()
         self.follow()
 
     def choose(self) -> None:
@@ -93,20 +93,20 @@ class WornDesk(QObject):
             return
         self._window.jobs.cancel(self._reading)
         self._path, self._of = path, frame.stages.body
-        self._window.notices.withdraw(_REFUSED)
+        self._window.notifications.withdraw(_REFUSED)
         source = ScanSource(path, unit=self._unit or None)
         self._reading = self._window.jobs.run(
             tr("Reading the worn scan"),
             lambda progress: read_worn(frame.stages, source, progress),
             lambda worn: self._take(cast(Worn, worn)),
-            lambda error: self._window.desk.show_failure(error, _REFUSED),
+            lambda error: self._window.notifications.error(error, _REFUSED),
             waited=True,
         )
 
     def calibrate(self) -> None:
         """Find the numbers at which the prediction comes nearest, beside."""
         frame, worn, thickness = self._window.session.frame, self.worn, self._thickness
-        if frame is None or worn is None or not self._window.is_settled():
+        if frame is None or worn is None or not self._window.session.is_converged:
             return
         design = frame.stages.design
         job = self._window.jobs.run(
@@ -122,7 +122,7 @@ class WornDesk(QObject):
 
     def _fail_to_fit(self, error: Exception) -> None:
         self._fitting = None
-        self._window.desk.show_failure(error)
+        self._window.notifications.error(error)
         self.follow()
 
     def apply(self) -> None:
@@ -177,7 +177,7 @@ class WornDesk(QObject):
             tr("Comparing with the worn scan"),
             lambda progress: compare(frame.stages, frame.control_points, worn, thickness),
             lambda found: self._take_difference(frame, cast(Difference, found)),
-            self._window.desk.show_failure,
+            self._window.notifications.error,
         )
         self._comparing = job, frame
 
@@ -248,7 +248,7 @@ class WornDesk(QObject):
             better=words.better_words(found, design) if found else "",
             record=words.record_words(design.calibration),
             faint=faint,
-            ready=bool(worn) and self._window.is_settled() and not at_work and not faint,
+            ready=bool(worn) and self._window.session.is_converged and not at_work and not faint,
             helped=found is not None and found.helped,
             doubtful=found is not None and found.weak,
         )

@@ -127,10 +127,10 @@ class SectionDesk(QObject):
         try:
             write_profile(path, self._slicer.plane, self.curves)
         except UserError as problem:
-            self._window.desk.show_failure(problem, "curves")
+            self._window.notifications.error(problem, "curves")
         else:
             said = tr("Curves written to {name}.").format(name=Path(path).name)
-            self._window.desk.show_written("curves", said, path)
+            self._window.notifications.file_written("curves", said, path)
 
     # -- the handle in the view
 

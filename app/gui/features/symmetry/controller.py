@@ -59,14 +59,14 @@ class EvenDesk(QObject):
 
         While the body moves it is not: the next frame would be another one.
         """
-        moves = frame is self._window.session.frame and not self._window.is_at_rest()
+        moves = frame is self._window.session.frame and not self._window.session.is_at_rest
         if frame not in self._asked and not frame.at_work and not moves:
             self._asked.add(frame)
             self._window.jobs.run(
                 tr("Comparing left and right"),
                 lambda progress: evenness(frame.stages, frame.control_points),
                 lambda found: self._take(frame, found),
-                self._window.desk.show_failure,
+                self._window.notifications.error,
                 left=lambda: self._asked.discard(frame),
             )
         return self._known.get(frame)
@@ -115,7 +115,7 @@ class EvenDesk(QObject):
     def _ask(self) -> None:
         """Look for what makes the shown design even, beside; then it is asked for in the card of wishes."""
         frame = self._window.session.frame
-        if frame is None or not self._window.is_settled() or self._makes_even:
+        if frame is None or not self._window.session.is_converged or self._makes_even:
             return
         job = self._window.jobs.run(
             tr("Making left and right even"),
@@ -133,7 +133,7 @@ class EvenDesk(QObject):
 
     def _fail(self, error: Exception) -> None:
         self._making = None
-        self._window.desk.show_failure(error)
+        self._window.notifications.error(error)
 
     def _begin(self, design: Design, made: Evened) -> None:
         """Fill the wishes in; what has to be parted for them is parted when they are taken, not before."""
@@ -141,7 +141,7 @@ class EvenDesk(QObject):
         if design is not self._window.session.design:
             return  # the wishes would be those of another one
         if not made.worth:
-            self._window.notices.show_notice("info", *left_as_it_is(made.gained, made.lost))
+            self._window.notifications.info(*left_as_it_is(made.gained, made.lost))
             return
         # What was found keeps elastics to a limit, and no estimates.
         limit = None if design.worn_elastics() else math.inf

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QTimer
 
+from app.gui.context import RESHAPED
 from app.gui.features.target_shape.card import AskCard
 from app.gui.features.target_shape.handles import AskHandles
 from app.gui.features.target_shape.linearization import AskGround
@@ -45,7 +46,7 @@ class AskDesk(QObject):
         super().__init__(window)
         self._window, self._session = window, window.session
         self.all_wishes = Wishes()
-        self.answer: Answer | None = None
+        self._answer: Answer | None = None
         self._apply_due = False
         self.ground = AskGround(window.session)
         self.work = AskWork(window.jobs, self)
@@ -80,9 +81,20 @@ class AskDesk(QObject):
         session.design_changed.connect(self._follow_design)
         session.frame_ready.connect(lambda _: self.handles.follow())
         session.opened.connect(lambda _: self._forget())
+        window.navigation.step_shown.connect(self._follow_step)
         window.view.compared.connect(self.handles.follow)
 
     # -- what is asked for
+
+    @property
+    def answer(self) -> Answer | None:
+        """The answer that is shown, if there is one."""
+        return self._answer
+
+    @answer.setter
+    def answer(self, answer: Answer | None) -> None:
+        self._answer = answer
+        self._session.trial = None if answer is None or answer.reply is None else answer.reply.design
 
     @property
     def is_open(self) -> bool:
@@ -107,7 +119,7 @@ class AskDesk(QObject):
             self.leave()
         self._window.line_drawing.leave()
         self._window.line_routing.leave()
-        self._window.desk.go_to("lines")
+        self._window.navigation.show_step("lines")
         limit = math.inf if math.isinf(self.all_wishes.most_kpa) else limit
         self.all_wishes, self.answer, self._apply_due = replace(Wishes.of(goals), limit=limit), None, False
         self.ground.begin(prepare, said)
@@ -182,11 +194,18 @@ class AskDesk(QObject):
         self.end()
         self._session.edit(lambda _: design, words)
 
-    def leave(self) -> None:
-        """Ask no longer; the body is as it was."""
-        if self.is_open:
+    def leave(self) -> bool:
+        """Close the card; the body is as it was. Returns whether it was open."""
+        was_open = self.is_open
+        if was_open:
             self.end()
             self._session.cancel_preview()
+        return was_open
+
+    def _follow_step(self, step: str) -> None:
+        """Close the card at steps of the original body: its handles are of the reshaped one."""
+        if step not in RESHAPED:
+            self.leave()
 
     def end(self) -> None:
         """Close the card, and let the shown body be what it is."""

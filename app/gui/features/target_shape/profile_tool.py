@@ -71,7 +71,7 @@ class AskDrawing(QObject):
         try:
             profile = drawn(frame.stages, side, frame.control_points if reply is None else reply.points)
         except UserError as problem:
-            self._window.desk.show_failure(problem)
+            self._window.notifications.error(problem)
         else:
             self._take(profile)
 
@@ -87,7 +87,7 @@ class AskDrawing(QObject):
             profile = from_table(frame.stages, side, read_profile(path))
             profile.goals(frame.stages)
         except UserError as problem:
-            self._window.desk.show_failure(problem)
+            self._window.notifications.error(problem)
         else:
             self._take(profile)
 

@@ -91,7 +91,7 @@ class SpreadDesk(QObject):
             self._window.jobs.cancel(self._job)
             self._job = self._asked = None
         missing = design not in self._known
-        if not (self._looked_at and self._window.is_settled() and not doubt_of(frame)):
+        if not (self._looked_at and self._window.session.is_converged and not doubt_of(frame)):
             self._clock.stop()
         elif missing and self._asked is None and self._why_not(design) is None:
             self._clock.start()
@@ -105,7 +105,7 @@ class SpreadDesk(QObject):
     def _begin(self) -> None:
         """Compute the ± by all sources: without the landmarks, which are slow, it would be too small."""
         frame = self._window.session.frame
-        if frame is None or not self._window.is_settled() or self._asked is not None:
+        if frame is None or not self._window.session.is_converged or self._asked is not None:
             return
         self._asked, stages, former = frame.stages.design, frame.stages, self._trials
 

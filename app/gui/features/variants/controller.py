@@ -96,7 +96,7 @@ class VariantDesk(QObject):
                     tr("There is one variant so far."),
                     tr("Choose B or C at the top: it begins as a copy."),
                 )
-                self._window.notices.show_notice("info", *said)
+                self._window.notifications.info(*said)
             return
         missing = [each for each in others.items() if each[1] not in self._solved]
         self._asked = bool(missing)
@@ -176,7 +176,7 @@ class VariantDesk(QObject):
     def _give_up(self, design: Design, error: Exception) -> None:
         self._job, self._asked = None, False
         self._unsolvable.add(design)
-        self._window.desk.show_failure(error)
+        self._window.notifications.error(error)
 
     def _take(self, design: Design, frame: object) -> None:
         if isinstance(frame, Frame):

@@ -77,7 +77,7 @@ class HistoryDesk(QObject):
 
     def note(self) -> None:
         """Hear of a frame: what came of an edit is kept once the window is calm."""
-        if self._window.is_settled() and self._session.undo_stack.index() > 0 and not self._is_kept():
+        if self._window.session.is_converged and self._session.undo_stack.index() > 0 and not self._is_kept():
             self._clock.start()
 
     def show_snapshots(self) -> None:
@@ -115,7 +115,7 @@ class HistoryDesk(QObject):
         if (
             frame is None
             or document is None
-            or not self._window.is_settled()
+            or not self._window.session.is_converged
             or self._is_kept()
             or stack.index() == 0
         ):
