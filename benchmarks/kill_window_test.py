@@ -27,7 +27,7 @@ from PySide6.QtCore import QSettings, Qt, QTimer  # noqa: E402
 from PySide6.QtTest import QTest  # noqa: E402
 from window_tools import Script, run_main, settled  # noqa: E402
 
-import app.gui.features.project.controller  # noqa: E402
+import app.gui.features.project.controller as project_files  # noqa: E402
 from app.gui.application import application  # noqa: E402
 from app.gui.main_window import MainWindow  # noqa: E402
 from app.gui.viewport.opengl import is_safe_mode  # noqa: E402
@@ -80,8 +80,8 @@ class Hand:
 def work(folder: Path, body: Path) -> None:
     """Start, have back what is offered, and work until killed."""
     project = folder / "anna.busk"
-    app.gui.features.project.controller.ask_save = lambda *_: str(project)  # type: ignore[assignment]
-    app.gui.features.project.controller.ask_about_changes = lambda *_: "discard"  # type: ignore[assignment]
+    project_files.ask_save = lambda *_: str(project)  # type: ignore[assignment]
+    project_files.ask_about_changes = lambda *_: "discard"  # type: ignore[assignment]
     application()
     QSettings().setValue("autosave", INTERVAL)
 

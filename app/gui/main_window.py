@@ -270,6 +270,11 @@ class MainWindow(QMainWindow):
         self.inspector.add("history", self.history, tr("History"))
         self.inspector.add("model", self.model)
 
+    def show_title(self, name: str, unsaved: bool) -> None:
+        """Show the name of the document."""
+        self.top.set_title(name, unsaved)
+        self.setWindowTitle(f"{name}{'*' if unsaved else ''} - Busk" if name else "Busk")
+
     def is_settled(self) -> bool:
         """Return whether the session's design is solved to the end and shown."""
         return self.session.is_converged

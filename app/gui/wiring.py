@@ -19,6 +19,7 @@ def connect(window: MainWindow) -> None:
     _connect_view(window)
     _connect_actions(window)
     _connect_start(window)
+    _connect_project(window)
     _connect_safe(window)
     _connect_plots(window)
     _connect_maps(window)
@@ -65,6 +66,12 @@ def _connect_session(window: MainWindow) -> None:
     session.failed.connect(window.doctor_desk.refuse)
     session.failed.connect(scan_desk.show_refused)
     session.asked.connect(scan_desk.show_stuck)
+
+
+def _connect_project(window: MainWindow) -> None:
+    project = window.project_controller
+    project.titled.connect(window.show_title)
+    project.save_state.connect(window.status.set_saved)
 
 
 def _connect_safe(window: MainWindow) -> None:

@@ -12,7 +12,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from window_tools import Script, run_main, settled
 
-import app.gui.features.project.controller
+import app.gui.features.project.controller as project_files
 import app.gui.features.project.start_controller
 from app.gui.features.project.project_card import ProjectCard
 from app.gui.features.project.recent_files import (
@@ -42,7 +42,7 @@ def test_the_first_start_leads_through_the_sample_and_later_ones_go_on(
 ) -> None:
     saved, gone = tmp_path / "customer 0412.busk", tmp_path / "customer 0340.busk"
     answers = iter(["", str(saved)])
-    monkeypatch.setattr(app.gui.features.project.controller, "ask_save", lambda *_: str(saved))
+    monkeypatch.setattr(project_files, "ask_save", lambda *_: str(saved))
     monkeypatch.setattr(app.gui.features.project.start_controller, "ask_open", lambda *_: next(answers))
 
     def first(window: MainWindow) -> Script:

@@ -15,7 +15,6 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMessageBox
 from window_tools import Script, drag, run_main, settled, undrawn
 
-import app.gui.features.project.controller
 from app.cli import environment as surroundings
 from app.cli.environment import is_seen_in_window, path_of, settle_in
 from app.cli.main import BAD_INPUT, INTERRUPTED, main
@@ -98,7 +97,7 @@ def test_files_that_the_desktop_wants_opened_come_to_the_window(
     assert isinstance(qapp, Application)
     asked: list[str] = []
     monkeypatch.setattr(
-        app.gui.features.project.controller,
+        project_files,
         "ask_about_changes",
         lambda _, name: asked.append(name) or answer[0],
     )

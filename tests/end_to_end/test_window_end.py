@@ -17,7 +17,7 @@ from PySide6.QtWidgets import QApplication
 from shiboken6 import isValid
 from window_tools import Script, drag, run_main, settled
 
-import app.gui.features.project.controller
+import app.gui.features.project.controller as project_files
 from app.gui.main_window import MainWindow
 from app.presenters.samples import sample_design
 from core.document.storage.recovery import recovery_folder
@@ -110,10 +110,8 @@ def test_a_closed_window_leaves_nothing(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     sync = os.fsync
-    monkeypatch.setattr(
-        app.gui.features.project.controller, "ask_save", lambda *_: str(tmp_path / "anna.busk")
-    )
-    monkeypatch.setattr(app.gui.features.project.controller, "ask_about_changes", lambda *_: "discard")
+    monkeypatch.setattr(project_files, "ask_save", lambda *_: str(tmp_path / "anna.busk"))
+    monkeypatch.setattr(project_files, "ask_about_changes", lambda *_: "discard")
     if state is writing:
         QSettings().setValue("autosave", 0.01)
         monkeypatch.setattr(os, "fsync", lambda file: (time.sleep(0.3), sync(file)))

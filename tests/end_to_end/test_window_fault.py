@@ -10,7 +10,7 @@ from PySide6.QtCore import QSettings
 from PySide6.QtWidgets import QLabel
 from window_tools import Script, drag, run_undrawn, settled
 
-import app.gui.features.project.controller
+import app.gui.features.project.controller as project_files
 from app.gui.main_window import MainWindow
 from core.document.storage.project_file import open_project
 from core.document.storage.recovery import read_kept
@@ -31,7 +31,7 @@ def test_a_solver_that_fails_for_long_loses_nothing(
 ) -> None:
     QSettings().setValue("autosave", 0.05)
     path = tmp_path / "anna.busk"
-    monkeypatch.setattr(app.gui.features.project.controller, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(project_files, "ask_save", lambda *_: str(path))
     caplog.set_level(logging.CRITICAL)
 
     def script(window: MainWindow) -> Script:

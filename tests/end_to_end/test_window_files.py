@@ -15,7 +15,7 @@ from PySide6.QtGui import QImage
 from window_tools import Script, drag, points, run_main, run_undrawn, settled, undrawn
 
 import app.gui.features.export.controller
-import app.gui.features.project.controller
+import app.gui.features.project.controller as project_files
 from app.gui.main_window import MainWindow
 from app.presenters.samples import sample_design
 from core.document.document import Document
@@ -27,7 +27,7 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 
 def test_a_project_is_saved_and_reopened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "customer 0412.busk"
-    monkeypatch.setattr(app.gui.features.project.controller, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(project_files, "ask_save", lambda *_: str(path))
     seen = []
 
     def first(window: MainWindow) -> Script:
@@ -120,7 +120,7 @@ def test_an_export_that_failed_is_told_until_it_succeeds(
         monkeypatch.setattr(app.gui.features.export.controller, "ask_save", lambda *_: str(nowhere))
         window.actions_.export.trigger()
         yield lambda: tone() == "bad"
-        monkeypatch.setattr(app.gui.features.project.controller, "ask_save", lambda *_: str(project))
+        monkeypatch.setattr(project_files, "ask_save", lambda *_: str(project))
         window.actions_.save.trigger()
         yield project.exists
         assert window.session.finish_saving()
@@ -184,9 +184,7 @@ def test_a_save_that_fails_elsewhere_leaves_what_is_saved_here_saved(
 ) -> None:
     saved, scan = tmp_path / "customer.busk", ScanFile(mannequin.name, mannequin.read_bytes())
     save_project(saved, Document.of(sample_design()), scan, None)
-    monkeypatch.setattr(
-        app.gui.features.project.controller, "ask_save", lambda *_: str(tmp_path / "nowhere" / "a.busk")
-    )
+    monkeypatch.setattr(project_files, "ask_save", lambda *_: str(tmp_path / "nowhere" / "a.busk"))
     told: list[object] = []
 
     def script(window: MainWindow) -> Script:
@@ -209,8 +207,8 @@ def test_a_save_that_fails_elsewhere_leaves_what_is_saved_here_saved(
 @pytest.mark.parametrize("last", ["discard", "save"])
 def test_closing_asks_about_changes(last: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path, answers = tmp_path / "kept.busk", ["stay", last]
-    monkeypatch.setattr(app.gui.features.project.controller, "ask_about_changes", lambda *_: answers.pop(0))
-    monkeypatch.setattr(app.gui.features.project.controller, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(project_files, "ask_about_changes", lambda *_: answers.pop(0))
+    monkeypatch.setattr(project_files, "ask_save", lambda *_: str(path))
 
     def script(window: MainWindow) -> Script:
         yield settled(window)

@@ -14,7 +14,7 @@ import pytest
 from PySide6.QtCore import QLockFile, QSettings
 from window_tools import Script, drag, points, run_main, run_undrawn, settled
 
-import app.gui.features.project.controller
+import app.gui.features.project.controller as project_files
 import app.gui.features.project.recovery
 import app.gui.features.variants.controller
 from app.gui.main_window import MainWindow
@@ -39,7 +39,7 @@ def test_a_crash_loses_nothing_and_the_next_start_offers_it(
 ) -> None:
     QSettings().setValue("autosave", 0.05)
     path = tmp_path / "anna.busk"
-    monkeypatch.setattr(app.gui.features.project.controller, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(project_files, "ask_save", lambda *_: str(path))
     seen = []
 
     def first(window: MainWindow) -> Script:
@@ -130,7 +130,7 @@ def test_saving_waits_for_no_disk_and_closing_waits_for_saving(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path, disk = tmp_path / "anna.busk", threading.Event()
-    monkeypatch.setattr(app.gui.features.project.controller, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(project_files, "ask_save", lambda *_: str(path))
     sync = os.fsync
     monkeypatch.setattr(os, "fsync", lambda file: (disk.wait(60), sync(file)))
 
@@ -143,7 +143,7 @@ def test_saving_waits_for_no_disk_and_closing_waits_for_saving(
         yield settled(window)  # all goes on
         assert window.status._saved.text() == "Saving…"
         threading.Timer(0.2, disk.set).start()
-        monkeypatch.setattr(app.gui.features.project.controller, "ask_about_changes", lambda *_: "discard")
+        monkeypatch.setattr(project_files, "ask_about_changes", lambda *_: "discard")
         assert window.close()
         assert open_project(path).design.ratio("mid-bust") == 0.9
 
@@ -154,7 +154,7 @@ def test_two_windows_and_a_change_from_outside_are_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, project: Path, mannequin: Path
 ) -> None:
     path, asked = tmp_path / "lotte.busk", []
-    monkeypatch.setattr(app.gui.features.project.controller, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(project_files, "ask_save", lambda *_: str(path))
     answers = iter(("overwrite", "stay", "overwrite"))
     monkeypatch.setattr(
         app.gui.features.project.controller,

@@ -11,7 +11,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled
 
-import app.gui.features.project.controller
+import app.gui.features.project.controller as project_files
 from app.gui.features.landmarks.panel import LandmarksPanel
 from app.gui.main_window import MainWindow
 from app.presenters.landmarks import LandmarkView
@@ -76,10 +76,8 @@ def test_the_model_follows_a_pin_before_it_is_let_go_and_escape_brings_all_back(
 def test_linked_sides_are_placed_as_in_a_mirror_in_one_step_and_keys_move_a_pin(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(app.gui.features.project.controller, "ask_about_changes", lambda *_: "cancel")
-    monkeypatch.setattr(
-        app.gui.features.project.controller, "ask_save", lambda *_: str(tmp_path / "pins.busk")
-    )
+    monkeypatch.setattr(project_files, "ask_about_changes", lambda *_: "cancel")
+    monkeypatch.setattr(project_files, "ask_save", lambda *_: str(tmp_path / "pins.busk"))
 
     def script(window: MainWindow) -> Script:
         yield settled(window)

@@ -14,7 +14,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from window_tools import Script, drag, run_main, run_undrawn, settled
 
-import app.gui.features.project.controller
+import app.gui.features.project.controller as project_files
 import core.pipeline.build
 import core.scan.body
 from app.gui.main_window import MainWindow
@@ -176,7 +176,7 @@ def test_a_cancelled_edit_of_the_scan_leaves_no_trace(monkeypatch: pytest.Monkey
 
 def test_a_dragged_pin_is_a_correction_that_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "corrected.busk"
-    monkeypatch.setattr(app.gui.features.project.controller, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(project_files, "ask_save", lambda *_: str(path))
     kept: list[Any] = []
 
     def first(window: MainWindow) -> Script:

@@ -14,7 +14,6 @@ from PySide6.QtTest import QTest
 from trimesh.creation import box
 from window_tools import Script, run_main, settled
 
-import app.gui.features.project.controller
 import app.gui.features.scan.controller
 import app.rendering.orientation_thumbnails
 import core.pipeline.build

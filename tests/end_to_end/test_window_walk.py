@@ -10,7 +10,6 @@ from PySide6.QtCore import QSettings
 from walk_steps import Walker
 from window_tools import Script, run_main, settled, undrawn
 
-import app.gui.features.project.controller
 import app.gui.session.edit_command
 from app.gui.main_window import MainWindow
 

@@ -12,7 +12,7 @@ import numpy as np
 from walk_looks import differences, differences_seen
 from window_tools import Script
 
-import app.gui.features.project.controller
+import app.gui.features.project.controller as project_files
 from app.gui.main_window import MainWindow
 from core.document.design import Design
 from core.document.document import Document
@@ -47,7 +47,7 @@ class WindowWalk:
         self.far, self.refused, self.sent_back = (0.0, 0.0), 0, 0
         self.session._solving.refused.connect(self.refusals.append)
         self.session.failed.connect(self.faults.append)
-        module: Any = app.gui.features.project.controller
+        module: Any = project_files
         module.ask_save = module.ask_open = lambda *_: self.answers["path"]
         module.ask_about_changes = lambda *_: self.answers["changes"]
         module.ask_overwrite = lambda *_: "overwrite"
