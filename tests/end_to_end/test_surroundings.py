@@ -15,6 +15,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMessageBox
 from window_tools import Script, drag, run_main, settled, undrawn
 
+import app.gui.features.project.controller as project_files
 from app.cli import environment as surroundings
 from app.cli.environment import is_seen_in_window, path_of, settle_in
 from app.cli.main import BAD_INPUT, INTERRUPTED, main
