@@ -10,7 +10,9 @@ from docutils import nodes
 from sphinx.application import Sphinx
 
 DOCS = Path(__file__).parent
-sys.path.insert(0, str(DOCS.parent))
+sys.path[:0] = [str(DOCS.parent), str(DOCS)]
+
+from generated import with_generated_parts  # noqa: E402
 
 from app.rendering.palette import DARK, LIGHT, Tokens  # noqa: E402
 from core import __version__  # noqa: E402
@@ -22,10 +24,16 @@ version = release = __version__
 html_title = f"Busk {__version__} ユーザーガイド" if japanese else f"Busk {__version__}, user guide"
 language = "ja" if japanese else "en"
 exclude_patterns = [] if japanese else ["ja"]
-extensions = ["myst_parser"]
+extensions = ["myst_parser", "sphinx.ext.autodoc"]
 myst_heading_anchors = 4  # a link to a heading reads as on a code host: page.md#words-of-the-heading
 myst_url_schemes = {"http": None, "https": None, "page": "{{path}}", "heading": "{{path}}#{{fragment}}"}
 nitpicky = True
+nitpick_ignore_regex = [("py:.*", ".*")]  # types in signatures have no pages
+add_module_names = False
+autodoc_typehints_format = "short"
+autodoc_preserve_defaults = True
+autodoc_type_aliases = {name: name for name in ("Points", "Floats", "Progress", "Measures")}
+python_use_unqualified_type_names = True
 highlight_language = "text"
 
 html_theme = "furo"
@@ -49,7 +57,7 @@ html_show_search_summary = False  # it would be fetched, which no browser allows
 html_permalinks_icon = "#"
 SEARCH = DOCS / "search.js"
 html_search_scorer = str(SEARCH)
-TRADE_WORDS = dict(re.findall(r'^  "(\w+)": "(.*)",$', SEARCH.read_text("utf-8"), re.MULTILINE))
+TRADE_WORDS = dict(re.findall(r'^  "([\w/-]+)": "(.*)",$', SEARCH.read_text("utf-8"), re.MULTILINE))
 """Pages with the words of the trade that they answer."""
 
 
@@ -83,8 +91,11 @@ html_theme_options = {
     "top_of_page_buttons": ["view"],  # its template leads to the other language
 }
 
-OUTSIDE = {"../README.md": "index.md", "../CHANGELOG.md": "changes.md", "../THIRD_PARTY.md": "licences.md"}
-"""Pages of the repository that are not of the guide, and what stands for them in it."""
+OUTSIDE = {"README": "index", "CHANGELOG": "changes", "THIRD_PARTY": "licences"}
+"""Pages of the repository outside the guide, and the pages of the guide in their place."""
+
+JAPANESE = {"index": "index", "tutorial/quick-start": "quick-start", "reference/screens": "screens"}
+"""Pages that exist in Japanese, and their names there."""
 
 
 def listed_pages(text: str) -> str:
@@ -92,21 +103,34 @@ def listed_pages(text: str) -> str:
     chapters = re.findall(r"^## (.*)\n((?:(?!## ).*\n)*)", text, re.MULTILINE)
     trees = []
     for title, lines in chapters:
-        pages = "\n".join(re.findall(r"^- \[.*?\]\((\w+)\.md\)", lines, re.MULTILINE))
+        pages = "\n".join(re.findall(r"^- \[.*?\]\(([\w/-]+)\.md\)", lines, re.MULTILINE))
         trees.append(f"```{{toctree}}\n:hidden:\n:caption: {title}\n\n{pages}\n```\n")
     return "\n".join(trees)
 
 
+def guide_link(page: str, words: str, target: str) -> str:
+    """Return a link of a page as it is in the guide: to its pages, to the other language, or words alone."""
+    name, _, heading = target.partition("#")
+    there = (DOCS / "ja" / page if japanese else DOCS / page).parent.joinpath(name).resolve()
+    if not there.is_relative_to(DOCS):
+        inside = OUTSIDE.get(there.stem)
+        up = "../" * page.count("/")
+        return f"[{words}]({up}{inside}.md)" if inside else f"`{there.relative_to(DOCS.parent)}`"
+    if there.is_relative_to(DOCS / "ja") == japanese:
+        return f"[{words}]({target})"
+    # A page of the other language, which this run of Sphinx does not know.
+    address = f"{name.removesuffix('.md')}.html"
+    return f"[{words}](heading:{address}#{heading})" if heading else f"[{words}](page:{address})"
+
+
 def as_guide(app: Sphinx, page: str, source: list[str]) -> None:
-    """Lead links to where things are in the guide, and give its first page the table of contents."""
-    text = source[0]
-    for outside, inside in OUTSIDE.items():
-        text = text.replace(f"]({outside}", f"]({inside}")
-    # From one language to the other: to pages that this run of Sphinx does not know.
-    text = re.sub(r"\]\((\.\./\w+|ja/\w+)\.md\)", r"](page:\1.html)", text)
-    text = re.sub(r"\]\((\.\./\w+|ja/\w+)\.md#", r"](heading:\1.html#", text)
-    # A page that is named by its file is named by its title.
-    text = re.sub(r"\[\w+\.md\](?=\(\w+\.md\))", "[]", text)
+    """Put generated parts into a page, adapt its links, and give the first page the table of contents."""
+    text = with_generated_parts(source[0])
+    text = re.sub(
+        r"(?<!!)\[([^]]*)\]\(([^)\s:#]+\.md(?:#[^)\s]*)?)\)",
+        lambda link: guide_link(page, link[1], link[2]),
+        text,
+    )
     source[0] = f"{text}\n{listed_pages(text)}" if page == "index" else text
 
 
@@ -149,14 +173,16 @@ def caption_pictures(app: Sphinx, page: nodes.document) -> None:
 
 
 def other_language(app: Sphinx, page: str, template: str, context: dict[str, object], tree: object) -> None:
-    """Tell the template where the page, or the first one, stands in the other language."""
-    there = DOCS if japanese else DOCS / "ja"
-    name = page if (there / f"{page}.md").is_file() else "index"
+    """Give the template the address of the page, or of the first one, in the other language."""
     context["shared"] = shared
-    # What the Japanese first page names of the English ones stands at the side of every page.
+    # The English pages that the Japanese first page names are at the side of every page.
     first = (DOCS / "ja" / "index.md").read_text("utf-8") if japanese else ""
-    context["english_pages"] = [link[::-1] for link in re.findall(r"\[([^]]+)\]\(\.\./(\w+)\.md\)", first)]
-    context["other_language"] = f"../{name}.html" if japanese else f"ja/{name}.html"
+    context["english_pages"] = [
+        link[::-1] for link in re.findall(r"\[([^]]+)\]\(\.\./([\w/-]+)\.md\)", first)
+    ]
+    english = {name: each for each, name in JAPANESE.items()}
+    there = f"../{english.get(page, 'index')}" if japanese else f"ja/{JAPANESE.get(page, 'index')}"
+    context["other_language"] = f"{'../' * page.count('/')}{there}.html"
 
 
 def setup(app: Sphinx) -> None:

@@ -2,23 +2,37 @@
 
 /* Words of the trade, and the page that answers them first. conf.py makes them keywords of that page. */
 const TRADE_WORDS = {
-  "first": "begin beginner tutorial customer steps quick start",
-  "screens": "screen window tab panel slider shortcut keys preferences variants compare landmarks",
-  "guide": "scan import unit landmark nipple apex sliding glued stiffness",
-  "sewing": "strap straps band cut length lengths elastic elastics newton newtons tension stretch allowance seam",
-  "pressure": "pressure press tight comfort kpa mmhg marks mark digging",
-  "sizes": "size sizes cup cups band bra fitting fit chart",
-  "report": "report sheet pdf print printing paper",
-  "export": "export pattern dxf svg clo seamly strips",
-  "measures": "measure measures measurement measurements girth waist hip bust underbust volume depth width",
-  "honest": "underwire underwires wire wires wing wings gusset gussets gore seam seams boning gravity accuracy privacy",
-  "trouble": "error trouble problem crash slow black backup restore reset",
-  "install": "install uninstall remove removal update upgrade download windows mac",
-  "method": "method vibration adaptive conventional mesh spring paper",
-  "commands": "command terminal script batch",
+  "tutorial/quick-start": "begin beginner tutorial customer steps quick start first",
+  "how-to/install": "install uninstall remove removal update upgrade download windows mac",
+  "how-to/open-scan": "scan import unit orientation axis repair hole crop mirror",
+  "how-to/landmarks": "landmark landmarks nipple apex fold pin",
+  "how-to/lines": "line lines slider strap straps sling ring preset draw",
+  "how-to/target-shape": "target targets lift profile inverse",
+  "how-to/diagnosis": "diagnose diagnosis conflict oscillation vibration diverged folded",
+  "how-to/elastics": "elastic elastics newton newtons stretch elongation force",
+  "how-to/cut-list": "cut length lengths band tension allowance seam strip strips pattern",
+  "how-to/symmetry": "symmetry asymmetry balance uneven",
+  "how-to/uncertainty": "uncertainty error plusminus sigma",
+  "how-to/scan-comparison": "calibrate calibration residual fitting registration",
+  "how-to/before-after": "compare section map displacement strain outline divider picture",
+  "how-to/report": "report sheet pdf print printing paper",
+  "how-to/export": "export pattern dxf svg clo seamly valentina turntable",
+  "how-to/troubleshooting": "error trouble problem crash slow black backup restore reset",
+  "reference/screens": "screen window tab panel shortcut shortcuts key keys view",
+  "reference/model-options": "option options sliding bonded glued stiffness gain",
+  "reference/measurements": "measure measurement measurements girth waist hip bust underbust volume depth width",
+  "reference/sizes": "size sizes cup cups bra chart",
+  "reference/settings": "settings preferences language inch theme",
+  "reference/command-line": "command terminal script batch",
+  "explanation/contact-pressure": "pressure press tight comfort kpa mmhg marks mark digging",
+  "explanation/limitations": "limitations underwire underwires wire wires wing wings gusset gussets gore seam seams boning gravity accuracy privacy",
+  "explanation/method": "method adaptive conventional mesh spring paper",
 };
 
-const LATER = new Set(["python", "changes", "commands", "licences", "reproduction", "sweep", "speed", "accuracy"]);
+const LATER = new Set([
+  "changes", "licences", "contributors/validation", "contributors/words", "explanation/reproduction",
+  "reference/command-line", "reference/python-api",
+]);
 
 /* Of a page that answers every word asked for; of pages for programmers, unless they answer. */
 const ANSWERS = 60, FOR_OTHERS = -30;
