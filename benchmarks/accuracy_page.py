@@ -1,9 +1,9 @@
-"""Put measured tables into docs/accuracy.md: `python benchmarks/accuracy_page.py [BODIES MADE [PEOPLE]]`.
+"""Put measured tables into RESULTS.md: `python benchmarks/accuracy_page.py [BODIES MADE [PEOPLE]]`.
 
-BODIES and MADE are the folders that ``busk accuracy ... --out`` wrote for two sets of the page; what stands
+BODIES and MADE are the folders that ``busk accuracy ... --out`` wrote for two sets; what stands
 between the marks of each set there is replaced by the counts and the table at a glance. PEOPLE holds what
 landmark_table.py and doubt_table.py printed of people drawn anew, as landmarks.txt and doubts.txt. The
-figures of docs/honest.md are taken from the page then; without folders that is all that is done.
+figures of docs/explanation/limitations.md are taken from there; without folders that is all that is done.
 """
 
 from __future__ import annotations
@@ -12,18 +12,20 @@ import re
 import sys
 from pathlib import Path
 
-from pages import DOCS, put, table
+from pages import RESULTS, put, table
+
+LIMITATIONS = Path(__file__).parents[1] / "docs" / "explanation" / "limitations.md"
 
 HONEST = {
     "bust point [mm]": "bust point, distance from the nipple [mm]",
-    "bust point to nipple-apex [mm]": "bust point, from the segment of nipple and foremost point [mm]",
+    "bust point to nipple-apex [mm]": "bust point, from the segment of nipple and apex [mm]",
     "fold height [mm]": "height of the fold [mm]",
     "underbust level [mm]": "under-bust level [mm]",
     "bust girth [mm]": "bust girth [mm]",
     "underbust girth [mm]": "under-bust girth [mm]",
     "all from 0.5 up, of these off": "landmarks with 50 % or more, of these off by more than 8 mm",
 }
-"""The rows of the larger set that docs/honest.md shows, and what they are called there."""
+"""The rows of the larger set that docs/explanation/limitations.md shows, and what they are called there."""
 
 
 LANDMARKS = {
@@ -52,11 +54,11 @@ def main() -> None:
         report = (Path(folder) / "accuracy.md").read_text(encoding="utf-8")
         counts = report.split("\n\n")[1]
         glance = report.partition("## At a glance")[2].partition("\n## ")[0].strip()
-        put("accuracy.md", name, f"{counts}\n\n{glance}")
+        put(name, f"{counts}\n\n{glance}")
     for folder in map(Path, sys.argv[3:]):
-        put("accuracy.md", "people", people((folder / "landmarks.txt").read_text(encoding="utf-8")))
-        put("accuracy.md", "doubts", doubts((folder / "doubts.txt").read_text(encoding="utf-8")))
-    put("honest.md", "measured", honest((DOCS / "accuracy.md").read_text(encoding="utf-8")))
+        put("people", people((folder / "landmarks.txt").read_text(encoding="utf-8")))
+        put("doubts", doubts((folder / "doubts.txt").read_text(encoding="utf-8")))
+    put("measured", honest(RESULTS.read_text(encoding="utf-8")), LIMITATIONS)
 
 
 def people(printed: str) -> str:
@@ -82,11 +84,11 @@ def cells_of(text: str) -> list[list[str]]:
 
 
 def honest(page: str) -> str:
-    """Return the table of docs/honest.md, from what docs/accuracy.md says of the larger set."""
+    """Return the table of docs/explanation/limitations.md, from the larger set of RESULTS.md."""
     cells = cells_of(page.partition("<!-- made -->")[2].partition("<!-- end of made -->")[0])
     figures = {name: rest for name, *rest in cells}
     rows = [(called, *figures[name]) for name, called in HONEST.items()]
-    return table(("found, less what is true", *cells[0][1:]), rows)
+    return table(("found − true", *cells[0][1:]), rows)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ Then 40 cases with two lines of elastic, from 97 %, that press no more than they
 Beside each the same figures are asked for 8 mm further or less far, profiles with a bump of 5 mm: most of
 that cannot be reached.
 Prints a line for each case, then what is met, what is missed, and processor time; --put puts these tables
-into docs/ask.md.
+into RESULTS.md.
 """
 
 from __future__ import annotations
@@ -192,7 +192,7 @@ def main() -> None:
     parser.add_argument("folder", nargs="?", type=Path)
     parser.add_argument("--cases", type=int, default=200)
     parser.add_argument("--elastic", type=int, default=40, metavar="N", help="N more with lines of elastic")
-    parser.add_argument("--put", action="store_true", help="put the table into docs/ask.md")
+    parser.add_argument("--put", action="store_true", help="put the table into RESULTS.md")
     options = parser.parse_args()
     rng = np.random.default_rng(2027)
     on, cases, made, far = list(bodies(options.folder)), [], [], []
@@ -219,8 +219,8 @@ def main() -> None:
     told, missed_told = table(heads, rows), unreached(far, options.cases)
     print(told, missed_told, sep="\n\n")
     if options.put:
-        put("ask.md", "asked", told)
-        put("ask.md", "unreached", missed_told)
+        put("asked", told)
+        put("unreached", missed_told)
 
 
 def show(case: Case) -> None:

@@ -9,7 +9,7 @@ nothing is said, or with 0 about as many as the sample bodies. The design begins
 apart: noisy, and the garment lies where it would on the clean body, while Busk finds its places on the other.
 --bent bends the second scan smoothly, waves of 150 to 300 mm, as breath or posture would.
 Prints a line for each case, then how far alignment and numbers are off; --put puts that into
-docs/calibrate.md.
+RESULTS.md.
 """
 
 from __future__ import annotations
@@ -164,7 +164,7 @@ def main() -> None:
     parser.add_argument("--spacing", type=float, default=2.0, help="of the worn scan's points [mm]")
     parser.add_argument("--before", choices=MARKS, default="clean", help="what the first scan is")
     parser.add_argument("--bent", type=float, default=0.0, help="how far the second scan is bent [mm]")
-    parser.add_argument("--put", action="store_true", help="put the table into docs/calibrate.md")
+    parser.add_argument("--put", action="store_true", help="put the table into RESULTS.md")
     options = parser.parse_args()
     on, cases = list(bodies(options.folder)), []
     with tempfile.TemporaryDirectory() as folder:
@@ -182,7 +182,7 @@ def main() -> None:
     told = summary(cases)
     print(told)
     if options.put:
-        put("calibrate.md", MARKS[options.before] if options.spacing else "calibrated coarsely", told)
+        put(MARKS[options.before] if options.spacing else "calibrated coarsely", told)
 
 
 def line_of(done: Case) -> str:

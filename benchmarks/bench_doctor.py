@@ -5,7 +5,7 @@ In each case lines - of the template and of the presets - and their lengths, glu
 held, the control and its gain are drawn by chance until the design vibrates, runs away, folds, strains or
 cannot be held. What the doctor names is made and run anew by another path than its own: as the window does,
 from rest and on from where the design stood, all controls in lockstep. Prints a line for each case, then what
-was ended, how large the changes are and the processor time; --put puts the tables into docs/doctor.md.
+was ended, how large the changes are and the processor time; --put puts the tables into RESULTS.md.
 """
 
 from __future__ import annotations
@@ -199,7 +199,7 @@ def main() -> None:
     parser.add_argument("folder", nargs="?", type=Path)
     parser.add_argument("--cases", type=int, default=200)
     parser.add_argument("--seed", type=int, default=2030)
-    parser.add_argument("--put", action="store_true", help="put the tables into docs/doctor.md")
+    parser.add_argument("--put", action="store_true", help="put the tables into RESULTS.md")
     options = parser.parse_args()
     rng = np.random.default_rng(options.seed)
     done = []
@@ -213,8 +213,8 @@ def main() -> None:
     sizes = table(("what ends it", "cases", "least %", "in the middle %", "largest %"), changes(done))
     print(ended, sizes, sep="\n\n")
     if options.put:
-        put("doctor.md", "ended", ended)
-        put("doctor.md", "changes", sizes)
+        put("ended", ended)
+        put("changes", sizes)
 
 
 if __name__ == "__main__":

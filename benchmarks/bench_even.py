@@ -8,7 +8,7 @@ body as it was, is compared with what was done.
 Halves: what a split line does at equal lengths, against the whole one.
 Made even: straps and split lines of other lengths on the left than on the right, by chance; then, on each
 body, with what hinders parted first.
-Prints all of it; --put puts the tables into docs/even.md.
+Prints all of it; --put puts the tables into RESULTS.md.
 """
 
 from __future__ import annotations
@@ -230,7 +230,7 @@ def main() -> None:
     )
     parser.add_argument("folder", nargs="?", type=Path)
     parser.add_argument("--cases", type=int, default=60)
-    parser.add_argument("--put", action="store_true", help="put the tables into docs/even.md")
+    parser.add_argument("--put", action="store_true", help="put the tables into RESULTS.md")
     options = parser.parse_args()
     on = list(bodies(options.folder))
     tables = {"read": _read_table(read_back(on)), "halves": _halves_table(list(halves(on)))}
@@ -253,7 +253,7 @@ def main() -> None:
     for name, told in tables.items():
         print(told)
         if options.put:
-            put("even.md", name, told)
+            put(name, told)
 
 
 def _read_table(found: list[Altered]) -> str:

@@ -10,7 +10,7 @@ force vibrates is found by making its turns, 2 % apart and halved to 0.13 %: up 
 point moves by more than 0.0005 mm a turn (calm), or the swing of the volume error keeps nine tenths of its
 size over 200 turns (it vibrates); one that still fades after 4000 turns counts as calm, for it would end.
 Prints a line for each boundary that is off by more than 0.5 %, and a table; --put puts that into
-docs/limits.md.
+RESULTS.md.
 """
 
 from __future__ import annotations
@@ -259,7 +259,7 @@ def main() -> None:
     parser.add_argument("folder", type=Path, nargs="?")
     parser.add_argument("--seed", type=int, default=8)
     parser.add_argument("--only", nargs="+", help="scans to compare; of the others only the chance is drawn")
-    parser.add_argument("--put", action="store_true", help="put the table into docs/limits.md")
+    parser.add_argument("--put", action="store_true", help="put the table into RESULTS.md")
     options = parser.parse_args()
     rng, boundaries, seconds = np.random.default_rng(options.seed), [], {}
     sliders = 0
@@ -292,7 +292,7 @@ def main() -> None:
     for kind, each in seconds.items():
         print(f"{kind}: {1e3 * np.median(each):.0f} ms, 95 % {1e3 * np.quantile(each, 0.95):.0f} ms")
     if options.put:
-        put("limits.md", "limits", f"{sliders} sliders:\n\n{measured}")
+        put("limits", f"{sliders} sliders:\n\n{measured}")
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@
 Both samples, or the scans given. Each is worn with three lines, two of them made of an elastic, glued and
 sliding; ``--quick`` is the first design alone. Every figure is told twice, and what one draws out of so many
 draws is sure to about 1 / sqrt(2 draws) of it. Of each kind of figure it is told too what part of the draws
-lies within what is told of it, be it a ± or a range: 95 % if errors are normal. The table of docs/spread.md
+lies within what is told of it, be it a ± or a range: 95 % if errors are normal. The table of RESULTS.md
 comes last.
 """
 

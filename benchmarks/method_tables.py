@@ -1,4 +1,4 @@
-"""Measure the tables of docs/method.md and docs/guide.md on the two samples, and put them there.
+"""Measure the tables of RESULTS.md on the method, on the two samples, and put them there.
 
 Run: python benchmarks/method_tables.py; it takes a minute or two. The sentences beside the tables quote some
 of their figures: read them again after a run.
@@ -150,16 +150,16 @@ def main() -> None:
         return [row for body, stage in stages.items() for row in of(body, stage)]
 
     up = ["bust point up", "foremost place up", "forward"]
-    put("method.md", "choices", table(["body", "contact, chest", "reached", *up], rows(choices)))
+    put("choices", table(["body", "contact, chest", "reached", *up], rows(choices)))
     heads = ["body, set length", "L", "none", "conventional", "adaptive"]
     heads += ["below 0.1 % from turn: adaptive, accumulating", "exact: steps", "verdict"]
-    put("method.md", "controls", table(heads, rows(controls)))
+    put("controls", table(heads, rows(controls)))
     heads = ["strained", "overstrained", "folded"]
     heads = ["body, model", "mid-bust: strained", *heads[1:], "full-bust: strained", *heads[1:]]
-    put("method.md", "limits", table(heads, rows(limits)))
+    put("shortest", table(heads, rows(limits)))
     heads = ["line", "contact", "mannequin: bust point up", "apex up", "forward"]
     heads += ["person: bust point up", "apex up", "forward"]
-    put("guide.md", "lifts", table(heads, pairs(stages)))
+    put("lifts", table(heads, pairs(stages)))
     for body, stage in stages.items():
         for template in ("168", "120"):
             built = stage(replace(sample_design(body), template=template))

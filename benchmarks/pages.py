@@ -1,4 +1,4 @@
-"""Measured tables in the pages of docs/: what stands between two marks of a page is replaced."""
+"""Measured tables in RESULTS.md: what is between two marks is replaced."""
 
 from __future__ import annotations
 
@@ -6,18 +6,17 @@ import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-DOCS = Path(__file__).parents[1] / "docs"
+RESULTS = Path(__file__).parent / "RESULTS.md"
 MARKED = "<!-- {0} -->\n{1}<!-- end of {0} -->\n"
 
 
-def put(page: str, name: str, text: str) -> None:
-    """Put ``text`` between the marks ``name`` of a page of docs/."""
-    path = DOCS / page
+def put(name: str, text: str, path: Path = RESULTS) -> None:
+    """Put ``text`` between the marks ``name`` of a page."""
     told = MARKED.format(name, f"\n{text}\n\n")
     whole, changes = re.subn(
         MARKED.format(name, "(?s:.*?)"), lambda _: told, path.read_text(encoding="utf-8")
     )
-    assert changes == 1, f"{page} has no place for {name}"
+    assert changes == 1, f"{path.name} has no place for {name}"
     path.write_text(whole, encoding="utf-8")
 
 

@@ -32,8 +32,7 @@ from app.report.pages import pages_of  # noqa: E402
 from app.report.painter import A4, UNITS  # noqa: E402
 from app.research.figures import make_figures  # noqa: E402
 
-DOCS = Path(__file__).parent.parent / "docs"
-PICTURES = DOCS / "pictures"
+PICTURES = Path(__file__).parent.parent / "docs" / "pictures"
 KEPT = 16
 """So many colours of a picture stay to the last bit."""
 
@@ -91,12 +90,11 @@ def verdicts() -> None:
 
 
 def figures() -> None:
-    """Draw the figures of the paper again, and write the page on them."""
+    """Draw the figures of the paper again."""
     with TemporaryDirectory() as folder:
-        page = make_figures(Path(folder))
+        make_figures(Path(folder))
         for drawn in sorted(Path(folder).glob("fig-*.png")):
             shutil.copy(drawn, PICTURES)
-    (DOCS / "reproduction.md").write_text(page(pictures="pictures/", tables=False), encoding="utf-8")
 
 
 def printed_sheets() -> None:

@@ -96,9 +96,7 @@ ONCE = (
     Shot("spread", bra, advice_scenes.sure, {"size": LARGE}),
     Shot("even", bra, advice_scenes.even, {"size": SMALL}),
     Shot("worn", bra, advice_scenes.compared, {"size": SMALL}),
-    Shot("report-dark-ja", for_somebody, scenes.reported, DARK),
     Shot("lines-dark-ja", _person, step("lines"), DARK, small=True),
-    Shot("export-dark-ja", made_of_elastics, sheet(scenes.exporting("turntable")), DARK),
 )
 
 

@@ -1,4 +1,4 @@
-"""Draws a small picture of each measure on the sample body, for docs/measures.md."""
+"""Draws a small picture of each measure on the sample body, for docs/reference/measurements.md."""
 
 from __future__ import annotations
 

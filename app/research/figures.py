@@ -36,15 +36,14 @@ def say(text: str) -> None:
     print(text, flush=True)
 
 
-def make_figures(out: Path, tell: Callable[[str], None] = say) -> Callable[..., str]:
+def make_figures(out: Path, tell: Callable[[str], None] = say) -> None:
     """Write all figures to ``out``, one picture and one CSV each, and the page REPRODUCTION.md on them.
 
-    Returns what makes the page again for other places of its pictures, see ``figure_page``; ``tell`` hears
-    of every file. Raises UserError.
+    ``tell`` receives a line for every file. Raises UserError.
     """
     study = Study()
     drawn = [draw(number, study, out, tell) for number in FIGURES]
-    return write_page(out, drawn, study, tell)
+    write_page(out, drawn, study, tell)
 
 
 def make_some(numbers: Collection[str], out: Path, tell: Callable[[str], None] = say) -> None:

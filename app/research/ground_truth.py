@@ -19,7 +19,7 @@ from core.scan.orientation.pose import MILLIMETRES
 
 FILE = "truth.json"
 MOST_BYTES = 100_000_000
-FORM = "Its form is told in the user guide, How well a scan is understood."
+FORM = "Its format is described in the user guide, page Validation."
 TINY = 1e-9
 
 ROUNDED = 5e-3

@@ -21,10 +21,8 @@ from core.pipeline.build import GAIN_SHARE, Stages
 NAME = "REPRODUCTION.md"
 
 
-def write_page(
-    out: Path, drawn: Sequence[Figure], study: Study, tell: Callable[[str], None] = print
-) -> Callable[..., str]:
-    """Write the page, the statements and the search as tables to ``out``; return what makes the page again.
+def write_page(out: Path, drawn: Sequence[Figure], study: Study, tell: Callable[[str], None] = print) -> None:
+    """Write the page, the statements and the search as tables to ``out``.
 
     Raises UserError if something cannot be written.
     """
@@ -40,24 +38,12 @@ def write_page(
     write_table(out / "search.csv", COLUMNS, rows_of(found))
     tell(f"  {out / 'search.csv'}: {len(found)} lines, laws and lengths tried")
 
-    def page(pictures: str = "", tables: bool = True) -> str:
-        return page_of(drawn, stated, found, study, pictures=pictures, tables=tables)
-
-    write_text(out / NAME, page())
+    write_text(out / NAME, page_of(drawn, stated, found, study))
     tell(f"  {out / NAME}: the page")
-    return page
 
 
-def page_of(
-    drawn: Sequence[Figure],
-    stated: Sequence[Claim],
-    found: Sequence[Finding],
-    study: Study,
-    *,
-    pictures: str = "",
-    tables: bool = True,
-) -> str:
-    """Return the page as Markdown; ``pictures`` goes before the names of pictures; ``tables`` links those."""
+def page_of(drawn: Sequence[Figure], stated: Sequence[Claim], found: Sequence[Finding], study: Study) -> str:
+    """Return the page as Markdown."""
     form = (resources.files("resources") / "pages" / "reproduction.md").read_text(encoding="utf-8")
     counts = {verdict: sum(c.verdict == verdict for c in stated) for verdict in (AGREES, PARTLY, DIFFERS)}
     return form.format(
@@ -74,7 +60,7 @@ def page_of(
         damping=ADAPTIVE_DAMPING,
         gauss=GAUSS_WIDTH,
         hat=HAT_RANGE,
-        figures="\n".join(_figure(figure, pictures, tables) for figure in drawn),
+        figures="\n".join(_figure(figure) for figure in drawn),
         **search_words(found, study),
     )
 
@@ -84,10 +70,9 @@ def _statements(found: Sequence[Claim]) -> str:
     return "\n".join(["| section | the paper | here | |", "|---|---|---|---|", *rows])
 
 
-def _figure(figure: Figure, pictures: str, tables: bool) -> str:
+def _figure(figure: Figure) -> str:
     number = figure.name.split("-")[1]
-    table = f" [Table]({figure.name}.csv)." if tables else ""
     return (
-        f"### Fig. {number}. {figure.title}\n\n![Fig. {number}]({pictures}{figure.name}.png)\n\n"
-        f"{figure.caption}{table}\n"
+        f"### Fig. {number}. {figure.title}\n\n![Fig. {number}]({figure.name}.png)\n\n"
+        f"{figure.caption} [Table]({figure.name}.csv).\n"
     )

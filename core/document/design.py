@@ -47,8 +47,8 @@ class Design:
     not as usual, ``placed`` the landmarks that were placed by hand, ``own_measures`` what is measured beside
     the usual, ``elastics`` those that lines are made of, with their curves, so that a project opens
     elsewhere. ``tissue_stiffness`` [N/m] tells what the model's forces are in newtons, an estimate (see
-    docs/sewing.md). ``customer`` is whom it is for, in whatever words, ``worn_tight_mm`` what her sizes take
-    off the under-bust. ``calibration`` tells which scan with the garment on its numbers come from, if any.
+    docs/explanation/forces.md). ``customer`` is whom it is for, in whatever words, ``worn_tight_mm`` what
+    her sizes take off the under-bust. ``calibration`` tells which scan with the garment on its numbers come from, if any.
     ``unknown`` keeps what a later version wrote.
     """
 

@@ -199,5 +199,5 @@ def _sides(subject: Subject) -> Iterator[Measure]:
     sure, unit = min(each.confidence for each in volumes), definition_of("asymmetry_volume")[0].unit
     note = next((each.note for each in volumes if each.note != UNSEEN_CHEST), UNSEEN_CHEST)
     # No ± is told: a root hangs on the height of its bust point, and a breast that sits lower was told up to
-    # 92 ml smaller (docs/even.md), far more than what is known to be unsure of both volumes.
+    # 92 ml smaller (docs/how-to/symmetry.md), far more than what is known to be unsure of both volumes.
     yield Measure("asymmetry_volume", values[0] - values[1], unit, curves, sure, True, 0.0, note)

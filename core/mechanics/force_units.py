@@ -1,7 +1,8 @@
 """What a unit of the model's stiffness is in newtons.
 
 The model's cables have relative stiffness and no unit. As a net they resist stretching like a membrane; if
-skin and tissue are said to resist with so many N/m, one unit becomes so many N/mm (ours; docs/sewing.md).
+skin and tissue are said to resist with so many N/m, one unit becomes so many N/mm (ours; see
+docs/explanation/forces.md).
 """
 
 from __future__ import annotations

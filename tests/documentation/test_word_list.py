@@ -1,4 +1,4 @@
-"""The words of the window in Japanese are those of docs/words.md, and no others."""
+"""The words of the window in Japanese are those of docs/contributors/words.md, and no others."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ ROOT = Path(__file__).parents[2]
 
 def refused() -> list[tuple[str, str]]:
     """Return each English word of the list with a pattern that no Japanese sentence may hold."""
-    rows = (line.split("|") for line in (ROOT / "docs/words.md").read_text(encoding="utf-8").splitlines())
+    rows = (
+        line.split("|")
+        for line in (ROOT / "docs/contributors/words.md").read_text(encoding="utf-8").splitlines()
+    )
     found = []
     # A pattern may hold the sign that parts the columns: the last column is all that is left.
     for row in rows:
@@ -35,7 +38,7 @@ def test_the_list_refuses_words() -> None:
 @pytest.mark.parametrize(("english", "pattern"), refused())
 def test_a_thing_has_one_word(english: str, pattern: str) -> None:
     wrong = [said for said in sentences() if re.search(pattern, said)]
-    assert wrong == [], f"docs/words.md has another word for {english}"
+    assert wrong == [], f"docs/contributors/words.md has another word for {english}"
 
 
 def test_names_of_lines_and_signs_are_set_as_in_japanese() -> None:

@@ -17,7 +17,7 @@ from app.i18n.catalog import speaking
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
-PAGES = ("index", "first", *(english.partition("#")[0] for english, _ in guide.PAGES.values()))
+PAGES = ("index", "tutorial/quick-start", *(english.partition("#")[0] for english, _ in guide.PAGES.values()))
 
 
 @pytest.fixture
@@ -26,7 +26,9 @@ def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     folder = tmp_path / "a guide #1"
     folder.mkdir()
     for page in PAGES:
-        (folder / f"{page}.html").touch()
+        path = folder / f"{page}.html"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
     monkeypatch.setattr(guide, "guide_folder", lambda: folder)
     return folder
 
@@ -69,8 +71,8 @@ def test_f1_opens_the_page_that_fits_what_is_being_done(opened: list[str]) -> No
         window.start_desk.tour.end()
         go_everywhere(window)
         assert opened == [
-            *("guide#opening-a-scan", "guide#correcting-landmarks", "screens#lines", "measures"),
-            *("sewing", "method", "report", "index"),
+            *("how-to/open-scan", "how-to/landmarks", "how-to/lines", "how-to/measurements"),
+            *("how-to/cut-list", "reference/model-options", "how-to/report", "index"),
         ]
         opened.clear()
         window.activateWindow()
@@ -81,7 +83,7 @@ def test_f1_opens_the_page_that_fits_what_is_being_done(opened: list[str]) -> No
             each for each in window.start_desk.page.findChildren(QPushButton) if "ten minutes" in each.text()
         )
         begin.click()
-        assert opened == ["index", "first"]
+        assert opened == ["index", "tutorial/quick-start"]
         assert window.actions_.menus["help"].actions()[0] is window.actions_.guide
         assert window.notices.notice() is None
         where_nothing_opens_it_the_window_says_where_it_is(window)
@@ -90,7 +92,7 @@ def test_f1_opens_the_page_that_fits_what_is_being_done(opened: list[str]) -> No
 
 
 def where_nothing_opens_it_the_window_says_where_it_is(window: MainWindow) -> None:
-    begun = guide.guide_folder() / "first.html"
+    begun = guide.guide_folder() / "tutorial" / "quick-start.html"
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(QDesktopServices, "openUrl", lambda url: False)
         for expected in (str(begun), "make docs"):
@@ -106,7 +108,7 @@ def test_a_window_that_speaks_japanese_opens_the_japanese_part() -> None:
     with speaking("ja"):
         assert {guide.fitting_page(at).partition("#")[0] for at in guide.PAGES} == {"ja/screens"}
         assert guide.fitting_page("garment") == "ja/screens#裁断"
-        assert (guide.fitting_page(""), guide.first_page()) == ("ja/index", "ja/first")
+        assert (guide.fitting_page(""), guide.first_page()) == ("ja/index", "ja/quick-start")
 
 
 @pytest.mark.parametrize("place", [each for both in guide.PAGES.values() for each in both])

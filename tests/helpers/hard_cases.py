@@ -81,7 +81,7 @@ def hard_case(seed: int) -> HardCase:
     mechanics = Mechanics(
         member_law=str(rng.choice(LAWS)),
         prestress=float(rng.uniform(0.3, 0.7)),
-        # A force that is kept during the turn is calm for soft lines only: see docs/sweep.md.
+        # A force that is kept during the turn is calm for soft lines only: see benchmarks/RESULTS.md.
         line_stiffness=0.1 if explicit else float(np.exp(rng.uniform(np.log(4.0), np.log(200.0)))),
         line_force="explicit" if explicit else "implicit",
         line_contact=str(rng.choice(CONTACTS)),

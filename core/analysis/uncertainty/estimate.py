@@ -36,7 +36,7 @@ WAIST = (
 )
 
 _UNTOLD = tuple(f"{kind}:asymmetry_volume" for kind in (BEFORE, AFTER))
-"""Figures whose ± is known not to hold: a root goes with its bust point, see docs/even.md."""
+"""Figures whose ± is known not to hold: a root goes with its bust point, see docs/how-to/symmetry.md."""
 
 
 class Spreading:

@@ -70,7 +70,7 @@ def test_what_is_not_worth_it_is_left_as_it_is(tmp_path: Path, capsys: pytest.Ca
     assert more
     before, *others = map(float, more.groups())
     assert others[0] == pytest.approx(others[1], abs=1.0)
-    assert others == pytest.approx([before, before], abs=4.0)  # as sure as skins tell it (docs/even.md)
+    assert others == pytest.approx([before, before], abs=4.0)  # docs/how-to/symmetry.md
     assert re.search(r"^1\d\.\d mm in height and \d\.\d mm to the front remain: ", told, re.M)
     assert re.search(r"^Left as it is: that would bring 0\.\d mm, and move both sides by", told, re.M)
     assert told.endswith("left.busk, as it was\n")

@@ -7,14 +7,13 @@ import json
 from pathlib import Path
 
 import pytest
-from pages_alike import alike
 
 from app.cli.main import main
 from core.document.custom_measures import OwnMeasure
 from core.document.design import Design, ScanSource
 from core.document.document import Document
 from core.document.storage.project_file import open_project, read_scan_file, save_project
-from core.measurements.definitions import DEFINITIONS, KEYS
+from core.measurements.definitions import KEYS
 
 DOCS = Path(__file__).parents[3] / "docs"
 GORE = OwnMeasure("Gore", "straight", ("bust_point_left", "bust_point_right"))
@@ -53,22 +52,6 @@ def test_a_project_is_measured_before_and_after(project: Path, capsys: pytest.Ca
     assert found["own:Gore"]["after"] == found["bust_point_distance"]["after"]
     assert found["own:Gore"]["definition"] == GORE.text
     assert open_project(project).design.own_measures == (GORE,)
-
-
-def test_the_page_shows_what_is_printed_and_every_definition(
-    project: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    page = (DOCS / "measures.md").read_text("utf-8")
-    assert main(["measure", str(project)]) == 0
-    shown = page.split("```text\n")[1].split("```")[0]
-    told = capsys.readouterr()
-    assert alike(shown, told.out + told.err)
-    for each in DEFINITIONS.values():
-        title = f"{each.title}, left and right" if each.sided else each.title
-        assert f"| {title} | {each.unit} | {each.iso or '-'} | {each.text} |" in page
-        picture = f"pictures/measures/{each.key}.png"
-        assert f"| ![{each.title}]({picture}) | {title} |" in page
-        assert (DOCS / picture).is_file()
 
 
 def test_a_long_name_of_ones_own_keeps_the_columns(person: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,16 +1,13 @@
 """The trial of every volume control: what each row means, and that the page says what the rows say."""
 
 import csv
-from pathlib import Path
 
 import numpy as np
 import pytest
 from shapes import torso
 
 from app.cli.main import main
-from app.presenters.samples import SAMPLES
 from app.research.control_study import CONTROLS, TURNS, Subject, _stays_below, trials
-from app.research.control_study_command import LENGTHS, STIFFNESSES
 from app.research.sphere import sphere_control
 from core.mechanics.options import LAWS, Mechanics
 
@@ -53,14 +50,6 @@ def test_a_free_sphere_may_drift_and_turn():
 )
 def test_the_turn_from_which_on_an_error_stays_below(errors, turn):
     assert _stays_below(np.array(errors), 0.3 if turn == 1 else 0.15 if turn else 0.05) == turn
-
-
-def test_the_page_of_the_documentation_is_that_of_the_full_trial():
-    models = (len(SAMPLES) + 1) * (len(LAWS) * len(STIFFNESSES) + 1)
-    page = (Path(__file__).parents[3] / "docs" / "sweep.md").read_text("utf-8")
-    assert f"{models * len(LENGTHS) * len(CONTROLS)} cases" in page
-    assert f"each of {models} models" in page
-    assert "not kept" not in page
 
 
 def test_the_command_writes_a_row_for_each_case_and_a_page(tmp_path, capsys):

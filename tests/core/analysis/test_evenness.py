@@ -138,7 +138,7 @@ def test_figures_are_those_of_marks_measures_and_what_can_be_asked_for(person: S
     left, right = person.body_change(points) / 1000.0
     assert told.before.skin is not None
     assert told.after.skin is not None
-    # Where one breast sits 12 mm lower, what lies between two skins is told within 4 ml (docs/even.md).
+    # Where one breast sits 12 mm lower, the volume between the skins is known within 4 ml.
     assert told.after.skin.in_all - told.before.skin.in_all == pytest.approx(left - right, abs=4.0)
     assert told.before.furthest == abs(told.before.higher)
     assert told.notes == ()

@@ -162,17 +162,6 @@ def test_a_shop_that_adds_four_inches_writes_its_table_as_the_page_says():
     assert [each.name for each in table.steps(28.46, 34.29) if each] == ["32", "B"]
 
 
-def test_the_page_tells_what_the_code_does(monkeypatch):
-    monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
-    from sizes_page import told  # noqa: PLC0415 - a script, not a part of the program
-
-    page = (ROOT / "docs" / "sizes.md").read_text("utf-8")
-    for name, text in told().items():
-        assert f"<!-- {name} -->\n\n{text}\n\n<!-- end of {name} -->" in page, "run benchmarks/sizes_page.py"
-    assert sizes(723.0, 871.0)["eu"].label == "70B"
-    assert '`sizes(723, 871)["eu"].label` is `70B`' in page
-
-
 def test_every_rule_is_said_in_japanese_too():
     rules = {
         s

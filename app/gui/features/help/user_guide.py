@@ -10,17 +10,18 @@ from app.gui.widgets.notification_bar import NoticeBar
 from app.i18n.catalog import language, tr
 
 PAGES = {
-    "scan": ("guide#opening-a-scan", "ja/screens#四つの手順"),
-    "landmarks": ("guide#correcting-landmarks", "ja/screens#四つの手順"),
-    "lines": ("screens#lines", "ja/screens#ライン"),
-    "model": ("method", "ja/screens#ライン"),
-    "garment": ("sewing", "ja/screens#裁断"),
-    "result": ("measures", "ja/screens#寸法"),
-    "report": ("report", "ja/screens#補整シート"),
+    "scan": ("how-to/open-scan", "ja/screens#四つの手順"),
+    "landmarks": ("how-to/landmarks", "ja/screens#四つの手順"),
+    "lines": ("how-to/lines", "ja/screens#ライン"),
+    "model": ("reference/model-options", "ja/screens#ライン"),
+    "garment": ("how-to/cut-list", "ja/screens#裁断"),
+    "result": ("how-to/measurements", "ja/screens#寸法"),
+    "report": ("how-to/report", "ja/screens#補整シート"),
 }
 """What is being done in the window, and where the guide speaks of it, in English and in Japanese."""
 
-FIRST = "first"
+FIRST = ("tutorial/quick-start", "ja/quick-start")
+"""The page for a first design, in English and in Japanese."""
 
 
 def guide_folder() -> Path:
@@ -39,7 +40,7 @@ def fitting_page(at: str) -> str:
 
 def first_page() -> str:
     """Return the page for somebody who is here for the first time."""
-    return f"ja/{FIRST}" if language() == "ja" else FIRST
+    return FIRST[language() == "ja"]
 
 
 def show_page(page: str, notices: NoticeBar) -> None:
