@@ -48,8 +48,8 @@ class Design:
     the usual, ``elastics`` those that lines are made of, with their curves, so that a project opens
     elsewhere. ``tissue_stiffness`` [N/m] tells what the model's forces are in newtons, an estimate (see
     docs/explanation/forces.md). ``customer`` is whom it is for, in whatever words, ``worn_tight_mm`` what
-    her sizes take off the under-bust. ``calibration`` tells which scan with the garment on its numbers come from, if any.
-    ``unknown`` keeps what a later version wrote.
+    her sizes take off the under-bust. ``calibration`` names the scan with the garment on that its numbers
+    come from, if any. ``unknown`` keeps what a later version wrote.
     """
 
     scan: ScanSource

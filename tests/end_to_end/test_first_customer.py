@@ -1,4 +1,4 @@
-"""The walk of the quick start through the real window: from a scan file to the sheet and the saved project."""
+"""The quick start in the real window: from a scan file to the sheet and the saved project."""
 
 from __future__ import annotations
 
