@@ -10,6 +10,7 @@ import subprocess
 import tempfile
 import threading
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import cache, lru_cache, partialmethod, wraps
 from pathlib import Path
 from types import SimpleNamespace
@@ -24,7 +25,11 @@ from small_project import write_project
 from threadpoolctl import threadpool_limits
 
 import core.scan.body
+from app.gui.theme.stylesheet import apply_theme
+from app.i18n.catalog import use_language
+from app.i18n.lengths import use_unit
 from app.presenters.samples import sample_design
+from core.analysis.uncertainty.input_uncertainty import assumed
 from core.document.design import Design, ScanSource
 from core.document.lines import WornLine
 from core.pipeline import build as pipeline
@@ -156,6 +161,35 @@ def qapp_cls() -> type[QApplication]:
     return Application
 
 
+@pytest.fixture(autouse=True)
+def english_in_millimetres() -> Iterator[None]:
+    """Bring back English and millimetres after a test that used others."""
+    yield
+    use_language("en")
+    use_unit("mm")
+
+
+@pytest.fixture
+def light_theme(qapp: QApplication) -> Iterator[None]:
+    """Apply the light theme."""
+    apply_theme(qapp, dark=False)
+    yield
+    qapp.setStyleSheet("")
+
+
+@pytest.fixture
+def own_data(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Keep elastics, presets and size tables of the user in a folder of this test."""
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+
+
+@pytest.fixture
+def landmarks_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assume landmarks without uncertainty: a fit for each takes too long for a test of the window."""
+    known = replace(assumed(), landmark_mm=0.0, unsure_landmark_mm=0.0)
+    monkeypatch.setattr("core.analysis.uncertainty.estimate.assumed", lambda: known)
+
+
 @pytest.fixture
 def opened_as_in_the_program() -> None:
     """A first start opens the sample whose bust is lifted."""
@@ -180,9 +214,6 @@ def empty_house(
     How sure figures are is not worked out where a test does not ask: it takes half a minute of a processor.
     Frames come seldom, as on a slow machine: most of a test's time would go into ones that nobody looks at.
     """
-    from app.i18n.catalog import use_language  # noqa: PLC0415
-    from app.i18n.lengths import use_unit  # noqa: PLC0415 (not every test brings the window along)
-
     if "spared_as_in_the_program" not in request.fixturenames:
         # Else all libraries would be looked through three times after each window, and not only what it left.
         monkeypatch.setattr("app.gui.session.gc_control.gc", SPARING_NOTHING)
@@ -192,8 +223,6 @@ def empty_house(
     monkeypatch.setattr("core.pipeline.live_solver._SLICE", 0.1)
     QSettings().clear()
     yield
-    use_language("en")  # a window may have spoken another, and tests of words start none
-    use_unit("mm")
     gc.collect()
     assert not [thread for thread in threading.enumerate() if thread.name.startswith("busk")]
     assert not [widget for widget in QApplication.topLevelWidgets() if type(widget).__name__ == "MainWindow"]

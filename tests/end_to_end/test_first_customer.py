@@ -30,13 +30,12 @@ from tests.end_to_end.test_window_scan import pull
 
 DOCS = Path(__file__).parents[2] / "docs"
 
-pytestmark = pytest.mark.usefixtures("empty_house")
+pytestmark = pytest.mark.usefixtures("empty_house", "own_data")
 
 
 @pytest.fixture(autouse=True)
-def own_house(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, person: Path) -> None:
+def answers(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, person: Path) -> None:
     """A customer's scan, and answers to the dialogs of files."""
-    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
     shutil.copy(person, tmp_path / "anna.ply")
     monkeypatch.setattr("app.gui.features.project.controller.ask_open", lambda *_: str(tmp_path / "anna.ply"))
     monkeypatch.setattr(

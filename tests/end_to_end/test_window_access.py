@@ -23,15 +23,8 @@ from window_tools import Script, run_main, settled
 
 from app.gui.features.lines.slider import LengthSlider
 from app.gui.main_window import MainWindow
-from app.i18n.catalog import use_language
 
 pytestmark = pytest.mark.usefixtures("empty_house")
-
-
-@pytest.fixture(autouse=True)
-def english() -> Iterator[None]:
-    yield
-    use_language("en")
 
 
 @pytest.mark.parametrize("language", ["en", "ja"])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import threading
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -19,16 +18,10 @@ from core.document.elastic import Elastic
 from core.garment.elastic_library import save_elastic
 from core.garment.elastic_options import KEEP_CUT
 
-pytestmark = pytest.mark.usefixtures("empty_house")
+pytestmark = pytest.mark.usefixtures("empty_house", "own_data")
 
 SAME = 0.2
 """By how much a reached length may differ once an elastic is chosen [mm]."""
-
-
-@pytest.fixture(autouse=True)
-def own_house(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """The designer's own elastics of one test are not those of the next."""
-    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
 
 
 def test_an_elastic_that_cannot_be_used_is_grey_and_the_nearest_that_can_is_one_click_away() -> None:

@@ -18,13 +18,7 @@ from core.document.elastic import Elastic
 from core.garment.elastic_csv import TEMPLATE
 from core.garment.elastic_library import own_elastics, own_folder, read_elastic, save_elastic
 
-pytestmark = pytest.mark.usefixtures("empty_house")
-
-
-@pytest.fixture(autouse=True)
-def own_house(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """The designer's own elastics of one test are not those of the next."""
-    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+pytestmark = pytest.mark.usefixtures("empty_house", "own_data")
 
 
 def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(

@@ -20,16 +20,10 @@ from app.presenters.bust_shift import bust_move
 from core.garment.elastic_options import FIRST_STRETCH, KEEP_CUT
 from core.pipeline.warnings import still_lines
 
-pytestmark = pytest.mark.usefixtures("empty_house")
+pytestmark = pytest.mark.usefixtures("empty_house", "own_data")
 
 SAME = 0.2
 """By how much a reached length may differ once an elastic is chosen, as the window states [mm]."""
-
-
-@pytest.fixture(autouse=True)
-def own_house(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """The designer's own elastics of one test are not those of the next."""
-    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
 
 
 def test_an_elastic_is_chosen_and_the_length_to_cut_is_that_of_the_core() -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +16,6 @@ from app.gui.features.measurements.table import MeasureTable
 from app.gui.main_window import MainWindow
 from app.gui.widgets import table_export as tables
 from app.gui.widgets.landmark_combo import MarkField
-from app.i18n.catalog import use_language
 from core.document.custom_measures import OwnMeasure
 from core.measurements.table import before_after
 from tests.end_to_end.test_window_access import shortcomings
@@ -26,12 +24,6 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 
 GORE = OwnMeasure("Gore", "straight", ("bust_point_left", "front_centre"))
 KEY = Qt.Key
-
-
-@pytest.fixture(autouse=True)
-def english() -> Iterator[None]:
-    yield
-    use_language("en")
 
 
 def begun(window: MainWindow) -> Script:

@@ -3,28 +3,25 @@
 from __future__ import annotations
 
 import threading
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from window_tools import Script, run_main, settled, undrawn
 
-import app.gui.features.uncertainty.controller
 import core.analysis.uncertainty.estimate
 from app.gui.main_window import MainWindow
 from app.presenters.uncertainty import left_out_sentences
-from core.analysis.uncertainty.input_uncertainty import assumed
 from core.errors import UserError
 from core.measurements.uncertain_value import Spread
 from core.progress import Progress
 
+pytestmark = pytest.mark.usefixtures("landmarks_known")
+
 
 @pytest.fixture(autouse=True)
-def quick(empty_house: None, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Landmarks are taken as known: a fit for each takes too long for a test of the window."""
-    known = replace(assumed(), landmark_mm=0.0, unsure_landmark_mm=0.0)
-    monkeypatch.setattr(core.analysis.uncertainty.estimate, "assumed", lambda: known)
-    monkeypatch.setattr(app.gui.features.uncertainty.controller, "PAUSE", 50)
+def soon(empty_house: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Compute uncertainties as soon as the solver has converged."""
+    monkeypatch.setattr("app.gui.features.uncertainty.controller.PAUSE", 50)
 
 
 def whole(window: MainWindow) -> bool:

@@ -16,18 +16,17 @@ from PySide6.QtWidgets import QComboBox, QStyle, QStyleOptionFrame, QTreeWidget
 from window_tools import Script, points, run_main, settled
 
 import app.gui.features.uncertainty.controller
-import core.analysis.uncertainty.estimate
 from app.gui.main_window import MainWindow
 from app.gui.widgets.inline_edit import TypedField
 from app.i18n.catalog import LANGUAGES
-from core.analysis.uncertainty.input_uncertainty import assumed, origins
+from core.analysis.uncertainty.input_uncertainty import origins
 from core.document.custom_measures import OwnMeasure
 from core.document.document import Document
 from core.document.storage.project_file import open_project, save_project
 from core.garment.elastic_library import built_in
 from core.pipeline.build import build
 
-pytestmark = pytest.mark.usefixtures("empty_house")
+pytestmark = pytest.mark.usefixtures("empty_house", "landmarks_known")
 
 WRITTEN = ("text", "toolTip", "accessibleName", "accessibleDescription", "whatsThis", "statusTip")
 IN_MM = re.compile(r"(?<![A-Za-z])mm(?![A-Za-z])|millimetre|ミリ", re.IGNORECASE)
@@ -38,13 +37,6 @@ MEANT = re.compile(
     r"|−20mm, 440mm|−20mm、440mm"  # what can be typed, whatever unit is shown
     r"|for every millimetre|1 ミリごとに"  # how cables answer
 )
-
-
-@pytest.fixture(autouse=True)
-def quick(empty_house: None, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Landmarks are taken as known: a fit for each takes too long for a test of the window."""
-    known = replace(assumed(), landmark_mm=0.0, unsure_landmark_mm=0.0)
-    monkeypatch.setattr(core.analysis.uncertainty.estimate, "assumed", lambda: known)
 
 
 @pytest.fixture

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -16,7 +16,7 @@ from app.gui.plots.convergence_panel import Strip
 from app.gui.plots.status_chip import SHORTEST_SHOW_MS, VerdictChip
 from app.gui.status_bar import StatusBar
 from app.gui.step_navigation import Rail
-from app.gui.theme.stylesheet import apply_theme, tokens_of
+from app.gui.theme.stylesheet import tokens_of
 from app.gui.viewport.toolbar import VIEWS, CompareTools, ViewTools
 from app.gui.widgets.line_widgets import LineChip
 from app.presenters.assessment import IDLE
@@ -25,12 +25,7 @@ from app.presenters.status import TONES
 from core.garment.assessment import LEVELS
 from core.mechanics.convergence import STATES
 
-
-@pytest.fixture(autouse=True)
-def dressed(qapp: QApplication) -> Iterator[None]:
-    apply_theme(qapp, dark=False)
-    yield
-    qapp.setStyleSheet("")
+pytestmark = pytest.mark.usefixtures("light_theme")
 
 
 def test_the_rail_says_what_is_chosen_not_what_is_set(qtbot: QtBot) -> None:

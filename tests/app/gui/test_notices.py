@@ -2,21 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import pytest
 from PySide6.QtWidgets import QApplication, QLabel, QPushButton
 from pytestqt.qtbot import QtBot
 
-from app.gui.theme.stylesheet import apply_theme
 from app.gui.widgets.notification_bar import NoticeBar
 
-
-@pytest.fixture(autouse=True)
-def dressed(qapp: QApplication) -> Iterator[None]:
-    apply_theme(qapp, dark=False)
-    yield
-    qapp.setStyleSheet("")
+pytestmark = pytest.mark.usefixtures("light_theme")
 
 
 def test_notices_wait_for_each_other(qtbot: QtBot) -> None:

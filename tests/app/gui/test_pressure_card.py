@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
 
@@ -31,12 +30,6 @@ ROW = PressRow(
     bridged_mm=89.0,
 )
 LISTED = PressList((ROW,), {})
-
-
-@pytest.fixture(autouse=True)
-def english() -> Iterator[None]:
-    yield
-    use_language("en")
 
 
 @pytest.fixture

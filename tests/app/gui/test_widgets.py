@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
@@ -17,9 +16,10 @@ from app.gui.features.lines.panel import LinesPanel
 from app.gui.features.lines.row import LineView
 from app.gui.features.lines.slider import LengthSlider
 from app.gui.features.lines.slider_groove import LONGEST, SHORTEST
-from app.gui.theme.stylesheet import apply_theme
 from app.i18n.catalog import use_language
 from core.analysis.length_limits.zones import Leeway, Reason, Zone
+
+pytestmark = pytest.mark.usefixtures("light_theme")
 
 WAIST = LineView("waist", "Waist", "#7A1F2E", 1.0, 400.0, 396.0, True, True, 700.0)
 RED_BELOW_97 = Leeway(
@@ -32,14 +32,6 @@ RED_BELOW_97 = Leeway(
     ),
 )
 RIBS = LineView("under-bust", "Under-bust", "#5A3F94", 1.0, 390.0, None, False, True, 745.0)
-
-
-@pytest.fixture(autouse=True)
-def dressed(qapp: QApplication) -> Iterator[None]:
-    apply_theme(qapp, dark=False)
-    yield
-    qapp.setStyleSheet("")
-    use_language("en")
 
 
 def hold(slider: LengthSlider, kind: QEvent.Type, x: float) -> None:

@@ -32,13 +32,6 @@ ROOT = Path(__file__).parents[3]
 TRANSLATIONS = [code for code in LANGUAGES if code != "en"]
 
 
-@pytest.fixture(autouse=True)
-def english() -> Iterator[None]:
-    yield
-    use_language("en")
-    use_unit("mm")
-
-
 def asked_words() -> set[str]:
     """Return every literal that the program asks a translation for."""
     calls = (

@@ -2,32 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QPushButton, QWidget
+from PySide6.QtWidgets import QPushButton, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.gui.features.garment.panel import GarmentPanel
 from app.gui.inspector import Inspector
-from app.gui.theme.stylesheet import apply_theme
 from app.i18n.catalog import LANGUAGES, tr, use_language
 from app.presenters.cut_list import CutView, GarmentView
 from app.presenters.pressure import PressureView
 
+pytestmark = pytest.mark.usefixtures("light_theme")
+
 STRAP = CutView("strap left", "Strap left", "#E2A32F", 15.0, "Strap 15 mm", "432", "+43 %", "5.0")
 BAND = CutView("under-bust", "Under-bust", "#5A3F94", 18.0, "Bra band", "627", "", "2.6", (), 25.0)
 BARE = CutView("mid-bust", "Mid-bust", "#E5536B", 12.0, "", tension="5.1", notes=("It lies slack.",))
-
-
-@pytest.fixture(autouse=True)
-def dressed(qapp: QApplication) -> Iterator[None]:
-    apply_theme(qapp, dark=False)
-    yield
-    qapp.setStyleSheet("")
-    use_language("en")
 
 
 def panel_of(qtbot: QtBot, *rows: CutView) -> GarmentPanel:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import pytest
 from pytestqt.qtbot import QtBot
 
@@ -18,13 +16,6 @@ from app.presenters.variants import Figure
 from app.report.text import figure
 
 UNITS = ("mm", "cm", "in")
-
-
-@pytest.fixture(autouse=True)
-def _millimetres_again() -> Iterator[None]:
-    yield
-    use_unit("mm")
-    use_language("en")
 
 
 @pytest.mark.parametrize(

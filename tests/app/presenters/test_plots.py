@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, QPointF, Qt
@@ -14,7 +12,6 @@ from pytestqt.qtbot import QtBot
 
 from app.gui.plots.convergence_panel import Strip
 from app.gui.plots.live_plot import LivePlot
-from app.gui.theme.stylesheet import apply_theme
 from app.presenters.plots import (
     Curve,
     Event,
@@ -27,14 +24,9 @@ from app.presenters.plots import (
     tolerance_of,
 )
 
+pytestmark = pytest.mark.usefixtures("light_theme")
+
 ERROR = Quantity("error_percent", "Volume error", "%", 0.4)
-
-
-@pytest.fixture(autouse=True)
-def dressed(qapp: QApplication) -> Iterator[None]:
-    apply_theme(qapp, dark=False)
-    yield
-    qapp.setStyleSheet("")
 
 
 @pytest.mark.parametrize(

@@ -26,14 +26,11 @@ from core.garment.elastic_library import (
     write_elastic,
 )
 
+pytestmark = pytest.mark.usefixtures("own_data")
+
 ROLL = Elastic("roll 7", 12.0, ((0.0, 0.0), (0.2, 1.0), (0.5, 4.0)), 30.0, "measured", estimate=False)
 WORN = Design(ScanSource("a.ply")).with_line("mid-bust", 0.7)
 HEAD = "elongation %,force N\n"
-
-
-@pytest.fixture(autouse=True)
-def own_data(monkeypatch, tmp_path):
-    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
 
 
 def test_between_its_points_a_curve_is_straight_and_goes_both_ways():

@@ -38,8 +38,7 @@ def without(key):
 
 
 @pytest.fixture
-def folder(monkeypatch, tmp_path):
-    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
+def folder(own_data, tmp_path):
     folder = own_folder()
     assert folder.is_relative_to(tmp_path)
     folder.mkdir(parents=True)
