@@ -16,8 +16,8 @@ from core.landmarks.bust_point import NIPPLE
 from core.landmarks.detect import find_landmarks
 from core.landmarks.types import CERTAIN, Landmark, Landmarks
 from core.landmarks.warnings import first_doubt, landmark_doubts
+from tests.core.landmarks.test_damaged_scans import body
 from tests.core.landmarks.test_landmarks import found, sample, truth
-from tests.core.landmarks.test_landmarks_damaged import body
 
 LEFT = LandmarkView("fold_left", "Fold left", 0.3, "A rule.", "under", weak=True)
 RIGHT = LandmarkView("fold_right", "Fold right", 0.4, "A rule.", "under", weak=True)

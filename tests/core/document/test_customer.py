@@ -15,7 +15,7 @@ from core.document.document_text import from_texts, to_texts
 from core.document.serialization import from_json, to_json
 from core.document.storage.project_file import ScanFile, open_project, save_project
 from core.errors import ProjectError, UserError
-from tests.core.document.test_own_measures import _Editing
+from tests.core.document.test_custom_measures import _Editing
 
 PLAIN = Design(ScanSource("a.ply"))
 ANNA = replace(PLAIN, customer="Anna K., 0412 \N{EM DASH} 佐藤")

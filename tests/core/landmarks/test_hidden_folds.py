@@ -9,8 +9,8 @@ from scipy.ndimage import maximum_filter
 from core.geometry.mesh import Mesh
 from core.landmarks.detect import find_landmarks
 from core.landmarks.lower_breast import CREASE
+from tests.core.landmarks.test_damaged_scans import body
 from tests.core.landmarks.test_landmarks import SIDES, part, sample, truth
-from tests.core.landmarks.test_landmarks_damaged import body
 
 
 def seen_from(mesh: Mesh, azimuth: float, elevation: float) -> np.ndarray:

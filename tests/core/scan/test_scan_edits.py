@@ -28,7 +28,7 @@ from core.scan.orientation.symmetry_planes import even_cloud, middle_of
 from core.scan.repair.clipping import above, mirrored_half
 from core.scan.repair.holes import find_holes
 from core.scan.repair.large_holes import filled
-from tests.core.scan.test_mending import is_sound, pierced
+from tests.core.scan.test_hole_filling import is_sound, pierced
 
 
 @pytest.fixture(scope="module")

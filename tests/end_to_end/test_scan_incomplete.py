@@ -28,7 +28,7 @@ from core.landmarks.manual import in_mm
 from core.pipeline.build import StuckError
 from core.scan.body import Body
 from core.scan.orientation.pose import find_pose
-from tests.end_to_end.test_window_scan import doubtful, pull
+from tests.end_to_end.test_scan import doubtful, pull
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

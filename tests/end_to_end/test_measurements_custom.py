@@ -18,7 +18,7 @@ from app.gui.widgets import table_export as tables
 from app.gui.widgets.landmark_combo import MarkField
 from core.document.custom_measures import OwnMeasure
 from core.measurements.table import before_after
-from tests.end_to_end.test_window_access import shortcomings
+from tests.end_to_end.test_accessibility import shortcomings
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -17,7 +17,7 @@ from app.gui.main_window import MainWindow
 from app.presenters.landmarks import LandmarkView
 from core.geometry.mesh import Points
 from core.landmarks.manual import nearest_skin
-from tests.end_to_end.test_window_scan import pull
+from tests.end_to_end.test_scan import pull
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

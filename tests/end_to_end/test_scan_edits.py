@@ -16,7 +16,7 @@ from app.gui.main_window import MainWindow
 from core.document.storage.project_file import open_project
 from core.scan.body import read_scan
 from core.scan.edits import UNEDITED, ScanEdits
-from tests.core.scan.test_mending import pierced
+from tests.core.scan.test_hole_filling import pierced
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

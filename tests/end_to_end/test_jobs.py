@@ -23,7 +23,7 @@ from app.gui.main_window import MainWindow
 from app.gui.session.jobs import Jobs
 from core.analysis.length_limits.zones import leeway_of
 from core.progress import Pieces, Progress
-from tests.end_to_end.test_window_scan import doubtful
+from tests.end_to_end.test_scan import doubtful
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

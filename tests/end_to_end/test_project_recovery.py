@@ -21,7 +21,7 @@ from app.gui.main_window import MainWindow
 from core.document.storage.backups import backups
 from core.document.storage.project_file import open_project
 from core.document.storage.recovery import left_behind, recovery_folder
-from tests.end_to_end.test_window_work import endless
+from tests.end_to_end.test_jobs import endless
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

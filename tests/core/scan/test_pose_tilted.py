@@ -8,8 +8,8 @@ from scipy.spatial.transform import Rotation
 
 from core.errors import ScanError
 from core.scan.orientation.pose import find_pose
-from tests.core.scan.test_refused import sample
-from tests.core.scan.test_upright import angle_between, torso
+from tests.core.scan.test_plausibility import sample
+from tests.core.scan.test_pose import angle_between, torso
 
 
 def tilted(degrees, about, yaw=0.0):

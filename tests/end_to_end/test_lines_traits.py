@@ -13,7 +13,7 @@ from core.document.custom_measures import OwnMeasure
 from core.document.design import Design, ScanSource
 from core.document.lines import LineTraits
 from core.pipeline.live_solver import LiveSolver
-from tests.core.pipeline.test_live import Built, settled, solver
+from tests.core.pipeline.test_live_solver import Built, settled, solver
 
 __all__ = ["solver"]
 

@@ -11,7 +11,7 @@ from core.landmarks.detect import find_landmarks
 from core.scan.body import Body
 from core.scan.orientation.pose import find_pose
 from core.scan.readers.registry import read_triangles
-from tests.core.scan.test_upright import SAMPLES, angle_between
+from tests.core.scan.test_pose import SAMPLES, angle_between
 
 OBJECTS = objects()
 TILTED = Rotation.from_euler("xyz", (25.0, -20.0, 70.0), degrees=True).as_matrix()

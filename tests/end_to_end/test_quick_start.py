@@ -25,8 +25,8 @@ from core.garment.match_shape import reached_points
 from core.garment.pressure_limits import comfort
 from core.garment.pressure_list import press_list
 from core.pipeline.build import Stages, build
-from tests.end_to_end.test_model_panel import choose
-from tests.end_to_end.test_window_scan import pull
+from tests.end_to_end.test_model_options import choose
+from tests.end_to_end.test_scan import pull
 
 DOCS = Path(__file__).parents[2] / "docs"
 

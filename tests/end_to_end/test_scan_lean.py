@@ -14,7 +14,7 @@ from app.gui.main_window import MainWindow
 from core.scan.body import read_scan
 from core.scan.orientation.lean_angles import corrected_up, lean_angles
 from core.scan.repair.clipping import above
-from tests.end_to_end.test_window_scan_edits import type_level
+from tests.end_to_end.test_scan_edits import type_level
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

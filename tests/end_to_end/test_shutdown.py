@@ -21,7 +21,7 @@ import app.gui.features.project.controller as project_files
 from app.gui.main_window import MainWindow
 from app.presenters.samples import sample_design
 from core.document.storage.recovery import recovery_folder
-from tests.end_to_end.test_window_work import endless
+from tests.end_to_end.test_jobs import endless
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
