@@ -185,10 +185,18 @@ def other_language(app: Sphinx, page: str, template: str, context: dict[str, obj
     context["other_language"] = f"{'../' * page.count('/')}{there}.html"
 
 
+def plain_signature(app: Sphinx, *about: object) -> tuple[str, str]:
+    """Return signature and result of a function with aliases of types by their names alone."""
+    alias = r"TypeAliasForwardRef\('(\w+)'\)"
+    signature, result = (re.sub(alias, r"\1", str(each or "")) for each in about[-2:])
+    return signature, result
+
+
 def setup(app: Sphinx) -> None:
-    """Ask to be called."""
+    """Connect the functions above to the steps of a build."""
     app.connect("source-read", as_guide)
     app.connect("doctree-read", add_trade_words)
     app.connect("doctree-read", join_japanese)
     app.connect("doctree-read", caption_pictures)
     app.connect("html-page-context", other_language)
+    app.connect("autodoc-process-signature", plain_signature)

@@ -23,9 +23,9 @@ _CLAY = (216, 175, 149, 255)  # what #EDD8C9 is as glTF counts light, from black
 def write_mesh(
     path: str | os.PathLike[str], mesh: Mesh, progress: Progress = quiet, space: Space | None = None
 ) -> None:
-    """Write ``mesh`` [mm] as PLY, OBJ, STL or GLB by the name's ending, in a ``space`` or the usual one.
+    """Write ``mesh`` [mm] as PLY, OBJ, STL or GLB by the suffix, in a ``space`` or the default of the format.
 
-    Raises UserError for another ending, or a place that cannot be written to; Cancelled leaves no file.
+    Raises UserError for another suffix or a path that cannot be written; Cancelled leaves no file.
     """
     target = Path(path)
     kind = kind_of(target)

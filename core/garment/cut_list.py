@@ -92,9 +92,9 @@ class CutList:
 
 
 def cut_list(stages: Stages, control_points: Points) -> CutList:
-    """Return what to cut for the worn lines at ``control_points``, shape (n, 3) [mm].
+    """Compute the cut list of the active lines at ``control_points``, shape (n, 3) [mm].
 
-    Raises LineError for points that are no shape; see ``line_tensions``.
+    Raises LineError for control points that are not a valid shape.
     """
     design = stages.design
     tensions = line_tensions(stages, control_points)

@@ -87,7 +87,7 @@ def library() -> dict[str, Elastic]:
 
 
 def find_elastic(text: str) -> Elastic:
-    """Return the elastic of the library that is called so, or the only one with all these words in its name.
+    """Find the elastic of this name, or the only one with all these words in its name.
 
     Raises LineError if there is none, or more than one.
     """

@@ -59,7 +59,10 @@ def reached_points(stages: Stages) -> Points:
 
 
 def as_worn(stages: Stages, control_points: Points, elastics: Mapping[str, Elastic | None]) -> Design:
-    """Return the design that ``fitted`` finds. Raises LineError where an elastic cannot reach a length."""
+    """Find the unstretched lengths at which lines of ``elastics`` keep their length on the body.
+
+    ``control_points`` have the shape (n, 3) [mm]. Raises LineError if an elastic cannot reach a length.
+    """
     found = fitted(stages, control_points, elastics)
     for name, excess in found.excess.items():
         elastic = elastics[name]

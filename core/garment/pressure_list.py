@@ -86,9 +86,9 @@ class PressList:
 
 
 def press_list(stages: Stages, control_points: Points) -> PressList:
-    """Return what the worn lines press with at ``control_points``, shape (n, 3) [mm].
+    """Compute the contact pressures of the active lines at ``control_points``, shape (n, 3) [mm].
 
-    Raises LineError for points that are no shape; see ``line_tensions``.
+    Raises LineError for control points that are not a valid shape.
     """
     worn, tensions = pressures(stages, control_points), line_tensions(stages, control_points)
     body = stages.body.mesh.moved(deform(stages.binding, control_points))

@@ -45,10 +45,10 @@ FILLED = "Found on skin that fills a hole by estimate."
 def find_landmarks(
     body: Body, placed: Mapping[str, Points] = NOTHING, progress: Progress = quiet
 ) -> Landmarks:
-    """Return the bust landmarks of ``body``; ``placed`` points, by name, shape (3,) [mm], replace found ones.
+    """Detect the bust landmarks of ``body``; ``placed`` points, by name, shape (3,) [mm], replace detected ones.
 
-    What depends on a placed point follows it. Raises LandmarkError if the body shows no bust, unless bust
-    points and folds are all placed, or if a place or its name makes no sense; Cancelled. Source: ours.
+    Landmarks that depend on a placed point follow it. Raises LandmarkError if no bust is detected, unless bust
+    points and folds are all placed, or if a position or name is invalid; Cancelled. Source: ours.
     """
     calm = body.calm
     by_hand = laid_on(calm, placed)

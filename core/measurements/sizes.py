@@ -117,9 +117,9 @@ def size(table: SizeTable, underbust_mm: float, bust_mm: float, allowance_mm: fl
 
 
 def sizes(underbust_mm: float, bust_mm: float, allowance_mm: float = 0.0) -> Mapping[str, SizeAnswer]:
-    """Return the sizes in every system, by the key of its table: those of Busk, then the designer's own.
+    """Return the sizes in every system, by the key of its table: built-in tables, then custom ones.
 
-    Own tables that cannot be read are left out: ``own_tables`` tells why. Raises SizeError as ``size`` does.
+    Custom tables that cannot be read are left out. Raises SizeError for girths that are not plausible.
     """
     tables = (*built_in(), *own_tables()[0])
     return MappingProxyType({each.key: size(each, underbust_mm, bust_mm, allowance_mm) for each in tables})

@@ -27,17 +27,17 @@ Measures = Mapping[str, Measure]
 
 
 def measures(mesh: Mesh, landmarks: Landmarks, own: Iterable[OwnMeasure] = ()) -> Measures:
-    """Return what a body measures; of a scan take the calm skin, ``body.calm``.
+    """Measure a body, by key; use the smoothed skin ``body.calm`` of a scan.
 
-    One that the scan does not show is there with the value None and the reason.
+    A measurement that the scan does not show has the value None and the reason.
     """
     return of_subject(subject_of(mesh, landmarks), own)
 
 
 def before_after(stages: Stages, control_points: Points) -> tuple[Measures, Measures]:
-    """Return what a body measures at rest, and reshaped by ``control_points``, shape (n, 3) [mm].
+    """Measure the original body, and the body reshaped by ``control_points``, shape (n, 3) [mm].
 
-    The landmarks ride on the skin and the levels follow them; the lift of the apex is told after alone.
+    The landmarks move with the skin and the levels follow them; the lift of the apex exists only after.
     Raises ValueError unless there are as many control points as the control mesh has.
     """
     mesh, landmarks, own = stages.body.calm, stages.landmarks, stages.design.own_measures

@@ -173,10 +173,10 @@ def _same(old: tuple[Any, ...], new: tuple[Any, ...]) -> bool:
 
 
 def build(design: Design, previous: Stages | StuckError | None = None, progress: Progress = quiet) -> Stages:
-    """Build all stages of ``design``; ``progress`` hears the name of each stage that is made anew.
+    """Build everything that precedes solving ``design``; ``progress`` receives the name of each new stage.
 
-    ``previous`` is what was built last, or how far that came. Raises the UserError of the stage that fails,
-    or Cancelled; ``previous`` then still stands.
+    ``previous`` is the last result, whole or incomplete; stages with equal inputs are reused. Raises the
+    UserError of the stage that fails, or Cancelled; ``previous`` then remains valid.
     """
     stage = _Stager(previous, progress)
     try:

@@ -24,9 +24,9 @@ MOST_TURNS = 300
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """What came out: all records, the last state and the verdict.
+    """Hold the records of all iterations, the last state and the verdict.
 
-    ``rest`` is the record before the first turn; ``seconds`` what the solving took.
+    ``rest`` is the record of the original shape; ``seconds`` the duration.
     """
 
     stages: Stages
@@ -58,10 +58,10 @@ class Solution:
 
 
 def run(stages: Stages, turns: int | None = None, progress: Progress = quiet) -> Solution:
-    """Solve the design of ``stages`` from rest.
+    """Solve the design of ``stages`` from the original shape.
 
-    Makes exactly ``turns`` turns, or as many as it takes to settle (at most MOST_TURNS) if None; the exact
-    control makes Newton steps in their place. ``progress`` hears each step; raises Cancelled.
+    Makes exactly ``turns`` iterations, or until converged (at most MOST_TURNS) if None; exact volume control
+    uses Newton steps instead. ``progress`` receives each step. Raises Cancelled.
     """
     start = time.perf_counter()
     rest = record(stages.model, at_rest(stages.model), 0.0, stages.watch)

@@ -99,7 +99,11 @@ def read_scan(
     front: str | None = None,
     progress: Progress = quiet,
 ) -> Body:
-    """Read a scan from its file; see ``body_of``. Raises ScanError, Cancelled."""
+    """Read a scan file and return the repaired, upright body in mm.
+
+    ``unit`` (``"cm"``), ``up`` and ``front`` (``"+y"``) override what the shape shows. Raises ScanError,
+    Cancelled.
+    """
     path = Path(path)
     return body_of(path.name, scan_bytes(path, progress), unit=unit, up=up, front=front, progress=progress)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import re
 from pathlib import Path
+from urllib.parse import unquote
 
 import pytest
 from PIL import Image
@@ -100,6 +101,21 @@ def test_the_built_guide_holds_all_that_its_pages_load(site: Path) -> None:
     # Nothing tells which machine made it, and no page of the source is shipped.
     assert not [path for path in site.rglob("*") if path.suffix in {".md", ".map", ".pickle"}]
     assert [path.name for path in site.rglob("*.html") if str(ROOT) in path.read_text("utf-8")] == []
+
+
+def test_every_link_of_the_built_guide_leads_somewhere(site: Path) -> None:
+    pages = {path: path.read_text("utf-8") for path in site.rglob("*.html")}
+    missing = []
+    for page, text in pages.items():
+        for target in re.findall(r'<a\b[^>]*?\bhref="([^"]+)"', text):
+            name, _, heading = unquote(target).partition("#")
+            there = (page.parent / name).resolve() if name else page
+            known = there.exists() and (
+                not heading or there not in pages or f'id="{heading}"' in pages[there]
+            )
+            if not re.match(r"\w+:", target) and not known:
+                missing.append(f"{page.relative_to(site)}: {target}")
+    assert missing == []
 
 
 @pytest.mark.parametrize(

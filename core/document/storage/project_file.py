@@ -45,10 +45,10 @@ def is_project(path: str | os.PathLike[str]) -> bool:
 def save_project(
     path: str | os.PathLike[str], document: Document, scan: ScanFile, picture: bytes | None
 ) -> Document:
-    """Write the project whole or not at all, and return the document with its scan inside that file.
+    """Save a project completely or not at all; return the document with its scan inside that file.
 
-    Raises ProjectError if the file cannot be written, or would not be opened again; what was there before
-    then stays.
+    Raises ProjectError if the file cannot be written, or could not be opened again; an existing file is then
+    kept.
     """
     target = Path(path).absolute()
     member = f"scan/{safe_name(scan.name)}"
@@ -69,7 +69,7 @@ def save_project(
 
 
 def open_project(path: str | os.PathLike[str]) -> Document:
-    """Read the document of a project; its scan is read from the same file. Raises ProjectError."""
+    """Open a project; its scan is read from the same file. Raises ProjectError."""
     source = Path(path)
     with project_archive(source) as archive:
         names = [DESIGN, *({VARIANTS} & set(archive.namelist()))]
