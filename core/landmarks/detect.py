@@ -45,10 +45,11 @@ FILLED = "Found on skin that fills a hole by estimate."
 def find_landmarks(
     body: Body, placed: Mapping[str, Points] = NOTHING, progress: Progress = quiet
 ) -> Landmarks:
-    """Detect the bust landmarks of ``body``; ``placed`` points, by name, shape (3,) [mm], replace detected ones.
+    """Detect the bust landmarks of ``body``.
 
-    Landmarks that depend on a placed point follow it. Raises LandmarkError if no bust is detected, unless bust
-    points and folds are all placed, or if a position or name is invalid; Cancelled. Source: ours.
+    ``placed`` points, by name, shape (3,) [mm], replace detected ones, and landmarks that depend on them
+    follow. Raises LandmarkError if no bust is detected, unless bust points and folds are all placed, or if a
+    position or name is invalid; Cancelled. Source: ours.
     """
     calm = body.calm
     by_hand = laid_on(calm, placed)
