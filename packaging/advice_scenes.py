@@ -54,7 +54,7 @@ def sure(window: MainWindow) -> None:
     window.navigation.show_step("result")
     window.section_desk.set_on(True)
     window.result.select("bust_girth")
-    wait_for(lambda: window.spread_desk.shown[0] is not None and not window.jobs.at_work())
+    wait_for(lambda: window.uncertainty_controller.shown[0] is not None and not window.jobs.at_work())
 
 
 def even(window: MainWindow) -> None:
@@ -62,7 +62,7 @@ def even(window: MainWindow) -> None:
     window.navigation.show_step("result")
     wait_for(lambda: not window.jobs.at_work())
     window.view.viewport.set_view("front")
-    window.even_desk.card.look.click()
+    window.symmetry_controller.card.look.click()
 
 
 def compared(window: MainWindow) -> None:

@@ -53,9 +53,9 @@ from app.gui.features.scan.controller import ScanDesk
 from app.gui.features.scan.panel import ScanPanel
 from app.gui.features.scan_comparison.controller import WornDesk
 from app.gui.features.sections.controller import SectionDesk
-from app.gui.features.symmetry.controller import EvenDesk
+from app.gui.features.symmetry.controller import SymmetryController
 from app.gui.features.target_shape.controller import AskDesk
-from app.gui.features.uncertainty.controller import SpreadDesk
+from app.gui.features.uncertainty.controller import UncertaintyController
 from app.gui.features.variants.controller import VariantDesk
 from app.gui.features.variants.history_controller import HistoryDesk
 from app.gui.features.variants.history_panel import HistoryPanel
@@ -144,9 +144,17 @@ class MainWindow(QMainWindow):
         self.keeping_desk, self.recovery_desk = KeepingDesk(self), RecoveryDesk(self)
         self.history_desk, self.variant_desk = HistoryDesk(self, self.history), VariantDesk(self)
         self.variant_figures = VariantFigures(self, self.variants)
-        self.measures_desk, self.spread_desk = MeasuresDesk(self, self.result), SpreadDesk(self, self.result)
+        self.measures_desk = MeasuresDesk(self, self.result)
+        self.uncertainty_controller = UncertaintyController(
+            self.context, self.result, lambda: self.section_desk.is_on or self.report_desk.is_open
+        )
         self.own_measures_desk = OwnMeasuresDesk(self, self.result)
-        self.even_desk, self.worn_desk = EvenDesk(self, self.result), WornDesk(self, self.result)
+        self.symmetry_controller = SymmetryController(
+            self.context, self.result, self.uncertainty_controller.of
+        )
+        self.worn_desk = WornDesk(self, self.result)
+        self.result.feet.addWidget(self.uncertainty_controller.card)
+        self.result.cards.addWidget(self.symmetry_controller.card)
         self.inspector.add("worn", self.worn_desk.page)
         self.pressure_desk = PressureDesk(self, self.garment)
         self.map_desk, self.section_desk = MapDesk(self), SectionDesk(self)
@@ -191,9 +199,9 @@ class MainWindow(QMainWindow):
                 self.view.show_frame,
                 self.throttled.show_frame,
                 lambda _: self.pressure_desk.follow(),
-                lambda _: self.even_desk.follow(),
+                lambda _: self.symmetry_controller.follow(),
                 lambda _: self.worn_desk.follow(),
-                lambda _: self.spread_desk.follow(),
+                lambda _: self.uncertainty_controller.follow(),
                 self.export_desk.show_frame,
                 lambda _: self.report_desk.follow(),
                 self.garment_desk.follow,

@@ -71,7 +71,7 @@ def test_a_solver_that_fails_for_long_loses_nothing(
         window.navigation.show_step("result")
         window.map_desk.choose("pressure")
         words = [
-            each.text() for each in (window.result.sure, *window.findChildren(QLabel)) if each.isVisible()
+            each.text() for each in (window.result.summary, *window.findChildren(QLabel)) if each.isVisible()
         ]
         assert not [each for each in words if "rests" in each], "nothing comes by waiting"
         faults.end()

@@ -12,8 +12,8 @@ from shapes import SAMPLES
 from window_tools import Script, run_main, settled, undrawn
 
 import app.gui.features.symmetry.controller as desk_module
-from app.gui.features.symmetry.card import EvenCard
-from app.gui.features.uncertainty.controller import SpreadDesk
+from app.gui.features.symmetry.card import SymmetryCard
+from app.gui.features.uncertainty.controller import UncertaintyController
 from app.gui.main_window import MainWindow
 from core.analysis.symmetry.compare import BeforeAfter, evenness
 from core.control_mesh.template import read_template
@@ -27,7 +27,7 @@ SIDES = ("left", "right")
 @pytest.fixture(autouse=True)
 def not_how_sure(monkeypatch: pytest.MonkeyPatch) -> None:
     """How sure the figures are takes longest by far of what the tab works out, and is tested elsewhere."""
-    monkeypatch.setattr(SpreadDesk, "_begin", lambda desk: None)
+    monkeypatch.setattr(UncertaintyController, "follow", lambda _: None)
 
 
 def opened(window: MainWindow, mid: float = 0.95, full: float = 0.97) -> Script:
@@ -42,10 +42,14 @@ def opened(window: MainWindow, mid: float = 0.95, full: float = 0.97) -> Script:
 
 def is_fresh(window: MainWindow) -> bool:
     """The card tells of the frame that is shown."""
-    return window.is_settled() and window.even_desk._shown is not None and not faint(window.even_desk.card)
+    return (
+        window.is_settled()
+        and window.symmetry_controller._shown is not None
+        and not faint(window.symmetry_controller.card)
+    )
 
 
-def faint(card: EvenCard) -> bool:
+def faint(card: SymmetryCard) -> bool:
     return card.summary is None or card._faint
 
 
@@ -69,7 +73,7 @@ def test_the_card_tells_what_differs_shows_where_and_makes_it_even(monkeypatch: 
 
 def tells_and_fades(window: MainWindow) -> Script:
     """What differs, with sides; and while a line is dragged all of it is faint."""
-    card, now = window.even_desk.card, told(window)
+    card, now = window.symmetry_controller.card, told(window)
     assert card.summary is not None
     assert card.says.text() == f"Bust points: right {-now.after.higher:.1f} mm higher."
     first, *_ = card.summary.views
@@ -91,7 +95,7 @@ def tells_and_fades(window: MainWindow) -> Script:
 
 def shows_the_map(window: MainWindow) -> None:
     """The button lays the map on the body and takes it off; the legend tells ml."""
-    card, maps = window.even_desk.card, window.map_desk
+    card, maps = window.symmetry_controller.card, window.map_desk
     assert card.look.text() == "Show on the body"
     card.look.click()
     assert maps.name == "sides"
@@ -109,7 +113,7 @@ def shows_the_map(window: MainWindow) -> None:
 
 def takes_the_spread_of_the_table(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> None:
     """One figure has one ±: until all of it is known the card says of what it is."""
-    desk = window.even_desk
+    desk = window.symmetry_controller
 
     def off() -> str:
         assert desk.card.summary is not None
@@ -118,7 +122,7 @@ def takes_the_spread_of_the_table(window: MainWindow, monkeypatch: pytest.Monkey
     assert off() == ""
     known = {"after:asymmetry_height": 36.2}
     with monkeypatch.context() as patch:
-        patch.setattr(window.spread_desk, "of", lambda _: SimpleNamespace(whole=True, plus_minus=known.get))
+        patch.setattr(desk, "_uncertainty_of", lambda _: SimpleNamespace(whole=True, plus_minus=known.get))
         desk.follow()
         assert off() == "± 36"
         assert "Within the error they lie alike." in desk.card.says.text()
@@ -129,7 +133,7 @@ def takes_the_spread_of_the_table(window: MainWindow, monkeypatch: pytest.Monkey
 def leaves_what_is_not_worth_it(window: MainWindow) -> Script:
     """Glued lines across both sides do not level a breast: it is said, and nothing is changed."""
     before, count = window.session.design, window.session.undo_stack.count()
-    window.even_desk.card.make.click()
+    window.symmetry_controller.card.make.click()
     yield window.notices.isVisible
     shown = window.notices._shown
     assert shown is not None
@@ -142,7 +146,7 @@ def leaves_what_is_not_worth_it(window: MainWindow) -> Script:
 
 def makes_even(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
     """Lines are parted in the one step that takes the answer; left, or changed meanwhile, nothing is."""
-    card, desk, before = window.even_desk.card, window.ask_desk, window.session.design
+    card, desk, before = window.symmetry_controller.card, window.ask_desk, window.session.design
     assert card.hint.text() == "Make even begins by setting left and right apart: Full bust, Mid-bust."
     count = window.session.undo_stack.count()
     for end in (desk.leave, desk.apply):
@@ -179,11 +183,11 @@ def makes_even(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
     window.navigation.show_step("result")
     yield lambda: is_fresh(window)
     begun: list[object] = []
-    monkeypatch.setattr(desk, "begin", lambda *_: begun.append(_))
+    window.symmetry_controller.targets_proposed.connect(lambda *_: begun.append(_))
     card.make.click()
-    making = window.even_desk._making
+    making = window.symmetry_controller._balancing
     card.make.click()
-    assert window.even_desk._making is making, "it is looked for already"
+    assert window.symmetry_controller._balancing is making, "it is looked for already"
     window.session.edit(lambda d: d.with_line("mid-bust", 0.96), "Another")
     yield lambda: is_fresh(window)
     assert not begun, "what was looked for was for another design"
@@ -256,7 +260,7 @@ def test_an_even_body_has_nothing_to_be_made_even_and_a_line_is_split_all_the_sa
         assert not asked, "nobody looks at it"
         window.navigation.show_step("result")
         yield lambda: is_fresh(window)
-        card = window.even_desk.card
+        card = window.symmetry_controller.card
         assert card.says.text() == "Both bust points lie alike within 0.5 mm."
         assert not card.make.isEnabled()
         assert len(asked) == 1

@@ -25,7 +25,7 @@ def soon(empty_house: None, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def whole(window: MainWindow) -> bool:
-    spread, faint = window.spread_desk.shown
+    spread, faint = window.uncertainty_controller.shown
     return spread is not None and not faint and bool(window.result.measured) and not window.result.stale
 
 
@@ -33,8 +33,8 @@ def test_it_is_told_where_it_is_looked_at_and_fades_while_a_line_moves() -> None
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        desk, card = window.spread_desk, window.spread_desk.card
-        assert desk._asked is None, "nobody has looked"
+        desk, card = window.uncertainty_controller, window.uncertainty_controller.card
+        assert not desk.is_computing, "nobody has looked"
         window.navigation.show_step("result")
         yield lambda: whole(window)
         views = {view.key: view for view in window.result.measured}
@@ -89,7 +89,7 @@ def test_nothing_is_shown_before_all_sources_are_in(monkeypatch: pytest.MonkeyPa
         window.navigation.show_step("result")
         yield reached.is_set
         yield lambda: bool(window.result.measured)
-        assert window.spread_desk.shown == (None, True)
+        assert window.uncertainty_controller.shown == (None, True)
         assert all(view.off == () for view in window.result.measured), "what is known by then is too small"
         go.set()
         yield lambda: whole(window)
@@ -111,7 +111,7 @@ def test_where_it_is_given_up_there_is_none_and_the_reason_stands_there(
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        desk, card = window.spread_desk, window.spread_desk.card
+        desk, card = window.uncertainty_controller, window.uncertainty_controller.card
         window.navigation.show_step("result")
         yield lambda: "No balance was found" in card.meaning.text()
         assert card.meaning.text().startswith("How far they may be off was not worked out.")

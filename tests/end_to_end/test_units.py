@@ -161,7 +161,11 @@ def every_part(window: MainWindow) -> Iterator[str | Callable[[], bool]]:
         yield f"section {axis}"
     window.section_desk.set_on(False)
     window.navigation.show_step("result")
-    yield lambda: window.spread_desk.shown[0] is not None and not window.spread_desk.shown[1]
+    yield (
+        lambda: (
+            window.uncertainty_controller.shown[0] is not None and not window.uncertainty_controller.shown[1]
+        )
+    )
     yield "measures"
     window.own_measures_desk.action.trigger()
     yield "own measures"

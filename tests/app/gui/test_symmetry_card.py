@@ -9,7 +9,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication, QScrollArea
 
 from app.gui.features.measurements.panel import ResultPanel
-from app.gui.features.symmetry.card import EvenCard, EvenTitle
+from app.gui.features.symmetry.card import ElidedTitle, SymmetryCard
 from app.gui.theme.stylesheet import load_fonts
 from app.i18n.catalog import speaking
 from app.presenters.samples import sample_design
@@ -31,14 +31,14 @@ def test_titles_and_units_are_whole_beside_what_figures_may_be_off(words: str, q
     now = Evenness(-11.8, -10.3, -0.1, SKIN)
     with speaking(words):
         summary = even_summary(BeforeAfter(now, now, ()), stages)
-        card = EvenCard()
+        card = SymmetryCard()
         views = tuple(replace(view, off="± 5.8") for view in summary.views)
         card.fold.setChecked(True)
         card.show_summary(replace(summary, views=views), faint=False)
         card.resize(NARROWEST, 600)
         card.show()
         QApplication.processEvents()
-        titles = [title for title in card.findChildren(EvenTitle) if title.isVisible()]
+        titles = [title for title in card.findChildren(ElidedTitle) if title.isVisible()]
         assert len(titles) == 8
         assert [title.shown() for title in titles] == [title.text() for title in titles]
         titles[0].setFixedWidth(60)

@@ -51,7 +51,7 @@ class MapDesk(QObject):
         self._window, self._view = window, window.view
         self._kinds = {kind.name: kind for kind in map_kinds()}
         self.name, self._last = "", MAPS[0]
-        desks = window.pressure_desk, window.even_desk, window.worn_desk
+        desks = window.pressure_desk, window.symmetry_controller, window.worn_desk
         self._seen = MapValues(self._view.beside, *desks)
         self.pinned: tuple[Pinned, ...] = ()
         self._flagged: tuple[Pinned, ...] = ()

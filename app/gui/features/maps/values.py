@@ -7,7 +7,7 @@ from weakref import WeakKeyDictionary
 from app.gui.features.garment.pressure_controller import PressureDesk
 from app.gui.features.maps.band_coloring import BandValues, pressures_on, pulls_on
 from app.gui.features.scan_comparison.controller import WornDesk
-from app.gui.features.symmetry.controller import EvenDesk
+from app.gui.features.symmetry.controller import SymmetryController
 from app.gui.viewport.body_view import BodyView
 from app.gui.viewport.comparison import Beside
 from app.i18n.catalog import tr
@@ -20,7 +20,9 @@ from core.pipeline.live_solver import Frame
 class MapValues:
     """Reads maps off the bodies that ``beside`` shows; ``now`` is the session's own, once there is one."""
 
-    def __init__(self, beside: Beside, pressure: PressureDesk, even: EvenDesk, worn: WornDesk) -> None:
+    def __init__(
+        self, beside: Beside, pressure: PressureDesk, even: SymmetryController, worn: WornDesk
+    ) -> None:
         self._beside, self._pressure, self._even, self._worn = beside, pressure, even, worn
         self.now: BodyNow | None = None
         self._others: WeakKeyDictionary[BodyView, BodyNow] = WeakKeyDictionary()

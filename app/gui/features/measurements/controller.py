@@ -78,7 +78,7 @@ class MeasuresDesk(QObject):
             self._panel.set_stale(stale)
 
     def _spread(self, views: Sequence[MeasureView]) -> list[MeasureView]:
-        return spread_views(views, *self._window.spread_desk.shown)
+        return spread_views(views, *self._window.uncertainty_controller.shown)
 
     def _measure(self, frame: Frame) -> None:
         """Measure the body of a frame beside the window, once it rests."""
@@ -182,7 +182,7 @@ class MeasuresDesk(QObject):
     @property
     def _sure(self) -> Spread | None:
         """How far the girths of the shown body may be off, once all of it is known."""
-        spread, faint = self._window.spread_desk.shown
+        spread, faint = self._window.uncertainty_controller.shown
         return None if faint else spread
 
     def _as_table(self) -> list[list[str]]:

@@ -22,13 +22,14 @@ from app.presenters.measurements import MeasureView
 class ResultPanel(QStackedWidget):
     """The table of measures, or the form for one's own; ``opened`` when it comes to be seen.
 
-    ``sure`` stands at the head and leads to what ± means. ``marked`` carries the key of the measure to be
+    ``summary`` stands at the head, a line on uncertainties. ``marked`` carries the key of the measure to be
     shown on the body, empty for none; ``framed`` when it is to be looked at. ``adding`` asks for one more,
     ``changing`` and ``removing`` carry the key of one's own. ``copy_asked`` and ``table_asked`` are for the
     measures as text, on the clipboard or in a file.
     """
 
     opened = Signal()
+    summary_clicked = Signal()
     marked = Signal(str)
     framed = Signal()
     adding = Signal()
@@ -82,10 +83,11 @@ class ResultPanel(QStackedWidget):
         inside.setProperty("scrolled", "true")
         self._column = QVBoxLayout(inside)
         self._column.setContentsMargins(0, 0, 0, 0)
-        self.sure = button("", "word")
-        self.sure.setFont(font("caption"))
-        self.sure.hide()
-        self._column.addWidget(self.sure, 0, Qt.AlignmentFlag.AlignLeft)
+        self.summary = button("", "word")
+        self.summary.setFont(font("caption"))
+        self.summary.hide()
+        self.summary.clicked.connect(lambda _: self.summary_clicked.emit())
+        self._column.addWidget(self.summary, 0, Qt.AlignmentFlag.AlignLeft)
         self._column.addWidget(self.sizes)
         self.cards = QVBoxLayout()
         self._column.addLayout(self.cards)
@@ -123,6 +125,11 @@ class ResultPanel(QStackedWidget):
         """Fade what was measured while the body is another one, or let it count again."""
         self._stale = stale
         self._show()
+
+    def show_summary(self, text: str) -> None:
+        """Show a line on uncertainties at the head, or none."""
+        self.summary.setText(text)
+        self.summary.setVisible(bool(text))
 
     @property
     def editing(self) -> bool:

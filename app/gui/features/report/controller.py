@@ -191,7 +191,7 @@ class ReportDesk(QObject):
 
     def _take(self, handout: Handout) -> None:
         """Show a sheet under its present heading; its sizes are those that it was made with."""
-        made, spread = handout.sheet.heading, self._window.spread_desk.on_sheet
+        made, spread = handout.sheet.heading, self._window.uncertainty_controller.on_sheet
         heading = replace(self._heading(), system=made.system, allowance_mm=made.allowance_mm)
         sheet = replace(spread(handout.sheet, self._frame, self._whole), heading=heading)
         self.handout = replace(handout, sheet=sheet)

@@ -80,7 +80,7 @@ class SectionDesk(QObject):
     def set_on(self, on: bool) -> None:
         """Show or hide the plane and its panel."""
         self.is_on = self._again = on
-        self._window.spread_desk.follow()
+        self._window.uncertainty_controller.follow()
         self.refresh()
 
     def choose_axis(self, axis: str) -> None:
@@ -241,7 +241,7 @@ class SectionDesk(QObject):
         sides, now, curves = "other" in self.curves, self._now, self.curves
         roles = ("after", "other") if sides else ("before", "after")
         pairs = apex_pairs(now, plane, curves["other"], curves["after"]) if sides else bust_points(now, plane)
-        spread = None if sides else self._window.spread_desk.of(now.frame)
+        spread = None if sides else self._window.uncertainty_controller.of(now.frame)
         shown = self._window.ask_desk.drawing.in_plane(plane)
         drawn = Drawn(
             shown | {role: [curve.places for curve in curves[role]] for role in roles},

@@ -18,7 +18,7 @@ _BAR = QSize(26, 20)
 _HEAD = 4  # figures that are always seen, the most telling first
 
 
-class EvenBar(QWidget):
+class AsymmetryBar(QWidget):
     """A bar about a centre line: to the side that is more, as it is seen from the front; before is a tick."""
 
     def __init__(self) -> None:
@@ -51,7 +51,7 @@ class EvenBar(QWidget):
             painter.fillRect(QRectF(at - 0.75, middle - 5.0, 1.5, 10.0), QColor(tokens.text_caption))
 
 
-class EvenTitle(QLabel):
+class ElidedTitle(QLabel):
     """A name with its unit, of which the name alone ends in dots where there is no room for both."""
 
     def paintEvent(self, event: QPaintEvent) -> None:
@@ -73,7 +73,7 @@ class _Row:
     """The parts of one figure, in a row of a grid."""
 
     def __init__(self, grid: QGridLayout, row: int) -> None:
-        self.title = EvenTitle()
+        self.title = ElidedTitle()
         self.title.setTextFormat(Qt.TextFormat.PlainText)
         self.title.setFont(font("body"))
         self.title.setMinimumWidth(60)
@@ -81,7 +81,7 @@ class _Row:
         self.before, self.after, self.off = (label("", role, tabular=True) for role in roles)
         for part in (self.before, self.off):
             set_tag(part, "tone", "quiet")
-        self.bar = EvenBar()
+        self.bar = AsymmetryBar()
         right = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
         grid.addWidget(self.title, row, 0)
         for column, part in enumerate((self.before, self.after, self.off), start=1):
@@ -109,7 +109,7 @@ class _Row:
             part.hide()
 
 
-class EvenCard(QWidget):
+class SymmetryCard(QWidget):
     """The figures of left and right; ``shown`` asks for the map on the body or takes it away, ``asked`` for
     what makes it even.
     """

@@ -1,15 +1,16 @@
-"""The desk of left and right: how they differ, worked out where it is seen, and what makes them even."""
+"""Left and right: how they differ, and the targets that make them even."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING, cast
-from weakref import WeakKeyDictionary, WeakSet
 
 from PySide6.QtCore import QObject, Signal
+from PySide6.QtWidgets import QWidget
 
-from app.gui.features.measurements.panel import ResultPanel
-from app.gui.features.symmetry.card import EvenCard
+from app.gui.features.symmetry.card import SymmetryCard
+from app.gui.session.frame_cache import FrameCache
 from app.gui.session.jobs import Job
 from app.i18n.catalog import listed, tr
 from app.presenters.status import doubt_of
@@ -24,65 +25,68 @@ from core.pipeline.live_solver import Frame
 from core.progress import Progress
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
     from core.analysis.symmetry.balance import Evened
 
 SIDES = "sides"
 """The map Left and right."""
 
 
-class EvenDesk(QObject):
-    """Keeps how left and right of frames differ, and shows it beside the measures and under the map.
+class SymmetryController(QObject):
+    """Compare left and right of frames, and show that in a card of the panel ``host`` and under the map.
 
-    ``found`` says that there is more of it.
+    ``uncertainty_of`` returns the uncertainties of a frame once they are known. ``changed`` is emitted when
+    another comparison is known, ``map_asked`` with the name of a map or none, and ``targets_proposed`` with
+    goals, what to make of the design first, how that is called and a limit of pressure.
     """
 
-    found = Signal()
+    changed = Signal()
+    map_asked = Signal(str)
+    targets_proposed = Signal(object, object, str, object)
 
-    def __init__(self, window: MainWindow, panel: ResultPanel) -> None:
-        super().__init__(window)
-        self._window, self._panel = window, panel
-        self.card = EvenCard()
-        panel.cards.addWidget(self.card)
+    def __init__(
+        self, context: AppContext, host: QWidget, uncertainty_of: Callable[[Frame], Spread | None]
+    ) -> None:
+        super().__init__(context.session)
+        self._context, self._session = context, context.session
+        self._host, self._uncertainty_of = host, uncertainty_of
+        self.card = SymmetryCard()
         self._shown: tuple[Frame, BeforeAfter] | None = None
-        self._known: WeakKeyDictionary[Frame, BeforeAfter] = WeakKeyDictionary()
-        self._asked: WeakSet[Frame] = WeakSet()
-        self._making: tuple[Job, Design] | None = None
-        self.found.connect(self.follow)
-        panel.opened.connect(self.follow)
-        window.spread_desk.found.connect(self.follow)
-        self.card.shown.connect(self._show_map)
-        self.card.asked.connect(self._ask)
+        self._balancing: tuple[Job, Design] | None = None
+        title = tr("Comparing left and right")
+        self._cache = FrameCache(
+            context.session,
+            context.jobs,
+            title,
+            lambda frame, _: evenness(frame.stages, frame.control_points),
+            failed=context.notifications.error,
+            stopped=lambda: context.notifications.stopped(title),
+        )
+        self._cache.changed.connect(self.changed)
+        self.changed.connect(self.follow)
+        self.card.shown.connect(lambda on: self.map_asked.emit(SIDES if on else ""))
+        self.card.asked.connect(self.balance)
 
     def of(self, frame: Frame) -> BeforeAfter | None:
-        """Return how left and right of a frame differ; if that is not known yet it is worked out beside.
-
-        While the body moves it is not: the next frame would be another one.
-        """
-        moves = frame is self._window.session.frame and not self._window.session.is_at_rest
-        if frame not in self._asked and not frame.at_work and not moves:
-            self._asked.add(frame)
-            self._window.jobs.run(
-                tr("Comparing left and right"),
-                lambda progress: evenness(frame.stages, frame.control_points),
-                lambda found: self._take(frame, found),
-                self._window.notifications.error,
-                left=lambda: self._asked.discard(frame),
-            )
-        return self._known.get(frame)
+        """Return how left and right of a frame differ; if that is not known yet it is computed."""
+        return self._cache.request(frame)
 
     def note(self, frame: Frame, after: bool) -> str:
-        """Return what the legend of the map says of a frame in ml, once it is known."""
-        told = self.of(frame)
-        return map_note(told, after and not doubt_of(frame))
+        """Return the note of the map's legend on a frame in ml, once it is known."""
+        return map_note(self.of(frame), after and not doubt_of(frame))
+
+    def open(self) -> None:
+        """Show the card, and compare again what was stopped."""
+        self._cache.retry()
+        self.follow()
 
     def follow(self) -> None:
         """Bring the card up to date, if it is seen; what is of a former shape is faint."""
-        frame, design = self._window.session.frame, self._window.session.design
-        if self._making is not None and self._making[1] is not design:
-            self._window.jobs.cancel(self._making[0])  # it would make another design even
-            self._making = None
-        if frame is None or not self._panel.isVisible():
+        frame, design = self._session.frame, self._session.design
+        if self._balancing is not None and self._balancing[1] is not design:
+            self._context.jobs.cancel(self._balancing[0])  # it would balance another design
+            self._balancing = None
+        if frame is None or not self._host.isVisible():
             return
         known = self.of(frame)
         if known is not None:
@@ -92,70 +96,60 @@ class EvenDesk(QObject):
         if self._shown is None:
             self.card.show_summary(None, faint=False)
             return
-        of, told = self._shown
-        summary = even_summary(told, of.stages, doubt_of(of), self._sure(of))
+        of, compared = self._shown
+        summary = even_summary(compared, of.stages, doubt_of(of), self._uncertainty_of(of))
         self.card.show_summary(summary, faint=of is not frame)
-        self.follow_map()
 
-    def _sure(self, frame: Frame) -> Spread | None:
-        """Return how far figures may be off, once that is known."""
-        return self._window.spread_desk.of(frame)
+    def show_map(self, name: str) -> None:
+        """Show by the card whether its map lies on the body."""
+        self.card.show_map(name == SIDES)
 
-    def follow_map(self) -> None:
-        """Tell by the card whether the map lies on the body."""
-        self.card.show_map(self._window.map_desk.name == SIDES)
+    # -- balancing
 
-    def _take(self, frame: Frame, found: object) -> None:
-        self._known[frame] = cast(BeforeAfter, found)
-        self.found.emit()
+    @property
+    def is_balancing(self) -> bool:
+        """Whether the targets are being computed; a second press asks for nothing more."""
+        return self._balancing is not None and self._balancing[0].wanted
 
-    def _show_map(self, on: bool) -> None:
-        self._window.map_desk.choose(SIDES if on else "")
-
-    def _ask(self) -> None:
-        """Look for what makes the shown design even, beside; then it is asked for in the card of wishes."""
-        frame = self._window.session.frame
-        if frame is None or not self._window.session.is_converged or self._makes_even:
+    def balance(self) -> None:
+        """Compute what makes the shown design even; then it is proposed as targets."""
+        frame = self._session.frame
+        if frame is None or not self._session.is_converged or self.is_balancing:
             return
-        job = self._window.jobs.run(
+        job = self._context.jobs.run(
             tr("Making left and right even"),
-            lambda progress: _made_even(frame.stages, progress),
-            lambda made: self._begin(frame.stages.design, cast("Evened", made)),
+            lambda progress: _balance(frame.stages, progress),
+            lambda made: self._propose(frame.stages.design, cast("Evened", made)),
             self._fail,
             waited=True,
         )
-        self._making = job, frame.stages.design
-
-    @property
-    def _makes_even(self) -> bool:
-        """Whether it is looked for already; a second press asks for nothing more."""
-        return self._making is not None and self._making[0].wanted
+        self._balancing = job, frame.stages.design
 
     def _fail(self, error: Exception) -> None:
-        self._making = None
-        self._window.notifications.error(error)
+        self._balancing = None
+        self._context.notifications.error(error)
 
-    def _begin(self, design: Design, made: Evened) -> None:
-        """Fill the wishes in; what has to be parted for them is parted when they are taken, not before."""
-        self._making = None
-        if design is not self._window.session.design:
-            return  # the wishes would be those of another one
+    def _propose(self, design: Design, made: Evened) -> None:
+        """Propose targets; what has to be split for them is split when they are applied, not before."""
+        self._balancing = None
+        if design is not self._session.design:
+            return  # the targets would be those of another one
         if not made.worth:
-            self._window.notifications.info(*left_as_it_is(made.gained, made.lost))
+            self._context.notifications.info(*left_as_it_is(made.gained, made.lost))
             return
         # What was found keeps elastics to a limit, and no estimates.
         limit = None if design.worn_elastics() else math.inf
         if not made.parted:
-            self._window.ask_desk.begin(made.goals, limit=limit)
+            self.targets_proposed.emit(made.goals, None, "", limit)
             return
         template = read_template(design.template)
         titles = listed(parted_titles(design, made.parted))
         said = tr("Left and right apart: {lines}").format(lines=titles)
-        self._window.ask_desk.begin(made.goals, lambda before: parted(before, template), said, limit)
+        self.targets_proposed.emit(made.goals, lambda before: parted(before, template), said, limit)
 
 
-def _made_even(stages: Stages, progress: Progress) -> Evened:
-    """Return what makes a design even; the search is loaded when it is asked for, not at the start."""
+def _balance(stages: Stages, progress: Progress) -> Evened:
+    """Return what makes a design even; the search is imported when it is asked for, not at the start."""
     from core.analysis.symmetry.balance import make_even  # noqa: PLC0415
 
     return make_even(stages, progress=progress)

@@ -11,7 +11,7 @@ from app.i18n.catalog import tr
 from app.presenters.uncertainty import SpreadView
 
 
-class SpreadCard(QWidget):
+class UncertaintyCard(QWidget):
     """What ± means, what another choice of the model makes, and two folds."""
 
     def __init__(self, sources: tuple[str, ...], left_out: tuple[str, ...]) -> None:
