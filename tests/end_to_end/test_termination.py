@@ -50,7 +50,9 @@ def test_a_signal_ends_the_program_and_the_last_edit_is_kept(
     for kind in ("STATE", "DATA", "CONFIG"):
         monkeypatch.setenv(f"XDG_{kind}_HOME", str(tmp_path / kind))
     command = [sys.executable, str(FILE), str(mannequin)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as program:
+    helpers = os.pathsep.join(str(FILE.parents[at] / name) for at, name in ((2, ""), (1, "helpers")))
+    env = {**os.environ, "PYTHONPATH": helpers}
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=env) as program:
         try:
             assert program.stdout is not None
             assert program.stdout.readline() == "edited\n"
