@@ -72,7 +72,7 @@ OPENED_BY_NAME = ("*llvmlite*", "*libpython3*", "*python3*.dll", "*opengl32sw.dl
 NO_DATA = (
     "*/tests/*", "*/test/*", "*.pyi", "*.pyx", "*.pxd", "*.hpp", "*.h", "*.c", "*/py.typed",
     "*/sample_data/*", "matplotlib/mpl-data/fonts/afm/*", "matplotlib/mpl-data/fonts/pdfcorefonts/*",
-    "pyqtgraph/examples/*", "pyqtgraph/colors/maps/*", "*/__pycache__/*", "certifi/*", "resources/*.py",
+    "*/__pycache__/*", "certifi/*", "resources/*.py",
     "*.dist-info/RECORD", "*.dist-info/REQUESTED", "*.dist-info/direct_url.json", "*.dist-info/INSTALLER",
     "*.dist-info/uv_cache.json",
 )  # fmt: skip
@@ -82,11 +82,10 @@ TRANSLATIONS = ("*/translations/qtbase_ja.qm", "*/translations/qtbase_en.qm")
 UNTOUCHED = ("numpy", "scipy", "PIL", "pillow", "PySide6", "shiboken6")
 
 # Python packages that an import somewhere names and that Busk never comes to: the network, consoles,
-# development. QtTest has to stay: where it is missing, pyqtgraph keeps the error of its import for good, and
-# with it everything that was on the stack then, among it a painter of the window.
+# development.
 NO_MODULES = [
     "requests", "urllib3", "certifi", "idna", "charset_normalizer", "_ssl", "PySide6.QtNetwork",
-    "PySide6.QtDBus", "readline", "tkinter", "IPython", "PyQt5", "PyQt6", "PySide2",
+    "PySide6.QtDBus", "PySide6.QtTest", "readline", "tkinter", "IPython", "PyQt5", "PyQt6", "PySide2",
     "pytest", "hypothesis", "mypy", "librt", "yaml", "sphinx", "docutils", "babel", "jinja2", "pygments",
     "rich", "cyclopts", "setuptools", "pip", "jedi", "lib2to3", "pydoc_data", "PIL._avif",
 ]  # fmt: skip

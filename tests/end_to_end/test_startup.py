@@ -22,7 +22,7 @@ from app.gui.session.jobs import Jobs
 from app.gui.widgets import first_paint
 
 ROOT = Path(__file__).parents[2]
-LATER = ("pyvista", "vtkmodules", "pyvistaqt", "matplotlib", "PIL", "ezdxf", "trimesh", "pyqtgraph", "numba")
+LATER = ("pyvista", "vtkmodules", "pyvistaqt", "matplotlib", "PIL", "ezdxf", "trimesh", "numba")
 LATER += ("scipy.interpolate", "scipy.optimize", "app.rendering.scene", "app.rendering.offscreen")
 
 UNTIL_PAINTED = f"""
@@ -43,32 +43,6 @@ def test_what_takes_long_to_load_is_loaded_when_the_window_is_painted() -> None:
     command = [sys.executable, "-c", UNTIL_PAINTED]
     told = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
     assert told.stdout.strip() == "and no more"
-
-
-CURVES_SHOWN = """
-import sys
-import numpy as np
-from PySide6.QtWidgets import QApplication
-from app.gui.plots.canvas import PlotCanvas
-from app.presenters.plots import Curve, Plotted
-from app.gui.plots.section_plot import Drawn, ProfilePlot
-
-app = QApplication(["busk", "-platform", "offscreen"])
-run = Curve(np.arange(3.0), np.zeros(3), "main")
-for runs, sections in (((), {}), ((run,), {"after": [np.eye(2)]})):
-    if sys.argv[1] == "strip":
-        PlotCanvas().set_plotted(Plotted(runs), (0.0, 1.0), True)
-    else:
-        ProfilePlot().show_curves(Drawn(sections), again=True)
-    print("pyqtgraph" in sys.modules)
-"""
-
-
-@pytest.mark.parametrize("plot", ["strip", "section"])
-def test_what_draws_curves_is_loaded_with_the_first_and_not_while_it_is_painted(plot: str) -> None:
-    command = [sys.executable, "-c", CURVES_SHOWN, plot]
-    told = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
-    assert told.stdout.split() == ["False", "True"]
 
 
 def test_the_window_is_at_work_before_there_is_a_body(

@@ -30,7 +30,7 @@ LIBRARIES = {
     "app.report": QT | {"numpy"},
     "app.gui.theme": QT | {"PySide6.QtSvg"},
     "app.gui.widgets": QT | {"numpy"},
-    "app.gui.plots": QT | {"numpy", "pyqtgraph", "PySide6.QtSvg"},
+    "app.gui.plots": QT | {"numpy", "PySide6.QtSvg"},
     "app.gui.session": QT | {"numpy", "platformdirs"},
     "app.gui.viewport": QT | SCENE | {"pyvistaqt", "PySide6.QtOpenGLWidgets", "PySide6.QtPrintSupport"},
     "app.gui.features": QT | {"PySide6", "numpy", "platformdirs", "PySide6.QtPrintSupport", "PySide6.QtSvg"},

@@ -17,7 +17,7 @@ import sys
 
 class NoQt:
     def find_spec(self, name, path=None, target=None):
-        if name.partition(".")[0] in {"PySide6", "shiboken6", "pyvistaqt", "pyqtgraph", "qtpy"}:
+        if name.partition(".")[0] in {"PySide6", "shiboken6", "pyvistaqt", "qtpy"}:
             raise ModuleNotFoundError(f"{name} is not installed here", name=name)
 
 sys.meta_path.insert(0, NoQt())

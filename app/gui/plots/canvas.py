@@ -19,7 +19,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.gui.plots.axes import Scale, load_curves
+from app.gui.plots.axes import Scale
 from app.gui.plots.painting import ROLE_COLORS, paint_dot, paint_plot, plot_area
 from app.gui.theme.stylesheet import font, tokens_of
 from app.i18n.catalog import number, tr
@@ -70,8 +70,6 @@ class PlotCanvas(QWidget):
 
     def set_plotted(self, plotted: Plotted, values: Turns, smooth: bool) -> None:
         """Show something else, with room for these values."""
-        if plotted.curves:
-            load_curves()
         self.plotted, self._values, self.smooth = plotted, values, smooth
         self._forget()
 

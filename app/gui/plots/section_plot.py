@@ -23,7 +23,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QWidget
 
-from app.gui.plots.axes import load_curves
+from app.gui.plots.axes import curve_path
 from app.gui.plots.uncertainty_band import paint_band, write_off
 from app.gui.theme.stylesheet import font, tokens_of
 from app.gui.widgets.accessibility import speak_value
@@ -81,8 +81,6 @@ class ProfilePlot(QWidget):
 
     def show_curves(self, drawn: Drawn, *, again: bool) -> None:
         """Draw these; ``again`` goes back to the box that is seen first."""
-        if drawn.curves:
-            load_curves()
         self._drawn = drawn
         if again or not self._moved:
             self.go_home()
@@ -210,9 +208,7 @@ class ProfilePlot(QWidget):
         painter.drawText(pill, Qt.AlignmentFlag.AlignCenter, text)
 
     def _path(self, places: Floats) -> QPainterPath:
-        from pyqtgraph import arrayToQPath  # noqa: PLC0415 (see load_curves)
-
-        return QPainterPath(arrayToQPath(*self.to_pixels(places).T))
+        return curve_path(self.to_pixels(places))
 
     def _taken(self) -> Floats:
         """Return where curves and marked places are drawn, (k, 2) [px]."""

@@ -9,7 +9,6 @@ from PySide6.QtCore import Signal
 from PySide6.QtGui import QAction, QImage, QPainter, QRegion, QResizeEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from app.gui.plots.axes import load_curves
 from app.gui.session.jobs import Job, Jobs
 from app.gui.viewport.body_view import BodyView
 from app.gui.viewport.canvas import load_libraries
@@ -87,7 +86,6 @@ class ViewArea(QWidget):
 
         def make(_: object) -> None:
             self.viewport.make()
-            self._jobs.run(tr("Getting the plots ready"), lambda _: load_curves(), lambda _: None)
             done()
 
         words = tr("Getting the 3D view ready")

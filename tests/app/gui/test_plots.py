@@ -10,6 +10,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
+from app.gui.plots.axes import curve_path
 from app.gui.plots.convergence_panel import Strip
 from app.gui.plots.live_plot import LivePlot
 from app.presenters.plots import (
@@ -59,6 +60,26 @@ def test_only_what_flips_every_turn_flips() -> None:
     assert not flips_every_turn(np.sin(turns / 5)), "a slow swing is no flip-flop"
     assert not flips_every_turn(np.exp(-turns) + 1e-6 * (-1.0) ** turns), "nobody sees the ripple"
     assert not flips_every_turn(np.array([1.0, -1.0, 1.0]))
+
+
+@pytest.mark.parametrize(
+    ("heights", "elements"),
+    [
+        ([5.0, 6.0, 4.0], "MLL"),
+        ([np.nan, 6.0, 4.0], "ML"),
+        ([5.0, np.nan, 4.0, 3.0, np.inf], "MML"),
+        ([np.nan, np.nan], ""),
+        ([], ""),
+    ],
+)
+def test_a_curve_passes_the_finite_points_and_is_broken_at_the_others(
+    heights: list[float], elements: str
+) -> None:
+    points = np.column_stack((0.3 + np.arange(len(heights)), heights))
+    path = curve_path(points)
+    drawn = [path.elementAt(at) for at in range(path.elementCount())]
+    assert "".join("M" if each.isMoveTo() else "L" for each in drawn) == elements
+    assert [(each.x, each.y) for each in drawn] == [(x, y) for x, y in points.tolist() if np.isfinite(y)]
 
 
 def test_a_zigzag_is_drawn_as_an_envelope_once_it_is_dense(qtbot: QtBot) -> None:

@@ -16,7 +16,7 @@ from app.gui.viewport.opengl import graphics_in_words, is_safe_mode
 from app.i18n.catalog import tr
 from core import __version__
 
-LIBRARIES = ("PySide6-Essentials", "vtk", "pyvista", "pyvistaqt", "pyqtgraph", "numpy", "scipy", "numba")
+LIBRARIES = ("PySide6-Essentials", "vtk", "pyvista", "pyvistaqt", "numpy", "scipy", "numba")
 
 Group = tuple[str, list[tuple[str, str]]]
 
