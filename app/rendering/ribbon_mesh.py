@@ -16,7 +16,7 @@ from app.rendering.render_mesh import Skin, skin_of
 from core.garment.curve_smoothing import CentreLine, centre_line, smooth
 from core.garment.curve_smoothing import Surface as SkinSurface
 from core.geometry.mesh import Faces, Floats, Indices, Mesh, Points, unit
-from core.geometry.plane_sections import arc_length
+from core.geometry.plane_sections import arc_length, interpolate
 from core.pipeline.line_routes import Route
 
 CASING = 7.0
@@ -197,9 +197,7 @@ def _rounded(line: CentreLine, radius: float) -> tuple[CentreLine, Floats, Float
     radius = min(radius, 0.4 * s[-1])
     near = radius * (1.0 - np.cos(_ROUND))
     at = np.concatenate([near, s[(s > radius) & (s < s[-1] - radius)], (s[-1] - near)[::-1]])
-    points, normals = (
-        np.stack([np.interp(at, s, axis) for axis in of.T], 1) for of in (line.points, line.normals)
-    )
+    points, normals = (interpolate(at, s, rows) for rows in (line.points, line.normals))
     part = line.part[np.searchsorted(s, at).clip(0, len(s) - 1)]
     inward = np.minimum(np.minimum(at, s[-1] - at) / radius, 1.0)
     narrow = np.maximum(np.sqrt(1.0 - (1.0 - inward) ** 2), 0.5 * _TIP)

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from app.rendering.appearance import Look, rgb
 from core.geometry.mesh import Flags, Floats
+from core.geometry.plane_sections import interpolate
 
 Colours = npt.NDArray[np.uint8]
 
@@ -32,7 +33,7 @@ class Ramp:
         """Return the colours of values, shapes (k,) and (k, 3) 0..255."""
         at = np.linspace(self.low, self.high, len(self.stops))
         table = np.stack([rgb(stop) for stop in self.stops])
-        colours = np.stack([np.interp(values, at, channel) for channel in table.T], axis=1)
+        colours = interpolate(values, at, table)
         colours[np.isnan(values)] = rgb(self.blank)
         return colours
 

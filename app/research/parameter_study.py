@@ -15,6 +15,7 @@ import numpy as np
 
 from core.control_mesh.fit import ControlMesh
 from core.geometry.mesh import Floats
+from core.geometry.mirror_plane import mirror
 from core.mechanics.convergence import judge
 from core.mechanics.gain_limit import gain_limit
 from core.mechanics.iteration import Record, Targets, Watch, iterate
@@ -180,5 +181,5 @@ def mirrored_mean(control: ControlMesh) -> ControlMesh:
     place = _places(control)
     other = [place[row, -column] for row, column in place]
     middle = float(control.mesh.vertices[control.column == 0, 0].mean())
-    there = control.mesh.vertices[other] * [-1.0, 1.0, 1.0] + [2.0 * middle, 0.0, 0.0]
+    there = mirror(control.mesh.vertices[other], middle)
     return replace(control, mesh=control.mesh.moved(0.5 * (control.mesh.vertices + there)))

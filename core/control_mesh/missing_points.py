@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from core.geometry.mesh import MIRROR, Flags, Floats, Points
+from core.geometry.mesh import Flags, Floats, Points
+from core.geometry.mirror_plane import mirror
 
 ALONG_ROWS = 0.3
 """Rows bend round the body, columns hardly do: how a row goes on counts so much against a column [1]."""
@@ -18,8 +19,7 @@ def rebuilt(points: Points, middle: float) -> Points:
     other side, moved to fit what is round the hole; what neither side has goes on as it bends. Source: ours.
     """
     filled = straight(points)
-    shift = np.array([2.0 * middle, 0.0, 0.0])
-    mirrored = filled[:, ::-1] * MIRROR + shift
+    mirrored = mirror(filled[:, ::-1], middle)
     both = ~np.isnan(filled[..., 0]) & ~np.isnan(mirrored[..., 0])
     lent = np.isnan(filled[..., 0]) & ~np.isnan(mirrored[..., 0])
     if lent.any():

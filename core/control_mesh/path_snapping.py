@@ -13,7 +13,8 @@ import numpy as np
 
 from core.control_mesh.fit import ControlMesh
 from core.errors import LineError
-from core.geometry.mesh import Floats, Indices, Points
+from core.geometry.mesh import Floats, Indices, Points, half_edges
+from core.geometry.plane_sections import arc_length, interpolate
 
 STEP = 4.0
 """Distance between the points of the curve that are looked at [mm]; larger for very long curves."""
@@ -64,17 +65,17 @@ def snap(control: ControlMesh, curve: Points, closed: bool = False, *, pulling: 
 
 def both_ways(faces: Indices) -> Indices:
     """Return the edges of triangles, shape (e, 2), each in both directions."""
-    one_way = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    one_way = half_edges(faces)
     return np.unique(np.concatenate([one_way, one_way[:, ::-1]]), axis=0)
 
 
 def resampled(curve: Points) -> Points:
     """Return points evenly along a curve, both ends among them. Raises LineError if it has no length."""
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(curve, axis=0), axis=1))])
+    along = arc_length(curve)
     if len(curve) < 2 or along[-1] < STEP:
         raise LineError("The line has no length.", "Draw it from one place of the body to another.")
     at = np.linspace(0.0, along[-1], int(np.clip(along[-1] / STEP, 2, _MOST)) + 1)
-    return np.stack([np.interp(at, along, axis) for axis in curve.T], axis=1)
+    return interpolate(at, along, curve)
 
 
 def off_by(samples: Points, corners: Points) -> float:

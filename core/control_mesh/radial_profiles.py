@@ -7,7 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.geometry.mesh import Floats, Mesh, Points, unit
-from core.geometry.plane_sections import Section, arc_length, chains, cut, hull_corners, resample
+from core.geometry.plane_sections import (
+    Section,
+    arc_length,
+    chains,
+    cut,
+    downward,
+    hull_corners,
+    resample,
+)
 
 STEP = 2.0
 """Distance of the points on which a profile is judged [mm]."""
@@ -93,25 +101,12 @@ def profile(front: Mesh, axis: Points, start: Points, bottom: float) -> Profile 
         return None
     away = [((curve - start) ** 2).sum(axis=1) for curve, _ in pieces]
     best = int(np.argmin([distance.min() for distance in away]))
-    curve = _downward(*pieces[best], int(np.argmin(away[best])), start)
+    curve = downward(*pieces[best], int(np.argmin(away[best])), start)[0]
     below = np.flatnonzero(curve[:, 2] < bottom)
     if len(below) == 0:
         return None
     curve = curve[: below[0] + 1]
     return Profile(curve, arc_length(curve), (curve - axis) @ along)
-
-
-def _downward(curve: Points, closed: bool, at: int, start: Points) -> Points:
-    """Return the part of ``curve`` that leads down from ``start``, which lies next to its point ``at``."""
-    if closed:
-        turned = np.roll(curve[:-1], -at, axis=0)
-        ways = [turned[1:], turned[:0:-1]]
-    else:
-        ways = [curve[at + 1 :], curve[:at][::-1]]
-    ways = [np.concatenate([start[None], way]) for way in ways]
-    return min(
-        ways, key=lambda way: float(np.interp(18.0, arc_length(way), way[:, 2])) if len(way) > 1 else np.inf
-    )
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial import cKDTree
 
-from core.geometry.closest_point import nearest_on
+from core.geometry.closest_point import centroid_tree, nearest_faces
 from core.geometry.mesh import Floats, Mesh, Points, incidence
 
 CANDIDATES = 24
@@ -27,8 +27,7 @@ class NearSkin:
 
     @cached_property
     def _centres(self) -> cKDTree:
-        centres = self.mesh.vertices[self.mesh.faces].mean(axis=1)
-        return cKDTree(centres, compact_nodes=False, balanced_tree=False)
+        return centroid_tree(self.mesh)
 
     @cached_property
     def vertex_areas(self) -> Floats:
@@ -41,9 +40,4 @@ class NearSkin:
 
     def nearest(self, places: Points) -> Points:
         """Return the nearest places of the skin, as ``places``, shape (k, 3) [mm]."""
-        count = min(CANDIDATES, len(self.mesh.faces))
-        near = self._centres.query(places, np.arange(1, count + 1))[1]
-        asked = np.repeat(places, count, axis=0)
-        found = nearest_on(self.mesh.vertices[self.mesh.faces[near.ravel()]], asked)
-        away = np.linalg.norm(found - asked, axis=1).reshape(-1, count)
-        return np.asarray(found.reshape(-1, count, 3)[np.arange(len(places)), away.argmin(axis=1)])
+        return nearest_faces(self.mesh, places, self._centres, CANDIDATES)[1]

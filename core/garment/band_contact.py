@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from core.geometry.mesh import Flags, Floats, Indices, Points, unit
+from core.geometry.plane_sections import interpolate
 
 Outline = npt.NDArray[np.complex128]
 """Places of a plane curve, (k,) [mm]."""
@@ -59,7 +60,7 @@ def straight(points: Points, normals: Points, touched: Flags, closed: bool) -> t
     """
     at, kept, count = np.arange(len(points)), np.flatnonzero(touched), len(points)
     period = count if closed else None
-    places = np.stack([np.interp(at, kept, axis[kept], period=period) for axis in points.T], axis=1)
+    places = interpolate(at, kept, points[kept], period)
     ahead = (
         np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0) if closed else np.gradient(points, axis=0)
     )

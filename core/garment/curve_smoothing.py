@@ -10,7 +10,7 @@ from scipy.ndimage import convolve1d
 from scipy.spatial import cKDTree
 
 from core.geometry.mesh import Floats, Indices, Mesh, Points, unit
-from core.geometry.plane_sections import arc_length, resample
+from core.geometry.plane_sections import arc_length, interpolate, resample
 from core.pipeline.line_routes import NO_BACK
 
 STEP = 4.0
@@ -88,7 +88,7 @@ def centre_line(
     if closed:
         whole[-1] = whole[0]
     at = np.linspace(0.0, s[-1], max(2, round(s[-1]) + 1))
-    taut = np.stack([np.interp(at, s, axis) for axis in whole.T], axis=1)
+    taut = interpolate(at, s, whole)
     if drawn:
         points, normals = surface.lay(evenly(taut, closed))
     else:

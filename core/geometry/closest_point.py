@@ -21,6 +21,9 @@ _FLAT = 1e-10
 _GROUP = 256
 """At most so many points form a group: its tables then stay in the cache of the processor."""
 
+_AT_ONCE = 50_000
+"""So many points are looked up in one go: their tables take 100 MB."""
+
 Table = tuple[Floats, Floats, Floats]
 
 
@@ -95,19 +98,30 @@ def nearest_on(corners: Points, points: Points) -> Points:
     return np.asarray(np.where(within[:, None], points - height[:, None] * normal, nearest))
 
 
-def nearest_faces(mesh: Mesh, points: Points, tree: cKDTree | None = None) -> tuple[Indices, Points]:
+def centroid_tree(mesh: Mesh) -> cKDTree:
+    """Return a tree of the centroids of the faces, quick to build and for ``nearest_faces`` to search."""
+    return cKDTree(centroids(mesh), compact_nodes=False, balanced_tree=False)
+
+
+def nearest_faces(
+    mesh: Mesh, points: Points, tree: cKDTree | None = None, candidates: int = 12
+) -> tuple[Indices, Points]:
     """Return the face of ``mesh`` nearest to each of ``points`` (k, 3) [mm], and the place on it, (k, 3).
 
-    It is the nearest of those twelve whose middles lie nearest: on an even skin of body, of all. A ``tree``
-    that is there finds the middles.
+    It is the nearest of the ``candidates`` whose centroids are nearest: on an even skin of body, of all. The
+    ``tree`` holds the centroids, where there is one already.
     """
     tree = cKDTree(centroids(mesh)) if tree is None else tree
-    near = tree.query(points, min(12, len(mesh.faces)))[1].reshape(len(points), -1)
-    corners = mesh.vertices[mesh.faces[near]].reshape(-1, 3, 3)
-    places = nearest_on(corners, np.repeat(points, near.shape[1], axis=0)).reshape(*near.shape, 3)
-    best = np.argmin(((places - points[:, None]) ** 2).sum(axis=2), axis=1)
-    rows = np.arange(len(points))
-    return np.asarray(near[rows, best]), np.asarray(places[rows, best])
+    if len(points) > _AT_ONCE:
+        parts = np.split(points, range(_AT_ONCE, len(points), _AT_ONCE))
+        found = [nearest_faces(mesh, part, tree, candidates) for part in parts]
+        return np.concatenate([face for face, _ in found]), np.concatenate([place for _, place in found])
+    count = min(candidates, len(mesh.faces))
+    near: Indices = np.asarray(tree.query(points, np.arange(1, count + 1))[1], dtype=np.int64)
+    corners = mesh.vertices[mesh.faces[near.ravel()]]
+    places = nearest_on(corners, np.repeat(points, count, axis=0)).reshape(*near.shape, 3)
+    best = np.arange(len(points)), ((places - points[:, None]) ** 2).sum(axis=2).argmin(axis=1)
+    return near[best], places[best]
 
 
 def shares(corners: Points, places: Points) -> Floats:

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from core.errors import LineError
 from core.geometry.closest_point import nearest_faces, shares
-from core.geometry.mesh import Faces, Flags, Mesh, Points
+from core.geometry.mesh import Faces, Flags, Mesh, Points, half_edges
 from core.geometry.plane_sections import arc_length
 
 
@@ -58,7 +58,7 @@ def unpinched(mesh: Mesh) -> Mesh:
 
     The library walks round each vertex, and refuses a skin where it cannot.
     """
-    half = np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]], mesh.faces[:, [2, 0]]])
+    half = half_edges(mesh.faces)
     count = len(mesh.vertices)
     keys, turned = half[:, 0] * count + half[:, 1], half[:, 1] * count + half[:, 0]
     ends = np.bincount(half[~np.isin(keys, turned), 0], minlength=count)

@@ -35,9 +35,6 @@ def frozen(array: npt.ArrayLike, dtype: npt.DTypeLike = np.float64) -> npt.NDArr
 SIGNS = (1.0, -1.0)
 """Sign of x of the left and of the right side of a body."""
 
-MIRROR = frozen([-1.0, 1.0, 1.0])
-"""Takes a place or a way on one side of a body that stands round x = 0 to that on the other side."""
-
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
@@ -77,8 +74,7 @@ class Mesh:
     @cached_property
     def edges(self) -> Indices:
         """Every edge once, lower index first, shape (e, 2)."""
-        _, first = np.unique(_edge_keys(_half_edges(self.faces)), return_index=True)
-        return np.sort(_half_edges(self.faces)[first], axis=1)
+        return edges(self.faces)
 
     @cached_property
     def boundary_loops(self) -> tuple[Indices, ...]:
@@ -144,7 +140,8 @@ def incidence(faces: Faces, vertex_count: int) -> sparse.csr_array:
     return sparse.csr_array((ones, (faces.ravel(), columns)), shape=(vertex_count, len(faces)))
 
 
-def _half_edges(faces: Faces) -> Indices:
+def half_edges(faces: Faces) -> Indices:
+    """Return the directed sides of all faces, shape (3 m, 2): first those from corner 0 to 1 of each."""
     return np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
 
 
@@ -154,9 +151,16 @@ def _edge_keys(half_edges: Indices) -> Indices:
     return np.asarray(ends[:, 0] * (ends[:, 1].max(initial=0) + 1) + ends[:, 1])
 
 
+def edges(faces: Faces) -> Indices:
+    """Return every edge of ``faces`` once, lower index first, in the order of its vertices, shape (e, 2)."""
+    sides = half_edges(faces)
+    _, first = np.unique(_edge_keys(sides), return_index=True)
+    return np.sort(sides[first], axis=1)
+
+
 def boundary_loops(faces: Faces) -> tuple[Indices, ...]:
     """Return the closed loops of border vertices of ``faces``, longest first."""
-    half = _half_edges(faces)
+    half = half_edges(faces)
     _, first, count = np.unique(_edge_keys(half), return_index=True, return_counts=True)
     after: dict[int, list[int]] = defaultdict(list)
     for start, end in half[first[count == 1]].tolist():

@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from core.geometry.mesh import MIRROR, Flags, Floats, Indices, Mesh, Points
+from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points, frozen
+
+MIRROR = frozen([-1.0, 1.0, 1.0])
+"""Takes a place or a way on one side of a body that stands round x = 0 to that on the other side."""
 
 FAR = 25.0
 """A place whose mirror image finds no skin nearer than this has no counterpart [mm]."""
@@ -17,6 +20,11 @@ _ROUNDS = 4
 _SIDEWAYS = 0.3  # skin that looks less to the side tells little of where the middle is
 
 
+def mirror(places: Points, middle: float) -> Points:
+    """Return ``places``, shape (.., 3) [mm], mirrored in the upright plane x = ``middle``."""
+    return np.asarray(places * MIRROR + (2.0 * middle, 0.0, 0.0))
+
+
 def mirror_plane(body: Mesh, still: Flags, start: float) -> float:
     """Return x of the upright plane that maps the still skin of a body onto itself best [mm] (ours).
 
@@ -26,7 +34,7 @@ def mirror_plane(body: Mesh, still: Flags, start: float) -> float:
     rows = np.flatnonzero(still & (np.abs(body.vertex_normals[:, 0]) > _SIDEWAYS))
     tree, middle = cKDTree(body.vertices), start
     for _ in range(_ROUNDS):
-        away, partner = map(np.asarray, tree.query(_mirrored(body.vertices[rows], middle)))
+        away, partner = map(np.asarray, tree.query(mirror(body.vertices[rows], middle)))
         met = away < FAR
         off = _stand_out(body.vertices, body.vertex_normals, rows[met], partner[met], middle)
         across = -body.vertex_normals[partner[met], 0]
@@ -60,14 +68,10 @@ class Sides:
         return np.where(self.alone[rows], np.nan, off)
 
     def _counterparts(self, rest: Mesh) -> tuple[Indices, Flags]:
-        found = cKDTree(rest.vertices).query(_mirrored(rest.vertices, self.middle))
+        found = cKDTree(rest.vertices).query(mirror(rest.vertices, self.middle))
         away, partner = map(np.asarray, found)
         alike = np.einsum("ij,ij->i", rest.vertex_normals, rest.vertex_normals[partner] * MIRROR)
         return partner.astype(np.int64), (away > FAR) | (alike < ALIKE)
-
-
-def _mirrored(places: Points, middle: float) -> Points:
-    return np.column_stack([2.0 * middle - places[:, 0], places[:, 1:]])
 
 
 def _stand_out(places: Points, normals: Points, rows: Indices, partner: Indices, middle: float) -> Floats:

@@ -109,8 +109,33 @@ def resample(curve: Points, step: float) -> Points:
     """Return points every ``step`` [mm] along ``curve``, both ends kept; at most ``MOST_STEPS`` of them."""
     s = arc_length(curve)
     count = min(max(2, round(float(s[-1]) / step) + 1), MOST_STEPS)
-    at = np.linspace(0.0, s[-1], count)
-    return np.stack([np.interp(at, s, curve[:, k]) for k in range(curve.shape[1])], axis=1)
+    return interpolate(np.linspace(0.0, s[-1], count), s, curve)
+
+
+def interpolate(
+    at: Floats | Indices, known: Floats | Indices, rows: Floats, period: float | None = None
+) -> Floats:
+    """Return ``rows`` (k, c), which are those at the ascending values ``known`` (k,), at others, (n, c)."""
+    return np.stack([np.interp(at, known, column, period=period) for column in rows.T], axis=1)
+
+
+def downward(curve: Points, closed: bool, at: int, start: Points | None = None) -> list[Points]:
+    """Return both ways along ``curve`` from its point ``at``, the one first that is lower after 18 mm.
+
+    Both begin with that point, or with ``start`` (3,) [mm] in its place.
+    """
+    if closed:
+        turned = np.roll(curve[:-1], -at, axis=0)
+        ways = [turned, np.roll(turned[::-1], 1, axis=0)]
+    else:
+        ways = [curve[at:], curve[at::-1]]
+    if start is not None:
+        ways = [np.concatenate([start[None], way[1:]]) for way in ways]
+
+    def height(way: Points) -> float:
+        return float(np.interp(18.0, arc_length(way), way[:, 2])) if len(way) > 1 else np.inf
+
+    return sorted(ways, key=height)
 
 
 def curvature(x: Floats, y: Floats) -> Floats:

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from core.geometry.mesh import Flags, Floats, Mesh, Points
-from core.geometry.plane_sections import arc_length, chains, curvature, cut, resample
+from core.geometry.plane_sections import arc_length, chains, curvature, cut, downward, resample
 
 OFFSETS = np.arange(-44.0, 45.0, 4.0)
 """The fold is traced over profiles so far beside the bust point [mm]."""
@@ -143,13 +143,7 @@ def _downward(curve: Points, closed: bool, start: int) -> tuple[Points, Points]:
 
     The rest runs from its far end towards ``start``.
     """
-    if closed:
-        turned = np.roll(curve[:-1], -start, axis=0)
-        ways = [turned, np.roll(turned[::-1], 1, axis=0)]
-    else:
-        ways = [curve[start:], curve[start::-1]]
-    ways = [way for way in ways if len(way) > 1] or [curve, curve[:1]]
-    ways.sort(key=lambda way: float(np.interp(18.0, arc_length(way), way[:, 2])))
+    ways = [way for way in downward(curve, closed, start) if len(way) > 1] or [curve, curve[:1]]
     return ways[0], ways[-1][::-1]
 
 

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from core.geometry.mesh import MIRROR, Floats, Mesh, Points
+from core.geometry.mesh import Floats, Mesh, Points
+from core.geometry.mirror_plane import MIRROR, mirror
 from core.landmarks.anchor import smoothed
 from core.landmarks.chest import Pole
 from core.landmarks.nipple import GRID, Patch, breast_patch
@@ -83,8 +84,8 @@ def _evened(marks: list[Landmark], patches: Sequence[Patch], middle: float) -> l
     if _unlike(marks, middle) > ALIKE:
         return marks
     left, right = (mark.position for mark in marks)
-    mean = 0.5 * (left + np.array([2.0 * middle - right[0], right[1], right[2]]))
-    places = (mean, np.array([2.0 * middle - mean[0], mean[1], mean[2]]))
+    mean = 0.5 * (left + mirror(right, middle))
+    places = (mean, mirror(mean, middle))
     return [
         replace(mark, position=patch.onto(place))
         for mark, patch, place in zip(marks, patches, places, strict=True)
@@ -94,12 +95,12 @@ def _evened(marks: list[Landmark], patches: Sequence[Patch], middle: float) -> l
 def _unlike(marks: Sequence[Landmark], middle: float) -> float:
     """Return how far a point of the left side lies from the mirror image of that of the right one [mm]."""
     left, right = (mark.position for mark in marks)
-    return float(np.linalg.norm(np.array([2.0 * middle - right[0], right[1], right[2]]) - left))
+    return float(np.linalg.norm(mirror(right, middle) - left))
 
 
 def _across(mesh: Mesh, there: Points, middle: float) -> Points:
     """Return the skin in front, across from a point of the other side, shape (3,) [mm]."""
-    place = np.array([2.0 * middle - there[0], there[1], there[2]])
+    place = mirror(there, middle)
     away = np.hypot(*(mesh.vertices - place)[:, [0, 2]].T)
     near = mesh.vertices[away < max(10.0, float(away.min()))]
     return np.asarray(near[np.argmin(near[:, 1])] if len(near) else place)

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.geometry.mesh import MIRROR, Mesh, Points
+from core.geometry.mesh import Mesh, Points
+from core.geometry.mirror_plane import MIRROR
 from core.landmarks.breast_profiles import OWN, Profile, profiles
 from core.landmarks.inframammary_fold import Trace, trace
 from core.landmarks.manual import held_against

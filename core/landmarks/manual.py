@@ -10,6 +10,7 @@ import numpy as np
 from core.errors import LandmarkError
 from core.geometry.closest_point import nearest_on
 from core.geometry.mesh import FARTHEST, Floats, Mesh, Points
+from core.geometry.mirror_plane import mirror
 from core.landmarks.types import CERTAIN, NAMES, Landmark
 
 HELP = (
@@ -114,7 +115,7 @@ def nearest_skin(mesh: Mesh, point: Points) -> Points:
 
 def mirrored(mesh: Mesh, point: Points, middle: float) -> Points:
     """Return the place of the skin nearest to the mirror image of ``point`` in x = ``middle`` [mm]."""
-    return nearest_skin(mesh, np.array([2.0 * middle - point[0], point[1], point[2]]))
+    return nearest_skin(mesh, mirror(point, middle))
 
 
 def _laid(mesh: Mesh, name: str, point: Points) -> Landmark:

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import maximum_filter
 
-from core.geometry.mesh import MIRROR, Points
+from core.geometry.mesh import Points
+from core.geometry.mirror_plane import MIRROR, mirror
 from core.landmarks.nipple import GRID, Patch
 
 NEAR = 40.0
@@ -70,7 +71,7 @@ class Nipple:
 
         The less of two: pole laid over pole, as breasts differ, or at the ``middle`` of the body, x [mm].
         """
-        across = self.position - MIRROR * other.position - (2.0 * middle, 0.0, 0.0)
+        across = self.position - mirror(other.position, middle)
         return float(min(np.linalg.norm(self.way - MIRROR * other.way), np.linalg.norm(across)))
 
 

@@ -13,7 +13,8 @@ from core.analysis.calibration.registration import Alignment, moved
 from core.analysis.calibration.surface_distance import WornSkin, curvature, known
 from core.analysis.uncertainty.input_uncertainty import assumed
 from core.errors import LandmarkError, ScanError
-from core.geometry.mesh import MIRROR, Floats, Mesh, Points
+from core.geometry.mesh import Floats, Mesh, Points
+from core.geometry.mirror_plane import mirror
 from core.landmarks.detect import find_landmarks
 from core.landmarks.types import CERTAIN, SIDES, Landmark
 from core.pipeline.build import Stages
@@ -92,8 +93,7 @@ def laid_on(name: str, body: Body, alignment: Alignment) -> Worn:
 def refuse_mirrored(stages: Stages, worn: Worn) -> None:
     """Raise ScanError for a scan that fits far better left for right: still skin may be too even to tell."""
     points, mesh = stages.control.mesh.vertices, worn.skin.mesh
-    across = np.array([2.0 * stages.moving.middle, 0.0, 0.0])
-    other = Mesh(across + mesh.vertices * MIRROR, mesh.faces[:, ::-1])
+    other = Mesh(mirror(mesh.vertices, stages.moving.middle), mesh.faces[:, ::-1])
     skins = worn.skin, WornSkin(other, worn.skin.noise)
     off, mirrored = (figures(gaps_at(stages, points, skin, 0.0)).rms for skin in skins)
     if off > max(_OFF, _MIRRORED * mirrored):

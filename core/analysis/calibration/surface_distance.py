@@ -12,13 +12,15 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial import cKDTree
 
-from core.geometry.closest_point import centroids, nearest_on, shares
+from core.geometry.closest_point import centroid_tree, nearest_faces, shares
 from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points
 
 REACH = 40.0
 """Skin that is further away than this is none that a place could be compared with [mm]."""
 
-_NEAR = 8  # triangles whose middles are nearest, among which the nearest is looked for
+CANDIDATES = 8
+"""The nearest triangle is looked for among so many whose centroids are nearest."""
+
 _ROUNDS = 4
 _SLANT = 0.35  # a skin more slanted than this against the normal tells no distance along it [1]
 _EASED = 3  # rounds in which normals are taken together with their neighbours
@@ -55,7 +57,7 @@ class WornSkin:
 
     @cached_property
     def _middles(self) -> cKDTree:
-        return cKDTree(centroids(self.mesh), compact_nodes=False, balanced_tree=False)
+        return centroid_tree(self.mesh)
 
     def gaps(self, places: Points, normals: Points, curved: Floats | None = None) -> Floats:
         """Return how far ``places`` lie before the skin along unit ``normals``, both (k, 3), shape (k,) [mm].
@@ -65,7 +67,7 @@ class WornSkin:
         """
         gap = np.zeros(len(places))
         for _ in range(_ROUNDS):
-            face, away = self._nearest(places - gap[:, None] * normals)
+            face, _ = self._nearest(places - gap[:, None] * normals)
             facing = np.einsum("ij,ij->i", self.mesh.face_normals[face], normals)
             way = places - self.mesh.vertices[self.mesh.faces[face, 0]]
             ahead = np.einsum("ij,ij->i", self.mesh.face_normals[face], way)
@@ -74,29 +76,30 @@ class WornSkin:
             unknown = np.isnan(gap)
             gap[unknown] = 0.0
         hit = places - gap[:, None] * normals
-        _, away = self._nearest(hit)
+        away = np.linalg.norm(self._nearest(hit)[1] - hit, axis=1)
         if curved is not None:
-            gap = gap - curved * self._room(face, hit)
+            vertices, corners = self.mesh.vertices, self.mesh.faces[face]
+            parts = shares(vertices[corners], hit)
+            # The normals of a skin of curvature 1 turn by as much as its places are apart.
+            gap = gap - curved * heights_over_chords(vertices, vertices, corners, parts)
         return np.where(unknown | (away > _MET) | (facing < _SLANT), np.nan, gap)
 
-    def _room(self, face: Indices, hit: Points) -> Floats:
-        """Return by how much a skin of curvature 1 stands before its triangles at ``hit``, (k,) [mm^2].
+    def _nearest(self, places: Points) -> tuple[Indices, Points]:
+        return nearest_faces(self.mesh, places, self._middles, CANDIDATES)
 
-        Exact for a paraboloid: half the mean square of how far the corners are away, each by its share.
-        """
-        corners = self.mesh.vertices[self.mesh.faces[face]]
-        away = ((corners - hit[:, None]) ** 2).sum(axis=2)
-        return np.asarray(0.5 * (shares(corners, hit) * away).sum(axis=1))
 
-    def _nearest(self, places: Points) -> tuple[Indices, Floats]:
-        """Return the nearest face to each place and how far away it is, shapes (k,) and (k,) [mm]."""
-        count = min(_NEAR, len(self.mesh.faces))
-        near = np.asarray(self._middles.query(places, np.arange(1, count + 1))[1])
-        corners = self.mesh.vertices[self.mesh.faces[near.ravel()]]
-        asked = np.repeat(places, count, axis=0)
-        away = np.linalg.norm(nearest_on(corners, asked) - asked, axis=1).reshape(-1, count)
-        best = away.argmin(axis=1), np.arange(len(places))
-        return near[best[1], best[0]], away[best[1], best[0]]
+def heights_over_chords(places: Points, normals: Points, corners: Faces, parts: Floats) -> Floats:
+    """Return by how much a round skin stands before its triangles, shape (k,) [mm].
+
+    Exact for a paraboloid: its height over the chord of each two of the ``corners`` (k, 3), by how the
+    ``normals`` (r, 3) of ``places`` (r, 3) [mm] turn. ``parts`` (k, 3) are barycentric coordinates.
+    """
+    height = np.zeros(len(corners))
+    for start, end in ((0, 1), (1, 2), (2, 0)):
+        a, b = corners[:, start], corners[:, end]
+        turn = np.einsum("ij,ij->i", normals[b] - normals[a], places[b] - places[a])
+        height += 0.5 * parts[:, start] * parts[:, end] * turn
+    return height
 
 
 def curvature(places: Points, normals: Points, corners: Faces) -> Floats:

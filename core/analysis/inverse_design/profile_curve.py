@@ -10,6 +10,7 @@ from core.analysis.inverse_design.profile_csv import foremost, overhang, profile
 from core.analysis.inverse_design.profile_quantity import section_at, skin_of
 from core.analysis.inverse_design.quantities import Goal
 from core.geometry.mesh import Floats, Indices, Points
+from core.geometry.plane_sections import arc_length
 from core.pipeline.build import Stages
 
 STEP = 5.0
@@ -52,7 +53,7 @@ class Drawn:
         """The curve as it is pulled, heights and how far out, (k, 2) [mm]: smooth, nowhere beyond handles."""
         if not len(self.handles):
             return self.base
-        along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.base, axis=0), axis=1))])
+        along = arc_length(self.base)
         knots = np.unique(np.concatenate([[0, len(along) - 1], self.handles]))
         ways = np.zeros((len(knots), 2))
         ways[np.searchsorted(knots, self.handles)] = self.steps

@@ -11,6 +11,7 @@ from scipy.ndimage import median_filter
 
 from core.geometry.level_outlines import BEARINGS, BINS, Outlines, outlines, reach, ring
 from core.geometry.mesh import SIGNS, Flags, Floats, Indices, Mesh, Points
+from core.geometry.plane_sections import arc_length
 from core.landmarks.torso.arm_removal import necks, shoulder_clip
 from core.landmarks.torso.contour_classification import (
     kept_pieces,
@@ -140,7 +141,7 @@ def cut_off(cuts: Outlines, own: Indices, centre: Points) -> tuple[Indices, Indi
     """Return those of the segments ``own`` of one level that belong to a left and to a right arm."""
     order, starts = ring(cuts.segments[own], cuts.ids[own])
     rows, closed = own[order], np.concatenate([starts, starts[:1]])
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
+    along = arc_length(closed)
     half = 0.5 * (along[1:] + along[:-1])
     gone = []
     for found in necks(closed, centre):

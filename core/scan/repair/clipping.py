@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points
+from core.geometry.mirror_plane import mirror
 from core.scan.repair.editable_mesh import Skin
 
 SNAP = 0.15
@@ -62,7 +63,7 @@ def mirrored_half(mesh: Mesh, middle: float, sign: float) -> Mesh:
 
 def _with_image(half: Mesh, seam: Flags, middle: float) -> Mesh:
     twin = np.where(seam, np.arange(len(seam)), len(seam) + np.cumsum(~seam) - 1)
-    image = half.vertices[~seam] * (-1.0, 1.0, 1.0) + (2.0 * middle, 0.0, 0.0)
+    image = mirror(half.vertices[~seam], middle)
     faces = np.concatenate([half.faces, twin[half.faces][:, ::-1]])
     return Mesh(np.concatenate([half.vertices, image]), faces)
 

@@ -9,7 +9,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from core.geometry.mesh import Faces, Floats, Indices, Mesh, Points
+from core.geometry.mesh import Faces, Floats, Indices, Mesh, Points, edges
 from core.geometry.triangulate import triangulated
 from core.scan.repair.hole_filling import edge_keys, edges_at, quadric_height
 from core.scan.repair.holes import Hole, frame_of
@@ -136,7 +136,7 @@ def _settled(rim: _Rim, patch: Faces, start: Points, known: Points, values: Floa
         return np.empty((0, values.shape[1]))
     places = np.concatenate([known[:b], start, known[b:]])
     faces = np.concatenate([patch, np.where(rim.faces < b, rim.faces, rim.faces + k)])
-    ends = np.unique(np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0)
+    ends = edges(faces)
     side = np.linalg.norm(places[ends[:, 0]] - places[ends[:, 1]], axis=1)
     pull = (
         1.0 / np.maximum(side, 1e-3 * np.nanmedian(side)) if np.isfinite(side).all() else np.ones(len(side))

@@ -10,7 +10,6 @@ import pytest
 from scipy.spatial import ConvexHull
 
 from benchmarks.worn_pairs import only, other_mesh, scanned, worn_mesh
-from core.analysis.calibration import point_to_surface as feet
 from core.analysis.calibration.api import compare, predicted
 from core.analysis.calibration.point_to_surface import Ground
 from core.analysis.calibration.registration import align, turned
@@ -20,7 +19,9 @@ from core.analysis.calibration.surface_distance import WornSkin, curvature
 from core.deformation.incremental_normals import moving_faces
 from core.document.storage.project_file import open_project
 from core.errors import ScanError
-from core.geometry.mesh import MIRROR, Mesh
+from core.geometry import closest_point
+from core.geometry.mesh import Mesh
+from core.geometry.mirror_plane import MIRROR
 from core.pipeline.build import Stages, build
 from core.scan.body import Body
 from core.scan.orientation.pose import Pose
@@ -102,7 +103,7 @@ def test_every_point_tells_how_far_a_round_skin_stands_before_it(monkeypatch: py
     assert clean.gaps.std() < 0.02
     assert np.linalg.norm(clean.of(ground.places), axis=1).mean() == pytest.approx(60.0, abs=0.1)
     assert not len(ground.feet(59.5 * facing, -facing).rows), "the back of a skin is none"
-    monkeypatch.setattr(feet, "_AT_ONCE", 7000)
+    monkeypatch.setattr(closest_point, "_AT_ONCE", 7000)
     assert (ground.feet(59.5 * facing, facing).gaps == clean.gaps).all(), "in several goes"
     rough = 59.5 * facing + rng.normal(scale=2.0, size=facing.shape)
     told = ground.feet(rough, facing, 2.0).gaps.mean()

@@ -17,7 +17,8 @@ from core.analysis.symmetry.mirrored_surface import Mirrored
 from core.deformation.blend_region import patch_fade
 from core.deformation.incremental_normals import moving_faces
 from core.deformation.tffd import bind
-from core.geometry.mesh import MIRROR, Mesh, Points
+from core.geometry.mesh import Mesh, Points
+from core.geometry.mirror_plane import MIRROR
 from core.landmarks.bust_point import ACROSS
 from core.landmarks.types import Landmarks
 from core.pipeline.build import Stages, build

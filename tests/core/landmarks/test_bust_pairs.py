@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from core.errors import LandmarkError
-from core.geometry.mesh import MIRROR, Mesh
+from core.geometry.mesh import Mesh
+from core.geometry.mirror_plane import MIRROR
 from core.landmarks.anchor import Anchor, find_anchor
 from core.landmarks.bust_point import NIPPLE, SMOOTH
 from core.landmarks.chest import forward_places

@@ -10,8 +10,8 @@ import pytest
 from shapes import mid_bust, run, tent_model, torso
 
 from app.research.sphere import sphere
-from core.geometry.mesh import MIRROR, Mesh
-from core.geometry.mirror_plane import Sides, mirror_plane
+from core.geometry.mesh import Mesh
+from core.geometry.mirror_plane import MIRROR, Sides, mirror_plane
 from core.mechanics.iteration import Targets
 from core.mechanics.model import constrained_model
 from core.pipeline.build import Stages

@@ -13,6 +13,7 @@ from app.rendering.band import Rise
 from app.rendering.vertex_colors import Ramp
 from core.garment.pressure import LinePressure
 from core.geometry.mesh import Floats, Points
+from core.geometry.plane_sections import interpolate
 
 if TYPE_CHECKING:
     from app.rendering.band_actors import Bands
@@ -88,7 +89,7 @@ def _rise(worn: LinePressure) -> Rise:
 
     def rise(at: Floats) -> Points:
         places, known = _places(worn, at), np.arange(len(apart))
-        return np.stack([np.interp(places, known, axis) for axis in apart.T], axis=1)
+        return interpolate(places, known, apart)
 
     return rise
 
