@@ -40,6 +40,9 @@ PATIENCE_MS = 90_000
 SPARING_NOTHING = SimpleNamespace(**{**vars(gc), "freeze": lambda: None, "unfreeze": lambda: None})
 
 
+gc.disable()  # modules and tests that are collected are no garbage; what tests leave is collected after each
+
+
 def display_of_its_own() -> None:
     """Open a virtual display for one of several test processes: others' windows would take the keyboard."""
     shown, told = os.pipe()
@@ -63,6 +66,11 @@ if not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
 for _wait in ("waitUntil", "waitSignal", "waitSignals", "waitExposed", "waitActive"):
     # Nothing is waited for in vain: a limit is for what hangs, not for a machine with other work.
     setattr(QtBot, _wait, partialmethod(getattr(QtBot, _wait), timeout=PATIENCE_MS))
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Run the files that take longest first: processes that share the files end together."""
+    items.sort(key=lambda item: "/end_to_end/" not in item.nodeid)
 
 
 @pytest.fixture(scope="session", autouse=True)

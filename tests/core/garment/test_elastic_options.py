@@ -164,8 +164,10 @@ def test_the_search_is_not_led_astray_by_its_first_guesses(built: Callable[[str]
 
 
 def test_the_command_line_lists_effects_and_names_the_nearest(
-    mannequin: Path, capsys: pytest.CaptureFixture[str]
+    mannequin: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    few = {name: find_elastic(name) for name in ("strap 15", "strap 20")}
+    monkeypatch.setattr(elastics, "library", lambda: few)
     words = ["cut", str(mannequin), "--line", "mid-bust=94%", "--set", "line_contact=sliding"]
     assert main([*words, "--elastics", "mid-bust", "--as-worn"]) == 0
     listed = capsys.readouterr().out
