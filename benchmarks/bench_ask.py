@@ -25,12 +25,9 @@ import numpy as np
 from pages import put, table
 
 from app.presenters.samples import SAMPLES, sample_design
-from core.analysis.inverse_design.girth_quantity import GIRTH
 from core.analysis.inverse_design.objective import INSIDE
 from core.analysis.inverse_design.profile_csv import profile_goals
-from core.analysis.inverse_design.profile_quantity import profile_name
-from core.analysis.inverse_design.quantities import Goal
-from core.analysis.inverse_design.readings import NAMES, reading
+from core.analysis.inverse_design.quantities import GIRTH, NAMES, Goal, profile_name, reading
 from core.analysis.inverse_design.solve import ask
 from core.document.design import Design, ScanSource
 from core.document.presets import built_in, with_preset

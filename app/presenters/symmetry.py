@@ -11,10 +11,7 @@ from app.i18n.lengths import length, length_number, length_unit, shown_digits, s
 from app.presenters.lines import row_title
 from app.presenters.measurements import length_off, plus_minus
 from app.presenters.target_shape import figure_title, is_met, is_signed, reasons_words
-from core.analysis.inverse_design.balance_quantity import FURTHER_OUT, HIGHER
-from core.analysis.inverse_design.bust_quantity import LIFT, OUT
-from core.analysis.inverse_design.profile_quantity import section_of
-from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER, LIFT, OUT, Goal, section_of
 from core.analysis.symmetry.compare import BeforeAfter, Evenness, EvenRow, even_rows
 from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, partable
 from core.control_mesh.template import read_template

@@ -10,11 +10,16 @@ import numpy as np
 from app.i18n.catalog import colon, listed, number, tr
 from app.i18n.lengths import length, length_number, length_unit
 from app.presenters.lines import told_title
-from core.analysis.inverse_design.balance_quantity import FURTHER_OUT, HIGHER
-from core.analysis.inverse_design.bust_quantity import LIFT, OUT
-from core.analysis.inverse_design.girth_quantity import GIRTH
-from core.analysis.inverse_design.profile_quantity import profiles_off, section_of
-from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.quantities import (
+    FURTHER_OUT,
+    GIRTH,
+    HIGHER,
+    LIFT,
+    OUT,
+    Goal,
+    profiles_off,
+    section_of,
+)
 from core.document.design import Design
 from core.geometry.mesh import Floats
 

@@ -16,12 +16,9 @@ from app.cli.options import dressed, made_of
 from app.presenters.assessment import assessment_lines
 from core import __version__
 from core.analysis.inverse_design.conflicts import Conflict
-from core.analysis.inverse_design.girth_quantity import GIRTH
 from core.analysis.inverse_design.line_selection import LineSelection, optional_lines, switched_on
 from core.analysis.inverse_design.profile_csv import profile_goals, read_profile
-from core.analysis.inverse_design.profile_quantity import profiles_off, section_of
-from core.analysis.inverse_design.quantities import Goal
-from core.analysis.inverse_design.readings import NAMES
+from core.analysis.inverse_design.quantities import GIRTH, NAMES, Goal, profiles_off, section_of
 from core.analysis.inverse_design.search import Bounds
 from core.analysis.inverse_design.solve import Reply
 from core.document.design import Design

@@ -8,9 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.analysis.inverse_design.objective import NEAR
-from core.analysis.inverse_design.profile_quantity import section_of
-from core.analysis.inverse_design.quantities import PRIORITIES, Goal
-from core.analysis.inverse_design.readings import tolerance
+from core.analysis.inverse_design.quantities import PRIORITIES, Goal, section_of, tolerance
 from core.analysis.inverse_design.search import Search
 from core.geometry.mesh import Floats
 

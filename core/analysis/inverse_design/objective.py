@@ -7,10 +7,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from core.analysis.inverse_design.profile_quantity import section_of
 from core.analysis.inverse_design.quadratic_model import Curved, amiss
-from core.analysis.inverse_design.quantities import PRIORITIES, Goal
-from core.analysis.inverse_design.readings import tolerance
+from core.analysis.inverse_design.quantities import PRIORITIES, Goal, section_of, tolerance
 from core.analysis.inverse_design.sensitivities import Look
 from core.geometry.mesh import Floats
 

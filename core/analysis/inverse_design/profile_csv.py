@@ -10,8 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from core.analysis.inverse_design.profile_quantity import profile_name, skin_of
-from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.quantities import Goal, profile_name, skin_of
 from core.errors import UserError
 from core.files.regular_file import read_text
 from core.geometry.mesh import Floats

@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.analysis.inverse_design.profile_csv import foremost, overhang, profile_goals
-from core.analysis.inverse_design.profile_quantity import section_at, skin_of
-from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.quantities import Goal, section_at, skin_of
 from core.geometry.mesh import Floats, Indices, Points
 from core.geometry.plane_sections import arc_length
 from core.pipeline.build import Stages

@@ -18,8 +18,7 @@ from scipy.optimize import minimize
 from core.analysis.inverse_design.candidate import Candidate
 from core.analysis.inverse_design.objective import Slopes, Wanted, tension_of, weights_of
 from core.analysis.inverse_design.quadratic_model import learnt, next_reach
-from core.analysis.inverse_design.quantities import Goal, ReadMany
-from core.analysis.inverse_design.readings import Figures
+from core.analysis.inverse_design.quantities import Figures, Goal, ReadMany
 from core.analysis.inverse_design.sensitivities import PERCENT, Answers, Look
 from core.document.design import Design
 from core.errors import UserError

@@ -17,8 +17,7 @@ from core.analysis.inverse_design.candidate import Candidate
 from core.analysis.inverse_design.conflicts import Conflict, conflicts_of
 from core.analysis.inverse_design.objective import NEAR, weights_of
 from core.analysis.inverse_design.pressure_limit import PressureLimit, largest_pressures
-from core.analysis.inverse_design.quantities import Goal
-from core.analysis.inverse_design.readings import Figures
+from core.analysis.inverse_design.quantities import Figures, Goal
 from core.analysis.inverse_design.search import LOOSEST, Bounds, Search
 from core.analysis.inverse_design.sensitivities import exact_points
 from core.document.design import Design

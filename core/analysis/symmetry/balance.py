@@ -6,10 +6,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 from math import hypot
 
-from core.analysis.inverse_design.balance_quantity import FURTHER_OUT, HIGHER
-from core.analysis.inverse_design.bust_quantity import LIFT, OUT
-from core.analysis.inverse_design.quantities import Goal
-from core.analysis.inverse_design.readings import reading
+from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER, LIFT, OUT, Goal, reading
 from core.analysis.inverse_design.solve import Reply, ask
 from core.analysis.symmetry.compare import NO_BREAST, Evenness, evenness
 from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, partable, parted

@@ -14,8 +14,7 @@ from app.cli.exit_code import NOT_SETTLED, SETTLED
 from app.cli.main import BAD_INPUT, main
 from app.cli.options import WANT_HELP
 from app.presenters.assessment import headline
-from core.analysis.inverse_design.quantities import Goal
-from core.analysis.inverse_design.readings import NAMES
+from core.analysis.inverse_design.quantities import NAMES, Goal
 from core.document.storage.project_file import open_project
 from core.errors import UserError
 

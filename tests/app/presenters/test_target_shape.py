@@ -23,10 +23,7 @@ from app.presenters.target_shape import (
     unlimited_words,
     value_words,
 )
-from core.analysis.inverse_design.girth_quantity import GIRTH
-from core.analysis.inverse_design.profile_quantity import profile_name
-from core.analysis.inverse_design.quantities import Goal
-from core.analysis.inverse_design.readings import NAMES
+from core.analysis.inverse_design.quantities import GIRTH, NAMES, Goal, profile_name
 from core.analysis.inverse_design.solve import Reply
 from core.document.design import Design
 

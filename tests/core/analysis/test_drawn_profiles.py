@@ -9,8 +9,7 @@ import pytest
 
 from app.presenters.samples import sample_design
 from core.analysis.inverse_design.profile_curve import FARTHEST, Drawn, drawn, from_table, outline
-from core.analysis.inverse_design.profile_quantity import profile_name
-from core.analysis.inverse_design.readings import reading
+from core.analysis.inverse_design.quantities import profile_name, reading
 from core.document.presets import built_in, with_preset
 from core.pipeline.build import Stages, build
 from core.pipeline.exact import answer_of

@@ -9,7 +9,7 @@ import pytest
 from slopes import doubled, slope
 
 from app.presenters.samples import sample_design
-from core.analysis.inverse_design.readings import Figures
+from core.analysis.inverse_design.quantities import Figures
 from core.analysis.inverse_design.sensitivities import Answers
 from core.document.presets import built_in, with_preset
 from core.pipeline.active_lines import free_lines

@@ -10,8 +10,7 @@ import pytest
 
 from app.presenters.samples import sample_design
 from core.analysis.inverse_design.profile_csv import profile_goals, read_profile
-from core.analysis.inverse_design.profile_quantity import section_at
-from core.analysis.inverse_design.readings import reading
+from core.analysis.inverse_design.quantities import reading, section_at
 from core.deformation.tffd import deform
 from core.errors import UserError
 from core.export.mesh import write_profile

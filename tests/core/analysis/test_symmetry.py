@@ -10,8 +10,7 @@ import pytest
 from shapes import mirrored as mirrored_control
 
 from app.presenters.samples import sample_design
-from core.analysis.inverse_design.balance_quantity import FURTHER_OUT, HIGHER
-from core.analysis.inverse_design.readings import reading
+from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER, reading
 from core.analysis.symmetry.compare import NO_BREAST, evenness
 from core.analysis.symmetry.mirrored_surface import Mirrored
 from core.deformation.blend_region import patch_fade

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from app.presenters.samples import sample_design
-from core.analysis.inverse_design.readings import reading
+from core.analysis.inverse_design.quantities import reading
 from core.analysis.symmetry.balance import EVEN, even_goals, make_even
 from core.analysis.symmetry.compare import NO_BREAST, evenness
 from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, partable, parted

@@ -15,8 +15,7 @@ from app.cli.main import main
 from app.presenters.samples import sample_design
 from core.analysis.inverse_design.line_selection import LineSelection, optional_lines, switched_on
 from core.analysis.inverse_design.objective import NEAR, weights_of
-from core.analysis.inverse_design.quantities import PRIORITIES, Goal
-from core.analysis.inverse_design.readings import tolerance
+from core.analysis.inverse_design.quantities import PRIORITIES, Goal, tolerance
 from core.analysis.inverse_design.solve import Asking, ask
 from core.garment.elastic_library import find_elastic
 from core.pipeline.build import Stages, build

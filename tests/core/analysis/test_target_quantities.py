@@ -9,8 +9,7 @@ import pytest
 from slopes import doubled, slope
 
 from app.presenters.samples import sample_design
-from core.analysis.inverse_design.profile_quantity import profile_name, section_at
-from core.analysis.inverse_design.readings import NAMES, reading
+from core.analysis.inverse_design.quantities import NAMES, profile_name, reading, section_at
 from core.deformation.tffd import deform
 from core.errors import UserError
 from core.geometry.planar_curves import Plane, Slicer

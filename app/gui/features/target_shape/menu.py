@@ -12,8 +12,7 @@ from app.gui.widgets.file_dialogs import ask_table
 from app.gui.widgets.menu import Menu, pull_down
 from app.i18n.catalog import tr
 from app.presenters.target_shape import figure_title, profile_title
-from core.analysis.inverse_design.balance_quantity import EVEN
-from core.analysis.inverse_design.girth_quantity import GIRTH
+from core.analysis.inverse_design.quantities import EVEN, GIRTH
 
 if TYPE_CHECKING:
     from app.gui.features.target_shape.controller import AskDesk

@@ -7,8 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from core.analysis.inverse_design.profile_curve import Drawn
-from core.analysis.inverse_design.profile_quantity import section_of
-from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.quantities import Goal, section_of
 from core.garment.pressure_limits import comfort
 
 SEEN = ("lift", "out")
