@@ -58,16 +58,20 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 def commands() -> str:
     """Return all commands with their options, those of many commands first."""
-    taken: dict[tuple[str, str], list[str]] = {}
+    takers: dict[tuple[str, str], list[str]] = {}
     for command in COMMANDS:
         for option in _options(command):
-            taken.setdefault(option, []).append(command)
-    shared = {option: of for option, of in taken.items() if len(of) >= SHARED}
-    rows = [(option, help_, ", ".join(of)) for (option, help_), of in shared.items()]
-    parts = ["### Common options", table(("option", "meaning", "commands"), rows)]
+            takers.setdefault(option, []).append(command)
+    shared: dict[tuple[str, ...], list[tuple[str, str]]] = {}
+    for option, of in takers.items():
+        if len(of) >= SHARED:
+            shared.setdefault(tuple(of), []).append(option)
+    parts = ["### Common options"]
+    for of, options in shared.items():
+        parts += [f"Of {', '.join(of)}:", table(("option", "meaning"), options)]
     for command, help_ in COMMANDS.items():
         parts += [f"### busk {command}", f"{help_[:1].upper()}{help_[1:]}."]
-        own = [option for option in _options(command) if option not in shared]
+        own = [option for option in _options(command) if len(takers[option]) < SHARED]
         parts += [table(("option", "meaning"), own)] if own else []
     return "\n\n".join(parts)
 
