@@ -41,6 +41,14 @@ def test_a_thing_has_one_word(english: str, pattern: str) -> None:
     assert wrong == [], f"docs/contributors/words.md has another word for {english}"
 
 
+@pytest.mark.parametrize("path", sorted((ROOT / "docs" / "ja").glob("*.md")), ids=lambda path: path.name)
+def test_japanese_pages_use_the_same_words(path: Path) -> None:
+    page = path.read_text("utf-8")
+    wrong = {english: re.findall(pattern, page) for english, pattern in refused()}
+    assert {english: found for english, found in wrong.items() if found} == {}
+    assert not re.search(r"[ぁ-んァ-ヶ一-龥][,?!]", page), "commas and question marks are full-width"
+
+
 def test_names_of_lines_and_signs_are_set_as_in_japanese() -> None:
     for said in sentences():
         assert not re.search(r"\{line\} [ぁ-ん]", said), said
