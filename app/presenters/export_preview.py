@@ -36,7 +36,7 @@ from core.export.measurement_files import (
     seamly_names,
     write_measures,
 )
-from core.export.mesh import FORMATS, kind_of, write_control_points, write_mesh
+from core.export.mesh import kind_of, write_control_points, write_mesh
 from core.export.solution_report import write_turns
 from core.export.units_and_axes import Space, space_of
 from core.geometry.mesh import Mesh
@@ -48,9 +48,6 @@ if TYPE_CHECKING:
 
 USUAL_UNIT = "cm"
 """The unit of measures in a file, if none is told."""
-
-CONTROL_FORMATS = (*FORMATS, "csv")
-"""A control mesh can also be a table of its points."""
 
 Write = Callable[[Path, Any, Progress], list[Path] | None]
 

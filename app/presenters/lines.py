@@ -10,7 +10,6 @@ from functools import cache
 from app.i18n.catalog import listed, number, say, tr
 from app.i18n.lengths import length
 from app.rendering.band import OFF_WIDTH, Band, band_width
-from app.rendering.palette import LINE_COLORS
 from core.analysis.length_limits.zones import Leeway
 from core.control_mesh.embedding import embed
 from core.control_mesh.straps import Tail
@@ -30,9 +29,6 @@ OWN_COLOURS = ("#E2A32F", "#6FA3F5", "#7A1F2E", "#A9ABC9", "#8C8B2C", "#C2571A")
 
 Shown = tuple[Leeway, bool]
 """How far a line can go, and whether that was of the design before."""
-
-PALETTE = LINE_COLORS
-"""The colours that a line can be given."""
 
 
 def line_title(name: str, design: Design | None = None) -> str:

@@ -42,14 +42,6 @@ class Fitted:
     excess: Mapping[str, float]
 
 
-def made_as_worn(stages: Stages, elastics: Mapping[str, Elastic | None]) -> Design:
-    """Return what ``as_worn`` does for the lengths of the exact answer, whatever control is shown.
-
-    Raises LineError where an elastic cannot do it, or nothing balances.
-    """
-    return as_worn(stages, reached_points(stages), elastics)
-
-
 def reached_points(stages: Stages) -> Points:
     """Return the control points of the exact answer, (n, 3) [mm]. Raises LineError if nothing balances."""
     balance = balance_of(stages)

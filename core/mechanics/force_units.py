@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.geometry.mesh import Floats
 from core.mechanics.model import ConstrainedModel
 
 
@@ -33,11 +32,3 @@ def net_stiffness(model: ConstrainedModel) -> float:
 def newtons_per_unit(model: ConstrainedModel, tissue_stiffness: float) -> float:
     """Return what one unit of the model's stiffness is [N/mm] on a tissue of so many N/m."""
     return tissue_stiffness / 1000.0 / net_stiffness(model)
-
-
-def line_ea(model: ConstrainedModel, newtons: float) -> Floats:
-    """Return EA of each worn segment, force over strain of its length at rest, shape (s,) [N].
-
-    It is the same all along a line; ``newtons`` [N/mm] is one unit of the model's stiffness.
-    """
-    return np.asarray(newtons * model.segments.stiffness * model.tapes_at_rest)

@@ -30,15 +30,11 @@ class Condition:
 
     ``turned`` [1] is the least cosine between a triangle's normal and its normal at rest, 0 for a triangle
     without area; ``shortest`` and ``longest`` [1] are the extreme edge lengths over rest lengths.
-    ``triangle``, ``short_edge`` and ``long_edge`` say where: rows of the ``RestShape``.
     """
 
     turned: float
     shortest: float
     longest: float
-    triangle: int = -1
-    short_edge: int = -1
-    long_edge: int = -1
 
     @property
     def largest_turn(self) -> float:
@@ -86,9 +82,7 @@ class RestShape:
             axes = np.ascontiguousarray(points.T)
             turned = self._turned(axes)
             strain = _lengths(axes, self._ends) * self._per_rest_length
-        triangle, short, long = int(turned.argmin()), int(strain.argmin()), int(strain.argmax())
-        worst = float(turned[triangle]), float(strain[short]), float(strain[long])
-        return Condition(*worst, triangle, short, long)
+        return Condition(float(turned.min()), float(strain.min()), float(strain.max()))
 
     def _turned(self, axes: Floats) -> Floats:
         x, y, z = _normals(axes, self._corners)

@@ -22,7 +22,8 @@ class Hold:
     """Holds a folder by a lock on the file "lock" in it. Raises OSError if someone holds it already.
 
     The lock is the system's, not the file: a process that was killed holds nothing, and none that happens to
-    have got its number is taken for it.
+    have got its number is taken for it. (The package filelock makes a lasting file of it where the system has
+    no such lock; QLockFile goes by that number.)
     """
 
     def __init__(self, folder: Path) -> None:

@@ -193,10 +193,6 @@ class Survey:
     samples: Points
     row: Indices
 
-    def level_at(self, z: float) -> int:
-        """Return the row of the level nearest to height ``z`` [mm]."""
-        return int(np.argmin(np.abs(self.z - z)))
-
     def trunk(self) -> tuple[float, Flags]:
         """Return the half width of the trunk [mm] and which levels show it free of arms, head and legs."""
         full = self.tape > 0.0

@@ -99,7 +99,8 @@ class _Outline:
 def read_vtp(name: str, data: bytes, progress: Progress) -> RawScan:
     """Read a VTP file: text, base64 or raw, also compressed by zlib. Raises ScanError, ValueError if damaged.
 
-    Own reader, since the one of VTK reserves whatever memory a file asks for. Source: VTK's XML formats.
+    Own reader: that of VTK reserves whatever memory a file asks for, reports faults to the console only, and
+    core loads no VTK. Source: VTK's XML formats.
     """
     at = data.find(b"<AppendedData")
     end = data.index(b">", at) if at >= 0 else len(data)

@@ -18,7 +18,7 @@ import pyvista as pv
 
 from app.i18n.catalog import speaking
 from app.presenters.export import Choices, Manner, Outcome, exports
-from app.presenters.export_preview import CONTROL_FORMATS, make_ready
+from app.presenters.export_preview import make_ready
 from core.control_mesh.template import read_template
 from core.document.custom_measures import OwnMeasure
 from core.document.design import Design, ScanSource
@@ -220,7 +220,7 @@ def test_the_window_offers_what_can_be_written_and_nothing_else() -> None:
     offered = {export.what: set(export.formats) for export in exports()}
     assert offered == {
         "body": set(FORMATS),
-        "control": set(CONTROL_FORMATS),
+        "control": {*FORMATS, "csv"},
         "lines": set(CURVE_FORMATS),
         "flat": set(STRIP_FORMATS),
         "measures": set(MEASURE_FORMATS),

@@ -57,7 +57,8 @@ def test_holes_under_both_breasts_are_no_refusal() -> None:
 def test_a_narrow_gap_all_round_under_the_fold_loses_nothing() -> None:
     whole = sample("person")
     trunk = survey(whole)
-    level = trunk.z[trunk.level_at(find_anchor(trunk).z - 12.0)]  # what prominence is measured from
+    height = find_anchor(trunk).z - 12.0
+    level = trunk.z[np.abs(trunk.z - height).argmin()]  # what prominence is measured from
     apart = np.abs(whole.vertices[whole.faces, 2].mean(axis=1) - level) > 1.5
     split = find_landmarks(body(part(whole, apart)))
     for name in ("bust_point_left", "bust_point_right"):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from shapes import fitted, octahedron, tent, tent_model, torso
+from shapes import fitted, octahedron, tent, tent_model
 
 from core.mechanics.exact_solution import solve_exact
 from core.mechanics.mesh_quality import Condition, condition, rest_shape
@@ -40,7 +40,6 @@ def test_a_tip_pushed_through_turns_the_sides_and_strains_nothing():
 def test_a_tip_beyond_its_edge_shows_a_side_from_the_back():
     found = tent_with_tip(0.0, 8.0, 3.0)
     assert found.turned == pytest.approx((9.0 - 16.0) / 25.0)
-    assert found.triangle == 0
     assert (found.shortest, found.longest) == pytest.approx((1.0, 13.0 / SIDE))
     assert flags(found) == (True, True, True, True)
 
@@ -87,20 +86,6 @@ def test_a_shape_that_blew_up_is_folded_and_overstrained(bad):
     found = tent_with_tip(bad, 0.0, 3.0)
     assert found.folded
     assert found.overstrained
-
-
-def test_the_worst_places_are_named():
-    control = torso()
-    shape = rest_shape(control.mesh, control.fixed)
-    points = control.mesh.vertices.copy()
-    moved = control.paths["mid-bust"][5]
-    points[moved] += [0.0, -40.0, 0.0]
-    found = shape.condition(points)
-    assert moved in shape.faces[found.triangle]
-    assert moved in shape.edges[found.long_edge]
-    ends = shape.edges[found.long_edge]
-    stretched, before = (np.linalg.norm(np.diff(at[ends], axis=0)) for at in (points, control.mesh.vertices))
-    assert found.longest == pytest.approx(stretched / before)
 
 
 def test_a_mesh_with_nothing_free_keeps_its_shape():

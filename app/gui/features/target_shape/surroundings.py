@@ -68,12 +68,6 @@ class AskAround(QObject):
             return waits
         return tr("The sheet is of what is applied: apply what is asked for, or cancel it, first.")
 
-    @property
-    def tries_on(self) -> bool:
-        """Whether an answer is shown that was not taken."""
-        answer = self._desk.answer
-        return self._desk.is_open and answer is not None and answer.reply is not None
-
     def is_tried_on(self, names: tuple[str, ...], shown: Design) -> bool:
         """Tell whether the lengths of lines in the ``shown`` design are only those of an answer."""
         taken = self._window.session.design
