@@ -25,10 +25,10 @@ def run_elastics(
     line = next((each.name for each in stages.model.lines if each.name.lower() == name.strip().lower()), None)
     if line is None:
         known = ", ".join(each.name for each in stages.model.lines)
-        raise LineError(f"There is no line '{name}'.", f"The lines are: {known}.")
+        raise LineError(f"There is no line '{name}'.", f"Available lines: {known}.")
     stages, mode = build(design, stages), KEEP_FIT if as_worn else KEEP_CUT
     names, rigid = design.linked(line), None
-    rows = [f"{'':28}{'stretch %':>10}{'cut mm':>9}{'body mm':>9}{'lift mm':>9}"]
+    rows = [f"{'':28}{'elong. %':>10}{'cut mm':>9}{'body mm':>9}{'lift mm':>9}"]
     for elastic in (None, *library().values()):
         option = elastic_option(stages, names, elastic, mode)
         rigid = option.outcome if elastic is None else rigid
@@ -47,7 +47,8 @@ def elastics_text(listed: Callable[[], str], kind: str, out: str | None) -> str:
 
 def _refused(_: object) -> str:
     raise UserError(
-        "The list of elastics is a table to read only.", "Leave out --json, --csv and their endings."
+        "The list of elastics is available as text only.",
+        "Remove --json, --csv and file names with these endings.",
     )
 
 

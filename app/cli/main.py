@@ -57,9 +57,9 @@ def _run(words: list[str]) -> int:
     options = window_options(words)
     file = None if options.file is None else path_of(options.file)
     if file == "":
-        raise UserError("No file is named.", "Name a scan or a project, or see 'busk --help'.")
+        raise UserError("No file is named.", "Specify a scan or a project, or see 'busk --help'.")
     if file is not None and not os.path.exists(file) and not is_seen_in_window(file):
-        raise UserError(f"There is no file {file}, and no such command.", "See 'busk --help'.")
+        raise UserError(f"{file} is neither a file nor a command.", "See 'busk --help'.")
     # Thousands of modules come now and stay: looking for garbage among them costs a tenth of the start.
     gc.disable()
     from app.gui.startup import run_window
@@ -216,12 +216,14 @@ def self_test(options: argparse.Namespace) -> int:
 
 def _folder(name: str) -> Path:
     if not name.strip():
-        raise UserError("The place to write to has no name.", "Name a folder: --out result.")
+        raise UserError("The output folder has no name.", "Specify a folder: --out result.")
     folder = Path(name)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as why:
-        raise UserError(f"The folder {name} cannot be made: {why.strerror}.", "Choose another one.") from why
+        raise UserError(
+            f"The folder {name} cannot be created: {why.strerror}.", "Choose another folder."
+        ) from why
     return folder
 
 

@@ -35,9 +35,7 @@ def settings_of(pairs: Sequence[str]) -> dict[str, Any]:
         key, equals, value = pair.partition("=")
         key, value = key.strip().lower().replace("-", "_"), value.strip().lower()
         if not equals or key not in _READERS:
-            raise UserError(
-                f"'{pair}' is no setting.", f"Write KEY=VALUE; the keys are: {', '.join(_READERS)}."
-            )
+            raise UserError(f"'{pair}' is not a setting.", f"Enter KEY=VALUE. Keys: {', '.join(_READERS)}.")
         values[key] = _READERS[key](key, value)
     return values
 
@@ -49,45 +47,47 @@ def dressed(design: Design, lines: Sequence[Line], requests: Sequence[str]) -> D
         line = next((line for line in lines if line.name.lower() == name.strip().lower()), None)
         if line is None or not equals:
             names = ", ".join(line.name for line in lines)
-            raise LineError(f"'{request}' names no line.", f"Write NAME=LENGTH; the lines are: {names}.")
+            raise LineError(f"'{request}' is not a line.", f"Enter NAME=LENGTH. Lines: {names}.")
         ratio = length_ratio(text, line.name, line.rest_length, line.whole_length)
         design = design.with_line(line.name, ratio)
     return design
 
 
 WANT_HELP = (
-    "what the body is to have, in mm (also cm, in); may be repeated. Where targets conflict, @high or "
-    "@low behind the value (lift=12mm@high) gives one four times or a quarter of the weight. lift and "
-    "out: how far the bust points rise and come out from where they are at rest; apex: the same of "
-    "whatever lies foremost; girth: the tape round the body at the bust points' height; left higher and "
-    "left further out: by how much the left one is. The names are: lift, lift left, lift right, out, out "
-    "left, out right, apex lift, apex lift left, apex lift right, apex out, apex out left, apex out "
-    "right, girth, left higher, left further out"
+    "target value in mm (also cm, in); may be repeated. If targets conflict, append @high or "
+    "@low (lift=12mm@high) for four times or a quarter of the weight. lift, out: upward and "
+    "forward movement of the bust points from the original body; apex: the same for the "
+    "foremost point of the breast; girth: girth at bust point height; left higher, left "
+    "further out: difference of left and right. Names: lift, lift left, lift right, out, out "
+    "left, out right, apex lift, apex lift left, apex lift right, apex out, apex out left, "
+    "apex out right, girth, left higher, left further out"
 )
 """What a user has to know to ask for a result."""
 
 PROFILE_HELP = (
-    "how far the skin is to stand out along a section, met as nearly as can be: a table with the columns "
-    "height_mm and out_mm, or an exported section. SECTION is left (if not told) or right, through that bust "
-    "point, or its x in mm; may be repeated, with a priority too: left@high=FILE.csv"
+    "target profile of the skin in a section, fitted by least squares: a table with the "
+    "columns height_mm and out_mm, or an exported section. SECTION is left (default) or "
+    "right, through that bust point, or x in mm; may be repeated, with optional priority: "
+    "left@high=FILE.csv"
 )
 """What a user has to know to ask for a profile."""
 
 PRESSURE_HELP = (
-    "what lines made of elastic may press with at most, in kPa (if not told: where red begins), or off"
+    "maximum contact pressure of lines with an elastic in kPa (default: the upper limit of "
+    "the rating), or off"
 )
 """What a user has to know of the limit that is kept while asking."""
 
 OPTIONAL_HELP = (
-    "a line that is off and may be switched on where the others do not reach what is wanted, or all; may be "
-    "repeated"
+    "an inactive line that may be activated if the active lines do not reach the targets, or "
+    "all; may be repeated"
 )
 """What a user has to know of lines that may be switched on."""
 
 ELASTIC_HELP = (
-    "what a worn line is made of: an elastic of the library, by its name or by words that only it has "
-    "('mid-bust=plush 12'), or a table of your own ('mid-bust=roll.csv'); the line's length is then that of "
-    "the elastic unstretched. A name that there is not is answered with all names"
+    "elastic of an active line: an elastic of the library, by name or unique words "
+    "('mid-bust=plush 12'), or a measured table ('mid-bust=roll.csv'). The line length is "
+    "then the unstretched length of the elastic. An unknown name prints all names"
 )
 """What a user has to know to choose an elastic."""
 
@@ -99,7 +99,9 @@ def made_of(design: Design, requests: Sequence[str]) -> Design:
         line = next((each for each in design.worn() if each.lower() == name.lower()), None)
         if line is None or not equals:
             worn = ", ".join(sorted(design.worn())) or "none"
-            raise LineError(f"'{request}' names no worn line.", f"Write LINE=ELASTIC; worn are: {worn}.")
+            raise LineError(
+                f"'{request}' is not an active line.", f"Enter LINE=ELASTIC. Active lines: {worn}."
+            )
         chosen = read_elastic(Path(elastic)) if elastic.lower().endswith(".csv") else find_elastic(elastic)
         design = design.with_elastic(line, chosen)
     return design
@@ -115,7 +117,7 @@ def help_text() -> str:
 def _word(key: str, value: str) -> str:
     plain = value.replace("_", "-").replace(" ", "-")
     if plain not in WORDS[key]:
-        raise UserError(f"The {key} cannot be '{value}'.", f"Choose one of: {', '.join(WORDS[key])}.")
+        raise UserError(f"'{value}' is not a value of {key}.", f"Choose one of: {', '.join(WORDS[key])}.")
     return plain
 
 
@@ -123,7 +125,7 @@ def _number(key: str, value: str) -> float:
     try:
         return float(value.replace(",", "."))
     except ValueError:
-        raise UserError(f"The {key} '{value}' is not a number.", f"Write for example {key}=1.5.") from None
+        raise UserError(f"The {key} '{value}' is not a number.", f"Enter for example {key}=1.5.") from None
 
 
 def _gain(key: str, value: str) -> float | None:
@@ -136,7 +138,7 @@ def _firm_chest(key: str, value: str) -> float:
 
 def _switch(key: str, value: str) -> bool:
     if value not in _ON:
-        raise UserError(f"The {key} cannot be '{value}'.", "Choose one of: yes, no.")
+        raise UserError(f"'{value}' is not a value of {key}.", "Choose one of: yes, no.")
     return _ON[value]
 
 

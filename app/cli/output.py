@@ -22,7 +22,7 @@ def told(forms: Mapping[str, Callable[[T], str]], found: T, kind: str, out: str 
     if out is None:
         return forms[kind](found)
     if not out.strip():
-        raise UserError("The place to write to has no name.", "Name a file: --out table.csv.")
+        raise UserError("The output folder has no name.", "Specify a file: --out table.csv.")
     form = forms[kind or {".json": "json", ".csv": "csv"}.get(Path(out).suffix.lower(), "")]
     write_text(Path(out), form(found) + "\n")
     return f"written to {out}"

@@ -18,25 +18,25 @@ from core.errors import UserError
 from core.mechanics.volume import CONTROLS
 
 COMMANDS = {
-    "solve": "solve a design and write body, control mesh, turns and report",
-    "ask": "find the lengths of lines that bring the body to what is wished",
-    "calibrate": "compare with a scan of the garment as worn, and find the numbers that predict it",
-    "doctor": "tell what fights in a design that vibrates or strains, and the least that ends it",
-    "even": "tell how left and right differ in mm and ml, and find the lengths that make them even",
-    "limits": "tell how far each line can go, and why no further",
-    "detect": "find the landmarks of a scan",
+    "solve": "solve a design and write body, control mesh, iterations and report",
+    "ask": "compute line lengths for target positions and measurements",
+    "calibrate": "compare with a fitting scan and fit tissue and line stiffness",
+    "doctor": "find conflicting lines and suggest the smallest fix",
+    "even": "compare left and right in mm and ml, and balance them",
+    "limits": "compute the length limits of each line and their reasons",
+    "detect": "detect the landmarks of a scan",
     "measure": "measure a scan, or a project before and after",
-    "cut": "tell how long the elastic of each worn line is to be cut",
-    "press": "tell what each worn line presses the skin with, in kPa and mmHg, and whether that is much",
-    "spread": "tell how far the figures of a design may be off (±), and what they leave out",
-    "report": "write a sheet to work from (PDF): sizes, lengths to cut, measures, pressures, pictures",
-    "export": "write a body, its lines, strips, measures or a turntable for other programs",
+    "cut": "compute the cut length of each active line",
+    "press": "compute the contact pressure of each active line in kPa and mmHg, and rate it",
+    "spread": "compute the uncertainty (±) of the results and list the model limitations",
+    "report": "write a report (PDF): sizes, cut lengths, measurements, contact pressures, pictures",
+    "export": "export the body, lines, pattern strips, measurements or a turntable",
     "picture": "render a scan or project to a PNG file",
-    "demo": "do the sample session off-screen and write what comes out",
-    "figures": "make the figures of the paper again, with their tables and a page",
-    "sweep": "try every volume control on the samples and the sphere, with a table",
-    "accuracy": "measure how well landmarks and girths are found, on a folder of bodies with known answers",
-    "self-test": "check this installation, one line a part; --out keeps what was made for it",
+    "demo": "run the sample session off-screen and write the results",
+    "figures": "reproduce the figures and tables of the paper",
+    "sweep": "compare all volume controls on the samples and the sphere",
+    "accuracy": "measure the accuracy of landmarks and girths on a folder of bodies with known values",
+    "self-test": "check this installation; --out keeps the test files",
 }
 """Every command with what it does, in a few words."""
 
@@ -95,13 +95,13 @@ def window_parser() -> argparse.ArgumentParser:
     commands = "\n".join(f"  busk {name:10} {help_}" for name, help_ in COMMANDS.items())
     parser = _Parser(
         prog="busk",
-        description="See how a foundation garment reshapes a body.",
+        description="Simulate how a foundation garment reshapes a body.",
         epilog=f"without a window:\n{commands}\n\n'busk COMMAND --help' tells more.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("file", nargs="?", metavar="FILE", help="a project (.busk) or a scan to open")
     parser.add_argument(
-        "--safe-mode", action="store_true", help="paint the 3D view without the graphics driver"
+        "--safe-mode", action="store_true", help=("render the 3D view without the graphics driver")
     )
     parser.add_argument("--version", action="version", version=f"busk {__version__}")
     return parser
@@ -117,14 +117,17 @@ def command_parser(command: str) -> argparse.ArgumentParser:
     _add_design(parser, command)
     if command in ("solve", "doctor"):
         parser.add_argument(
-            "--volume", choices=CONTROLS, help="what keeps the volume; else as the project says, or adaptive"
+            "--volume", choices=CONTROLS, help=("volume control (default: as in the project, or adaptive)")
         )
     if command == "solve":
         parser.add_argument(
-            "--turns", type=_turns, metavar="N", help="exactly N turns; else until settled, at most 300"
+            "--turns",
+            type=_turns,
+            metavar="N",
+            help=("run exactly N iterations (default: until converged, at most 300)"),
         )
     if command == "accuracy":
-        parser.add_argument("folder", metavar="DIR", help="scans with a truth.json beside them")
+        parser.add_argument("folder", metavar="DIR", help="folder of scans with a truth.json")
     if command in (*_SOLVED, "ask", "calibrate", "doctor", "even", "limits", "detect", "measure", "accuracy"):
         _add_forms(parser, command)
     if command == "report":
@@ -134,13 +137,15 @@ def command_parser(command: str) -> argparse.ArgumentParser:
     if command == "picture":
         _add_picture(parser)
     if command == "sweep":
-        parser.add_argument("--quick", action="store_true", help="a few cases only")
+        parser.add_argument("--quick", action="store_true", help="run a few cases only")
     if command == "figures":
-        parser.add_argument("--only", action="append", metavar="N", help="this figure alone; may be repeated")
+        parser.add_argument(
+            "--only", action="append", metavar="N", help=("only this figure; may be repeated")
+        )
     if command in ("solve", "picture", "demo", "figures", "sweep", "accuracy", "self-test"):
         needed = command not in ("demo", "accuracy", "self-test")
         default = None if command in ("accuracy", "self-test") else "out"
-        help_ = "the picture: .png" if command == "picture" else "the folder that is written to"
+        help_ = "output picture (.png)" if command == "picture" else "output folder"
         parser.add_argument("--out", required=needed, default=default, metavar="PLACE", help=help_)
     return parser
 
@@ -150,11 +155,15 @@ def _add_picture(parser: argparse.ArgumentParser) -> None:
     what.add_argument(
         "--view", default="three-quarter", help="front, left, right, back, three-quarter, top, side"
     )
-    what.add_argument("--window", action="store_true", help="the whole window, not just the body")
-    parser.add_argument("--dark", action="store_true", help="a picture on dark ground")
-    parser.add_argument("--language", choices=("en", "ja"), default="en", help="that of the window")
+    what.add_argument("--window", action="store_true", help="render the whole window")
+    parser.add_argument("--dark", action="store_true", help="use the dark theme")
+    parser.add_argument("--language", choices=("en", "ja"), default="en", help=("language of the window"))
     parser.add_argument(
-        "--size", type=_size, default=(1600, 1000), metavar="WIDTHxHEIGHT", help="of a picture"
+        "--size",
+        type=_size,
+        default=(1600, 1000),
+        metavar="WIDTHxHEIGHT",
+        help=("size of the picture in pixels"),
     )
 
 
@@ -163,8 +172,8 @@ def _add_forms(parser: argparse.ArgumentParser, command: str) -> None:
     forms = parser.add_mutually_exclusive_group()
     forms.add_argument("--json", action="store_true", help="print JSON")
     if command in (*_SOLVED, "measure"):
-        forms.add_argument("--csv", action="store_true", help="print a table of comma-separated values")
-        out = "write to a file what is printed; a name that ends in .json or .csv asks for JSON or CSV"
+        forms.add_argument("--csv", action="store_true", help="print CSV")
+        out = "write the output to a file; the ending .json or .csv selects the format"
         parser.add_argument("--out", metavar="FILE", help=out)
 
 
@@ -178,7 +187,10 @@ def _add_design(parser: argparse.ArgumentParser, command: str) -> None:
             "--line",
             action="append",
             metavar="NAME=LENGTH",
-            help="97%% of the rest length, -20mm shorter, 400mm absolute; of the front part, side to side",
+            help=(
+                "length as 97%% of the original length, -20mm (change) or 400mm (absolute); front "
+                "length, side to side"
+            ),
         )
     if command in (*_SOLVED, *_OF_LINES, "limits", "report", "export"):
         parser.add_argument("--elastic", action="append", metavar="LINE=ELASTIC", help=ELASTIC_HELP)
@@ -193,32 +205,40 @@ def _add_design(parser: argparse.ArgumentParser, command: str) -> None:
     if command == "even":
         add_evening(parser)
     if command == "cut":
-        listed = "list all elastics for a line: what each does, and why it cannot be used"
+        listed = (
+            "list all elastics for a line with their results, or the reason why an elastic cannot be used"
+        )
         parser.add_argument("--elastics", metavar="LINE", help=listed)
-        same = "let lines of elastic reach what they reach without it: lengths are then those on the body"
+        same = (
+            "choose cut lengths so that lines with an elastic reach the same length on the body as without it"
+        )
         parser.add_argument("--as-worn", action="store_true", help=same)
 
 
 def _add_sheet(parser: argparse.ArgumentParser) -> None:
     """Add what can be said of a sheet."""
-    parser.add_argument("--out", required=True, metavar="FILE", help="the sheet: .pdf")
-    parser.add_argument("--json", default="", metavar="FILE", help="all of it as data: .json")
-    parser.add_argument("--csv", default="", metavar="FILE", help="all its figures as one long table: .csv")
-    parser.add_argument("--language", choices=("en", "ja"), default="en", help="that of the sheet")
-    said = "that of lengths on the sheet, cut lengths to 1/16 in; --json and --csv keep mm"
+    parser.add_argument("--out", required=True, metavar="FILE", help="output report (.pdf)")
+    parser.add_argument("--json", default="", metavar="FILE", help="output data (.json)")
+    parser.add_argument("--csv", default="", metavar="FILE", help=("output table of all values (.csv)"))
+    parser.add_argument("--language", choices=("en", "ja"), default="en", help=("language of the report"))
+    said = "unit of lengths in the report, cut lengths to 1/16 in; --json and --csv use mm"
     parser.add_argument("--length-unit", choices=("mm", "cm", "in"), default="mm", help=said)
-    parser.add_argument("--customer", metavar="TEXT", help="whose it is, else as the project says")
     parser.add_argument(
-        "--system", default="jp", metavar="KEY", help="the sizes that come first: jp, eu, uk, us, fr, it, au"
+        "--customer", metavar="TEXT", help=("customer name or number (default: as in the project)")
+    )
+    parser.add_argument(
+        "--system", default="jp", metavar="KEY", help=("size system listed first: jp, eu, uk, us, fr, it, au")
     )
     parser.add_argument(
         "--allowance",
         type=float,
         metavar="MM",
-        help="taken off the under-bust for a tape that is worn tight, 0 to 20, an estimate; else as the "
-        "project says",
+        help=(
+            "tape tension allowance, subtracted from the under-bust girth: 0 to 20 mm, an estimate "
+            "(default: as in the project)"
+        ),
     )
-    spread = "tell beside figures and curves how far they may be off (±); takes half a minute"
+    spread = "add the uncertainty (±) of values and curves; takes half a minute"
     parser.add_argument("--spread", action="store_true", help=spread)
 
 
@@ -228,23 +248,28 @@ def _add_files(parser: argparse.ArgumentParser) -> None:
         "input", metavar="PROJECT", help=f"a project (.busk), or a scan ({KINDS}) with --line"
     )
     parser.add_argument(
-        "--body", default="", metavar="FILE", help="the reshaped body: .glb, .obj, .ply, .stl"
+        "--body", default="", metavar="FILE", help=("output reshaped body (.glb, .obj, .ply, .stl)")
     )
     parser.add_argument(
-        "--control", default="", metavar="FILE", help="the control mesh: .glb, .obj, .ply, .stl, .csv"
+        "--control", default="", metavar="FILE", help=("output control mesh (.glb, .obj, .ply, .stl, .csv)")
     )
-    parser.add_argument("--lines", default="", metavar="FILE", help="the worn lines on the body: .dxf, .obj")
+    parser.add_argument(
+        "--lines", default="", metavar="FILE", help=("output active lines on the body (.dxf, .obj)")
+    )
     parser.add_argument(
         "--flat",
         default="",
         metavar="FILE",
-        help="the worn lines as flat strips to cut, at their size: .svg, .dxf",
+        help="output active lines as flat pattern strips at full scale (.svg, .dxf)",
     )
     parser.add_argument(
-        "--measures", default="", metavar="FILE", help="its measures: .smis, .vit, .csv, .json"
+        "--measures", default="", metavar="FILE", help=("output measurements (.smis, .vit, .csv, .json)")
     )
     parser.add_argument(
-        "--turntable", default="", metavar="FILE", help="one turn round: .gif, .webp, .png for a series"
+        "--turntable",
+        default="",
+        metavar="FILE",
+        help=("output turntable (.gif, .webp, or .png for a series)"),
     )
     _add_how(parser)
 
@@ -255,33 +280,44 @@ def _add_how(parser: argparse.ArgumentParser) -> None:
         "--unit",
         dest="file_unit",
         metavar="UNIT",
-        help="mm, cm, m or in; else metres in .glb, cm in measures, mm",
+        help="mm, cm, m or in (default: m in .glb, cm in measurements, otherwise mm)",
     )
     parser.add_argument(
-        "--axes", help="z-up (faces -y), y-up (faces z) or z-up-front-y (faces y); else y-up in .glb, z-up"
+        "--axes",
+        help=(
+            "z-up (front -y), y-up (front z) or z-up-front-y (front y); default: y-up in .glb, otherwise z-up"
+        ),
     )
     parser.add_argument(
         "--before",
         action="store_true",
-        help="the body at rest in place of the reshaped one; strips stay as they are",
+        help="export the original body in place of the reshaped one; strips do not change",
     )
-    parser.add_argument("--frames", type=int, default=36, metavar="N", help="pictures of a turntable")
-    parser.add_argument("--seconds", type=float, default=6.0, metavar="S", help="how long one turn takes")
+    parser.add_argument("--frames", type=int, default=36, metavar="N", help=("number of turntable frames"))
     parser.add_argument(
-        "--size", type=_size, default=(640, 720), metavar="WIDTHxHEIGHT", help="of a turntable"
+        "--seconds", type=float, default=6.0, metavar="S", help=("duration of one rotation in seconds")
     )
-    parser.add_argument("--dark", action="store_true", help="a turntable on dark ground")
-    parser.add_argument("--beside", action="store_true", help="before and after side by side in a turntable")
+    parser.add_argument(
+        "--size",
+        type=_size,
+        default=(640, 720),
+        metavar="WIDTHxHEIGHT",
+        help=("size of the turntable in pixels"),
+    )
+    parser.add_argument("--dark", action="store_true", help=("render the turntable in the dark theme"))
+    parser.add_argument(
+        "--beside", action="store_true", help=("show before and after side by side in the turntable")
+    )
 
 
 def _turns(text: str) -> int:
     if not (text.isdecimal() and 1 <= int(text) <= 100_000):
-        raise argparse.ArgumentTypeError(f"'{text}' is no number of turns from 1 to 100000")
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of iterations from 1 to 100000")
     return int(text)
 
 
 def _size(text: str) -> tuple[int, int]:
     match = re.fullmatch(r"([1-9]\d{1,3})x([1-9]\d{1,3})", text)
     if match is None:
-        raise argparse.ArgumentTypeError(f"'{text}' is no size like 1600x1000")
+        raise argparse.ArgumentTypeError(f"'{text}' is not a size such as 1600x1000")
     return int(match[1]), int(match[2])

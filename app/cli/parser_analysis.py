@@ -11,42 +11,50 @@ from core.scan.orientation.unit_detection import MILLIMETRES
 
 def add_cure(parser: argparse.ArgumentParser) -> None:
     """Add where to a design goes with what ends its trouble."""
-    out = "save the design with the change that ends it as a project: .busk"
+    out = "save the corrected design as a project (.busk)"
     parser.add_argument("--out", default="", metavar="FILE", help=out)
 
 
 def add_evening(parser: argparse.ArgumentParser) -> None:
     """Add that left and right are to be made even, and where to."""
-    make = "find the lengths that make left and right even; lines across both sides are split for it"
+    make = "compute line lengths that balance left and right; lines across both sides are split"
     parser.add_argument("--make", action="store_true", help=make)
-    parser.add_argument("--out", default="", metavar="FILE", help="save what was found as a project: .busk")
+    parser.add_argument("--out", default="", metavar="FILE", help=("save the result as a project (.busk)"))
 
 
 def add_assumptions(parser: argparse.ArgumentParser) -> None:
     """Add what figures may be off by."""
     from core.analysis.uncertainty.input_uncertainty import NUMBERS  # noqa: PLC0415 (a command that needs it reads it)
 
-    help_ = f"assume another standard deviation; may be repeated. The names are: {', '.join(NUMBERS)}"
+    help_ = f"set a standard deviation; may be repeated. Names: {', '.join(NUMBERS)}"
     parser.add_argument("--assume", action="append", metavar="NAME=NUMBER", help=help_)
 
 
 def add_worn_scan(parser: argparse.ArgumentParser) -> None:
     """Add a second scan, with the garment on, and what can be said about it."""
     parser.add_argument("input", metavar="PROJECT", help="a project (.busk), or a scan with --line")
-    parser.add_argument("worn", metavar="WORN_SCAN", help="a scan of the same person with the garment on")
+    parser.add_argument(
+        "worn", metavar="WORN_SCAN", help=("a scan of the same person wearing the garment (fitting scan)")
+    )
     units = tuple(MILLIMETRES)
     parser.add_argument(
-        "--unit", dest="worn_unit", type=str.lower, choices=units, help="the worn scan's unit, if not guessed"
+        "--unit",
+        dest="worn_unit",
+        type=str.lower,
+        choices=units,
+        help=("unit of the fitting scan (default: detected)"),
     )
-    for key, what in (("up", "what points up in the worn scan"), ("front", "where the body faces in it")):
-        parser.add_argument(f"--{key}", dest=f"worn_{key}", metavar="AXIS", help=f"{what}, if not found well")
-    thick = "how thick the cloth is, taken off the worn scan; 0 to 20, else 0"
+    for key, what in (("up", "up axis of the fitting scan"), ("front", "front axis of the fitting scan")):
+        parser.add_argument(
+            f"--{key}", dest=f"worn_{key}", metavar="AXIS", help=(f"{what} (default: detected)")
+        )
+    thick = "fabric thickness, subtracted from the fitting scan: 0 to 20 mm (default: 0)"
     parser.add_argument("--thickness", type=float, default=0.0, metavar="MM", help=thick)
-    lengths = "lines may have been cut to other lengths than designed: find these too"
+    lengths = "also fit the line lengths, if lines may have been cut to other lengths than designed"
     parser.add_argument("--lengths", action="store_true", help=lengths)
-    one = "lines without a stiffness or an elastic of their own are of one roll: one stiffness for all"
+    one = "fit one common stiffness for all lines without their own stiffness or elastic"
     parser.add_argument("--one-roll", action="store_true", help=one)
-    parser.add_argument("--out", default="", metavar="FILE", help="save what was found as a project: .busk")
+    parser.add_argument("--out", default="", metavar="FILE", help=("save the result as a project (.busk)"))
 
 
 def _limit(text: str) -> float:
@@ -60,8 +68,8 @@ def add_wishes(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--pressure", type=_limit, metavar="KPA", help=PRESSURE_HELP)
     parser.add_argument("--optional", action="append", metavar="LINE", help=OPTIONAL_HELP)
     parser.add_argument(
-        "--lock", action="append", metavar="LINE", help="a worn line that is to stay as it is"
+        "--lock", action="append", metavar="LINE", help="an active line that keeps its length"
     )
-    shortest = "a worn line is not to be shorter than this: a length as for --line"
+    shortest = "minimum length of an active line, in the format of --line"
     parser.add_argument("--shortest", action="append", metavar="LINE=LENGTH", help=shortest)
-    parser.add_argument("--out", default="", metavar="FILE", help="save what was found as a project: .busk")
+    parser.add_argument("--out", default="", metavar="FILE", help=("save the result as a project (.busk)"))

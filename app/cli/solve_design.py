@@ -80,5 +80,5 @@ def run_worn(
     settled = motion == "settled" and solution.verdict.state != "folded"
     warnings = shape_warnings(solution)
     if motion != "settled":
-        warnings.append("The turns have not come to rest: these figures may still change.")
+        warnings.append("The solver has not converged: these values may still change.")
     return Worn(solution, settled, warnings, effect)

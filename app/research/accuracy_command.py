@@ -52,36 +52,36 @@ def accuracy_text(cases: Sequence[Case], strange: Sequence[str] = ()) -> Iterato
     """Yield the lines of the report, in Markdown."""
     bodies = [case for case in cases if not case.truth.refuse]
     groups = grouped(bodies)
-    yield from ("# How well the bodies are understood", "", *_counts(cases, bodies))
+    yield from ("# Accuracy on bodies with known landmarks", "", *_counts(cases, bodies))
     if strange:
-        yield f"Not judged, for these names are unknown here: {', '.join(strange)}."
+        yield f"Not evaluated (unknown names): {', '.join(strange)}."
     yield from (
         "",
-        "## At a glance",
+        "## Summary",
         "",
-        "Mean / 95 % / worst of the files that were read the right way round.",
+        "Mean / 95 % / worst of the files with correct orientation.",
         "",
     )
     yield from _glance(groups)
     heads = ("what", "count", "mean", "95 %", "worst", "signed mean", "worst in")
     for name, group in groups.items():
-        yield from ("", f"## How far off: {name}", "")
+        yield from ("", f"## Errors: {name}", "")
         yield from _table(heads, [_spread_row(spread) for spread in spreads(group)])
     lacking = Counter(name.replace("_", " ") for case in bodies if case.right for name in case.lacking)
     if lacking:
         known = ", ".join(f"{name} ({count})" for name, count in sorted(lacking.items()))
-        yield from ("", f"Known but not found: {known}.")
+        yield from ("", f"Known but not detected: {known}.")
     yield from ("", "## Confidence", "", *_confidence(bodies))
     kinds = sorted({kind for case in bodies for kind in case.truth.kinds})
     if kinds:
-        yield from ("", "## By kind", "", "Means [mm]; a file may be of several kinds.", "")
+        yield from ("", "## By kind", "", "Means [mm]; a file may belong to several kinds.", "")
         yield from _table(("kind", "files", "right", *BY_KIND), [_kind_row(kind, bodies) for kind in kinds])
     failures = [case for case in cases if not _as_wished(case)]
     yield from ("", "## Failures", "")
     yield from (f"* {case.truth.name}: {verdict(case)}" for case in failures)
     if not failures:
         yield "None."
-    yield from ("", "## Landmarks that are far off", "")
+    yield from ("", "## Landmarks with large errors", "")
     yield from _far(bodies)
 
 
@@ -135,18 +135,18 @@ def _counts(cases: Sequence[Case], bodies: Sequence[Case]) -> Iterator[str]:
     seconds = [case.seconds for case in cases]
     count = f"{len(bodies)} {'body' if len(bodies) == 1 else 'bodies'}"
     yield (
-        f"{count}: {len(right)} read the right way round, {sum(not c.sure for c in right)} of "
-        f"these asked about; {len(wrong)} the wrong way round, {sum(not c.sure for c in wrong)} of these "
-        f"asked about ({sum(not c.unit_right for c in wrong)} in a wrong unit, "
+        f"{count}: {len(right)} with correct orientation, {sum(not c.sure for c in right)} of "
+        f"these flagged; {len(wrong)} with wrong orientation, {sum(not c.sure for c in wrong)} "
+        f"of these flagged ({sum(not c.unit_right for c in wrong)} with a wrong unit, "
         f"{sum(not c.sides_right for c in wrong)} with sides swapped); "
-        f"{sum(bool(c.failed) and not c.crashed for c in bodies)} refused; {crashed} crashed."
+        f"{sum(bool(c.failed) and (not c.crashed) for c in bodies)} refused; {crashed} crashed."
     )
     others = [case for case in cases if case.truth.refuse]
     if others:
         refused = sum(_as_wished(case) for case in others)
         files = "file" if len(others) == 1 else "files"
-        yield f"{len(others)} {files} without a body: {refused} refused, as it should be."
-    yield f"Processor time a file: {median(seconds):.1f} s in the middle, {max(seconds):.1f} s at most."
+        yield f"{len(others)} {files} without a body: {refused} rejected, as required."
+    yield f"CPU time per file: {median(seconds):.1f} s median, {max(seconds):.1f} s maximum."
 
 
 def _glance(groups: Mapping[str, Sequence[Case]]) -> Iterator[str]:
@@ -161,17 +161,20 @@ def _figures(cases: Sequence[Case]) -> Iterator[tuple[str, str]]:
     """Yield what is told of a group of files, in words and numbers."""
     right = [case for case in cases if case.right]
     asked = sum(not case.sure for case in right)
-    yield "read the right way round", f"{len(right)}{f'; {asked} of these asked about' if asked else ''}"
-    yield "read the wrong way round", str(sum(not case.right and not case.failed for case in cases))
-    yield "refused or crashed", str(sum(bool(case.failed) for case in cases))
+    yield "correct orientation", f"{len(right)}{f'; {asked} of these asked about' if asked else ''}"
+    yield "wrong orientation", str(sum(not case.right and not case.failed for case in cases))
+    yield "rejected or crashed", str(sum(bool(case.failed) for case in cases))
     for spread in spreads(cases):
         yield _with_unit(spread.what), f"{spread.mean:.1f} / {spread.most:.1f} / {spread.worst:.1f}"
     for name, marks in _by_landmark(cases).items():
         _, count, off, unsure, sure, wrong = _confidence_row(name, marks)
-        yield f"{name} off by more than {OFF:g} mm, of these below {TRUSTED:g}", f"{off} of {count}, {unsure}"
-        yield f"{name} from {TRUSTED:g} up, of these off", f"{sure}, {wrong}"
+        yield (
+            f"{name} error above {OFF:g} mm, of these with confidence below {TRUSTED:g}",
+            f"{off} of {count}, {unsure}",
+        )
+        yield f"{name} from {TRUSTED:g} confidence and above, of these with a large error", f"{sure}, {wrong}"
     seconds = [case.seconds for case in cases]
-    yield "processor time a file [s], middle / worst", f"{median(seconds):.1f} / {max(seconds):.1f}"
+    yield "CPU time per file [s], median / worst", f"{median(seconds):.1f} / {max(seconds):.1f}"
 
 
 def _spread_row(spread: Spread) -> tuple[str, ...]:
@@ -202,14 +205,14 @@ def _by_landmark(bodies: Sequence[Case]) -> dict[str, list[Mark]]:
 def _confidence(bodies: Sequence[Case]) -> Iterator[str]:
     """Say how many landmarks that are off are unsure, and how many that are sure are off."""
     rows = [_confidence_row(name, marks) for name, marks in _by_landmark(bodies).items()]
-    heads = ("landmarks", "count", f"off > {OFF:g} mm", f"of these < {TRUSTED:g}")
-    yield from _table((*heads, f"all >= {TRUSTED:g}", f"of these off > {OFF:g} mm"), rows)
+    heads = ("landmarks", "count", f"error > {OFF:g} mm", f"of these < {TRUSTED:g}")
+    yield from _table((*heads, f"all >= {TRUSTED:g}", f"of these error > {OFF:g} mm"), rows)
     invented = [sure for case in bodies if case.right for sure in case.invented.values()]
     if invented:
         yield ""
         yield (
-            f"Breasts found where there is none: {len(invented)}, with confidence "
-            f"{np.mean(invented):.2f} on average, {max(invented):.2f} at most."
+            f"False detections of breasts: {len(invented)}, with confidence {np.mean(invented):.2f} "
+            f"on average, {max(invented):.2f} at most."
         )
 
 
@@ -232,7 +235,7 @@ def _far(bodies: Sequence[Case]) -> Iterator[str]:
     far = [(mark, case) for case in bodies if case.right for mark in case.marks if mark.off > OFF]
     for mark, case in sorted(far, key=lambda pair: -pair[0].off):
         name = mark.name.replace("_", " ")
-        yield f"* {case.truth.name}: {name} {mark.off:.1f} mm off, confidence {mark.confidence:.2f}"
+        yield f"* {case.truth.name}: {name} {mark.off:.1f} mm error, confidence {mark.confidence:.2f}"
     if not far:
         yield "None."
 

@@ -69,8 +69,8 @@ def _balance(study: Study) -> Claim:
     drift = {body: max(record.step for record in run) for body, run in runs.items()}
     return Claim(
         "3",
-        "without external forces the model is in balance and does not change its shape",
-        _each(lambda body: f"a control point moves at most {drift[body]:.0e} mm in a turn"),
+        "without external forces the model is in equilibrium and keeps its shape",
+        _each(lambda body: f"a control point moves at most {drift[body]:.0e} mm per iteration"),
         _verdict(max(drift.values()) < 1e-9),
     )
 
@@ -198,7 +198,7 @@ def _never_without(study: Study) -> Claim:
     return Claim(
         "5",
         "no vibration if the volume constraint is not applied",
-        _each(lambda body: f"calm at {calm[body]} of {len(LENGTHS)} lengths ({_percents(LENGTHS)})"),
+        _each(lambda body: f"stable at {calm[body]} of {len(LENGTHS)} lengths ({_percents(LENGTHS)})"),
         _verdict(*(number == len(LENGTHS) for number in calm.values())),
     )
 
@@ -216,7 +216,7 @@ def _calm(study: Study) -> Claim:
     return Claim(
         "6, Fig. 7",
         "the adaptive force makes no vibration",
-        f"largest swing of the last 20 of 200 turns at {_percents(LENGTHS)}, "
+        f"maximum amplitude in the last 20 of 200 iterations at {_percents(LENGTHS)}, "
         + _each(lambda body: f"{swing[body]:.1g} %"),
         _verdict(*(each < 0.001 for each in swing.values())),
     )
@@ -274,7 +274,7 @@ def _first_error(study: Study) -> Claim:
     return Claim(
         "6, Fig. 7",
         "the real body gives a bigger error in the initial stage",
-        "largest error of the first 10 turns, " + "; ".join(found),
+        "maximum error of the first 10 iterations, " + "; ".join(found),
         _verdict(*holds),
     )
 
@@ -288,7 +288,7 @@ def _speed(study: Study) -> Claim:
     return Claim(
         "5",
         "the damping does not harm the speed of convergence",
-        f"line at {100 * MODEST:.0f} %, turns until settled: "
+        f"line at {100 * MODEST:.0f} %, iterations to convergence: "
         + _each(lambda b: f"{turns[b, 'adaptive']}, conventional {turns[b, 'conventional']}"),
         _verdict(*(turns[b, "adaptive"] <= turns[b, "conventional"] for b in BODIES.values())),
     )

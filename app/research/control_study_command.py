@@ -34,17 +34,19 @@ HEADS = (
 )
 
 HOW_TO_READ = (
-    "*Vibrating, diverging, settling* and *settled* are the verdicts after the last turn. *Error*: of the "
-    f"volume, in % of the rest volume. *Ripple*: its peak-to-peak over the last {RIPPLE_TURNS} turns. "
-    "*Below*: the turn from which on it stays there, median, and the share of cases that come there; "
-    "*exact* is there from its first step. *To exact*: how far the furthest control point ends from the "
-    "exact answer; lines that are stiff against the body creep long after the volume is right. Diverging "
-    "cases are left out of errors, ripple and distance."
+    "*Vibrating, diverging, settling* and *settled* are the states after the last iteration. "
+    "*Error*: of the volume, in % of the original volume. *Ripple*: its peak-to-peak over "
+    f"the last {RIPPLE_TURNS} iterations. *Below*: the iteration after which the error "
+    "remains below, median, and the share of cases; *exact* is below from its first step. "
+    "*To exact*: maximum distance of a control point from the exact solution; stiff lines "
+    "converge slowly after the volume error. Diverging cases are excluded from errors, "
+    "ripple and distance."
 )
 
 WHAT_IS_CALM = (
-    "*Calm*: neither vibrating nor diverging. The last three columns count the exact answers whose control "
-    "mesh shows it: they are balanced all the same, but do not tell how a body would look."
+    "*Calm*: neither vibrating nor diverging. The last three columns count the exact "
+    "solutions with this defect of the control mesh: they are in equilibrium but do not "
+    "represent a real body."
 )
 
 
@@ -93,16 +95,16 @@ def _write_rows(path: Path, made: Sequence[Trial]) -> None:
 
 def page(made: Sequence[Trial], quick: bool = False) -> Iterator[str]:
     """Yield the lines of the page on the trials."""
-    yield from ("# Every volume control on trial", "", _what_was_run(made, quick))
-    yield from ("", "## What comes of it", "")
+    yield from ("# Comparison of volume controls", "", _what_was_run(made, quick))
+    yield from ("", "## Results", "")
     rows = ((control, *_summary([t for t in made if t.control == control])) for control in CONTROLS)
     yield from _table(HEADS, rows)
-    yield from ("", HOW_TO_READ, "", "## Where it is calm, by length", "")
+    yield from ("", HOW_TO_READ, "", "## Stability by length", "")
     turned = tuple(control for control in CONTROLS if control != "exact")
     heads = ("set length", *(f"{control}: calm" for control in turned), "folded", "inverted", "overstrained")
     ratios = sorted({trial.ratio for trial in made}, reverse=True)
     yield from _table(heads, (_by_length([t for t in made if t.ratio == r], r, turned) for r in ratios))
-    yield from ("", WHAT_IS_CALM, "", "## What is promised", "")
+    yield from ("", WHAT_IS_CALM, "", "## Requirements", "")
     yield from (f"* {'kept' if kept else '**not kept**'}: {what}" for what, kept in promises(made))
 
 

@@ -61,7 +61,7 @@ def figure_10(study: Study) -> Figure:
         "Conventional and adaptive force at the end, and largest error of the first ten turns, adaptive: "
         f"{'; '.join(said)}."
     )
-    return Figure("fig-10-slings", "Slings in place of the line", caption, COLUMNS, rows, drawn)
+    return Figure("fig-10-slings", "Slings instead of the line", caption, COLUMNS, rows, drawn)
 
 
 def _name_axes(axes: np.ndarray) -> None:

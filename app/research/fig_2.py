@@ -11,7 +11,7 @@ from app.research.sphere import SphereModel, sphere_model
 from core.geometry.mesh import Points
 from core.mechanics.exact_solution import solve_exact
 
-ROWS = (("shorter", 0.8), ("at rest", 1.0), ("longer", 1.15))
+ROWS = (("shorter", 0.8), ("original", 1.0), ("longer", 1.15))
 
 COLUMNS = (
     "line",

@@ -46,7 +46,7 @@ def figure_4(study: Study) -> Figure:
         plot.plot(*rest.T, color=COLOURS["rest"], lw=1.0, ls=(0, (3, 2)), label="before")
         for control, colour, title in (
             ("none", LIGHT.warn_mark, "volume free"),
-            ("adaptive", COLOURS["adaptive"], "volume held"),
+            ("adaptive", COLOURS["adaptive"], "volume controlled"),
         ):
             solution = study.solved(BODY, ratio, control)
             shape = profile(solution.body, at)
@@ -72,7 +72,7 @@ def _show_views(study: Study, stages: Stages, axes: Sequence[Axes]) -> None:
     """Show the body from the side: before, and after with the volume held and free."""
     held, free = (study.solved(BODY, study.ratio_for(BODY, REACHED[0]), c) for c in ("adaptive", "none"))
     pictures = [_picture(study, stages, each) for each in (None, held, free)]
-    titles = ("before", "after, volume held", "after, volume free")
+    titles = ("before", "after, volume controlled", "after, volume free")
     for plot, picture, title in zip(axes, trimmed(pictures), titles, strict=True):
         show(plot, picture, title)
 

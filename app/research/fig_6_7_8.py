@@ -88,7 +88,7 @@ def figure_7(study: Study) -> Figure:
     for plot in axes[-1]:
         plot.set_xlabel("turn")
     caption = (
-        f"Error of the control mesh's volume over {TURNS} turns; negative when volume is missing. "
+        f"Volume error of the control mesh over {TURNS} iterations; negative for missing volume. "
         + "; ".join(said)
         + "."
     )
@@ -112,15 +112,15 @@ def figure_8(study: Study) -> Figure:
                 plot.semilogy(np.arange(turns + 1), values, color=COLOURS[control], label=control)
             rows += _way_rows(body, control, away, error)
             said.append(
-                f"{body}, {control}: {away[-1]:.2g} mm and {100 * error[-1]:+.2g} % after {turns} turns"
+                f"{body}, {control}: {away[-1]:.2g} mm and {100 * error[-1]:+.2g} % after {turns} iterations"
             )
         away, error = study.newton_way(body, ratio, exact.state.moved)
         axes[0, column].semilogy(away, "D-", ms=2.6, lw=0.8, color=COLOURS["exact"], label="exact, Newton")
         rows += _way_rows(body, "exact", away, error)
         axes[0, column].set_title(f"({letter}) {body}, line at {100 * ratio:.0f} %")
-        axes[1, column].set_xlabel("turn, or Newton step")
+        axes[1, column].set_xlabel("iteration or Newton step")
         said.append(f"{body}, exact: {exact.last.turn} Newton steps, {abs(100 * exact.last.error):.1g} %")
-    axes[0, 0].set_ylabel("largest distance to the\nexact answer [mm]")
+    axes[0, 0].set_ylabel("maximum distance to the\nexact solution [mm]")
     axes[1, 0].set_ylabel("volume error [%]")
     axes[0, 0].legend(loc="upper right", bbox_to_anchor=(1.0, 0.77))
     axes[0, 0].set_ylim(1e-5, 30.0)
@@ -132,7 +132,9 @@ def figure_8(study: Study) -> Figure:
         + "."
     )
     columns = ("body", "control", "turn_or_step", "distance_to_exact_mm", "volume_error_percent")
-    return Figure("fig-8-exact", "Both controls against the exact answer", caption, columns, rows, drawn)
+    return Figure(
+        "fig-8-exact", "Both controls compared with the exact solution", caption, columns, rows, drawn
+    )
 
 
 def _way_rows(body: str, control: str, away: Floats, error: Floats) -> list[tuple[object, ...]]:

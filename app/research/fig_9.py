@@ -36,10 +36,10 @@ def figure_9(study: Study) -> Figure:
         picture = plot.pcolormesh(
             100.0 * RATIOS, GAINS, swing, cmap=ListedColormap(SHADES), norm=BoundaryNorm(STEPS, len(SHADES))
         )
-        plot.axhline(limit, color=LIGHT.text, lw=1.2, label="limit computed at rest")
+        plot.axhline(limit, color=LIGHT.text, lw=1.2, label=("limit computed on the original body"))
         plot.axhline(GAIN_SHARE * limit, color=LIGHT.text, lw=1.2, ls=(0, (3, 2)), label="default gain")
         plot.set_title(f"({letter}) {body}, {TEMPLATE[body]} triangles")
-        plot.set_xlabel("set length of the line [% of rest]")
+        plot.set_xlabel("set length of the line [% of original]")
         plot.grid(visible=False)
         rows += [
             (body, 100.0 * float(ratio), float(gain), float(swing[j, i]), limit)
@@ -54,7 +54,7 @@ def figure_9(study: Study) -> Figure:
     axes[0].legend(loc="lower right")
     bar = drawn.colorbar(picture, ax=axes, extend="neither", ticks=STEPS[1:-1])
     bar.set_ticklabels(["0.001", "0.01", "0.1", "1", "10"])
-    bar.set_label("swing from turn to turn [%]")
+    bar.set_label("amplitude per iteration [%]")
     caption = (
         f"Largest swing of the volume from turn to turn in the last 12 of {TURNS} turns. Line: the "
         "gain limit computed at rest before any turn is made; dashed: the default gain. "
@@ -62,7 +62,9 @@ def figure_9(study: Study) -> Figure:
         + "."
     )
     columns = ("body", "set_percent", "gain", "swing_percent", "gain_limit_at_rest")
-    return Figure("fig-9-gain-map", "Where the conventional force is calm", caption, columns, rows, drawn)
+    return Figure(
+        "fig-9-gain-map", "Stability region of the conventional force", caption, columns, rows, drawn
+    )
 
 
 def _swing(study: Study, body: str, ratio: float, control: str, gain: float) -> float:

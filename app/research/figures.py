@@ -50,7 +50,7 @@ def make_some(numbers: Collection[str], out: Path, tell: Callable[[str], None] =
     """Write the figures with these ``numbers`` to ``out``, without the page. Raises UserError."""
     unknown = sorted(set(numbers) - FIGURES.keys())
     if unknown:
-        raise UserError(f"There is no figure {unknown[0]}.", f"Choose among: {', '.join(FIGURES)}.")
+        raise UserError(f"Unknown figure {unknown[0]}.", f"Choose among: {', '.join(FIGURES)}.")
     study = Study()
     for number in FIGURES:
         if number in numbers:

@@ -29,7 +29,7 @@ def write_page(out: Path, drawn: Sequence[Figure], study: Study, tell: Callable[
     stated = claims(study)
     rows = [(c.where, c.statement, c.found, c.verdict) for c in stated]
     write_table(out / "statements.csv", ("section", "the_paper", "here", "verdict"), rows)
-    tell(f"  {out / 'statements.csv'}: {len(stated)} statements of the paper beside what was found")
+    tell(f"  {out / 'statements.csv'}: {len(stated)} statements of the paper with measured values")
 
     def build(body: str, template: str, height: float) -> Stages:
         return study.stages(body, template, line_height=height)

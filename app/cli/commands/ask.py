@@ -83,15 +83,17 @@ def run_ask(
     """
     goals, curves = goals_of(wishes.want), [_curve(each) for each in wishes.profile]
     if not goals and not curves:
-        raise UserError("Nothing is asked for.", "Name a figure: --want lift=5mm.")
+        raise UserError("No target specified.", "Specify a target: --want lift=5mm.")
     if wishes.pressure is not None and not (0.0 < wishes.pressure < _HARDEST or wishes.pressure == np.inf):
-        raise UserError("That is no pressure to keep to.", f"Write kPa between 0 and {_HARDEST:g}.")
+        raise UserError("That is no pressure to keep to.", f"Enter kPa between 0 and {_HARDEST:g}.")
     if wishes.out and not is_project(wishes.out):
-        raise UserError(f"{wishes.out} is no name of a project.", f"Name one: --out design{SUFFIX}.")
+        raise UserError(
+            f"{wishes.out} is not a project file name.", f"Specify a project file: --out design{SUFFIX}."
+        )
     stages = build(design)
     design = made_of(dressed(design, stages.model.lines, lengths), elastics)
     if not design.lines and not wishes.optional:
-        raise LineError("No line is worn.", "Wear those that may be used: --line mid-bust=100%.")
+        raise LineError("No line is worn.", "Activate the lines to use: --line mid-bust=100%.")
     stages = build(design, stages)
     worn = {line.name.lower(): line for line in stages.model.lines if line.name in design.worn()}
     kept = [_worn(worn, name, name).name for name in wishes.lock]
@@ -118,12 +120,12 @@ def goals_of(wants: Sequence[str]) -> tuple[Goal, ...]:
         name = " ".join(match[1].split()) if match else ""
         if match is None or name not in NAMES:
             names = ", ".join(NAMES)
-            raise UserError(f"'{want}' cannot be asked for.", f"Write NAME=12mm; the names are: {names}.")
+            raise UserError(f"'{want}' is not a target.", f"Enter NAME=12mm. Names: {names}.")
         value = float(match[2].replace(",", ".")) * _MM[match[3]]
         if abs(value) > _LARGEST:
-            raise UserError(f"'{want}' is no length of a body.", "Write millimetres, or cm or in behind it.")
+            raise UserError(f"'{want}' is not a valid body length.", "Enter millimetres, or append cm or in.")
         if name in goals:
-            raise UserError(f"{name} is asked for twice.", "Ask once.")
+            raise UserError(f"{name} is specified twice.", "Specify it once.")
         goals[name] = Goal(name, value, match[4] or "normal")
     return tuple(goals.values())
 
@@ -134,7 +136,7 @@ def _curve(request: str) -> tuple[str, str, Floats]:
     section = match[1].lower() if match else "left"
     named, equals, _ = request.partition("=")
     if match is None and equals and not Path(request).exists():
-        hint = "Name left, right, or its x in mm: 60=FILE.csv."
+        hint = "Specify left, right, or x in mm: 60=FILE.csv."
         raise UserError(f"There is no section '{named.strip()}'.", hint)
     priority = (match[2] or "normal").lower() if match else "normal"
     return section, priority, read_profile(request[match.end() :] if match else request)
@@ -150,7 +152,9 @@ def _optional(stages: Stages, requests: Sequence[str]) -> tuple[str, ...]:
     for request in requests:
         if request.strip().lower() not in known:
             names = ", ".join(known) or "none"
-            raise LineError(f"'{request}' names no line that is off and can move the body.", f"Off: {names}.")
+            raise LineError(
+                f"'{request}' is not an inactive line that moves the body.", f"Inactive lines: {names}."
+            )
         chosen += known[request.strip().lower()]
     return tuple(dict.fromkeys(chosen))
 
@@ -158,7 +162,7 @@ def _optional(stages: Stages, requests: Sequence[str]) -> tuple[str, ...]:
 def _worn(worn: Mapping[str, Line], name: str, request: str) -> Line:
     if name.strip().lower() not in worn:
         names = ", ".join(line.name for line in worn.values())
-        raise LineError(f"'{request}' names no worn line.", f"Worn are: {names}.")
+        raise LineError(f"'{request}' is not an active line.", f"Active lines: {names}.")
     return worn[name.strip().lower()]
 
 
@@ -179,25 +183,25 @@ def _plain(asked: Asked) -> Iterator[str]:
     wide = max([12, *(len(goal.name) + 1 for goal in single)])
     yield from (*assessment_lines(asked.assessment, reply.design), "")
     if single:
-        yield f"{'':{wide}}{'asked for':>12}{'reached':>12}"
+        yield f"{'':{wide}}{'target':>12}{'reached':>12}"
     for goal in single:
         sign = "" if goal.name == GIRTH else "+"
         wanted, got = (f"{value:{sign}.1f} mm" for value in (goal.value, reply.reached[goal.name]))
         yield f"{goal.name:{wide}}{wanted:>12}{got:>12}"
     for section, off in profiles_off(asked.goals, reply.reached).items():
         mean, most = np.abs(off).mean(), np.abs(off).max()
-        yield f"{section}: {len(off)} heights, off by {mean:.1f} mm in the mean, {most:.1f} mm at most."
+        yield f"{section}: {len(off)} heights, error {mean:.1f} mm on average, {most:.1f} mm maximum."
     for line in asked.stages.model.lines:
         if line.name in reply.design.worn():
             ratio, before = (design.ratio(line.name) for design in (reply.design, asked.stages.design))
-            length = f"{100.0 * ratio:.1f} %, {ratio * line.rest_length:.1f} mm of the front part"
+            length = f"{100.0 * ratio:.1f} %, {ratio * line.rest_length:.1f} mm front length"
             same = abs(ratio - before) < 5e-4
-            change = "as before" if same else f"before {100.0 * before:.1f} %"
+            change = "unchanged" if same else f"before {100.0 * before:.1f} %"
             yield f"{line.name}: {length}; {'switched on' if line.name in added else change}"
     yield _verdict(reply)
     yield from map(conflict_text, asked.conflicts)
     estimate = "" if not reply.unseen else ", an estimate"
-    yield f"All lines together pull with {reply.tension:.1f} N{estimate}."
+    yield f"Total tension of all lines: {reply.tension:.1f} N{estimate}."
     yield from _pressures(reply)
     if asked.out:
         yield f"written to {asked.out}"
@@ -205,10 +209,13 @@ def _plain(asked: Asked) -> Iterator[str]:
 
 def _verdict(reply: Reply) -> str:
     if reply.reachable:
-        return "Reached."
+        return "All targets reached."
     if not reply.agreed:
-        return "Not reached: lengths, elastics and pressures did not come to agree, so there may be better."
-    return f"Not reachable; this is the nearest, because {' and '.join(reasons(reply))}."
+        return (
+            "Not converged: the iteration over lengths, elastics and contact pressures stopped, so a "
+            "better result may exist."
+        )
+    return f"Not reachable. Closest result, because {' and '.join(reasons(reply))}."
 
 
 def conflict_text(conflict: Conflict) -> str:
@@ -216,8 +223,8 @@ def conflict_text(conflict: Conflict) -> str:
     name, profile = conflict.name, bool(section_of(conflict.name))
     alone = f"{'off by ' if profile else ''}{conflict.alone:.1f} mm"
     if not conflict.against:
-        return f"{name}: {alone} is the nearest even as the only target."
-    off = "off by " if section_of(conflict.against) else ""
+        return f"{name}: {alone} is the closest result even as the only target."
+    off = "error " if section_of(conflict.against) else ""
     return (
         f"{name} conflicts with {conflict.against}: {alone} as the only target, and {conflict.against} "
         f"is then {off}{conflict.lost:.1f} mm instead of {conflict.kept:.1f} mm "
@@ -232,18 +239,18 @@ def reasons(reply: Reply) -> list[str]:
         long = reply.may_not_be_longer(name)
         reasons.append(f"{name} is as {'long' if long else 'short'} as it may be")
     if reply.strained:
-        reasons.append("the body would be strained more than looks natural")
-    reasons += [f"{name} presses as hard as it may" for name in reply.pressing]
-    reasons += [f"{name} would have to push" for name in reply.slack if name not in reply.at_end]
-    return reasons or ["these lines do not move the body that way"]
+        reasons.append("the skin strain would exceed its limit")
+    reasons += [f"{name} is at its contact pressure limit" for name in reply.pressing]
+    reasons += [f"{name} would carry compression" for name in reply.slack if name not in reply.at_end]
+    return reasons or ["the active lines cannot produce this movement"]
 
 
 def _pressures(reply: Reply) -> Iterator[str]:
-    limit = f"it may with {reply.limit:g}" if np.isfinite(reply.limit) else "there is no limit"
+    limit = f"limit {reply.limit:g} kPa" if np.isfinite(reply.limit) else "no limit"
     for name, kpa in reply.pressure.items():
-        yield f"{name} presses with {kpa:.2f} kPa at most; {limit}."
+        yield f"{name}: contact pressure up to {kpa:.2f} kPa; {limit}."
     if reply.unseen:
-        yield f"Not looked at for pressure, as only lines made of elastic are: {', '.join(reply.unseen)}."
+        yield f"Contact pressure not checked (no elastic selected): {', '.join(reply.unseen)}."
 
 
 def _figures(asked: Asked) -> dict[str, Any]:

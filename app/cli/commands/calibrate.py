@@ -30,7 +30,7 @@ from core.document.storage.project_file import SUFFIX, is_project, open_project,
 from core.errors import UserError
 from core.pipeline.build import Stages, build
 
-WAYS = ("to her left", "to the back", "up")
+WAYS = ("to the left", "to the back", "up")
 """Where x, y and z point, as designers say it."""
 
 
@@ -67,10 +67,13 @@ def run_calibrate(
     ``source`` is the file that it came from. Raises UserError.
     """
     if told.out and not is_project(told.out):
-        raise UserError(f"{told.out} is no name of a project.", f"Name one: --out design{SUFFIX}.")
+        raise UserError(
+            f"{told.out} is not a project file name.", f"Specify a project file: --out design{SUFFIX}."
+        )
     if not 0.0 <= told.thickness <= THICKEST:
         raise UserError(
-            f"Cloth is not {told.thickness:g} mm thick.", f"Tell its thickness: 0 to {THICKEST:g} mm."
+            f"The fabric thickness {told.thickness:g} mm is out of range.",
+            f"Enter a thickness from 0 to {THICKEST:g} mm.",
         )
     stages = build(design)
     stages = build(made_of(dressed(design, stages.model.lines, lengths), elastics), stages)
@@ -95,16 +98,16 @@ def _plain(done: Calibrated) -> Iterator[str]:
     found, laid, design = done.found, done.worn.alignment, done.stages.design
     turn, shift = 2.0 * float(laid.turns.max()), 2.0 * float(laid.shifts.max())
     yield (
-        f"{done.worn.name} lies on the first scan: {100.0 * laid.met:.0f} % of the still skin within 5 mm, "
-        f"{laid.rms:.2f} mm in the root of the mean square, {laid.most:.2f} mm at 95 %; "
-        f"sure to ±{turn:.2f} degrees and ±{shift:.2f} mm."
+        f"{done.worn.name} was registered to the first scan: {100.0 * laid.met:.0f} % of the "
+        f"unaffected skin within 5 mm, {laid.rms:.2f} mm RMS, {laid.most:.2f} mm at 95 %; "
+        f"uncertainty ±{turn:.2f} degrees and ±{shift:.2f} mm."
     )
     yield ""
-    yield f"{'predicted less real [mm]':28}{'mean':>8}{'rms':>8}{'95 %':>8}{'shown':>8}"
+    yield f"{'residual [mm]':28}{'mean':>8}{'rms':>8}{'95 %':>8}{'shown':>8}"
     for when, difference in (("before", found.before), ("after", found.after)):
         yield _row(when, difference.all_of_it)
         for side, figures in difference.sides.items():
-            yield _row(f"  her {side}", figures)
+            yield _row(f"  {side}", figures)
     yield ""
     yield from _bust_points(done)
     yield f"{'number':28}{'before':>10}{'after':>10}{'±':>9}"
@@ -125,19 +128,22 @@ def _plain_outcome(done: Calibrated) -> Iterator[str]:
     for number in found.calibration.numbers:
         if number.kept:
             yield stays(number, found.confused.get(number.name, ""), design)
-    yield "± is 95 % of what noise of the scans makes; another posture or breath is not in it."
-    yield "The numbers hold for this person and this garment."
+    yield "± covers 95 % of the scan noise; differences in posture or breathing are not included."
+    yield "The values apply to this person and this garment."
     for name in found.at_end:
         yield (
-            f"{spoken(name, design)} went to the end of what may be: is this the scan with the garment on, "
-            "and are these its lines?"
+            f"{spoken(name, design)} reached the limit. Check that this is the fitting scan and that "
+            "the lines match the garment."
         )
     if not found.helped and not found.at_end:
-        yield "It did not help: no number moved by more than its ±, or the prediction came no nearer."
+        yield (
+            "Calibration did not improve the prediction: no parameter changed by more than its ±, or "
+            "the residual did not decrease."
+        )
     if found.helped and found.explains_little:
-        yield "Most of predicted less real remains: posture, breath or cloth may have made these numbers."
+        yield "Most of the residual remains: posture, breathing or fabric may have affected these values."
     if found.helped and found.weak:
-        yield "None of these numbers is told well: take them as a hint."
+        yield "No parameter is well determined. Treat the values as indicative."
     if done.out:
         yield f"written to {done.out}{'' if found.helped else ', as it was'}"
 
@@ -146,10 +152,10 @@ def told(found: CalibrationResult) -> str:
     """Return how many of the numbers that were found are told well."""
     sought = [number for number in found.calibration.numbers if not number.kept]
     well = sum(number.told for number in sought)
-    more = "; a finer scan tells more" if well < len(sought) else ""
+    more = "; a finer scan improves this" if well < len(sought) else ""
     return (
-        f"{well} of {len(sought)} numbers told to within {100.0 * WELL:.0f} %, "
-        f"by {found.met:,} points on the moving skin{more}."
+        f"{well} of {len(sought)} parameters determined within {100.0 * WELL:.0f} %, from "
+        f"{found.met:,} points on the reshaped skin{more}."
     )
 
 
@@ -163,14 +169,14 @@ def _bust_points(done: Calibrated) -> Iterator[str]:
     for side, before in told[0].items():
         sure = 100.0 * done.worn.sure[side]
         yield (
-            f"bust point, her {side} ({sure:.0f} % sure on the worn scan): predicted less real, "
+            f"bust point, {side} ({sure:.0f} % confidence on the fitting scan): residual, "
             f"±{done.found.before.bust_unsure[side]:.1f} mm along the skin"
         )
         for when, way in (("before", before), ("after", told[1][side])):
             parts = ", ".join(f"{value:+.1f} mm {where}" for value, where in zip(way, WAYS, strict=True))
             yield f"  {when:8}{parts}"
     if not told[0]:
-        yield "No bust point shows surely on the worn scan, so none is compared."
+        yield "No bust point detected reliably on the fitting scan: not compared."
     yield ""
 
 
@@ -191,9 +197,11 @@ def _value(number: FoundNumber, value: float) -> str:
 def stays(number: FoundNumber, other: str, design: Design) -> str:
     """Return why a number stays as it is."""
     why = (
-        f"these scans cannot tell it from {spoken(other, design)}" if other else "these scans do not tell it"
+        f"these scans do not separate it from {spoken(other, design)}"
+        if other
+        else "these scans do not determine it"
     )
-    return f"{spoken(number.name, design)} stays {_value(number, number.before)}: {why}."
+    return f"{spoken(number.name, design)} remains {_value(number, number.before)}: {why}."
 
 
 def _figures(done: Calibrated) -> dict[str, Any]:

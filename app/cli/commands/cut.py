@@ -39,9 +39,7 @@ def cut_text(found: Cut, kind: str, out: str | None) -> str:
 
 
 def _plain(found: Cut) -> str:
-    heading = (
-        f"{'':22}{'cut mm':>9}{'stretch %':>11}{'tension N':>11}{'front mm':>10}{'whole mm':>10}  elastic"
-    )
+    heading = f"{'':22}{'cut mm':>9}{'elong. %':>11}{'tension N':>11}{'front mm':>10}{'full mm':>10}  elastic"
     rows = (line for row in found.cuts.rows for line in _lines(row))
     return "\n".join([*found.worn.verdict, *found.worn.effect, "", heading, *rows, *found.cuts.notes])
 

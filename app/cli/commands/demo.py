@@ -15,7 +15,7 @@ from core.pipeline.solve import run
 def run_demo(out: Path) -> int:
     """Write pictures, deformed body and report of the sample to ``out``, and say so."""
     design = lifted_sample()
-    print("Busk has no display here: the sample session goes to files.")
+    print("No display available: the sample session is written to files.")
     draw_window(design, out / "window.png")
     print(f"  {out / 'window.png'}: the window")
     for view, lines, name in (("three-quarter", (), "before"), ("three-quarter", design.lines, "after")):
@@ -24,7 +24,7 @@ def run_demo(out: Path) -> int:
     solution = run(build(design))
     write_solution(solution, out)
     print(f"  {out / 'body.ply'}: the deformed body")
-    print(f"  {out / 'turns.csv'}, {out / 'report.json'}: every turn, and the figures at the end")
+    print(f"  {out / 'turns.csv'}, {out / 'report.json'}: iterations and final values")
     last = solution.last
-    print(f"{solution.verdict.words} after {last.turn} turns, volume error {last.error_ml:+.2f} ml")
+    print(f"{solution.verdict.words} after {last.turn} iterations, volume error {last.error_ml:+.2f} ml")
     return 0

@@ -16,7 +16,7 @@ def found_text(found: Mapping[str, Any]) -> str:
     own = not np.allclose(found["file_to_mm"], np.eye(4))
     lines = [f"unit {found['unit']}, up {found['up']}, front {found['front']}"]
     if found["upright"]:
-        lines.append(f"stand upright with --up={found['upright']}")
+        lines.append(f"set upright with --up={found['upright']}")
     for name, mark in found["landmarks"].items():
         x, y, z = mark["mm"]
         line = f"{name:22} {x:8.1f} {y:8.1f} {z:8.1f} mm  {100 * mark['confidence']:3.0f} %"

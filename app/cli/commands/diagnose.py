@@ -24,41 +24,41 @@ from core.garment.assessment import Assessment, assessed
 from core.pipeline.build import build
 
 MEANING = {
-    "strained": "an edge of the control mesh is outside 80 to 120 % of its length at rest",
-    "settling": "it has not come to rest in all turns",
-    "overstrained": "an edge of the control mesh is outside 70 to 130 % of its length at rest",
-    "folded": "a triangle of the control mesh has turned to its side",
-    "vibrating": "it swings and does not come to rest",
-    "diverging": "it runs away",
-    "unreachable": "nothing balances with the lines at these lengths",
+    "strained": "an edge of the control mesh is outside 80 to 120 % of its original length",
+    "settling": "the solver has not converged in the given iterations",
+    "overstrained": "an edge of the control mesh is outside 70 to 130 % of its original length",
+    "folded": "a triangle of the control mesh has rotated by more than 78 degrees",
+    "vibrating": "the solver oscillates and does not converge",
+    "diverging": "the solver diverges",
+    "unreachable": "no equilibrium exists for these line lengths",
 }
 """What each complaint means."""
 
 CHOICES = {
-    ("volume", "adaptive"): "keep the volume by the adaptive control",
-    ("volume", "exact"): "ask for the exact answer",
-    ("line_force", "implicit"): "let the force of lines act in step",
-    ("line_hold", "spring"): "let lines spring back",
+    ("volume", "adaptive"): "use adaptive volume control",
+    ("volume", "exact"): "use the exact solution",
+    ("line_force", "implicit"): "use implicit line forces",
+    ("line_hold", "spring"): "make lines elastic",
 }
 """What other choices of the model do."""
 
 
 TROUBLES = {
-    "vibrating": "the swing",
-    "diverging": "the running away",
-    "settling": "the long settling",
+    "vibrating": "the oscillation",
+    "diverging": "the divergence",
+    "settling": "the slow convergence",
     "folded": "the fold",
     "overstrained": "the strain",
     "strained": "the strain",
-    "unreachable": "the lack of a balance",
+    "unreachable": "the missing equilibrium",
 }
 """Each complaint as a thing that a part of a change can end."""
 
 PARTS = {
     "gain": "the gain",
-    "volume": "the control",
-    "line_force": "the force in step",
-    "line_hold": "the spring",
+    "volume": "the volume control",
+    "line_force": "the implicit line force",
+    "line_hold": "the elastic line",
 }
 """Other choices of the model as parts of a change."""
 
@@ -89,7 +89,9 @@ def run_doctor(
     ``source`` is the file it came from; ``out`` the project that a cured design is saved as, or empty.
     """
     if out and not is_project(out):
-        raise UserError(f"{out} is no name of a project.", f"Name one: --out design{SUFFIX}.")
+        raise UserError(
+            f"{out} is not a project file name.", f"Specify a project file: --out design{SUFFIX}."
+        )
     stages = build(design)
     stages = build(made_of(dressed(design, stages.model.lines, lengths), elastics), stages)
     found = diagnose(stages)
@@ -110,7 +112,7 @@ def _plain(examined: Examined) -> Iterator[str]:
     found = examined.diagnosis
     yield from assessment_lines(examined.assessment, found.stages.design)
     if not found.complaint:
-        yield f"The calculation converges: settled after {found.verdict.turns} turns."
+        yield f"The solver converged in {found.verdict.turns} iterations."
         yield from _table(found)
         if found.findings:
             yield from _remedy(examined)
@@ -119,15 +121,21 @@ def _plain(examined: Examined) -> Iterator[str]:
     verdict = found.verdict
     if verdict.period:
         yield (
-            f"swings every {verdict.period:.1f} turns by {100.0 * verdict.amplitude:.2f} % of the volume, "
-            f"{_growth(verdict.growth)}"
+            f"oscillates with a period of {verdict.period:.1f} iterations, amplitude "
+            f"{100.0 * verdict.amplitude:.2f} % of the volume, {_growth(verdict.growth)}"
         )
     if found.onset is not None and 1.0 < found.onset < float("inf"):
-        yield f"a small swing about where it would rest grows by {100.0 * (found.onset - 1.0):.1f} % a turn"
+        yield (
+            f"a small oscillation about the equilibrium grows by {100.0 * (found.onset - 1.0):.1f} % "
+            "per iteration"
+        )
     if found.bears is not None:
         gain = found.stages.gain
         share = f"{100.0 * gain / found.bears:.0f} %"
-        yield f"the conventional gain is {gain:.2f}, {share} of the {found.bears:.2f} that this shape bears"
+        yield (
+            f"the conventional gain is {gain:.2f}, {share} of the {found.bears:.2f} stability limit "
+            "of this shape"
+        )
     yield _fight(found.fight.worst)
     yield from _table(found)
     yield from _remedy(examined)
@@ -136,18 +144,15 @@ def _plain(examined: Examined) -> Iterator[str]:
 def _growth(growth: float) -> str:
     percent = 100.0 * (growth - 1.0)
     if abs(percent) < 0.05:
-        return "and stays as large"
+        return "with constant amplitude"
     return f"and {'grows' if percent > 0.0 else 'fades'} by {abs(percent):.1f} % a turn"
 
 
 def _fight(worst: Clash | None) -> str:
     if worst is None:
-        return "no two constraints stand out as pulling against each other"
+        return "no pair of constraints conflicts clearly"
     sizes = f"{worst.one.newtons:.1f} N against {worst.other.newtons:.1f} N"
-    return (
-        f"{_name(worst.one)} and {_name(worst.other)} pull against each other: {worst.angle:.0f} degrees "
-        f"apart, {sizes}"
-    )
+    return f"{_name(worst.one)} and {_name(worst.other)} conflict: {worst.angle:.0f} degrees apart, {sizes}"
 
 
 def _name(pull: Pull) -> str:
@@ -159,19 +164,22 @@ def _table(found: Diagnosis) -> Iterator[str]:
     if not fight.pulls:
         return
     if fight.share < 1.0:
-        yield f"the last balance is {100.0 * fight.share:.0f} % of the way from rest to these lengths; there:"
+        yield (
+            f"the last equilibrium is at {100.0 * fight.share:.0f} % of the change from the original "
+            "to these lengths; forces there:"
+        )
     yield f"  {'':24}{'force':>10}   to the volume"
     for pull in fight.pulls:
         sides = f"   left {pull.sides[0]:.1f} N, right {pull.sides[1]:.1f} N" if pull.sides else ""
         yield f"  {_name(pull):24}{pull.newtons:8.1f} N{pull.to_volume:8.0f} degrees{sides}"
-    yield f"  {'the skin itself':24}{fight.skin:8.1f} N"
-    yield "  (forces at all points added up; what a line pulls with along itself: busk cut)"
+    yield f"  {'skin':24}{fight.skin:8.1f} N"
+    yield "  (sum over all points; for tension along a line see busk cut)"
 
 
 def _remedy(examined: Examined) -> Iterator[str]:
     found = examined.diagnosis
     if found.fixes:
-        yield "Changes that end it, each run from rest and on from here, the best first:"
+        yield "Fixes, verified from the original body and from the current state, best first:"
         for place, cure in enumerate(found.fixes, start=1):
             yield f"  {place}. {change_words(found, cure.change)}: {_remains(found, cure)}"
             if cure.choice_ends:
@@ -179,11 +187,11 @@ def _remedy(examined: Examined) -> Iterator[str]:
         if examined.out:
             yield f"written to {examined.out}"
         return
-    yield "No change of one line, of the gain or of the model was found that ends it."
+    yield "No fix found among changes of one line, of the gain or of the model."
     if found.nearest is not None:
-        yield f"The nearest: {change_words(found, found.nearest.change)}; it is then {found.nearest.left}."
+        yield f"Closest: {change_words(found, found.nearest.change)}; status then: {found.nearest.left}."
     if found.locked:
-        yield f"Locked, and so left as they are: {', '.join(found.locked)}."
+        yield f"Locked and not changed: {', '.join(found.locked)}."
 
 
 def _remains(found: Diagnosis, cure: Cure) -> str:
@@ -197,9 +205,9 @@ def _parts(cure: Cure) -> str:
     """Return which part of a double change ends what."""
     one, other = TROUBLES[cure.choice_ends], TROUBLES[cure.lengths_end]
     if one == other:
-        return f"Neither part is enough alone: it would still be {cure.choice_ends}."
+        return f"Neither part is sufficient alone; status: {cure.choice_ends}."
     lengths = "the lengths" if cure.change.kind == "together" else "the length"
-    return f"{PARTS[cure.change.setting[0]].capitalize()} ends {one}, {lengths} {other}."
+    return f"{PARTS[cure.change.setting[0]].capitalize()} removes {one}, {lengths} {other}."
 
 
 def change_words(found: Diagnosis, change: Change) -> str:
@@ -217,13 +225,13 @@ def change_words(found: Diagnosis, change: Change) -> str:
         parts.append(f"{verb} {names} by {abs(longer):.1f} mm, to {percent:.1f} %")
     if change.kind == "together":
         lengths = (f"{name} to {100.0 * change.design.ratio(name):.1f} %" for name in change.lines)
-        nearer = f"bring all lines up to {found.moves_mm(change):.0f} mm nearer to rest"
+        nearer = f"move all lines up to {found.moves_mm(change):.0f} mm closer to their original lengths"
         parts.append(f"{nearer}: {', '.join(lengths)}")
     if change.kind == "width":
         width = change.design.traits_of(change.lines[0]).width
         parts.append(f"widen {' and '.join(change.lines)} to {width:g} mm")
     if change.kind == "off":
-        parts.append(f"take {' and '.join(change.lines)} off")
+        parts.append(f"deactivate {' and '.join(change.lines)}")
     return ", and ".join(parts)
 
 
@@ -244,10 +252,12 @@ def _figures(examined: Examined) -> dict[str, Any]:
         **_treatment(found),
         "locked": list(found.locked),
         "written_to": examined.out or None,
-        "definition": "forces on the free points where the run rests, or at the last balance on the way "
-        "there, their sizes at all points added up; angles between what they do to the skin; newtons rest "
-        "on the assumed stiffness of tissue; "
-        "size_percent: of the length at rest, or of the gain",
+        "definition": (
+            "forces on the free points at convergence, or at the last equilibrium before it, "
+            "magnitudes summed over all points; angles between their effects on the skin; newtons "
+            "depend on the assumed tissue stiffness; size_percent: of the original length, or of the "
+            "gain"
+        ),
         "versions": {"busk": __version__},
     }
 

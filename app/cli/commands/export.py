@@ -59,11 +59,11 @@ def run_export(
 def _check(wished: Mapping[str, str], manner: Manner) -> None:
     """Raise UserError if something is wished that cannot be written."""
     if not wished:
-        raise UserError("Nothing is to be written.", "Name a file, for example --body anna.glb.")
+        raise UserError("No output specified.", "Specify a file, for example --body anna.glb.")
     names = list(wished.values())
     twice = [name for name in names if names.count(name) > 1]
     if twice:
-        raise UserError(f"{twice[0]} is to hold two things.", "Give each file a name of its own.")
+        raise UserError(f"{twice[0]} is specified for two outputs.", "Use a different file for each output.")
     for kind, name in wished.items():
         check(kind, name, manner)
 

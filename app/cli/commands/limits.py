@@ -18,16 +18,16 @@ from core.pipeline.warnings import still_lines
 MEANING = {
     "strained": "edges outside 80 to 120 %",
     "overstrained": "edges outside 70 to 130 %",
-    "folded": "a triangle turned by 78 degrees",
-    "inverted": "a triangle shows its back",
+    "folded": "a triangle rotated by 78 degrees",
+    "inverted": "a triangle is inverted",
 }
 """What begins where, as it is seen on the control mesh."""
 
 OTHERS = {
-    "vibrating": "turns with the conventional force",
-    "restless": "turns with any volume control: lines act one turn late",
-    "pressing": "more than {kpa:g} kPa somewhere along the band",
-    "slack": "the line would have to push, which no band can",
+    "vibrating": "iterations with conventional volume control",
+    "restless": "iterations with any volume control: explicit line forces",
+    "pressing": "contact pressure above {kpa:g} kPa along the band",
+    "slack": "the line would carry compression, which is impossible for a band",
 }
 """What else there is at some lengths, in words."""
 
@@ -45,9 +45,9 @@ def limits_text(
 
 def _table(limits: Limits, stages: Stages) -> Iterator[str]:
     rest = limits.line.rest_length
-    yield f"{limits.line.name}, at rest {rest:.1f} mm; {_present(limits, stages)}"
+    yield f"{limits.line.name}, original length {rest:.1f} mm; {_present(limits, stages)}"
     if not limits.found:
-        yield "  no balance is found at any length: the other lines ask for too much"
+        yield "  no equilibrium at any length: the other lines are too short"
         return
     for sign, meaning in MEANING.items():
         yield f"  {sign:12}  {_beginning(limits, sign):39}  {meaning}"
@@ -57,16 +57,16 @@ def _table(limits: Limits, stages: Stages) -> Iterator[str]:
         yield f"  {sign:12}  {_stretches(limits, sign):39}  {meaning.format(kpa=comfort().red_kpa)}"
     yield f"  green         {_green(leeway(limits))}"
     if limits.last is not None:
-        yield f"  below {_inline(limits.last, rest)} no balance is found"
+        yield f"  below {_inline(limits.last, rest)} no equilibrium found"
     if limits.stretched is not None:
-        yield f"  below {_inline(limits.stretched, rest)} its elastic would go beyond its table"
+        yield f"  below {_inline(limits.stretched, rest)} the elongation of its elastic exceeds its table"
 
 
 def _present(limits: Limits, stages: Stages) -> str:
     if limits.line.name not in stages.design.worn():
         return "off"
     if limits.present is None:
-        return "as it is set no balance is found"
+        return "no equilibrium found at the set length"
     beyond = f"; already {' and '.join(limits.beyond)}" if limits.beyond else ""
     return f"set to {_inline(limits.present, limits.line.rest_length)}{beyond}"
 
@@ -75,14 +75,18 @@ def _beginning(limits: Limits, sign: str) -> str:
     begins = limits.begins[sign]
     if begins is None:
         least = RATIO_LIMITS[0] if limits.last is None else limits.last.ratio
-        return f"not down to {100.0 * least:.1f} %"
-    return "at rest: by the other lines" if begins.ratio >= 1.0 else _length(begins, limits.line.rest_length)
+        return f"not reached down to {100.0 * least:.1f} %"
+    return (
+        "at the original length: caused by other lines"
+        if begins.ratio >= 1.0
+        else _length(begins, limits.line.rest_length)
+    )
 
 
 def _stretches(limits: Limits, sign: str) -> str:
     """Return the lengths that show a sign."""
     if sign == "pressing" and not limits.pressure_known:
-        return "not known: it is made of no elastic"
+        return "unknown: no elastic selected"
     assert limits.looked is not None
     first, last = limits.looked.short, limits.looked.long
     said = []
@@ -128,12 +132,14 @@ def _figures_of(found: Sequence[Limits], stages: Stages) -> dict[str, Any]:
             for limits in found
         },
         "notes": still_lines(stages),
-        "definition": "each line, and a linked partner, made shorter from 100 % on, and longer, others as "
-        "set; % of rest_mm. On the control mesh: "
+        "definition": (
+            "each line and its linked partner, shorter and longer than 100 %, other lines as set; % "
+            "of rest_mm. On the control mesh: "
+        )
         + "; ".join(f"{sign}: {meaning}" for sign, meaning in MEANING.items())
-        + ". Beside that: "
+        + ". Further limits: "
         + "; ".join(f"{sign}: {meaning.format(kpa=comfort().red_kpa)}" for sign, meaning in OTHERS.items())
-        + ". A reason of others holds at 100 % too, where the line does nothing",
+        + ". Limits caused by other lines also apply at 100 %",
     }
 
 

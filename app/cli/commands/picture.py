@@ -117,9 +117,9 @@ def save_window(window: MainWindow, out: Path) -> None:
 
 def _check_name(out: Path) -> None:
     if out.suffix.lower() != ".png":
-        raise UserError(f"'{out}' is no name for a picture.", "Choose one that ends in .png.")
+        raise UserError(f"'{out}' is not a picture file name.", "Choose a name ending in .png.")
     if not out.parent.is_dir():
-        raise UserError(f"There is no folder {out.parent}.", "Make it, or choose another one.")
+        raise UserError(f"Folder {out.parent} does not exist.", "Make it, or choose another one.")
 
 
 def wait_until(ready: Callable[[], bool], turn: Callable[[], None]) -> None:
@@ -127,6 +127,6 @@ def wait_until(ready: Callable[[], bool], turn: Callable[[], None]) -> None:
     patience, longest = time.process_time() + _PATIENCE, time.monotonic() + _LONGEST
     while not ready():
         if time.process_time() > patience or time.monotonic() > longest:
-            raise UserError("Busk has waited too long for its own answer.", "Try again, or report this.")
+            raise UserError("The rendering timed out.", "Try again, or report the problem.")
         turn()
         time.sleep(0.005)

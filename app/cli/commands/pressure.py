@@ -40,8 +40,8 @@ def press_text(found: Press, kind: str, out: str | None) -> str:
 
 def _plain(found: Press) -> str:
     heading = (
-        f"{'':18}{'mean kPa':>9}{'mmHg':>6}{'max kPa':>9}{'mmHg':>6}  {'light':6}{'force N':>8}"
-        f"{'bridged mm':>11}  where most"
+        f"{'':18}{'mean kPa':>9}{'mmHg':>6}{'max kPa':>9}{'mmHg':>6}  "
+        f"{'rating':6}{'force N':>8}{'bridged mm':>11}  location of maximum"
     )
     rows = [line for row in found.listed.rows for line in _lines(row)]
     left_out = [f"  {sentence}" for sentence in LEFT_OUT]
@@ -56,7 +56,7 @@ def _plain(found: Press) -> str:
             f"{total_words(found.listed)}.",
             *_limits(),
             "",
-            "What the figures leave out:",
+            "Not included in the values:",
             *left_out,
         ]
     )
@@ -81,8 +81,8 @@ def _limits() -> list[str]:
     beyond = [f"  from {kpa:g} kPa: {words.en}" for kpa, words in limits.beyond]
     doubts = [f"  {words.en}" for words in limits.doubts]
     sources = [f"  {each.name}: {each.words.en}" for each in limits.sources]
-    heading = "The light goes by the largest pressure:"
-    return ["", heading, *lights, *beyond, *doubts, "  Between these figures:", *sources]
+    heading = "The rating uses the maximum contact pressure:"
+    return ["", heading, *lights, *beyond, *doubts, "  Between these values:", *sources]
 
 
 def _figure(value: float | None, wide: int, digits: int) -> str:

@@ -27,7 +27,7 @@ from core.progress import in_one_go
 if TYPE_CHECKING:
     from PySide6.QtGui import QImage
 
-_NO_PICTURES = "The pictures of the body could not be drawn: the sheet shows its curves alone."
+_NO_PICTURES = "The pictures of the body could not be rendered: the report contains curves only."
 
 
 @dataclass(frozen=True)
@@ -88,16 +88,16 @@ def _check(wishes: SheetWishes) -> None:
     """Raise UserError if something is wished that cannot be."""
     for name, ending in ((wishes.out, ".pdf"), (wishes.json, ".json"), (wishes.csv, ".csv")):
         if name and Path(name).suffix.lower() != ending:
-            raise UserError(f"'{name}' is no name for such a file.", f"Choose one that ends in {ending}.")
+            raise UserError(
+                f"'{name}' does not have the required ending.", f"Choose a name ending in {ending}."
+            )
         if name and not Path(name).parent.is_dir():
-            raise UserError(f"There is no folder {Path(name).parent}.", "Make it, or choose another one.")
+            raise UserError(f"Folder {Path(name).parent} does not exist.", "Make it, or choose another one.")
     if not wishes.out:
-        raise UserError("The place to write to has no name.", "Name a file: --out sheet.pdf.")
+        raise UserError("The output folder has no name.", "Specify a file: --out report.pdf.")
     known = sizes(750.0, 900.0, wishes.allowance or 0.0)
     if wishes.system not in known:
-        raise UserError(
-            f"There is no table of sizes '{wishes.system}'.", f"Choose one of: {', '.join(known)}."
-        )
+        raise UserError(f"Unknown size system '{wishes.system}'.", f"Choose one of: {', '.join(known)}.")
 
 
 def _heading(source: str, design: Design, wishes: SheetWishes) -> Heading:
@@ -138,7 +138,7 @@ def _write(solution: Solution, sheet: Sheet, wishes: SheetWishes) -> list[str]:
     except ProjectError as problem:
         if not fresh:
             raise
-        return [f"The sheet shows its curves alone, without pictures of the body: {problem.message}"]
+        return [f"The report contains curves without pictures of the body: {problem.message}"]
     return [] if pictures else [_NO_PICTURES]
 
 
@@ -150,5 +150,5 @@ def _pictures(solution: Solution) -> Mapping[str, QImage]:
 
         return in_one_go(shots(solution, bake_occlusion(solution.stages.body.mesh)))
     except Exception:
-        logging.exception("no pictures for the sheet")
+        logging.exception("no pictures for the report")
         return {}

@@ -35,12 +35,12 @@ PARTS: tuple[Part[Bench], ...] = (
     Part("compiled loops", figures.compiled_loops, ("landmarks",)),
     Part("projects", figures.projects, _SAMPLE),
     Part("damaged project", figures.damaged_projects, ("projects",)),
-    Part("files to hand on", papers.exports, _SAMPLE),
+    Part("exported files", papers.exports, _SAMPLE),
     Part("3D drawing", papers.drawing, _SAMPLE),
     Part("turntable", papers.turntable, (*_SAMPLE, "3D drawing")),
     Part("Qt", screen.toolkit),
-    Part("Latin type", letters.latin, ("Qt",)),
-    Part("Japanese type", letters.japanese, ("Qt",)),
+    Part("Latin font", letters.latin, ("Qt",)),
+    Part("Japanese font", letters.japanese, ("Qt",)),
     Part("report", papers.report, ("Qt", *_SAMPLE, "3D drawing")),
     Part("window", screen.window, ("Qt", "projects")),
     Part("slider", screen.slider, ("window",)),
@@ -68,6 +68,6 @@ def run_self_test(out: Path | None = None) -> int:
             bench = Bench(folder)
             with bench.held:
                 lost = try_parts(PARTS, bench, say)
-            said = f"not well: {', '.join(lost)}" if lost else "all is well"
+            said = f"failed: {', '.join(lost)}" if lost else "all checks passed"
             say(f"{said}  ({time.perf_counter() - begun:.0f} s)\n")
     return FAILED if lost else 0

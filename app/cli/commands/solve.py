@@ -18,7 +18,9 @@ from core.pipeline.exact import NoBalanceError
 from core.pipeline.solve import Solution, run
 from core.pipeline.warnings import shape_warnings, still_lines
 
-RAN_AWAY = "The turns ran away: what is written is no body. Set line_stiffness lower, or --volume exact."
+RAN_AWAY = (
+    "The solver diverged: the written shape is not valid. Reduce line_stiffness, or use --volume exact."
+)
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,7 @@ def _lines(figures: Mapping[str, Any]) -> Iterator[str]:
             yield (
                 f"{name}: set {line['set_mm']:.1f} mm{'' if own else ' of the front part'} "
                 f"({line['set_percent']:.1f} %), reached {line['reached_mm']:.1f} mm"
-                + ("" if own else f"; whole band {line['whole_band_reached_mm']:.1f} mm")
+                + ("" if own else f"; full length {line['whole_band_reached_mm']:.1f} mm")
             )
 
 

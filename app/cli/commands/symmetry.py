@@ -29,21 +29,21 @@ from core.pipeline.warnings import shape_warnings
 
 TITLES = {
     "higher": "bust point higher",
-    "further_out": "bust point further out",
-    "further_aside": "bust point further aside",
-    "in_all": "stands out more, in all",
-    "mean": "skin apart, mean",
-    "largest": "skin apart, most",
-    "left_more": "left stands out more",
-    "right_more": "right stands out more",
+    "further_out": "bust point further forward",
+    "further_aside": "bust point further lateral",
+    "in_all": "total protrusion difference",
+    "mean": "skin distance, mean",
+    "largest": "skin distance, maximum",
+    "left_more": "left protrudes more",
+    "right_more": "right protrudes more",
 }
 """What each figure is called."""
 
 _CONTROLS = {
-    "adaptive": "by the adaptive control, which keeps both volumes together,",
-    "accumulating": "by the accumulating control, which keeps both volumes together,",
-    "conventional": "by the conventional control, which keeps no volume,",
-    "none": "without a volume force",
+    "adaptive": "with adaptive volume control (both breasts combined)",
+    "accumulating": "with integral volume control (both breasts combined)",
+    "conventional": "with conventional volume control (volume not conserved)",
+    "none": "without volume control",
 }
 
 
@@ -92,9 +92,11 @@ def run_even(
     ``make`` finds the lengths that make them alike, unless they are; ``out`` saves them. Raises UserError.
     """
     if out and not make:
-        raise UserError("There is nothing to be saved.", "Add --make to find the lengths that make it even.")
+        raise UserError("No result to save.", "Add --make to compute balanced lengths.")
     if out and not is_project(out):
-        raise UserError(f"{out} is no name of a project.", f"Name one: --out design{SUFFIX}.")
+        raise UserError(
+            f"{out} is not a project file name.", f"Specify a project file: --out design{SUFFIX}."
+        )
     stages = build(design)
     stages = build(made_of(dressed(design, stages.model.lines, lengths), elastics), stages)
     solution = run_to_body(stages)
@@ -142,12 +144,12 @@ def _plain(even: Even, made: bool) -> Iterator[str]:
     if made:
         yield from _making(even)
     if even.out:
-        unchanged = ", as it was" if even.found is even.stages.design else ""
+        unchanged = ", unchanged" if even.found is even.stages.design else ""
         yield f"written to {even.out}{unchanged}"
 
 
 def _heading(made: Evened) -> str:
-    return "made even" if made.even else "nearest"
+    return "balanced" if made.even else "nearest"
 
 
 def _made_rows(even: Even) -> list[EvenRow]:
@@ -168,22 +170,22 @@ def _said(row: EvenRow, value: float | None) -> str:
 def _making(even: Even) -> Iterator[str]:
     """Tell what was parted and set, what remains, and why."""
     if even.made is None:
-        yield f"Even already: both bust points lie within {ENOUGH:g} mm; nothing was changed."
+        yield f"Already balanced: both bust points are within {ENOUGH:g} mm; no change."
         return
     made, before = even.made, even.stages.design
     if made.worth:
         if made.parted:
-            yield f"Left and right now change each by itself: {', '.join(made.parted)}."
+            yield f"Left and right unlinked: {', '.join(made.parted)}."
         for line in made.reply.design.lines:
             whole = line.name.removesuffix(" left").removesuffix(" right")
             former = before.ratio(line.name if line.name in before.worn() else whole)
             yield f"{line.name}: {100.0 * line.ratio:.1f} %; before {100.0 * former:.1f} %"
     ways = (f"{name} {was:+.1f} to {now:+.1f} mm" for name, (was, now) in made.kept.items())
-    yield f"Both sides together, from after to {_heading(made)}: {', '.join(ways)}."
+    yield f"Common movement of both sides, from after to {_heading(made)}: {', '.join(ways)}."
     yield remains(made)
     if not made.worth:
         gained, lost = max(made.gained, 0.0), made.lost
-        yield f"Left as it is: that would bring {gained:.1f} mm, and move both sides by {lost:.1f} mm."
+        yield f"Not changed: {gained:.1f} mm gain would move both sides by {lost:.1f} mm."
     elif before.volume != "exact":
         yield as_solved(before.volume, even.turned)
 
@@ -192,23 +194,23 @@ def as_solved(volume: str, turned: Evenness | None) -> str:
     """Return in two sentences what remains as the design is solved, which is not by the exact answer."""
     both = f"The last two columns are exact answers.\nSolved as the design is set, {_CONTROLS[volume]}"
     if turned is None:
-        return f"{both} it does not come to rest."
+        return f"{both} the solver does not converge."
     row = next(row for row in even_rows(turned, turned) if row.key == "in_all")
     more = "" if row.after is None else f"; {TITLES[row.key]}: {_said(row, row.after)}"
     return f"{both} {_left(turned)} remain{more}."
 
 
 def _left(told: Evenness) -> str:
-    return f"{abs(told.higher):.1f} mm in height and {abs(told.further_out):.1f} mm to the front"
+    return f"{abs(told.higher):.1f} mm in height and {abs(told.further_out):.1f} mm forward"
 
 
 def remains(made: Evened) -> str:
     """Return in a sentence how even it is made, and why it is no more so."""
     left, reply = _left(made.after), made.reply
     if made.even:
-        return f"Even: {left} remain."
+        return f"Balanced: {left} remain."
     if not reply.agreed:
-        return f"{left} remain: lengths, elastics and pressures did not come to agree."
+        return f"{left} remain: the iteration over lengths, elastics and contact pressures did not converge."
     return f"{left} remain: {' and '.join(_why(made))}."
 
 
@@ -218,7 +220,7 @@ def _why(made: Evened) -> list[str]:
     hindered = reply.at_end or reply.strained or reply.pressing
     if hindered or len(made.goals) == len(EVEN):
         return reasons(reply)
-    return ["more of it would take lift or way out away"]
+    return ["a further gain would reduce lift or protrusion"]
 
 
 def _figures(even: Even) -> dict[str, Any]:
@@ -246,8 +248,10 @@ def _figures(even: Even) -> dict[str, Any]:
             "as_solved": None if even.turned is None else {row.key: row.after for row in _turned_rows(even)},
             "because": [] if made.even else _why(made),
         },
-        "definition": "sided rows: positive where the left is higher, further or stands out more [mm, ml]; "
-        "skin: that of one breast less that of the other, mirrored; in_all is left_more less right_more",
+        "definition": (
+            "signed rows: positive if the left side is higher, further or protrudes more [mm, ml]; "
+            "skin: one breast minus the mirrored other; in_all is left_more minus right_more"
+        ),
         "written_to": even.out or None,
         "versions": {"busk": __version__},
     }

@@ -34,13 +34,13 @@ from core.measurements.uncertain_value import (
 COLUMNS = ("key", "title", "unit", "value", "plus_minus", "low", "high", *SOURCES, "other_contact")
 KINDS = {BEFORE: "before", AFTER: "after", CHANGE: "difference"}
 OF_LINES = {
-    "cut": ("length to cut", "mm"),
+    "cut": ("cut length", "mm"),
     "tension": ("tension", "N"),
-    "max_kpa": ("largest pressure", "kPa"),
-    "mean_kpa": ("mean pressure", "kPa"),
+    "max_kpa": ("maximum contact pressure", "kPa"),
+    "mean_kpa": ("mean contact pressure", "kPa"),
 }
 OF_BUST = {"lift": "Bust point up", "out": "Bust point forward"}
-WORDS = {"glued": "sticks to the skin", "sliding": "slides over it"}
+WORDS = {"glued": "bonded", "sliding": "sliding"}
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,7 @@ def _plain(found: Spreading) -> str:
 
 
 def _of_body(found: Spreading) -> list[str]:
-    lines = ["No line is worn: the body at rest."]
+    lines = ["No active lines: values of the original body."]
     for figure in found.figures:
         if figure.key.startswith(f"{BEFORE}:") and figure.value is not None:
             lines.append(f"{figure.title:36}{_cell(found.spread, figure):>17} {figure.unit}")
@@ -148,19 +148,19 @@ def _cell(spread: Spread, figure: Figure) -> str:
 
 
 def _contact(spread: Spread) -> str:
-    return f"if the line {WORDS[spread.contact]}" if spread.contact else ""
+    return f"skin contact {WORDS[spread.contact]}" if spread.contact else ""
 
 
 def _meaning(found: Spreading) -> Iterator[str]:
     spread = found.spread
-    yield f"± is {spread.sds:g} standard deviations, 2 being 95 % of all cases if errors are normal, from:"
+    yield f"± is {spread.sds:g} standard deviations (2: 95 % of cases for normal errors), from:"
     yield from (f"  {words.en}" for name, words in origins().items() if name in _sources(spread))
     if not spread.bare:
         yield from _of_lines_worn(found)
     yield from spread.cautions
     if spread.failed:
-        yield f"Without an answer, and left out: {spread.failed} of what was tried."
-    yield "Left out:"
+        yield f"Excluded, no solution: {spread.failed} samples."
+    yield "Not included:"
     yield from (f"  {each}" for each in (*NOT_MODELLED, *(() if spread.bare else LEFT_OUT)))
 
 
@@ -171,8 +171,8 @@ def _sources(spread: Spread) -> Sequence[str]:
 def _of_lines_worn(found: Spreading) -> Iterator[str]:
     """Yield what holds where lines are worn."""
     if any(found.spread.factor(figure.key) for figure in found.figures):
-        yield "(a to b): where what is known to a factor makes most of it, as many times smaller as larger."
-    yield "The skin contact is a choice of the model and no part of the ±: the truth lies between the two."
+        yield "(a to b): asymmetric range of a parameter known to a factor only."
+    yield "The skin contact is a model option and not included in ±: the real value is between the two."
 
 
 def _as_json(found: Spreading) -> str:

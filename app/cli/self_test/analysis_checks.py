@@ -18,13 +18,13 @@ def advice(bench: Bench) -> str:
     other = build(bench.design.with_linked(MOVED, 0.5 * (1.0 + known)), bench.stages)
     reply = Asking(other).reply([Goal("lift", lift)])
     apart = 100.0 * abs(reply.design.ratio(MOVED) - known)
-    check(reply.reachable, f"the lift of {lift:.2f} mm is told to be out of reach")
-    check(apart < 0.1, f"the length that was asked for is off by {apart:.2f} %")
+    check(reply.reachable, f"the lift of {lift:.2f} mm is reported as not reachable")
+    check(apart < 0.1, f"the target length has an error of {apart:.2f} %")
     leeway = leeway_of(bench.stages, MOVED)
-    check(leeway is not None, "no length of the line has a balance")
+    check(leeway is not None, "no length of the line has an equilibrium")
     assert leeway is not None
     tone = leeway.at(known).tone
-    check(tone in ("green", "amber"), f"{known:.0%} of the line is told to be {tone}")
+    check(tone in ("green", "amber"), f"{known:.0%} of the line is rated {tone}")
     red = leeway.red_below
-    check(red is not None, "no length of the line is told to be too short")
-    return f"the length found again within {apart:.3f} %, red below {100.0 * (red or 0.0):.1f} %"
+    check(red is not None, "no length of the line is rated too short")
+    return f"length recovered within {apart:.3f} %, limit at {100.0 * (red or 0.0):.1f} %"

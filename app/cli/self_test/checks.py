@@ -50,7 +50,7 @@ def try_parts(parts: Iterable[Part[T]], bench: T, say: Say) -> list[str]:
         say(f"  {part.name:{_WIDE}} ")
         begun = time.perf_counter()
         try:
-            told = f"not tried: it needs {', '.join(missing)}" if missing else f"ok      {part.work(bench)}"
+            told = f"skipped: requires {', '.join(missing)}" if missing else f"ok      {part.work(bench)}"
         except Exception as fault:
             told, missing = f"FAILED  {_in_words(fault)}", [part.name]
         if missing:

@@ -33,9 +33,9 @@ def scan_formats(bench: Bench) -> str:
     read = []
     for kind, data in _files(bench, body):
         again = read_raw(f"scan.{kind}", data)
-        check(again.faces.shape == body.faces.shape, f"{kind} came back with {len(again.faces)} triangles")
+        check(again.faces.shape == body.faces.shape, f"{kind} was reloaded with {len(again.faces)} triangles")
         apart = float(np.abs(again.vertices[again.faces] - body.vertices[body.faces]).max())
-        check(apart < 0.01, f"{kind} came back with corners moved by {apart:.3g} mm")
+        check(apart < 0.01, f"{kind} was reloaded with vertices moved by {apart:.3g} mm")
         read.append(kind)
     return f"{', '.join(read)}: the same {len(body.faces):,} triangles"
 
@@ -75,24 +75,26 @@ def landmarks(bench: Bench) -> str:
     for name, place in (("bust_point", BUST_POINT), ("fold", FOLD)):
         for side, sign in (("left", 1.0), ("right", -1.0)):
             away = float(np.linalg.norm(found[f"{name}_{side}"].position - np.multiply(place, (sign, 1, 1))))
-            check(away < _NEAR, f"{name}_{side} lies {away:.1f} mm from where it is known to be")
+            check(away < _NEAR, f"{name}_{side} is {away:.1f} mm from its known position")
             farthest = max(farthest, away)
-    return f"bust points and folds within {farthest:.1f} mm of their known places"
+    return f"bust points and inframammary folds within {farthest:.1f} mm of their known positions"
 
 
 def solver(bench: Bench) -> str:
     """Solve the sample by turns and exactly, and compare both."""
     turns = bench.solution
-    check(turns.verdict.motion == "settled", f"the turns end {turns.verdict.words}")
-    check(abs(turns.last.error_ml) < 1.0, f"the volume is off by {turns.last.error_ml:.2f} ml")
+    check(turns.verdict.motion == "settled", f"the iterations end with status {turns.verdict.words}")
+    check(abs(turns.last.error_ml) < 1.0, f"the volume error is {turns.last.error_ml:.2f} ml")
     moved = np.abs(turns.control_points - bench.stages.control.mesh.vertices).max()
     check(bool(moved > 1.0), "the body did not follow the line")
     exact = run(build(replace(bench.design, volume="exact"), bench.stages))
-    check(exact.verdict.motion == "settled", f"the exact answer is {exact.verdict.words}")
+    check(exact.verdict.motion == "settled", f"the exact solution has status {exact.verdict.words}")
     apart = float(np.abs(exact.control_points - turns.control_points).max())
-    check(apart < 0.3, f"turns and exact answer differ by {apart:.3f} mm")
+    check(apart < 0.3, f"iterations and exact solution differ by {apart:.3f} mm")
     count, off = turns.last.turn, abs(turns.last.error_ml)
-    return f"settled in {count} turns, volume true to {off:.3f} ml, exact answer {apart:.2f} mm away"
+    return (
+        f"converged in {count} iterations, volume error {off:.3f} ml, {apart:.2f} mm from the exact solution"
+    )
 
 
 def compiled_loops(bench: Bench) -> str:
@@ -103,7 +105,7 @@ def compiled_loops(bench: Bench) -> str:
     if not kernels.warm():
         # Without numba they are slower, no more; with one that does not work something is amiss.
         check("No module named 'numba'" in kernels.state(), kernels.state())
-        return "numpy does their work: numba is not here"
+        return "numba is not installed: numpy is used"
     apart = float(np.abs(kernels.normals(*given) - kernels.normals_plain(*given)).max())
     check(apart < 1e-9, f"compiled loops and their definitions differ by {apart:.2g}")
     return kernels.state()
@@ -112,13 +114,13 @@ def compiled_loops(bench: Bench) -> str:
 def projects(bench: Bench) -> str:
     """Save a project, open it and solve it again: the same figures."""
     document = open_project(bench.project)
-    check(document.design.ratio(MOVED) == bench.design.ratio(MOVED), "the line came back otherwise")
-    check(read_scan_file(document.design.scan).data == bench.stages.scan.data, "the scan came back otherwise")
+    check(document.design.ratio(MOVED) == bench.design.ratio(MOVED), "the reloaded line differs")
+    check(read_scan_file(document.design.scan).data == bench.stages.scan.data, "the reloaded scan differs")
     again = run(build(document.design)).control_points
     apart = float(np.abs(again - bench.solution.control_points).max())
     check(apart < 1e-9, f"the reopened body differs by {apart:.3g} mm")
     size = bench.project.stat().st_size / 1e6
-    return f"saved {size:.1f} MB, opened, solved to the same figures"
+    return f"saved {size:.1f} MB, opened, solved to the same values"
 
 
 def damaged_projects(bench: Bench) -> str:
@@ -132,4 +134,4 @@ def damaged_projects(bench: Bench) -> str:
         return f"refused: {refusal.message}"
     finally:
         path.unlink()
-    raise PartError("a project that was cut short was opened as if it were whole")
+    raise PartError("a truncated project was opened without an error")

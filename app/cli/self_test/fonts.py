@@ -31,7 +31,7 @@ def _letters(letters: set[str], family: str, drawn: str, bench: Bench) -> str:
 
     from app.gui.theme.stylesheet import load_fonts  # noqa: PLC0415
 
-    check(family in load_fonts(), f"{family} is not among the type that is shipped: {load_fonts()}")
+    check(family in load_fonts(), f"{family} is not among the bundled fonts: {load_fonts()}")
     folder = resources.files("resources") / "fonts"
     files = [each for each in folder.iterdir() if "Regular" in each.name]
     fonts = []
@@ -40,11 +40,11 @@ def _letters(letters: set[str], family: str, drawn: str, bench: Bench) -> str:
         font.loadFromData(each.read_bytes(), 13.0, font.hintingPreference())
         fonts.append(font)
     missing = sorted(x for x in letters if not any(font.supportsCharacter(ord(x)) for font in fonts))
-    check(not missing, f"{len(missing)} letters are missing: {''.join(missing[:20])}")
+    check(not missing, f"{len(missing)} glyphs are missing: {''.join(missing[:20])}")
     pictures = {_drawn(letter) for letter in drawn}
-    check(_drawn(_NO_LETTER) not in pictures, f"boxes are drawn in the place of letters: {drawn}")
-    check(len(pictures) == len(drawn), f"different letters look alike: {drawn}")
-    return f"{family}, {len(letters)} letters, drawn as letters"
+    check(_drawn(_NO_LETTER) not in pictures, f"placeholder boxes are rendered: {drawn}")
+    check(len(pictures) == len(drawn), f"different letters have the same rendering: {drawn}")
+    return f"{family}, {len(letters)} glyphs rendered"
 
 
 def _drawn(letter: str) -> bytes:

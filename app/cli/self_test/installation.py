@@ -42,7 +42,7 @@ def versions(bench: Bench) -> str:
         "scipy": scipy.__version__,
     }
     untold = [name for name in LIBRARIES if name != "numba" and not _is_told(name)]
-    check(not untold, f"the versions of {', '.join(untold)} are not known: Help could not tell them")
+    check(not untold, f"unknown versions: {', '.join(untold)}")
     told = ", ".join(f"{name} {version}" for name, version in made_of.items())
     return f"{told}; {'packaged' if is_frozen() else 'from source'}, {platform.platform()}, in {_home()}"
 
@@ -69,17 +69,17 @@ def shipped_files(bench: Bench) -> str:
         "templates": _counted("a template", lambda: [read_template(name) for name in TEMPLATES], 2),
         "presets": _counted("a preset", presets, 3),
         "elastics": _counted("an elastic", elastics, 6),
-        "size tables": _counted("a table of sizes", sizes, 7),
+        "size charts": _counted("a size chart", sizes, 7),
         "words": _counted("words", lambda: [*read_words("ja"), *read_words("ja_messages")], 1000),
         "icons": _counted("an icon", lambda: list(_home().glob("resources/icons/*.svg")), 40),
         "samples": _counted("a sample", lambda: list(_home().glob("resources/samples/*.ply")), 2),
     }
     _counted("letter sizes", lambda: letter_sizes().tables, 1)
-    _counted("names of measures", lambda: json.loads(_text("measure_names.json")), 1)
-    _counted("limits of pressure", lambda: [comfort()], 1)
+    _counted("measurement names", lambda: json.loads(_text("measure_names.json")), 1)
+    _counted("contact pressure limits", lambda: [comfort()], 1)
     _counted("style", lambda: _text("style.qss"), 100)
     missing = [title for title, text in licences() if len(text) < 500]
-    check(not missing, f"there is no text of {', '.join(missing)}")
+    check(not missing, f"missing text: {', '.join(missing)}")
     return ", ".join(f"{count} {name}" for name, count in counts.items())
 
 
@@ -93,7 +93,7 @@ def _counted(name: str, read: Callable[[], Sized], least: int) -> int:
         count = len(read())
     except Exception as fault:
         raise PartError(f"{name} cannot be read: {type(fault).__name__}, {fault}") from fault
-    check(count >= least, f"of {name} there are {count}, not {least}")
+    check(count >= least, f"{count} files of {name}, not {least}")
     return count
 
 
@@ -101,7 +101,7 @@ def guide(bench: Bench) -> str:
     """Find the user guide; a checkout may not have built it."""
     page = _home() / "site" / "index.html"
     if not page.is_file():
-        check(not is_frozen(), f"there is no guide at {page}")
+        check(not is_frozen(), f"no guide at {page}")
         return "not built in this checkout"
-    check(b"</html>" in page.read_bytes(), f"{page} is no whole page")
+    check(b"</html>" in page.read_bytes(), f"{page} is an incomplete page")
     return f"{len(list(page.parent.rglob('*.html')))} pages"

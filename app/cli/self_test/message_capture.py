@@ -21,7 +21,7 @@ def hearing() -> Iterator[list[str]]:
 
     def hear_qt(kind: QtMsgType, where: Any, said: str) -> None:
         if kind not in (QtMsgType.QtDebugMsg, QtMsgType.QtInfoMsg) and not said.startswith(_HARMLESS):
-            heard.append(f"Qt says: {said}")
+            heard.append(f"Qt message: {said}")
 
     def hear_fault(fault: Any) -> None:
         heard.append(f"{fault.exc_type.__name__}: {fault.exc_value}")

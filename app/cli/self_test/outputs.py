@@ -34,8 +34,8 @@ def drawing(bench: Bench) -> str:
     check(0.1 < covered < 0.9, f"the body covers {100 * covered:.0f} % of the picture")
     shown = pixels[pixels[..., 3] > 250][:, :3]
     colours, spread = len(np.unique(shown, axis=0)), float(shown.std(axis=0).max())
-    check(colours > 500 and spread > 8.0, f"the body is drawn flat: in {colours} colours")
-    return f"a body on {100 * covered:.0f} % of the picture, {colours} colours, drawn by {_renderer()}"
+    check(colours > 500 and spread > 8.0, f"the body has only {colours} colours")
+    return f"body covers {100 * covered:.0f} % of the picture, {colours} colours, rendered by {_renderer()}"
 
 
 def _renderer() -> str:
@@ -61,17 +61,17 @@ def exports(bench: Bench) -> str:
 
     _exported(bench, "lines", "lines.dxf", Manner())
     drawn = len(ezdxf.readfile(bench.folder / "lines.dxf").modelspace())
-    check(drawn > 0, "lines.dxf holds no line")
+    check(drawn > 0, "lines.dxf contains no lines")
     _exported(bench, "flat", "strips.svg", Manner())
     marks = len(list(ElementTree.parse(bench.folder / "strips.svg").getroot().iter()))
     check(marks > 5, "strips.svg is empty")
     _exported(bench, "body", "body.glb", Manner())
     triangles = len(read_raw("body.glb", (bench.folder / "body.glb").read_bytes()).faces)
-    check(triangles == len(bench.stages.body.mesh.faces), f"body.glb holds {triangles} triangles")
+    check(triangles == len(bench.stages.body.mesh.faces), f"body.glb contains {triangles} triangles")
     _exported(bench, "measures", "measures.smis", Manner())
     measures = len(list(ElementTree.parse(bench.folder / "measures.smis").getroot().iter("m")))
-    check(measures > 5, f"measures.smis holds {measures} measures")
-    return f"DXF with {drawn} curves, SVG, GLB with {triangles:,} triangles, {measures} measures"
+    check(measures > 5, f"measures.smis contains {measures} measurements")
+    return f"DXF with {drawn} curves, SVG, GLB with {triangles:,} triangles, {measures} measurements"
 
 
 def turntable(bench: Bench) -> str:
@@ -84,10 +84,10 @@ def turntable(bench: Bench) -> str:
     with Image.open(bench.folder / "turntable.gif") as moving:
         pictures = [np.asarray(each.convert("L"), dtype=float) for each in ImageSequence.Iterator(moving)]
     count = len(pictures)
-    check(count == _FRAMES, f"turntable.gif has {count} pictures, not {_FRAMES}")
+    check(count == _FRAMES, f"turntable.gif has {count} frames, not {_FRAMES}")
     turned = min(float(np.abs(one - other).mean()) for one, other in pairwise(pictures))
-    check(turned > 1.0, "the body does not turn")
-    return f"GIF of {count} pictures, each another"
+    check(turned > 1.0, "the body does not rotate")
+    return f"GIF of {count} different frames"
 
 
 def _exported(bench: Bench, what: str, name: str, manner: Any) -> Any:
@@ -127,14 +127,14 @@ def report(bench: Bench) -> str:
 def _judged(path: Path, pages: Pages, family: str) -> str:
     """Check a PDF file, and return what it is in words."""
     data = path.read_bytes()
-    check(data.startswith(b"%PDF-") and data.rstrip().endswith(b"%%EOF"), f"{path.name} is no whole PDF")
+    check(data.startswith(b"%PDF-") and data.rstrip().endswith(b"%%EOF"), f"{path.name} is an incomplete PDF")
     count = len(_PAGE.findall(data))
     check(count == pages.count == 2, f"{path.name} has {count} pages, not 2")
     type_ = {name.decode() for name in _TYPE.findall(data)}
     check(any(name.startswith(family) for name in type_), f"{path.name} is not set in {family}: {type_}")
     for page in range(pages.count):
         ink = _ink(_painted(pages, page))
-        check(0.01 < ink < 0.6, f"page {page + 1} of {path.name} has ink on {100 * ink:.1f} % of it")
+        check(0.01 < ink < 0.6, f"page {page + 1} of {path.name} is covered by {100 * ink:.1f} % only")
     return f"{path.name} of {count} pages, {len(data) / 1000:.0f} kB, in {', '.join(sorted(type_))}"
 
 

@@ -51,7 +51,7 @@ def _check(folder: Path) -> None:
     places = (platformdirs.user_data_path("Busk"), platformdirs.user_state_path("Busk"))
     if not all(place.is_relative_to(folder) for place in places):
         raise UserError(
-            "The self-test cannot keep apart from your own files here, so it was not begun.",
+            "The self-test could not be isolated from user files and was not started.",
             "Report this with the version and the machine.",
         )
 

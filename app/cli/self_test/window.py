@@ -39,7 +39,7 @@ def window(bench: Bench) -> str:
     from app.cli.commands.picture import save_window, settled_window  # noqa: PLC0415
 
     opened = bench.window = bench.held.enter_context(settled_window(str(bench.project)))
-    check(opened.session.path == bench.project, f"what is open is {opened.session.path}")
+    check(opened.session.path == bench.project, f"the open file is {opened.session.path}")
     save_window(opened, bench.folder / "window.png")
     picture = opened.view.viewport.picture(labels=False)
     colours = {
@@ -65,15 +65,16 @@ def slider(bench: Bench) -> str:
     wait_until(lambda: opened.session.frame is not before and opened.is_settled(), QApplication.processEvents)
     after = opened.session.frame
     assert after is not None
-    check(handle.ratio() < start, f"the slider stands at {100 * handle.ratio():.1f} % as before")
+    check(handle.ratio() < start, f"the slider is unchanged at {100 * handle.ratio():.1f} %")
     moved = float(abs(after.points - before.points).max())
     check(moved > 1.0, f"the body has moved by {moved:.2f} mm")
     check(after.verdict.motion == "settled", f"the solution is {after.verdict.words}")
     check(
-        opened.session.undo_stack.count() == 1, f"it made {opened.session.undo_stack.count()} steps of undo"
+        opened.session.undo_stack.count() == 1,
+        f"{opened.session.undo_stack.count()} undo steps were created",
     )
     bench.check_silence()
-    return f"{MOVED} from {100 * start:.1f} to {100 * handle.ratio():.1f} %, moved the body by {moved:.1f} mm"
+    return f"{MOVED} from {100 * start:.1f} to {100 * handle.ratio():.1f} % moved the body by {moved:.1f} mm"
 
 
 def _drag(handle: LengthSlider, first: float, last: float) -> None:
@@ -118,10 +119,10 @@ def file_dialog(bench: Bench) -> str:
     finally:
         clock.stop()
         QApplication.setAttribute(plain, before)
-    check(bool(seen), "no dialog came")
+    check(bool(seen), "no dialog opened")
     wait_until(lambda: opened.session.name == path.stem and opened.is_settled(), QApplication.processEvents)
     bench.check_silence()
-    return f"{seen[0]!r} accepted {path.name}, which is open now"
+    return f"{seen[0]!r} accepted and opened {path.name}"
 
 
 def _answer(path: Path, clock: object, seen: list[str]) -> None:
@@ -163,9 +164,9 @@ def closing(bench: Bench) -> str:
     bench.check_silence()
     running = [each.name for each in threading.enumerate() if each.name.startswith("busk")]
     if running:
-        raise PartError(f"threads go on: {', '.join(running)}")
+        raise PartError(f"running threads: {', '.join(running)}")
     left = [each.name for each in Path(tempfile.gettempdir()).iterdir()]
     left += [str(each) for each in recovery_folder().rglob("*") if each.is_file()]
     left += [each.name for each in bench.folder.glob(".*")]
-    check(not left, f"files stay behind: {', '.join(left[:5])}")
-    return "no thread goes on, no file stays behind"
+    check(not left, f"leftover files: {', '.join(left[:5])}")
+    return "no running threads, no leftover files"
