@@ -30,7 +30,7 @@ from guide_pictures import SHOTS, WIDE  # noqa: E402
 from app.cli.commands.picture import save_window, settled_window  # noqa: E402
 from app.report.pages import pages_of  # noqa: E402
 from app.report.painter import A4, UNITS  # noqa: E402
-from app.research.figures import make_figures  # noqa: E402
+from app.research.commands.figures import make_figures  # noqa: E402
 
 PICTURES = Path(__file__).parent.parent / "docs" / "pictures"
 KEPT = 16

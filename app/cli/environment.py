@@ -1,4 +1,4 @@
-"""What a program finds round itself: streams that may be missing or narrow, a terminal or a desktop."""
+"""Adapt to the environment: missing or narrow streams, cache folders, a terminal or a desktop."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from core.errors import UserError
 
 
 class PlainStream:
-    """A text stream that spells control characters: names of files and messages may hold some that a
+    """A text stream that escapes control characters: file names and messages may contain some that a
     terminal would obey.
     """
 
@@ -29,7 +29,7 @@ class PlainStream:
         self._stream = stream
 
     def write(self, text: str) -> int:
-        """Write a text, and return how many of its letters were given."""
+        """Write a text, and return its number of letters."""
         self._stream.write(shown(text))
         return len(text)
 
@@ -39,12 +39,12 @@ class PlainStream:
             self.write(text)
 
     def __getattr__(self, name: str) -> Any:
-        """Return what else the stream has."""
+        """Return any other attribute of the stream."""
         return getattr(self._stream, name)
 
 
-def settle_in() -> None:
-    """Make streams safe to write to, and give libraries a lasting place for what they find out."""
+def set_up_streams() -> None:
+    """Make the streams safe to write to, and give libraries a permanent cache folder."""
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if stream is None:  # a Windows program without a console
@@ -57,40 +57,40 @@ def settle_in() -> None:
     if getattr(sys, "frozen", False):
         # The packager lets one look for all type of the system at each start anew; the other would keep
         # what it compiles where the program lies.
-        folder = _lasting()
+        folder = _cache_folder()
         os.environ["MPLCONFIGDIR"] = str(folder / "matplotlib")
         os.environ.setdefault("NUMBA_CACHE_DIR", str(folder / "numba"))
     if sys.platform.startswith("linux"):
-        told = next((name for name in ("LC_ALL", "LC_CTYPE", "LANG") if os.environ.get(name)), "LC_CTYPE")
-        if (os.environ.get(told) or "C") in ("C", "POSIX"):  # Qt would take this one too, and complain
-            os.environ["LC_CTYPE" if told == "LANG" else told] = "C.UTF-8"
+        variable = next((name for name in ("LC_ALL", "LC_CTYPE", "LANG") if os.environ.get(name)), "LC_CTYPE")
+        if (os.environ.get(variable) or "C") in ("C", "POSIX"):  # Qt would take this one too, and complain
+            os.environ["LC_CTYPE" if variable == "LANG" else variable] = "C.UTF-8"
 
 
-def _lasting() -> Path:
-    """Return the user's folder for caches, or a passing one where none can be made: there may be no home."""
+def _cache_folder() -> Path:
+    """Return the user's folder for caches, or a temporary one where none can be created."""
     with suppress(OSError, RuntimeError):
         folder = platformdirs.user_cache_path("Busk", appauthor=False)
-        there = next(place for place in (folder, *folder.parents) if place.exists())
-        if folder.is_absolute() and os.access(there, os.W_OK):
+        existing = next(place for place in (folder, *folder.parents) if place.exists())
+        if folder.is_absolute() and os.access(existing, os.W_OK):
             return folder
-    passing = tempfile.mkdtemp(prefix="busk-")
-    atexit.register(shutil.rmtree, passing, ignore_errors=True)
-    return Path(passing)
+    temporary = tempfile.mkdtemp(prefix="busk-")
+    atexit.register(shutil.rmtree, temporary, ignore_errors=True)
+    return Path(temporary)
 
 
 def has_terminal() -> bool:
-    """Tell whether somebody at a terminal has called; else it was a desktop, or another program."""
+    """Return whether the program was started from a terminal; else by a desktop or another program."""
     return any(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stdout, sys.stderr))
 
 
 def is_seen_in_window(file: str) -> bool:
-    """Tell whether the window should say that a file is not there: who double-clicks sees no terminal."""
+    """Return whether the window should report a missing file: after a double-click there is no terminal."""
     named = bool(Path(file).suffix) or any(mark in file for mark in (os.sep, os.altsep) if mark)
     return named and has_display() and not has_terminal()
 
 
 def path_of(text: str) -> str:
-    """Return the path of a file that may have been handed over as a URL, as some file managers do."""
+    """Return the path of a file that may be given as a URL, as some file managers do."""
     if not text.lower().startswith("file:"):
         return text
     from PySide6.QtCore import QUrl  # noqa: PLC0415 (a window follows, and it brings Qt along)
@@ -101,10 +101,10 @@ def path_of(text: str) -> str:
     return url.toLocalFile() or text
 
 
-def tell(error: UserError, of_window: bool) -> None:
-    """Say what is wrong: in the terminal, and in a box where a window was wanted and no stream is there."""
+def report_error(error: UserError, in_window: bool) -> None:
+    """Print an error, and show it in a box where a window was requested and there is no stream."""
     print(f"busk: {shown_line(str(error))}", file=sys.stderr)
-    if not (of_window and sys.__stderr__ is None and has_display()):
+    if not (in_window and sys.__stderr__ is None and has_display()):
         return
     from PySide6.QtCore import Qt  # noqa: PLC0415
     from PySide6.QtWidgets import QApplication, QMessageBox  # noqa: PLC0415

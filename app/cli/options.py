@@ -1,16 +1,19 @@
-"""Settings and lines as they are written on the command line: KEY=VALUE, NAME=LENGTH."""
+"""Define options that several commands share: the scan, the design, the form of the output."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from pathlib import Path
-from typing import Any
+import argparse
+import re
+from argparse import ArgumentParser
 
-from core.document.design import TEMPLATES, WEIGHTS, Design
-from core.errors import LineError, UserError
-from core.garment.elastic_library import find_elastic, read_elastic
-from core.mechanics.constraint_lines import Line, length_ratio
+from app.presenters.scan import KINDS, PACKED
+from core.document.design import TEMPLATES, WEIGHTS
+from core.document.line_notation import HELP as LINE_HELP
+from core.landmarks.manual import HELP as LANDMARK_HELP
 from core.mechanics.options import CHOICES, RANGES
+from core.mechanics.volume import CONTROLS
+from core.scan.edits import SIDES
+from core.scan.orientation.pose import MILLIMETRES
 
 WORDS = {**CHOICES, "weights": WEIGHTS, "template": TEMPLATES}
 """Settings that are a word, and the words that each allows."""
@@ -21,131 +24,88 @@ NUMBERS = (*RANGES, "gain", "line_height", "tissue_stiffness")
 SWITCHES = ("scaled_normals", "dense_volume")
 """Settings that are on or off."""
 
-_ON = dict.fromkeys(("yes", "on", "true", "1"), True) | dict.fromkeys(("no", "off", "false", "0"), False)
-_FIRM = {"yes": 0.1, "on": 0.1, "firm": 0.1, "no": 0.0, "off": 0.0, "free": 0.0}
-
-
-def settings_of(pairs: Sequence[str]) -> dict[str, Any]:
-    """Return the fields of a design that ``KEY=VALUE`` pairs name; hyphens and underscores mean the same.
-
-    Raises UserError with the right keys or words; ranges are the design's own business.
-    """
-    values: dict[str, Any] = {}
-    for pair in pairs:
-        key, equals, value = pair.partition("=")
-        key, value = key.strip().lower().replace("-", "_"), value.strip().lower()
-        if not equals or key not in _READERS:
-            raise UserError(f"'{pair}' is not a setting.", f"Enter KEY=VALUE. Keys: {', '.join(_READERS)}.")
-        values[key] = _READERS[key](key, value)
-    return values
-
-
-def dressed(design: Design, lines: Sequence[Line], requests: Sequence[str]) -> Design:
-    """Return a design with the ``lines`` worn as requested: NAME=LENGTH each. Raises LineError."""
-    for request in requests:
-        name, equals, text = request.partition("=")
-        line = next((line for line in lines if line.name.lower() == name.strip().lower()), None)
-        if line is None or not equals:
-            names = ", ".join(line.name for line in lines)
-            raise LineError(f"'{request}' is not a line.", f"Enter NAME=LENGTH. Lines: {names}.")
-        ratio = length_ratio(text, line.name, line.rest_length, line.whole_length)
-        design = design.with_line(line.name, ratio)
-    return design
-
-
-WANT_HELP = (
-    "target value in mm (also cm, in); may be repeated. If targets conflict, append @high or "
-    "@low (lift=12mm@high) for four times or a quarter of the weight. lift, out: upward and "
-    "forward movement of the bust points from the original body; apex: the same for the "
-    "foremost point of the breast; girth: girth at bust point height; left higher, left "
-    "further out: difference of left and right. Names: lift, lift left, lift right, out, out "
-    "left, out right, apex lift, apex lift left, apex lift right, apex out, apex out left, "
-    "apex out right, girth, left higher, left further out"
+LINE_LENGTH_HELP = (
+    "length as 97%% of the original length, -20mm (change) or 400mm (absolute); front length, side to side"
 )
-"""What a user has to know to ask for a result."""
-
-PROFILE_HELP = (
-    "target profile of the skin in a section, fitted by least squares: a table with the "
-    "columns height_mm and out_mm, or an exported section. SECTION is left (default) or "
-    "right, through that bust point, or x in mm; may be repeated, with optional priority: "
-    "left@high=FILE.csv"
-)
-"""What a user has to know to ask for a profile."""
-
-PRESSURE_HELP = (
-    "maximum contact pressure of lines with an elastic in kPa (default: the upper limit of "
-    "the rating), or off"
-)
-"""What a user has to know of the limit that is kept while asking."""
-
-OPTIONAL_HELP = (
-    "an inactive line that may be activated if the active lines do not reach the targets, or "
-    "all; may be repeated"
-)
-"""What a user has to know of lines that may be switched on."""
-
 ELASTIC_HELP = (
-    "elastic of an active line: an elastic of the library, by name or unique words "
-    "('mid-bust=plush 12'), or a measured table ('mid-bust=roll.csv'). The line length is "
-    "then the unstretched length of the elastic. An unknown name prints all names"
+    "elastic of an active line: an elastic of the library, by name or unique words ('mid-bust=plush 12'), or "
+    "a measured table ('mid-bust=roll.csv'). The line length is then the unstretched length of the elastic. "
+    "An unknown name prints all names"
 )
-"""What a user has to know to choose an elastic."""
+_AXIS = "such as {axis}, or a direction x,y,z of the file for a tilted body"
 
 
-def made_of(design: Design, requests: Sequence[str]) -> Design:
-    """Return a design with lines made of elastics as requested: LINE=ELASTIC each. Raises LineError."""
-    for request in requests:
-        name, equals, elastic = (part.strip() for part in request.partition("="))
-        line = next((each for each in design.worn() if each.lower() == name.lower()), None)
-        if line is None or not equals:
-            worn = ", ".join(sorted(design.worn())) or "none"
-            raise LineError(
-                f"'{request}' is not an active line.", f"Enter LINE=ELASTIC. Active lines: {worn}."
-            )
-        chosen = read_elastic(Path(elastic)) if elastic.lower().endswith(".csv") else find_elastic(elastic)
-        design = design.with_elastic(line, chosen)
-    return design
+def add_scan(parser: ArgumentParser) -> None:
+    """Add the input file, and the options that orient, edit and mark a scan."""
+    kinds = f"a scan ({KINDS}, each also compressed as {PACKED}) or a project (.busk)"
+    parser.add_argument("input", metavar="SCAN_OR_PROJECT", help=kinds)
+    units = tuple(MILLIMETRES)
+    parser.add_argument("--unit", type=str.lower, choices=units, help="unit of the scan (default: detected)")
+    parser.add_argument("--up", metavar="AXIS", help=f"up axis of the scan: {_AXIS.format(axis='+z')}")
+    parser.add_argument("--front", metavar="AXIS", help=f"front axis of the scan: {_AXIS.format(axis='-y')}")
+    parser.add_argument("--landmark", action="append", metavar="NAME=x,y,z", help=LANDMARK_HELP)
+    for end, where in (("from", "below"), ("to", "above")):
+        crop = f"crop the scan {where} this height above its lowest point"
+        parser.add_argument(f"--keep-{end}", type=float, metavar="MM", help=crop)
+    parser.add_argument("--mirror", choices=SIDES, help="mirror this half of the scan to the other side")
+    fill = "fill the hole at this centre in mm on the upright body, or 'all'; may be repeated"
+    parser.add_argument("--fill", action="append", metavar="x,y,z", help=fill)
 
 
-def help_text() -> str:
-    """Return the keys with what each takes, for a command's help."""
+def add_settings(parser: ArgumentParser) -> None:
+    """Add the model options and the custom lines of a design."""
+    parser.add_argument("--settings", action="append", metavar="KEY=VALUE", help=settings_help())
+    parser.add_argument("--path", action="append", metavar="NAME=POINTS", help=LINE_HELP)
+
+
+def add_lines(parser: ArgumentParser) -> None:
+    """Add the settings of a design, the lengths of its lines and their elastics."""
+    add_settings(parser)
+    parser.add_argument("--line", action="append", metavar="NAME=LENGTH", help=LINE_LENGTH_HELP)
+    parser.add_argument("--elastic", action="append", metavar="LINE=ELASTIC", help=ELASTIC_HELP)
+
+
+def add_volume(parser: ArgumentParser) -> None:
+    """Add the choice of the volume control."""
+    volume = "volume control (default: as in the project, or adaptive)"
+    parser.add_argument("--volume", choices=CONTROLS, help=volume)
+
+
+def add_forms(parser: ArgumentParser, *, table: bool = False) -> None:
+    """Add JSON as the form of the output; for a ``table`` also CSV and a file."""
+    forms = parser.add_mutually_exclusive_group()
+    forms.add_argument("--json", action="store_true", help="print JSON")
+    if table:
+        forms.add_argument("--csv", action="store_true", help="print CSV")
+        out = "write the output to a file; the ending .json or .csv selects the format"
+        parser.add_argument("--out", metavar="FILE", help=out)
+
+
+def add_project_output(parser: ArgumentParser, what: str = "the result") -> None:
+    """Add the project file that a design is saved to."""
+    parser.add_argument("--out", default="", metavar="FILE", help=f"save {what} as a project (.busk)")
+
+
+def add_folder_output(parser: ArgumentParser, *, required: bool = True, default: str | None = None) -> None:
+    """Add the folder that files are written to."""
+    parser.add_argument("--out", required=required, default=default, metavar="PLACE", help="output folder")
+
+
+def form_of(options: argparse.Namespace) -> str:
+    """Return the form of the output: "csv", "json" or, as text, ""."""
+    return "csv" if options.csv else "json" if options.json else ""
+
+
+def picture_size(text: str) -> tuple[int, int]:
+    """Read a size in pixels, such as 1600x1000. Raises ArgumentTypeError."""
+    match = re.fullmatch(r"([1-9]\d{1,3})x([1-9]\d{1,3})", text)
+    if match is None:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a size such as 1600x1000")
+    return int(match[1]), int(match[2])
+
+
+def settings_help() -> str:
+    """Return the keys of ``--settings`` with the values that each takes."""
     numbers = f"{', '.join(NUMBERS)} (a number; firm_chest also on, off; gain also auto)"
     words = [f"{key} ({', '.join(choices)})" for key, choices in WORDS.items()]
     return ", ".join([numbers, *words, *(f"{key} (yes, no)" for key in SWITCHES)])
-
-
-def _word(key: str, value: str) -> str:
-    plain = value.replace("_", "-").replace(" ", "-")
-    if plain not in WORDS[key]:
-        raise UserError(f"'{value}' is not a value of {key}.", f"Choose one of: {', '.join(WORDS[key])}.")
-    return plain
-
-
-def _number(key: str, value: str) -> float:
-    try:
-        return float(value.replace(",", "."))
-    except ValueError:
-        raise UserError(f"The {key} '{value}' is not a number.", f"Enter for example {key}=1.5.") from None
-
-
-def _gain(key: str, value: str) -> float | None:
-    return None if value == "auto" else _number(key, value)
-
-
-def _firm_chest(key: str, value: str) -> float:
-    return _FIRM[value] if value in _FIRM else _number(key, value)
-
-
-def _switch(key: str, value: str) -> bool:
-    if value not in _ON:
-        raise UserError(f"'{value}' is not a value of {key}.", "Choose one of: yes, no.")
-    return _ON[value]
-
-
-_READERS: dict[str, Callable[[str, str], Any]] = {
-    **dict.fromkeys(WORDS, _word),
-    **dict.fromkeys(NUMBERS, _number),
-    **dict.fromkeys(SWITCHES, _switch),
-    "gain": _gain,
-    "firm_chest": _firm_chest,
-}

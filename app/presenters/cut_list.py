@@ -11,6 +11,7 @@ from app.rendering.band import band_width
 from core.document.design import Design
 from core.garment.cut_list import CutList, CutRow
 from core.garment.pressure_list import PressList
+from core.pipeline.build import Stages
 from core.pipeline.live_solver import Frame
 
 
@@ -41,10 +42,10 @@ def told(sentence: str, design: Design, unit: str = "") -> str:
     return say(titled(sentence, design), unit)
 
 
-def as_table(frame: Frame, cuts: CutList, pressed: PressList | None) -> list[list[str]]:
+def as_table(stages: Stages, cuts: CutList, pressed: PressList | None) -> list[list[str]]:
     """Return the cut list as plain cells, with a heading, in the order of the list of lines.
 
-    ``pressed`` is what the lines press with, if that is known of this frame. Lengths are in mm, as in files.
+    ``pressed`` are the contact pressures of the same shape, if known. Lengths are in mm, as in files.
     """
     heading = [
         tr("Line"),
@@ -60,8 +61,8 @@ def as_table(frame: Frame, cuts: CutList, pressed: PressList | None) -> list[lis
         tr("Estimate"),
         tr("Note"),
     ]
-    design = frame.stages.design
-    order = list(line_colours((line.name for line in frame.stages.model.lines), design))
+    design = stages.design
+    order = list(line_colours((line.name for line in stages.model.lines), design))
     rows = sorted(cuts.rows, key=lambda row: order.index(row.line))
     most = {row.line: row.max_kpa for row in pressed.rows} if pressed is not None else {}
     return [heading, *(_cells(row, most.get(row.line), design) for row in rows)]

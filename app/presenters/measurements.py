@@ -28,7 +28,9 @@ def measure_views(frame: Frame) -> list[MeasureView]:
     return [replace(row, group=group) for row in rows]
 
 
-def measured_views(before: Measures, after: Measures, own: Sequence[OwnMeasure] = ()) -> list[MeasureView]:
+def measured_views(
+    before: Measures, after: Measures | None, own: Sequence[OwnMeasure] = ()
+) -> list[MeasureView]:
     """Return what was measured on the body at rest and reshaped, group by group.
 
     ``own`` are the measures of the designer's own.

@@ -211,15 +211,16 @@ def _mean_and_most(off: Floats) -> dict[str, str]:
 
 def reasons_words(reply: Reply) -> str:
     """Return why an answer is not what was asked for, as part of a sentence."""
-    return tr(", and ").join(_reasons(reply))
+    return tr(", and ").join(reasons(reply))
 
 
-def _reasons(reply: Reply) -> list[str]:
+def reasons(reply: Reply) -> list[str]:
+    """Return why an answer is not what was asked for, as parts of a sentence."""
     long = [name for name in reply.at_end if reply.may_not_be_longer(name)]
     short = [name for name in reply.at_end if name not in long]
     slack = [name for name in reply.slack if name not in reply.at_end]
     kpa = number(reply.limit)
-    reasons = [
+    causes = [
         said.format(lines=_titles(names, reply.design), kpa=kpa)
         for names, said in (
             (short, tr("{lines} may not be shorter")),
@@ -230,8 +231,8 @@ def _reasons(reply: Reply) -> list[str]:
         if names
     ]
     if reply.strained:
-        reasons.append(tr("the body would be strained more than looks natural"))
-    return reasons or [tr("these lines do not move the body that way")]
+        causes.append(tr("the body would be strained more than looks natural"))
+    return causes or [tr("these lines do not move the body that way")]
 
 
 def change_words(before: Design, reply: Reply) -> list[str]:

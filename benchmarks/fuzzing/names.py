@@ -17,7 +17,7 @@ from typing import Any
 import ezdxf
 
 from app.cli.commands.cut import Cut, cut_text
-from app.cli.solve_design import Worn, run_to_body
+from app.cli.solved_design import Worn, run_to_body
 from app.presenters.export import Manner, Outcome
 from app.presenters.export_preview import make_ready
 from core.document.custom_measures import OwnMeasure

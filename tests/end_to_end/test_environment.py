@@ -17,7 +17,7 @@ from window_tools import Script, drag, run_main, settled, undrawn
 
 import app.gui.features.project.controller as project_files
 from app.cli import environment as surroundings
-from app.cli.environment import is_seen_in_window, path_of, settle_in
+from app.cli.environment import is_seen_in_window, path_of, set_up_streams
 from app.cli.main import BAD_INPUT, INTERRUPTED, main
 from app.gui.application import Application, hand_files_to
 from app.gui.main_window import MainWindow
@@ -168,7 +168,7 @@ def test_streams_are_left_alone_where_they_can_write_everything(monkeypatch: pyt
     narrow = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
     monkeypatch.setattr(sys, "stdout", narrow)
     monkeypatch.setattr(sys, "stderr", None)
-    settle_in()
+    set_up_streams()
     print("−20 °")
     print("nobody hears", file=sys.stderr)
     narrow.flush()
@@ -187,15 +187,15 @@ def test_what_libraries_find_out_has_a_place_even_without_a_home(
         monkeypatch.setenv(name, "")
         monkeypatch.delenv(name)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    settle_in()
+    set_up_streams()
     kept = Path(os.environ["MPLCONFIGDIR"])
     assert kept.is_relative_to(tmp_path)
     assert not list(tmp_path.iterdir()), "made when there is something to keep"
     monkeypatch.setattr(surroundings.os, "access", lambda *_: False)
-    settle_in()
+    set_up_streams()
     assert not Path(os.environ["MPLCONFIGDIR"]).is_relative_to(tmp_path / "Busk")
     monkeypatch.setattr(surroundings.platformdirs, "user_cache_path", homeless)
-    settle_in()
+    set_up_streams()
     assert Path(os.environ["MPLCONFIGDIR"]).parent.is_dir()
 
 
@@ -208,10 +208,10 @@ def test_letters_are_those_of_unicode_where_no_language_is_set(
 ) -> None:
     for name in ("LC_ALL", "LC_CTYPE", "LANG"):
         monkeypatch.setenv(name, told.get(name, ""))
-    settle_in()
+    set_up_streams()
     assert os.environ[set_to] == "C.UTF-8"
     monkeypatch.setenv(set_to, "ja_JP.UTF-8")
-    settle_in()
+    set_up_streams()
     assert os.environ[set_to] == "ja_JP.UTF-8"
 
 

@@ -1,69 +1,108 @@
-"""The cut list as the command line prints and writes it."""
+"""Compute the cut list: the cut length of each active line."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from argparse import ArgumentParser, Namespace
+from collections.abc import Callable
 from dataclasses import dataclass, fields
+from functools import partial
 
-from app.cli.output import csv_text, told
-from app.cli.solve_design import Worn, run_worn
+from app.cli.design import design_of, with_lines_and_elastics
+from app.cli.options import add_forms, add_lines, add_scan, form_of
+from app.cli.output import csv_text, finish, table_lines, write_output
+from app.cli.solved_design import SolvedDesign, solve_design
+from app.presenters.cut_list import as_table
+from app.presenters.elastics import choice_view, mode_words, title_of
 from core import __version__
-from core.document.design import Design
+from core.errors import LineError, UserError
 from core.garment.cut_list import CutList, CutRow, cut_list
+from core.garment.elastic_library import library
+from core.garment.elastic_options import KEEP_CUT, KEEP_FIT, elastic_option
+from core.pipeline.build import Stages, build
 
 COLUMNS = tuple(field.name for field in fields(CutRow))
+_SHOWN = (0, 3, 4, 5, 7, 8, 1)
+_NOTE = -1
+"""Columns of ``as_table`` that are printed, and the one that is printed below its row."""
 
 
 @dataclass(frozen=True)
 class Cut:
-    """A cut list, and the solved design that it is of."""
+    """A cut list, and the solved design that it belongs to."""
 
     cuts: CutList
-    worn: Worn
+    solved: SolvedDesign
 
 
-def run_cut(design: Design, lines: Sequence[str], elastics: Sequence[str], same: bool = False) -> Cut:
-    """Solve a design with lines and elastics as requested, and make its cut list. Raises UserError.
-
-    If ``same`` lines made of elastics reach what they reach without them.
-    """
-    worn = run_worn(design, lines, elastics, same=same)
-    solution = worn.solution
-    return Cut(cut_list(solution.stages, solution.control_points), worn)
-
-
-def cut_text(found: Cut, kind: str, out: str | None) -> str:
-    """Return what to print, or write it to a file ``out``; see ``told``. Raises UserError."""
-    return told(_FORMS, found, kind, out)
+def add_options(parser: ArgumentParser) -> None:
+    """Add the options of ``busk cut``."""
+    add_scan(parser)
+    add_lines(parser)
+    listed = "list all elastics for a line with their results, or the reason why an elastic cannot be used"
+    parser.add_argument("--elastics", metavar="LINE", help=listed)
+    same = "lines with an elastic keep the length that they reach without it; the cut length changes"
+    parser.add_argument("--keep-fit", action="store_true", help=same)
+    add_forms(parser, table=True)
 
 
-def _plain(found: Cut) -> str:
-    heading = f"{'':22}{'cut mm':>9}{'elong. %':>11}{'tension N':>11}{'front mm':>10}{'full mm':>10}  elastic"
-    rows = (line for row in found.cuts.rows for line in _lines(row))
-    return "\n".join([*found.worn.verdict, *found.worn.effect, "", heading, *rows, *found.cuts.notes])
+def run(options: Namespace) -> int:
+    """Print or write the cut list, or the elastics for a line."""
+    design, lines, elastics = design_of(options), options.line or [], options.elastic or []
+    if options.elastics is not None:
+        stages = with_lines_and_elastics(build(design), lines, elastics)
+        make = partial(elastics_text, stages, options.elastics, keep_fit=options.keep_fit)
+        forms: dict[str, Callable[[Callable[[], str]], str]] = {"": lambda make: make()}
+        forms |= dict.fromkeys(("csv", "json"), _refused)
+        return finish(write_output(forms, make, form_of(options), options.out), True)
+    solved = solve_design(design, lines, elastics, keep_fit=options.keep_fit)
+    cuts = cut_list(solved.solution.stages, solved.solution.control_points)
+    text = write_output(FORMS, Cut(cuts, solved), form_of(options), options.out)
+    return finish(text, solved.converged, solved.warnings)
 
 
-def _lines(row: CutRow) -> list[str]:
-    figures = (
-        (row.cut_mm, 9),
-        (None if row.elongation is None else 100.0 * row.elongation, 11),
-        (row.tension_n, 11),
-        (row.reached_front_mm, 10),
-        (row.reached_whole_mm, 10),
-    )
-    told = "".join(f"{'-' if value is None else format(value, '.1f'):>{wide}}" for value, wide in figures)
-    return [f"{row.title[:21]:22}{told}  {row.elastic}".rstrip(), *(f"  {note}" for note in row.notes)]
+def _text(found: Cut) -> str:
+    heading, *rows = as_table(found.solved.solution.stages, found.cuts, None)
+    first, *lines = table_lines([[row[at] for at in _SHOWN] for row in (heading, *rows)])
+    lines = [text for line, row in zip(lines, rows, strict=True) for text in (line, f"  {row[_NOTE]}")]
+    notes = [*filter(str.strip, lines), *found.cuts.notes]
+    return "\n".join([*found.solved.verdict, *found.solved.effect, "", first, *notes])
 
 
-def _as_json(found: Cut) -> str:
-    whole = {**found.cuts.as_data(), "assessment": found.worn.assessment.as_data()}
-    whole |= {"warnings": found.worn.warnings, "versions": {"busk": __version__}}
+def _json(found: Cut) -> str:
+    whole = {**found.cuts.as_data(), "assessment": found.solved.assessment.as_data()}
+    whole |= {"warnings": found.solved.warnings, "versions": {"busk": __version__}}
     return json.dumps(whole, indent=1, ensure_ascii=False)
 
 
-def _as_csv(found: Cut) -> str:
+def _csv(found: Cut) -> str:
     return csv_text(COLUMNS, found.cuts.rows)
 
 
-_FORMS = {"": _plain, "json": _as_json, "csv": _as_csv}
+FORMS = {"": _text, "json": _json, "csv": _csv}
+"""How a cut list is written."""
+
+
+def elastics_text(stages: Stages, name: str, *, keep_fit: bool = False) -> str:
+    """Return the elastics of the library for a line, and its linked partner, as a table. Raises UserError."""
+    design, mode = stages.design, KEEP_FIT if keep_fit else KEEP_CUT
+    line = next((each.name for each in stages.model.lines if each.name.lower() == name.strip().lower()), None)
+    if line is None:
+        known = ", ".join(each.name for each in stages.model.lines)
+        raise LineError(f"There is no line '{name}'.", f"Available lines: {known}.")
+    names, rigid = design.linked(line), None
+    rows = [["", "elong. %", "cut mm", "body mm", "lift mm", ""]]
+    for elastic in (None, *library().values()):
+        option = elastic_option(stages, names, elastic, mode)
+        rigid = option.outcome if elastic is None else rigid
+        view = choice_view(title_of(elastic), option, rigid, names, design)
+        values = (each or "-" for each in (view.stretch, view.cut, view.reached, view.lift))
+        rows.append([view.title, *values, view.note])
+    return "\n".join([mode_words(mode, design), "", *table_lines(rows)])
+
+
+def _refused(_: object) -> str:
+    raise UserError(
+        "The list of elastics is available as text only.",
+        "Remove --json, --csv and file names with these endings.",
+    )

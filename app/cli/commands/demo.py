@@ -1,30 +1,37 @@
-"""The sample session with no display: the same window off-screen, and everything that it can write."""
+"""Run the sample session off-screen: pictures of the window and the body, and all results as files."""
 
 from __future__ import annotations
 
+from argparse import ArgumentParser, Namespace
 from dataclasses import replace
-from pathlib import Path
 
 from app.cli.commands.picture import draw_picture, draw_window
+from app.cli.options import add_folder_output
+from app.cli.output import DONE, make_folder
 from app.presenters.samples import lifted_sample
 from core.export.solution_report import write_solution
 from core.pipeline.build import build
-from core.pipeline.solve import run
+from core.pipeline.solve import run as solve
 
 
-def run_demo(out: Path) -> int:
-    """Write pictures, deformed body and report of the sample to ``out``, and say so."""
-    design = lifted_sample()
+def add_options(parser: ArgumentParser) -> None:
+    """Add the options of ``busk demo``."""
+    add_folder_output(parser, required=False, default="out")
+
+
+def run(options: Namespace) -> int:
+    """Write pictures, reshaped body and report of the sample, and print their names."""
+    out, design = make_folder(options.out), lifted_sample()
     print("No display available: the sample session is written to files.")
     draw_window(design, out / "window.png")
     print(f"  {out / 'window.png'}: the window")
-    for view, lines, name in (("three-quarter", (), "before"), ("three-quarter", design.lines, "after")):
-        draw_picture(replace(design, lines=lines), out / f"{name}.png", view=view, size=(1000, 900))
+    for lines, name in (((), "before"), (design.lines, "after")):
+        draw_picture(replace(design, lines=lines), out / f"{name}.png", size=(1000, 900))
         print(f"  {out / f'{name}.png'}: the body {name}")
-    solution = run(build(design))
+    solution = solve(build(design))
     write_solution(solution, out)
-    print(f"  {out / 'body.ply'}: the deformed body")
+    print(f"  {out / 'body.ply'}: the reshaped body")
     print(f"  {out / 'turns.csv'}, {out / 'report.json'}: iterations and final values")
     last = solution.last
     print(f"{solution.verdict.words} after {last.turn} iterations, volume error {last.error_ml:+.2f} ml")
-    return 0
+    return DONE

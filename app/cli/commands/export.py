@@ -1,75 +1,92 @@
-"""What the command line writes for other programs: bodies, lines, strips, measures and turntables."""
+"""Export the body, its lines, pattern strips, measurements or a turntable for other programs."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from argparse import ArgumentParser, Namespace
+from collections.abc import Mapping
 from pathlib import Path
 
-from app.cli.options import dressed, made_of
-from app.cli.solve_design import run_to_body
+from app.cli.design import design_of, with_lines_and_elastics
+from app.cli.options import add_lines, picture_size
+from app.cli.output import finish
+from app.cli.solved_design import is_converged, solve_valid
 from app.presenters.assessment import assessment_lines
 from app.presenters.export import Manner, Outcome
 from app.presenters.export_preview import check, make_ready
-from core.document.design import Design
+from app.presenters.scan import KINDS as SCANS
 from core.errors import UserError
 from core.garment.assessment import assessed
 from core.pipeline.build import build
 from core.pipeline.warnings import shape_warnings
 from core.progress import in_one_go, quiet
 
-KINDS = ("body", "control", "lines", "flat", "measures", "turntable")
-"""What can be written by command, in order."""
+KINDS = {
+    "body": ("body", "output reshaped body (.glb, .obj, .ply, .stl)"),
+    "control": ("control-mesh", "output control mesh (.glb, .obj, .ply, .stl, .csv)"),
+    "lines": ("lines", "output active lines on the body (.dxf, .obj)"),
+    "flat": ("strips", "output active lines as flat pattern strips at full scale (.svg, .dxf)"),
+    "measures": ("measurements", "output measurements (.smis, .vit, .csv, .json)"),
+    "turntable": ("turntable", "output turntable (.gif, .webp, or .png for a series)"),
+}
+"""Kinds of files in order, each with its option and help."""
 
 
-@dataclass(frozen=True)
-class Exported:
-    """What was exported: whether the design settled, and what to say of it."""
+def add_options(parser: ArgumentParser) -> None:
+    """Add the options of ``busk export``."""
+    project = f"a project (.busk), or a scan ({SCANS}) with --line"
+    parser.add_argument("input", metavar="PROJECT", help=project)
+    for kind, (option, output) in KINDS.items():
+        parser.add_argument(f"--{option}", dest=kind, default="", metavar="FILE", help=output)
+    unit = "mm, cm, m or in (default: m in .glb, cm in measurements, otherwise mm)"
+    parser.add_argument("--unit", dest="file_unit", metavar="UNIT", help=unit)
+    axes = "z-up (front -y), y-up (front z) or z-up-front-y (front y); default: y-up in .glb, otherwise z-up"
+    parser.add_argument("--axes", help=axes)
+    original = "export the original body in place of the reshaped one; strips do not change"
+    parser.add_argument("--original", dest="before", action="store_true", help=original)
+    frames = "number of turntable frames"
+    parser.add_argument("--frames", type=int, default=36, metavar="N", help=frames)
+    seconds = "duration of one rotation in seconds"
+    parser.add_argument("--seconds", type=float, default=6.0, metavar="S", help=seconds)
+    size = "size of the turntable in pixels"
+    parser.add_argument("--size", type=picture_size, default=(640, 720), metavar="WIDTHxHEIGHT", help=size)
+    parser.add_argument("--dark", action="store_true", help="render the turntable in the dark theme")
+    both = "show before and after side by side in the turntable"
+    parser.add_argument("--side-by-side", dest="beside", action="store_true", help=both)
+    add_lines(parser)
 
-    settled: bool
-    warnings: list[str]
 
+def run(options: Namespace) -> int:
+    """Solve the design and write the files: each is complete or not written. Raises UserError.
 
-def run_export(
-    design: Design,
-    lengths: Sequence[str],
-    elastics: Sequence[str],
-    files: Mapping[str, str],
-    manner: Manner,
-    say: Callable[[str], None],
-) -> Exported:
-    """Solve a design with ``lengths``, NAME=LENGTH, and ``elastics``, LINE=ELASTIC, and write ``files``.
-
-    These are names by kind. Each file is written whole or not at all; ``say`` hears a sentence of each.
-    Raises UserError, before anything is solved if a name cannot be.
+    Names that are not valid are refused before anything is solved.
     """
-    wished = {kind: files[kind] for kind in KINDS if files.get(kind)}
-    _check(wished, manner)
-    stages = build(design)
-    design = made_of(dressed(design, stages.model.lines, lengths), elastics)
-    solution = run_to_body(build(design, stages))
+    named = ("axes", "before", "frames", "seconds", "size", "dark", "beside")
+    manner = Manner(options.file_unit, **{name: getattr(options, name) for name in named})
+    files = {kind: getattr(options, kind) for kind in KINDS if getattr(options, kind)}
+    _check(files, manner)
+    stages = with_lines_and_elastics(build(design_of(options)), options.line or [], options.elastic or [])
+    solution = solve_valid(stages)
     outcome = Outcome(solution.stages, solution.control_points, solution.records)
-    for kind, name in wished.items():
-        say(_write(kind, name, outcome, manner))
-    say("\n".join(assessment_lines(assessed(solution), solution.stages.design)))
-    settled = solution.verdict.motion == "settled" and solution.verdict.state != "folded"
-    return Exported(settled, shape_warnings(solution))
+    for kind, name in files.items():
+        print(_write(kind, name, outcome, manner))
+    text = "\n".join(assessment_lines(assessed(solution), solution.stages.design))
+    return finish(text, is_converged(solution), shape_warnings(solution))
 
 
-def _check(wished: Mapping[str, str], manner: Manner) -> None:
-    """Raise UserError if something is wished that cannot be written."""
-    if not wished:
+def _check(files: Mapping[str, str], manner: Manner) -> None:
+    """Raise UserError if a file cannot be written."""
+    if not files:
         raise UserError("No output specified.", "Specify a file, for example --body anna.glb.")
-    names = list(wished.values())
+    names = list(files.values())
     twice = [name for name in names if names.count(name) > 1]
     if twice:
         raise UserError(f"{twice[0]} is specified for two outputs.", "Use a different file for each output.")
-    for kind, name in wished.items():
+    for kind, name in files.items():
         check(kind, name, manner)
 
 
 def _write(kind: str, name: str, outcome: Outcome, manner: Manner) -> str:
-    """Write a file, and return what is said of it."""
+    """Write a file, and return its name with its contents."""
     ready = make_ready(kind, name, outcome, manner)
     target = Path(name)
     try:
@@ -77,6 +94,6 @@ def _write(kind: str, name: str, outcome: Outcome, manner: Manner) -> str:
     except OSError as why:
         raise UserError(f"{name} cannot be written: {why.strerror}.", "Choose another folder.") from why
     drawn = in_one_go(ready.draw()) if ready.draw else None
-    files = ready.write(target, drawn, quiet) or [target]
-    place = name if len(files) == 1 else f"{files[0].name} to {files[-1].name}"
+    written = ready.write(target, drawn, quiet) or [target]
+    place = name if len(written) == 1 else f"{written[0].name} to {written[-1].name}"
     return f"{place}: {ready.contents}" + (f", {ready.how}" if ready.how else "")

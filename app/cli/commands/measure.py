@@ -1,16 +1,23 @@
-"""What a body measures, as the command line prints and writes it."""
+"""Measure a scan, or a project before and after."""
 
 from __future__ import annotations
 
 import json
+from argparse import ArgumentParser, Namespace
 from dataclasses import dataclass
 from typing import Any
 
-from app.cli.output import told
-from app.cli.solve_design import run_to_body
+from app.cli.design import design_of
+from app.cli.options import add_forms, add_scan, form_of
+from app.cli.output import finish, table_lines, write_output
+from app.cli.solved_design import is_converged, solve_valid
 from app.presenters.assessment import assessment_lines
+from app.presenters.measurements import MeasureView, measured_views
 from core import __version__
+from core.document.custom_measures import HELP as CUSTOM_HELP
+from core.document.custom_measures import own_measure
 from core.document.design import Design
+from core.document.storage.project_file import is_project
 from core.export.csv_cells import csv_text
 from core.garment.assessment import assessed
 from core.landmarks.warnings import doubts
@@ -26,66 +33,70 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class Measured:
-    """The rows of ``measure_rows``, whether there is an after, and what to look at."""
+    """The rows of ``measure_rows`` and their views; the ``verdict`` is empty if there is no after."""
 
     rows: list[dict[str, Any]]
-    solved: bool
-    settled: bool
+    views: list[MeasureView]
+    converged: bool
     warnings: list[str]
     verdict: tuple[str, ...] = ()
 
 
-def run_measure(design: Design, *, solved: bool) -> Measured:
-    """Measure the scan of a design, and what becomes of it if it is to be ``solved``. Raises UserError."""
-    if not solved:
-        _, body = read_body(design.scan)
-        landmarks = find(body, design.placed)
-        rows = measure_rows(measures(body.calm, landmarks, design.own_measures))
-        return Measured(rows, False, True, doubts(body, landmarks))
-    solution = run_to_body(build(design))
+def add_options(parser: ArgumentParser) -> None:
+    """Add the options of ``busk measure``."""
+    add_scan(parser)
+    add_forms(parser, table=True)
+    parser.add_argument("--custom", action="append", metavar="NAME=KIND:PLACES", help=CUSTOM_HELP)
+
+
+def run(options: Namespace) -> int:
+    """Print or write the measurements of a scan, or of a project before and after."""
+    design = design_of(options)
+    for custom in map(own_measure, options.custom or []):
+        design = design.with_own_measure(custom)
+    found = _measured(design) if is_project(options.input) else _measured_scan(design)
+    text = write_output(_FORMS, found, form_of(options), options.out)
+    return finish(text, found.converged, found.warnings)
+
+
+def _measured_scan(design: Design) -> Measured:
+    _, body = read_body(design.scan)
+    landmarks = find(body, design.placed)
+    before = measures(body.calm, landmarks, design.own_measures)
+    rows, views = measure_rows(before), measured_views(before, None, design.own_measures)
+    return Measured(rows, views, True, doubts(body, landmarks))
+
+
+def _measured(design: Design) -> Measured:
+    solution = solve_valid(build(design))
     stages = solution.stages
-    rows = measure_rows(*before_after(stages, solution.control_points))
-    settled = solution.verdict.motion == "settled" and solution.verdict.state != "folded"
+    both = before_after(stages, solution.control_points)
     warnings = [*doubts(stages.body, stages.landmarks), *shape_warnings(solution)]
-    verdict = assessment_lines(assessed(solution), stages.design)
-    return Measured(rows, True, settled, warnings, tuple(verdict))
+    verdict = tuple(assessment_lines(assessed(solution), stages.design))
+    views = measured_views(*both, stages.design.own_measures)
+    return Measured(measure_rows(*both), views, is_converged(solution), warnings, verdict)
 
 
-def measured_text(found: Measured, kind: str, out: str | None) -> str:
-    """Return what to print, or write it to a file ``out``; see ``told``. Raises UserError."""
-    return told(_FORMS, found, kind, out)
+def _text(found: Measured) -> str:
+    heading = ("", "before", *(("after", "change") if found.verdict else ()), "unit", "")
+    lines = table_lines([heading, *(_cells(view, bool(found.verdict)) for view in found.views)])
+    return "\n".join([*found.verdict, *([""] if found.verdict else []), *lines])
 
 
-def _plain(found: Measured) -> str:
-    titles = [f"{row['title']}, {row['side']}" if row["side"] else row["title"] for row in found.rows]
-    wide = max(34, *(len(title) + 1 for title in titles))
-    heading = f"{'':{wide}}{'before':>9}" + (f"{'after':>9}{'change':>8}" if found.solved else "")
-    rows = zip(titles, found.rows, strict=True)
-    head = [*found.verdict, ""] if found.verdict else []
-    return "\n".join([*head, heading, *(_line(f"{title:{wide}}", row, found.solved) for title, row in rows)])
+def _cells(view: MeasureView, solved: bool) -> tuple[str, ...]:
+    values = view.written(view.before), view.written(view.after), view.written(view.change, signed=True)
+    shown = values if solved else values[:1]
+    return (view.label, *(each or "-" for each in shown), view.unit_shown, view.caption)
 
 
-def _line(title: str, row: dict[str, Any], solved: bool) -> str:
-    both = row["before"], row["after"]
-    change = None if None in both else round(both[1], 1) - round(both[0], 1)  # so that the columns agree
-    values = [both[0], *([both[1], change] if solved else [])]
-    if all(value is None for value in values):
-        return f"{title}{'-':>9}  {row['note']}"
-    told = [f"{'-' if value is None else format(value, 'z.1f'):>9}" for value in values[:2]]
-    told += [f"{'' if value is None else format(value, '+z.1f'):>8}" for value in values[2:]]
-    unsure = f" ± {row['plus_minus']:.0f}" if row["plus_minus"] >= 0.5 else ""
-    note = f"{unsure}  {row['note']}" if row["estimate"] else ""
-    return f"{title}{''.join(told)} {row['unit']}{note}"
-
-
-def _as_json(found: Measured) -> str:
+def _json(found: Measured) -> str:
     table = {row["key"]: {key: value for key, value in row.items() if key != "key"} for row in found.rows}
     whole = {"measures": table, "warnings": found.warnings, "versions": {"busk": __version__}}
     return json.dumps(whole, indent=1, ensure_ascii=False)
 
 
-def _as_csv(found: Measured) -> str:
+def _csv(found: Measured) -> str:
     return csv_text(COLUMNS, ([row[column] for column in COLUMNS] for row in found.rows)).rstrip("\n")
 
 
-_FORMS = {"": _plain, "json": _as_json, "csv": _as_csv}
+_FORMS = {"": _text, "json": _json, "csv": _csv}

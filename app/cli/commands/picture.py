@@ -1,13 +1,17 @@
-"""Pictures with no display: the body from one side, or the whole window."""
+"""Render the body from one side, or the whole window, to a PNG file without a display."""
 
 from __future__ import annotations
 
 import time
+from argparse import ArgumentParser, Namespace
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.cli.design import design_of
+from app.cli.options import add_scan, add_settings, picture_size
+from app.cli.output import DONE
 from app.rendering.display import off_screen
 from core.document.design import Design
 from core.errors import UserError
@@ -18,9 +22,34 @@ if TYPE_CHECKING:
     from app.gui.main_window import MainWindow
 
 _PATIENCE, _LONGEST = 300.0, 1800.0
-"""Seconds of processor time, and of any time, after which an answer is not waited for any longer: of the
-first a machine with other work gives the program little.
-"""
+"""Processor time and real time [s] after which waiting ends: a busy machine gives little of the first."""
+
+
+def add_options(parser: ArgumentParser) -> None:
+    """Add the options of ``busk picture``."""
+    add_scan(parser)
+    add_settings(parser)
+    what = parser.add_mutually_exclusive_group()
+    views = "front, left, right, back, three-quarter, top, side"
+    what.add_argument("--view", default="three-quarter", help=views)
+    what.add_argument("--window", action="store_true", help="render the whole window")
+    parser.add_argument("--dark", action="store_true", help="use the dark theme")
+    parser.add_argument("--language", choices=("en", "ja"), default="en", help="language of the window")
+    size = "size of the picture in pixels"
+    parser.add_argument("--size", type=picture_size, default=(1600, 1000), metavar="WIDTHxHEIGHT", help=size)
+    parser.add_argument("--out", required=True, metavar="PLACE", help="output picture (.png)")
+
+
+def run(options: Namespace) -> int:
+    """Render the picture."""
+    design, out = design_of(options), Path(options.out)
+    how = {"dark": options.dark, "size": options.size}
+    if options.window:
+        draw_window(design, out, language=options.language, **how)
+    else:
+        draw_picture(design, out, view=options.view, **how)
+    print(f"written to {options.out}")
+    return DONE
 
 
 def draw_picture(

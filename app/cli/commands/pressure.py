@@ -1,102 +1,93 @@
-"""What worn lines press with, as the command line prints and writes it."""
+"""Compute the contact pressure of each active line, and rate it."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from argparse import ArgumentParser, Namespace
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
 
-from app.cli.output import csv_text, told
-from app.cli.solve_design import Worn, run_worn
-from app.presenters.pressure import total_words
+from app.cli.design import design_of
+from app.cli.options import add_forms, add_lines, add_scan, form_of
+from app.cli.output import csv_text, finish, table_lines, write_output
+from app.cli.solved_design import SolvedDesign, solve_design
+from app.presenters.lines import line_title
+from app.presenters.pressure import light_limits, light_word, place_words, total_words
 from core import __version__
 from core.document.design import Design
-from core.garment.pressure import LEFT_OUT
-from core.garment.pressure_limits import AMBER, GREEN, RED, comfort
 from core.garment.pressure_list import PressList, PressRow, press_list
 
 COLUMNS = tuple(field.name for field in fields(PressRow))
+_HEADING = ("", "mean kPa", "mmHg", "max kPa", "mmHg", "rating", "force N", "bridged mm", "maximum at")
 
 
 @dataclass(frozen=True)
-class Press:
-    """What lines press with, and the solved design that it is of."""
+class Pressures:
+    """The contact pressures of lines, and the solved design that they belong to."""
 
     listed: PressList
-    worn: Worn
+    solved: SolvedDesign
 
 
-def run_press(design: Design, lines: Sequence[str], elastics: Sequence[str]) -> Press:
-    """Solve a design with lines and elastics as requested, and list what presses. Raises UserError."""
-    worn = run_worn(design, lines, elastics)
-    listed = press_list(worn.solution.stages, worn.solution.control_points)
-    return Press(listed, worn)
+def add_options(parser: ArgumentParser) -> None:
+    """Add the options of ``busk pressure``."""
+    add_scan(parser)
+    add_lines(parser)
+    add_forms(parser, table=True)
 
 
-def press_text(found: Press, kind: str, out: str | None) -> str:
-    """Return what to print, or write it to a file ``out``; see ``told``. Raises UserError."""
-    return told(_FORMS, found, kind, out)
+def run(options: Namespace) -> int:
+    """Print or write the contact pressures."""
+    solved = solve_design(design_of(options), options.line or [], options.elastic or [])
+    listed = press_list(solved.solution.stages, solved.solution.control_points)
+    text = write_output(_FORMS, Pressures(listed, solved), form_of(options), options.out)
+    return finish(text, solved.converged, solved.warnings)
 
 
-def _plain(found: Press) -> str:
-    heading = (
-        f"{'':18}{'mean kPa':>9}{'mmHg':>6}{'max kPa':>9}{'mmHg':>6}  "
-        f"{'rating':6}{'force N':>8}{'bridged mm':>11}  location of maximum"
+def _text(found: Pressures) -> str:
+    listed, design = found.listed, found.solved.solution.stages.design
+    heading, *lines = table_lines([_HEADING, *(_cells(row, design) for row in listed.rows)])
+    notes = ([f"  {note}" for note in row.notes] for row in listed.rows)
+    rows = (text for line, below in zip(lines, notes, strict=True) for text in (line, *below))
+    lines = [heading, *rows, "", f"{total_words(listed)}.", "", *_limits()]
+    return "\n".join([*found.solved.verdict, *found.solved.effect, "", *lines])
+
+
+def _cells(row: PressRow, design: Design) -> tuple[str, ...]:
+    pressures = (row.mean_kpa, 2), (row.mean_mmhg, 1), (row.max_kpa, 2), (row.max_mmhg, 1)
+    others = (row.force_n, 1), (row.bridged_mm, 0)
+    return (
+        line_title(row.line, design),
+        *_written(pressures),
+        light_word(row.light) if row.light else "-",
+        *_written(others),
+        place_words(row) if row.where else "",
     )
-    rows = [line for row in found.listed.rows for line in _lines(row)]
-    left_out = [f"  {sentence}" for sentence in LEFT_OUT]
-    return "\n".join(
-        [
-            *found.worn.verdict,
-            *found.worn.effect,
-            "",
-            heading,
-            *rows,
-            "",
-            f"{total_words(found.listed)}.",
-            *_limits(),
-            "",
-            "Not included in the values:",
-            *left_out,
-        ]
-    )
 
 
-def _lines(row: PressRow) -> list[str]:
-    figures = (
-        *((row.mean_kpa, 9, 2), (row.mean_mmhg, 6, 1), (row.max_kpa, 9, 2), (row.max_mmhg, 6, 1)),
-        *((row.force_n, 8, 1), (row.bridged_mm, 11, 0)),
-    )
-    told = [_figure(*each) for each in figures]
-    told.insert(4, f"  {row.light or '-':6}")
-    where = f"{row.where}, {row.height_mm:.0f} mm above the lowest point" if row.where else ""
-    return [f"{row.title[:17]:18}{''.join(told)}  {where}".rstrip(), *(f"  {note}" for note in row.notes)]
+def _written(values: tuple[tuple[float | None, int], ...]) -> Iterator[str]:
+    return ("-" if value is None else f"{value:.{digits}f}" for value, digits in values)
 
 
-def _limits() -> list[str]:
-    limits = comfort()
-    amber, red = f"{limits.amber_kpa:g}", f"{limits.red_kpa:g}"
-    begins = {GREEN: f"below {amber}", AMBER: f"from {amber}", RED: f"from {red}"}
-    lights = [f"  {name}, {begins[name]} kPa: {words.en}" for name, words in limits.lights.items()]
-    beyond = [f"  from {kpa:g} kPa: {words.en}" for kpa, words in limits.beyond]
-    doubts = [f"  {words.en}" for words in limits.doubts]
-    sources = [f"  {each.name}: {each.words.en}" for each in limits.sources]
-    heading = "The rating uses the maximum contact pressure:"
-    return ["", heading, *lights, *beyond, *doubts, "  Between these values:", *sources]
+def _limits() -> Iterator[str]:
+    limits = light_limits()
+    gentle, snug, tight = limits.words
+    amber, red = f"{limits.amber_kpa:g} kPa", f"{limits.red_kpa:g} kPa"
+    rating = f"{gentle} below {amber}, {snug} from {amber}, {tight} from {red}"
+    yield f"Rating by the maximum contact pressure: {rating}."
+    yield from (f"  {sentence}" for sentence in limits.sources)
+    yield "Not included in the values:"
+    yield from (f"  {sentence}" for sentence in limits.left_out)
 
 
-def _figure(value: float | None, wide: int, digits: int) -> str:
-    return "-".rjust(wide) if value is None else f"{value:{wide}.{digits}f}"
-
-
-def _as_json(found: Press) -> str:
-    whole = {**found.listed.as_data(), "assessment": found.worn.assessment.as_data()}
-    whole |= {"warnings": found.worn.warnings, "versions": {"busk": __version__}}
+def _json(found: Pressures) -> str:
+    whole = {**found.listed.as_data(), "assessment": found.solved.assessment.as_data()}
+    whole |= {"warnings": found.solved.warnings, "versions": {"busk": __version__}}
     return json.dumps(whole, indent=1, ensure_ascii=False)
 
 
-def _as_csv(found: Press) -> str:
+def _csv(found: Pressures) -> str:
     return csv_text(COLUMNS, found.listed.rows)
 
 
-_FORMS = {"": _plain, "json": _as_json, "csv": _as_csv}
+_FORMS = {"": _text, "json": _json, "csv": _csv}

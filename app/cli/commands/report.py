@@ -1,16 +1,20 @@
-"""The sheet to work from as the command line writes it: PDF, JSON and one long table, with no display."""
+"""Write the report of a design as PDF, JSON and one long table, without a display."""
 
 from __future__ import annotations
 
 import datetime
 import logging
 import os
+from argparse import ArgumentParser, Namespace
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.solve_design import run_worn
+from app.cli.design import design_of
+from app.cli.options import add_lines, add_scan
+from app.cli.output import finish
+from app.cli.solved_design import SolvedDesign, solve_design
 from app.rendering.display import off_screen
 from core.analysis.uncertainty.estimate import spread_of
 from core.document.design import Design
@@ -31,12 +35,11 @@ _NO_PICTURES = "The pictures of the body could not be rendered: the report conta
 
 
 @dataclass(frozen=True)
-class SheetWishes:
-    """Where to write: ``out`` the PDF, in a ``language``, ``json`` and ``csv`` if they are named.
+class ReportOptions:
+    """The files to write: ``out`` is the PDF, in a ``language``; ``json`` and ``csv`` may be empty.
 
-    Lengths of the PDF are in ``length_unit``, those of data in mm.
-    ``customer`` and ``allowance`` [mm] are None where those of the project hold; ``system`` of sizes comes
-    first. ``spread`` puts ± beside figures, which takes a while.
+    Lengths of the PDF are in ``length_unit``, those of data in mm. ``customer`` and ``allowance`` [mm] are
+    None for those of the project; ``system`` of sizes is listed first. ``uncertainty`` adds ±.
     """
 
     out: str
@@ -47,74 +50,96 @@ class SheetWishes:
     customer: str | None = None
     system: str = "jp"
     allowance: float | None = None
-    spread: bool = False
+    uncertainty: bool = False
 
 
-@dataclass(frozen=True)
-class Reported:
-    """What came of it: whether the design settled, the files, what to say, and the overall verdict."""
+def add_options(parser: ArgumentParser) -> None:
+    """Add the options of ``busk report``."""
+    add_scan(parser)
+    add_lines(parser)
+    parser.add_argument("--out", required=True, metavar="FILE", help="output report (.pdf)")
+    parser.add_argument("--json", default="", metavar="FILE", help="output data (.json)")
+    parser.add_argument("--csv", default="", metavar="FILE", help="output table of all values (.csv)")
+    parser.add_argument("--language", choices=("en", "ja"), default="en", help="language of the report")
+    unit = "unit of lengths in the report, cut lengths to 1/16 in; --json and --csv use mm"
+    parser.add_argument("--length-unit", choices=("mm", "cm", "in"), default="mm", help=unit)
+    customer = "customer name or number (default: as in the project)"
+    parser.add_argument("--customer", metavar="TEXT", help=customer)
+    system = "size system listed first: jp, eu, uk, us, fr, it, au"
+    parser.add_argument("--system", default="jp", metavar="KEY", help=system)
+    allowance = (
+        "tape tension allowance, subtracted from the under-bust girth: 0 to 20 mm, an estimate "
+        "(default: as in the project)"
+    )
+    parser.add_argument("--allowance", type=float, metavar="MM", help=allowance)
+    uncertainty = "add the uncertainty (±) of values and curves; takes half a minute"
+    parser.add_argument("--uncertainty", action="store_true", help=uncertainty)
 
-    settled: bool
-    files: list[str]
-    warnings: list[str]
-    verdict: list[str]
+
+def run(options: Namespace) -> int:
+    """Write the report, and print the verdict and the names of the files."""
+    how = ReportOptions(**{name: getattr(options, name) for name in ReportOptions.__dataclass_fields__})
+    solved, warnings = write_report(
+        options.input, design_of(options), options.line or [], options.elastic or [], how
+    )
+    files = ", ".join(filter(None, (how.out, how.json, how.csv)))
+    return finish("\n".join([*solved.verdict, f"written to {files}"]), solved.converged, warnings)
 
 
-def run_report(
-    source: str, design: Design, lengths: Sequence[str], elastics: Sequence[str], wishes: SheetWishes
-) -> Reported:
-    """Solve a design with ``lengths``, NAME=LENGTH, and ``elastics``, LINE=ELASTIC, and write its sheet.
+def write_report(
+    source: str, design: Design, lines: Sequence[str], elastics: Sequence[str], how: ReportOptions
+) -> tuple[SolvedDesign, list[str]]:
+    """Solve a design with ``lines``, NAME=LENGTH, and ``elastics``, LINE=ELASTIC, and write its report.
 
-    Each file is whole or not there. Raises UserError, before anything is solved if a name cannot be.
+    Returns the solved design and the warnings. Each file is complete or not written. Raises UserError,
+    before anything is solved if a name is not valid.
     """
-    _check(wishes)
-    if wishes.customer is not None:
-        design = replace(design, customer=wishes.customer)
-    worn = run_worn(design, lengths, elastics, bare=True)
-    solution = worn.solution
-    sheet = sheet_of(solution, solution.records, _heading(source, design, wishes))
-    if wishes.spread:
+    _check(how)
+    if how.customer is not None:
+        design = replace(design, customer=how.customer)
+    solved = solve_design(design, lines, elastics, bare=True)
+    solution = solved.solution
+    sheet = sheet_of(solution, solution.records, _heading(source, design, how))
+    if how.uncertainty:
         sheet = with_spread(sheet, solution.stages, solution.control_points, spread_of(solution.stages))
-    for name, text, code in ((wishes.json, sheet_json, "utf-8"), (wishes.csv, sheet_csv, ENCODING)):
+    for name, text, code in ((how.json, sheet_json, "utf-8"), (how.csv, sheet_csv, ENCODING)):
         if name:
             write_text(Path(name), text(sheet), code)
-    said = _write(solution, sheet, wishes)
-    files = [name for name in (wishes.out, wishes.json, wishes.csv) if name]
-    warnings = [*dict.fromkeys((*worn.warnings, *sheet.doubts, *sheet.warnings)), *said]
-    return Reported(worn.settled, files, warnings, worn.verdict)
+    faults = _write(solution, sheet, how)
+    return solved, [*dict.fromkeys((*solved.warnings, *sheet.doubts, *sheet.warnings)), *faults]
 
 
-def _check(wishes: SheetWishes) -> None:
-    """Raise UserError if something is wished that cannot be."""
-    for name, ending in ((wishes.out, ".pdf"), (wishes.json, ".json"), (wishes.csv, ".csv")):
+def _check(how: ReportOptions) -> None:
+    """Raise UserError if an option is not valid."""
+    for name, ending in ((how.out, ".pdf"), (how.json, ".json"), (how.csv, ".csv")):
         if name and Path(name).suffix.lower() != ending:
             raise UserError(
                 f"'{name}' does not have the required ending.", f"Choose a name ending in {ending}."
             )
         if name and not Path(name).parent.is_dir():
             raise UserError(f"Folder {Path(name).parent} does not exist.", "Make it, or choose another one.")
-    if not wishes.out:
+    if not how.out:
         raise UserError("The output folder has no name.", "Specify a file: --out report.pdf.")
-    known = sizes(750.0, 900.0, wishes.allowance or 0.0)
-    if wishes.system not in known:
-        raise UserError(f"Unknown size system '{wishes.system}'.", f"Choose one of: {', '.join(known)}.")
+    known = sizes(750.0, 900.0, how.allowance or 0.0)
+    if how.system not in known:
+        raise UserError(f"Unknown size system '{how.system}'.", f"Choose one of: {', '.join(known)}.")
 
 
-def _heading(source: str, design: Design, wishes: SheetWishes) -> Heading:
+def _heading(source: str, design: Design, how: ReportOptions) -> Heading:
     document = open_project(source) if is_project(source) else None
     return Heading(
         project=Path(source).stem,
         date=datetime.date.today().isoformat(),
         customer=design.customer,
         variant=document.shown if document is not None and len(document.designs) > 1 else "",
-        system=wishes.system,
-        allowance_mm=design.worn_tight_mm if wishes.allowance is None else wishes.allowance,
+        system=how.system,
+        allowance_mm=design.worn_tight_mm if how.allowance is None else how.allowance,
     )
 
 
-def _write(solution: Solution, sheet: Sheet, wishes: SheetWishes) -> list[str]:
-    """Write the PDF, and return what is to be said of it."""
-    os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")  # a sheet needs no screen, even if there is one
+def _write(solution: Solution, sheet: Sheet, how: ReportOptions) -> list[str]:
+    """Write the PDF, and return its faults."""
+    os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")  # a report needs no screen
     off_screen()
     from app.gui.application import application  # noqa: PLC0415 (brings Qt along)
     from app.presenters.lines import line_colours  # noqa: PLC0415
@@ -122,19 +147,19 @@ def _write(solution: Solution, sheet: Sheet, wishes: SheetWishes) -> list[str]:
     from app.report.pages import pages_of  # noqa: PLC0415
     from app.report.pdf import write_pdf  # noqa: PLC0415
 
-    application(unit=wishes.length_unit)
+    application(unit=how.length_unit)
     names = [line.name for line in solution.stages.model.lines]
     handout = Handout(sheet, {}, line_colours(names, solution.stages.design))
     title = " ".join(filter(None, (sheet.heading.customer, sheet.heading.project)))
-    fresh = not Path(wishes.out).exists()
+    fresh = not Path(how.out).exists()
     if fresh:
-        # Graphics that do not work may end the program: the sheet without pictures is there by then. A sheet
-        # that was there before stays until the new one is whole.
-        write_pdf(wishes.out, pages_of(handout, wishes.language), title)
+        # Faulty graphics may end the program: by then the report without pictures is written. An existing
+        # report stays until the new one is complete.
+        write_pdf(how.out, pages_of(handout, how.language), title)
     pictures = _pictures(solution)
     try:
         if pictures or not fresh:
-            write_pdf(wishes.out, pages_of(replace(handout, pictures=pictures), wishes.language), title)
+            write_pdf(how.out, pages_of(replace(handout, pictures=pictures), how.language), title)
     except ProjectError as problem:
         if not fresh:
             raise
@@ -143,7 +168,7 @@ def _write(solution: Solution, sheet: Sheet, wishes: SheetWishes) -> list[str]:
 
 
 def _pictures(solution: Solution) -> Mapping[str, QImage]:
-    """Return the pictures of a sheet, or none where they cannot be drawn."""
+    """Return the pictures of a report, or none where they cannot be rendered."""
     try:
         from app.rendering.ambient_occlusion import bake_occlusion  # noqa: PLC0415
         from app.report.images import shots  # noqa: PLC0415 (brings VTK along)

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import tempfile
 import time
+from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
+from app.cli.options import add_folder_output
+from app.cli.output import make_folder
 from app.cli.self_test import analysis_checks as advice
 from app.cli.self_test import core_checks as figures
 from app.cli.self_test import fonts as letters
@@ -48,6 +51,16 @@ PARTS: tuple[Part[Bench], ...] = (
     Part("closing", screen.closing, ("window",)),
 )
 """What is tried, in order: what may take the whole program with it, graphics and windows, comes late."""
+
+
+def add_options(parser: ArgumentParser) -> None:
+    """Add the options of ``busk self-test``."""
+    add_folder_output(parser, required=False)
+
+
+def run(options: Namespace) -> int:
+    """Check the installed program, one line a part."""
+    return run_self_test(make_folder(options.out) if options.out is not None else None)
 
 
 def run_self_test(out: Path | None = None) -> int:

@@ -1,79 +1,78 @@
-"""What ``busk solve`` does: a design is solved with no window, and what came out is written and told."""
+"""Solve a design and write the reshaped body, the control mesh, the iterations and a report."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+import argparse
+from argparse import ArgumentParser, Namespace
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from app.cli.options import dressed, made_of
+from app.cli.design import stages_of
+from app.cli.options import add_folder_output, add_lines, add_scan, add_volume
+from app.cli.output import finish, make_folder
+from app.cli.solved_design import is_converged
 from app.presenters.assessment import assessment_lines
-from core.document.design import Design
 from core.export.solution_report import write_solution
 from core.garment.assessment import assessed
 from core.landmarks.warnings import doubts
-from core.pipeline.build import build
 from core.pipeline.exact import NoBalanceError
-from core.pipeline.solve import Solution, run
+from core.pipeline.solve import Solution
+from core.pipeline.solve import run as solve
 from core.pipeline.warnings import shape_warnings, still_lines
 
-RAN_AWAY = (
+DIVERGED = (
     "The solver diverged: the written shape is not valid. Reduce line_stiffness, or use --volume exact."
 )
 
 
-@dataclass(frozen=True)
-class Solved:
-    """What came of it: the lines to print, whether it settled, and what to look at."""
+def add_options(parser: ArgumentParser) -> None:
+    """Add the options of ``busk solve``."""
+    add_scan(parser)
+    add_lines(parser)
+    add_volume(parser)
+    count = "run exactly N iterations (default: until converged, at most 300)"
+    parser.add_argument("--iterations", type=_iterations, metavar="N", help=count)
+    add_folder_output(parser)
 
-    lines: list[str]
-    settled: bool
-    warnings: list[str]
+
+def _iterations(text: str) -> int:
+    if not (text.isdecimal() and 1 <= int(text) <= 100_000):
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of iterations from 1 to 100000")
+    return int(text)
 
 
-def run_solve(
-    design: Design,
-    lengths: Sequence[str],
-    elastics: Sequence[str],
-    turns: int | None,
-    place: Callable[[], Path],
-) -> Solved:
-    """Solve a design with ``lengths``, NAME=LENGTH, and ``elastics``, LINE=ELASTIC, and write it.
-
-    ``place`` makes the folder: of what is refused nothing stays behind. Raises UserError.
-    """
-    stages = build(design)
-    design = made_of(dressed(design, stages.model.lines, lengths), elastics)
-    solution = run(build(design, stages), turns)
-    verdict = solution.verdict
+def run(options: Namespace) -> int:
+    """Solve the design and write it: nothing is written if it is refused. Raises UserError."""
+    stages = stages_of(options)
+    solution, design = solve(stages, options.iterations), stages.design
+    motion = solution.verdict.motion
     lost = ("diverging", "settling") if design.volume == "exact" else ("diverging",)
-    if design.line_hold == "held" and verdict.motion in lost:
+    if design.line_hold == "held" and motion in lost:
         raise NoBalanceError(design)
-    out = place()
-    assessment = assessed(solution)
-    figures = write_solution(solution, out, {"assessment": assessment.as_data()})
-    ran_away = [RAN_AWAY] * (verdict.motion == "diverging")
+    out, assessment = make_folder(options.out), assessed(solution)
+    values = write_solution(solution, out, {"assessment": assessment.as_data()})
+    text = [*assessment_lines(assessment, design), *_lines(values), _end(values, solution, out)]
     unclear = doubts(stages.body, stages.landmarks)
-    warnings = [*unclear, *still_lines(solution.stages), *shape_warnings(solution), *ran_away]
-    told = [*assessment_lines(assessment, design), *_lines(figures), _end(figures, solution, out)]
-    return Solved(told, verdict.motion == "settled" and verdict.state != "folded", warnings)
+    warnings = [*unclear, *still_lines(stages), *shape_warnings(solution)]
+    warnings += [DIVERGED] * (motion == "diverging")
+    return finish("\n".join(text), is_converged(solution), warnings)
 
 
-def _lines(figures: Mapping[str, Any]) -> Iterator[str]:
-    for name, line in figures["lines"].items():
+def _lines(values: Mapping[str, Any]) -> Iterator[str]:
+    for name, line in values["lines"].items():
         if line["worn"]:
-            own = line["whole_band_rest_mm"] == line["rest_mm"]
+            closed = line["whole_band_rest_mm"] != line["rest_mm"]
             yield (
-                f"{name}: set {line['set_mm']:.1f} mm{'' if own else ' of the front part'} "
+                f"{name}: set {line['set_mm']:.1f} mm{' front length' if closed else ''} "
                 f"({line['set_percent']:.1f} %), reached {line['reached_mm']:.1f} mm"
-                + ("" if own else f"; full length {line['whole_band_reached_mm']:.1f} mm")
+                + (f"; full length {line['whole_band_reached_mm']:.1f} mm" if closed else "")
             )
 
 
-def _end(figures: Mapping[str, Any], solution: Solution, out: Path) -> str:
-    design, volume, count = solution.stages.design, figures["volume"], solution.last.turn
-    step = "turn" if design.volume != "exact" else "Newton step"
+def _end(values: Mapping[str, Any], solution: Solution, out: Path) -> str:
+    design, volume, count = solution.stages.design, values["volume"], solution.last.turn
+    step = "iteration" if design.volume != "exact" else "Newton step"
     kept = "body_change" if design.volume == "exact" and design.dense_volume else "error"
     return (
         f"{solution.verdict.words} after {count} {step}{'s' if count != 1 else ''}, volume error "

@@ -1,30 +1,32 @@
-"""What ``busk even`` does: tells how left and right differ, and finds the lengths that make them alike."""
+"""Compare left and right, and compute the line lengths that balance them."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from argparse import ArgumentParser, Namespace
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
-from pathlib import Path
 from typing import Any
 
-from app.cli.commands.ask import reasons
-from app.cli.options import dressed, made_of
-from app.cli.solve_design import run_to_body
+from app.cli.design import check_project_name, save_design, stages_of
+from app.cli.options import add_forms, add_lines, add_project_output, add_scan
+from app.cli.output import finish, table_lines
+from app.cli.solved_design import is_converged, solve_valid
 from app.presenters.assessment import assessment_lines
+from app.presenters.symmetry import even_summary, evened_words, left_as_it_is, parted_titles
+from app.presenters.target_shape import change_words, reasons
 from core import __version__
+from core.analysis.inverse_design.balance_quantity import FURTHER_OUT, HIGHER
 from core.analysis.symmetry.balance import EVEN, Evened, make_even
-from core.analysis.symmetry.compare import BeforeAfter, Evenness, EvenRow, even_rows, evenness
-from core.analysis.symmetry.split_sides import ENOUGH
+from core.analysis.symmetry.compare import BeforeAfter, Evenness, even_rows, evenness
+from core.analysis.symmetry.split_sides import ENOUGH, parted
+from core.control_mesh.template import read_template
 from core.document.design import Design
-from core.document.document import Document
-from core.document.storage.backups import backed_up
-from core.document.storage.project_file import SUFFIX, is_project, open_project, save_project
 from core.errors import UserError
 from core.garment.assessment import Assessment, assessed
 from core.landmarks.warnings import edit_doubts
 from core.pipeline.build import Stages, build
-from core.pipeline.solve import Solution, run
+from core.pipeline.solve import run as solve
 from core.pipeline.warnings import shape_warnings
 
 TITLES = {
@@ -37,185 +39,119 @@ TITLES = {
     "left_more": "left protrudes more",
     "right_more": "right protrudes more",
 }
-"""What each figure is called."""
-
-_CONTROLS = {
-    "adaptive": "with adaptive volume control (both breasts combined)",
-    "accumulating": "with integral volume control (both breasts combined)",
-    "conventional": "with conventional volume control (volume not conserved)",
-    "none": "without volume control",
-}
+"""Titles of the rows in JSON."""
 
 
 @dataclass(frozen=True, eq=False)
-class Even:
-    """How left and right differ, and what makes them alike, if that was asked for.
+class Symmetry:
+    """The comparison of left and right, and what balances them, if that was requested.
 
-    ``settled`` tells whether what the worn lines do is a result; ``out`` is where a project was saved. What
-    makes them alike is found among exact answers, and then ``told`` are those too; ``turned`` is how the
-    design that was found differs as it is solved, None where its turns do not come to rest. ``assessment`` is
-    the overall verdict on the design that was found, or on that which there was.
+    ``converged`` tells whether the design is a result. The balance is computed from exact solutions, and
+    ``compared`` is then too; ``as_set`` is the comparison of the balanced design as it is solved, None if
+    that does not converge. ``assessment`` is the overall verdict on ``design``.
     """
 
     stages: Stages
-    told: BeforeAfter
-    settled: bool
+    compared: BeforeAfter
+    converged: bool
     warnings: list[str]
     assessment: Assessment
     made: Evened | None = None
-    turned: Evenness | None = None
+    as_set: Evenness | None = None
     out: str = ""
 
     @property
-    def enough(self) -> bool:
-        """Whether nothing is left to be made even."""
-        after = self.told.after if self.made is None else self.made.after
+    def balanced(self) -> bool:
+        """Whether left and right are equal enough."""
+        after = self.compared.after if self.made is None else self.made.after
         return after.furthest < ENOUGH
 
     @property
-    def found(self) -> Design:
-        """The design that was found; that which there was, if none is worth it."""
+    def design(self) -> Design:
+        """The balanced design, or the given one if no balance is worth its changes."""
         return self.made.reply.design if self.made and self.made.worth else self.stages.design
 
 
-def run_even(
-    source: str,
-    design: Design,
-    lengths: Sequence[str],
-    elastics: Sequence[str],
-    *,
-    make: bool,
-    out: str = "",
-) -> Even:
-    """Tell how left and right differ under ``lengths``, NAME=LENGTH, and ``elastics``, LINE=ELASTIC.
+def add_options(parser: ArgumentParser) -> None:
+    """Add the options of ``busk symmetry``."""
+    add_scan(parser)
+    add_lines(parser)
+    balance = "compute line lengths that balance left and right; lines across both sides are split"
+    parser.add_argument("--balance", action="store_true", help=balance)
+    add_project_output(parser)
+    add_forms(parser)
 
-    ``make`` finds the lengths that make them alike, unless they are; ``out`` saves them. Raises UserError.
-    """
-    if out and not make:
-        raise UserError("No result to save.", "Add --make to compute balanced lengths.")
-    if out and not is_project(out):
-        raise UserError(
-            f"{out} is not a project file name.", f"Specify a project file: --out design{SUFFIX}."
-        )
-    stages = build(design)
-    stages = build(made_of(dressed(design, stages.model.lines, lengths), elastics), stages)
-    solution = run_to_body(stages)
-    told = evenness(stages, solution.control_points)
+
+def run(options: Namespace) -> int:
+    """Print the comparison, and save the balanced design. Raises UserError."""
+    if options.out and not options.balance:
+        raise UserError("No result to save.", "Add --balance to compute balanced lengths.")
+    check_project_name(options.out)
+    found = compare(stages_of(options), balance=options.balance)
+    save_design(options.input, options.out, found.design, found.stages)
+    found = replace(found, out=options.out)
+    text = json.dumps(symmetry_data(found), indent=1) if options.json else "\n".join(_text(found))
+    return finish(text, found.converged and (found.balanced or not options.balance), found.warnings)
+
+
+def compare(stages: Stages, *, balance: bool) -> Symmetry:
+    """Compare left and right of a solved design; ``balance`` computes lengths unless they are equal."""
+    solution = solve_valid(stages)
+    compared = evenness(stages, solution.control_points)
     warnings = [*edit_doubts(stages.body), *shape_warnings(solution)]
-    even = Even(stages, told, _settled(solution), warnings, assessed(solution))
-    if make and not even.enough:
-        made = make_even(stages)
-        # The adaptive control keeps both volumes together and the exact answer each: they do not compare.
-        even = replace(even, told=replace(told, after=made.before), made=made)
-        solved = run(build(even.found, stages))
-        even = replace(even, turned=_turned(solved), assessment=assessed(solved))
-    if out:
-        document = open_project(source) if is_project(source) else Document.of(even.found)
-        with backed_up(Path(out)):
-            save_project(out, document.with_design(even.found), stages.scan, None)
-        even = replace(even, out=out)
-    return even
+    found = Symmetry(stages, compared, is_converged(solution), warnings, assessed(solution))
+    if not balance or found.balanced:
+        return found
+    made = make_even(stages)
+    # Adaptive control keeps both volumes together and the exact solution each: they are not comparable.
+    found = replace(found, compared=replace(compared, after=made.before), made=made)
+    again = solve(build(found.design, stages))
+    after = evenness(again.stages, again.control_points).after if is_converged(again) else None
+    return replace(found, as_set=after, assessment=assessed(again))
 
 
-def _turned(solution: Solution) -> Evenness | None:
-    """Return how left and right differ as a design is solved, None if that is no result."""
-    return evenness(solution.stages, solution.control_points).after if _settled(solution) else None
+def _text(found: Symmetry) -> Iterator[str]:
+    yield from (*assessment_lines(found.assessment, found.design), "")
+    summary, made = even_summary(found.compared, found.stages), found.made
+    rows = [[view.title, view.before, view.after] for view in summary.views]
+    heading = ["", "before", "after"]
+    if made is not None:
+        balanced = even_summary(BeforeAfter(made.rest, made.after, ()), found.stages)
+        rows = [[*row, view.after] for row, view in zip(rows, balanced.views, strict=True)]
+        heading.append("balanced" if made.even else "nearest")
+    yield from (*table_lines([heading, *rows]), "", summary.says, *found.compared.notes)
+    if made is not None:
+        yield from ("", *_balance(found, made))
+    if found.out:
+        yield f"written to {found.out}{', unchanged' if found.design is found.stages.design else ''}"
 
 
-def _settled(solution: Solution) -> bool:
-    return solution.verdict.motion == "settled" and solution.verdict.state != "folded"
-
-
-def even_text(even: Even, as_json: bool, *, made: bool) -> str:
-    """Return what is to be printed: sentences for people, or the same figures as JSON."""
-    return json.dumps(_figures(even), indent=1) if as_json else "\n".join(_plain(even, made))
-
-
-def _plain(even: Even, made: bool) -> Iterator[str]:
-    rows = even_rows(even.told.before, even.told.after)
-    made_rows = {row.key: row.after for row in _made_rows(even)}
-    heading = ("before", "after", *([_heading(even.made)] if even.made else []))
-    yield from (*assessment_lines(even.assessment, even.found), "")
-    yield f"{'':26}" + "".join(f"{each:>17}" for each in heading)
-    for row in rows:
-        values = [row.before, row.after, *([made_rows[row.key]] if made_rows else [])]
-        yield f"{TITLES[row.key]:26}" + "".join(f"{_said(row, each):>17}" for each in values)
-    yield from even.told.notes
-    if made:
-        yield from _making(even)
-    if even.out:
-        unchanged = ", unchanged" if even.found is even.stages.design else ""
-        yield f"written to {even.out}{unchanged}"
-
-
-def _heading(made: Evened) -> str:
-    return "balanced" if made.even else "nearest"
-
-
-def _made_rows(even: Even) -> list[EvenRow]:
-    return even_rows(even.made.rest, even.made.after) if even.made else []
-
-
-def _turned_rows(even: Even) -> list[EvenRow]:
-    return even_rows(even.turned, even.turned) if even.turned else []
-
-
-def _said(row: EvenRow, value: float | None) -> str:
-    if value is None:
-        return "-"
-    side = "" if not row.sided or abs(value) < 0.05 else "left " if value > 0.0 else "right "
-    return f"{side}{abs(value):.1f} {row.unit}"
-
-
-def _making(even: Even) -> Iterator[str]:
-    """Tell what was parted and set, what remains, and why."""
-    if even.made is None:
-        yield f"Already balanced: both bust points are within {ENOUGH:g} mm; no change."
-        return
-    made, before = even.made, even.stages.design
-    if made.worth:
-        if made.parted:
-            yield f"Left and right unlinked: {', '.join(made.parted)}."
-        for line in made.reply.design.lines:
-            whole = line.name.removesuffix(" left").removesuffix(" right")
-            former = before.ratio(line.name if line.name in before.worn() else whole)
-            yield f"{line.name}: {100.0 * line.ratio:.1f} %; before {100.0 * former:.1f} %"
-    ways = (f"{name} {was:+.1f} to {now:+.1f} mm" for name, (was, now) in made.kept.items())
-    yield f"Common movement of both sides, from after to {_heading(made)}: {', '.join(ways)}."
-    yield remains(made)
+def _balance(found: Symmetry, made: Evened) -> Iterator[str]:
+    """Yield the changes that balance left and right, their price, and what remains."""
+    before = found.stages.design
     if not made.worth:
-        gained, lost = max(made.gained, 0.0), made.lost
-        yield f"Not changed: {gained:.1f} mm gain would move both sides by {lost:.1f} mm."
-    elif before.volume != "exact":
-        yield as_solved(before.volume, even.turned)
+        yield from left_as_it_is(made.gained, made.lost)
+        return
+    if made.parted:
+        yield f"Left and right unlinked: {', '.join(parted_titles(before, made.parted))}."
+        before = parted(before, read_template(before.template))
+    yield from change_words(before, made.reply)
+    values = [
+        {
+            HIGHER: each.higher,
+            FURTHER_OUT: each.further_out,
+            **{name: both[at] for name, both in made.kept.items()},
+        }
+        for at, each in enumerate((made.before, made.after))
+    ]
+    yield from filter(None, evened_words(made.reply, made.goals, *values))
+    if before.volume != "exact":
+        as_set = found.as_set and even_summary(BeforeAfter(made.rest, found.as_set, ()), found.stages).says
+        yield f"With the volume control of the design: {as_set or 'the solver does not converge.'}"
 
 
-def as_solved(volume: str, turned: Evenness | None) -> str:
-    """Return in two sentences what remains as the design is solved, which is not by the exact answer."""
-    both = f"The last two columns are exact answers.\nSolved as the design is set, {_CONTROLS[volume]}"
-    if turned is None:
-        return f"{both} the solver does not converge."
-    row = next(row for row in even_rows(turned, turned) if row.key == "in_all")
-    more = "" if row.after is None else f"; {TITLES[row.key]}: {_said(row, row.after)}"
-    return f"{both} {_left(turned)} remain{more}."
-
-
-def _left(told: Evenness) -> str:
-    return f"{abs(told.higher):.1f} mm in height and {abs(told.further_out):.1f} mm forward"
-
-
-def remains(made: Evened) -> str:
-    """Return in a sentence how even it is made, and why it is no more so."""
-    left, reply = _left(made.after), made.reply
-    if made.even:
-        return f"Balanced: {left} remain."
-    if not reply.agreed:
-        return f"{left} remain: the iteration over lengths, elastics and contact pressures did not converge."
-    return f"{left} remain: {' and '.join(_why(made))}."
-
-
-def _why(made: Evened) -> list[str]:
-    """Return why it is no more even: nothing but lift and way out may stand in the way."""
+def _because(made: Evened) -> list[str]:
+    """Return why no better balance was found: lift and protrusion are kept if nothing else hinders."""
     reply = made.reply
     hindered = reply.at_end or reply.strained or reply.pressing
     if hindered or len(made.goals) == len(EVEN):
@@ -223,21 +159,24 @@ def _why(made: Evened) -> list[str]:
     return ["a further gain would reduce lift or protrusion"]
 
 
-def _figures(even: Even) -> dict[str, Any]:
-    made = even.made
+def _after(after: Evenness) -> dict[str, float | None]:
+    return {row.key: row.after for row in even_rows(after, after)}
+
+
+def symmetry_data(found: Symmetry) -> dict[str, Any]:
+    """Return a comparison of left and right as plain values, ready for JSON."""
+    made = found.made
+    rows = even_rows(found.compared.before, found.compared.after)
     return {
-        "assessment": even.assessment.as_data(),
-        "rows": {
-            row.key: {**asdict(row), "title": TITLES[row.key]}
-            for row in even_rows(even.told.before, even.told.after)
-        },
-        "answer": "exact" if made else even.stages.design.volume,
-        "settled": even.settled,
-        "notes": list(even.told.notes),
+        "assessment": found.assessment.as_data(),
+        "rows": {row.key: {**asdict(row), "title": TITLES[row.key]} for row in rows},
+        "answer": "exact" if made else found.stages.design.volume,
+        "settled": found.converged,
+        "notes": list(found.compared.notes),
         "made": None
         if made is None
         else {
-            "rows": {row.key: row.after for row in _made_rows(even)},
+            "rows": _after(made.after),
             "even": made.even,
             "worth": made.worth,
             "lines": {line.name: 100.0 * line.ratio for line in made.reply.design.lines},
@@ -245,13 +184,13 @@ def _figures(even: Even) -> dict[str, Any]:
             "goals": {goal.name: goal.value for goal in made.goals},
             "remain_mm": {"height": made.after.higher, "out": made.after.further_out},
             "kept_mm": {name: {"before": was, "after": now} for name, (was, now) in made.kept.items()},
-            "as_solved": None if even.turned is None else {row.key: row.after for row in _turned_rows(even)},
-            "because": [] if made.even else _why(made),
+            "as_solved": None if found.as_set is None else _after(found.as_set),
+            "because": [] if made.even else _because(made),
         },
         "definition": (
             "signed rows: positive if the left side is higher, further or protrudes more [mm, ml]; "
             "skin: one breast minus the mirrored other; in_all is left_more minus right_more"
         ),
-        "written_to": even.out or None,
+        "written_to": found.out or None,
         "versions": {"busk": __version__},
     }

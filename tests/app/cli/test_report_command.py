@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 from pdf_tools import Pdf
 
-from app.cli.exit_code import SETTLED
 from app.cli.main import BAD_INPUT, main
+from app.cli.output import DONE
 from app.i18n import lengths
 from core.document.design import Design, ScanSource
 from core.document.document import Document
@@ -36,7 +36,7 @@ def test_a_sheet_with_no_display(mannequin: Path, tmp_path: Path) -> None:
     command = [sys.executable, "-c", run, *words]
     path = {**environment, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(command, cwd=tmp_path, env=path, capture_output=True, text=True, check=False)
-    assert done.returncode == SETTLED, done.stderr
+    assert done.returncode == DONE, done.stderr
     assert "written to sheet.pdf, sheet.json, sheet.csv" in done.stdout
     assert "could not be drawn" not in done.stderr
     data = json.loads((tmp_path / "sheet.json").read_text("utf-8"))
@@ -62,10 +62,10 @@ def test_the_customer_of_a_project_is_taken_and_can_be_overruled(mannequin: Path
     document = Document.of(design).showing("B")
     save_project(project, document, read_scan_file(design.scan), None)
     words = ["report", str(project), "--out", str(tmp_path / "sheet.pdf"), "--json", str(out)]
-    assert main(words) == SETTLED
+    assert main(words) == DONE
     heading = json.loads(out.read_text("utf-8"))["heading"]
     assert (heading["customer"], heading["project"], heading["variant"]) == ("Anna", "coat", "B")
-    assert main([*words, "--customer", ""]) == SETTLED
+    assert main([*words, "--customer", ""]) == DONE
     assert json.loads(out.read_text("utf-8"))["heading"]["customer"] == ""
 
 
@@ -75,7 +75,7 @@ def test_a_sheet_in_inches_and_its_data_in_millimetres(
     monkeypatch.setattr(lengths, "_unit", "mm")  # as before, once it is over
     sheet, data = tmp_path / "sheet.pdf", tmp_path / "sheet.json"
     words = ["report", str(mannequin), *WORN, "--length-unit", "in"]
-    assert main([*words, "--out", str(sheet), "--json", str(data)]) == SETTLED
+    assert main([*words, "--out", str(sheet), "--json", str(data)]) == DONE
     text, told = Pdf(sheet).text(), json.loads(data.read_text("utf-8"))
     cut, bust = told["cuts"]["rows"][0]["cut_mm"] / 25.4, told["measures"][0]["before"] / 25.4
     whole, part = divmod(round(16 * cut), 16)
@@ -118,7 +118,7 @@ def test_the_sheet_comes_without_pictures_where_they_cannot_be_drawn(
 
     monkeypatch.setattr("pyvista.Plotter", fails)
     out = tmp_path / "sheet.pdf"
-    assert main(["report", str(mannequin), "--out", str(out)]) == SETTLED
+    assert main(["report", str(mannequin), "--out", str(out)]) == DONE
     assert "could not be drawn" in capsys.readouterr().err
     assert "The pictures of the body could not be drawn here" in Pdf(out).text()
 
@@ -136,7 +136,7 @@ def test_a_disk_that_gets_full_leaves_the_old_sheet_or_one_without_pictures(
 
     monkeypatch.setattr(os, "fsync", full)
     out, room = tmp_path / "sheet.pdf", 1
-    assert main(["report", str(mannequin), "--out", str(out)]) == SETTLED
+    assert main(["report", str(mannequin), "--out", str(out)]) == DONE
     assert "No space left on device" in capsys.readouterr().err
     assert "The pictures of the body could not be drawn here" in Pdf(out).text()
     before, room = out.read_bytes(), 0

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from shapes import SAMPLES
 
-from app.cli.exit_code import NOT_SETTLED, SETTLED
 from app.cli.main import BAD_INPUT, main
+from app.cli.output import DONE, NOT_CONVERGED
 from app.presenters.assessment import headline
 from core.document.storage.backups import backups
 from core.document.storage.project_file import open_project
@@ -22,14 +22,14 @@ WORN = (*PERSON, *STRAPS, "--line", "full-bust=97%", "--line", "strap left=97%",
 
 
 def test_how_left_and_right_differ_is_told_side_by_side(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["even", *PERSON]) == SETTLED
+    assert main(["even", *PERSON]) == DONE
     told = capsys.readouterr().out
     verdict = told.partition("\n")[0]
     assert re.search(r"^bust point higher +right 11\.8 mm +right 11\.\d mm$", told, re.M)
     assert re.search(r"^stands out more, in all +left 1\d\.\d ml +left 1\d\.\d ml$", told, re.M)
     assert re.search(r"^left stands out more +5\d\.\d ml +5\d\.\d ml$", told, re.M)
     assert "made even" not in told
-    assert main(["even", *PERSON, "--json"]) == SETTLED
+    assert main(["even", *PERSON, "--json"]) == DONE
     figures = json.loads(capsys.readouterr().out)
     assert verdict == f"Verdict: {headline(figures['assessment']['level'])}"
     assert figures["rows"]["higher"]["before"] == pytest.approx(-11.8, abs=0.1)
@@ -40,7 +40,7 @@ def test_how_left_and_right_differ_is_told_side_by_side(capsys: pytest.CaptureFi
 def test_what_makes_it_even_is_found_and_saved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "even.busk"
     out.write_bytes(b"the former version")
-    assert main(["even", *WORN, "--make", "--out", str(out)]) == SETTLED
+    assert main(["even", *WORN, "--make", "--out", str(out)]) == DONE
     assert [each.path.read_bytes() for each in backups() if each.project == out] == [b"the former version"]
     told = capsys.readouterr().out
     names = "full-bust, mid-bust, strap left, strap right"
@@ -53,7 +53,7 @@ def test_what_makes_it_even_is_found_and_saved(tmp_path: Path, capsys: pytest.Ca
     assert as_set
     design = open_project(out).design
     assert {"mid-bust left", "mid-bust right", "full-bust left", "full-bust right"} < design.worn()
-    assert main(["even", str(out), "--make", "--json"]) == SETTLED
+    assert main(["even", str(out), "--make", "--json"]) == DONE
     figures = json.loads(capsys.readouterr().out)
     assert abs(figures["rows"]["higher"]["after"]) == pytest.approx(float(as_set[1]), abs=0.06)
     assert figures["made"] is None  # it is even already
@@ -62,7 +62,7 @@ def test_what_makes_it_even_is_found_and_saved(tmp_path: Path, capsys: pytest.Ca
 
 def test_what_is_not_worth_it_is_left_as_it_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "left.busk"
-    assert main(["even", *PERSON, "--line", "full-bust=94%", "--make", "--out", str(out)]) == NOT_SETTLED
+    assert main(["even", *PERSON, "--line", "full-bust=94%", "--make", "--out", str(out)]) == NOT_CONVERGED
     told = capsys.readouterr().out
     assert re.search(r"before +after +nearest$", told, re.M)
     # Exact answers stand beside each other: the turns move 3.7 ml, as if making even were to bring it back.

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from shapes import SAMPLES
 
-from app.cli.commands.ask import goals_of
-from app.cli.exit_code import NOT_SETTLED, SETTLED
+from app.cli.commands.target import goals_of
 from app.cli.main import BAD_INPUT, main
 from app.cli.options import WANT_HELP
+from app.cli.output import DONE, NOT_CONVERGED
 from app.presenters.assessment import headline
 from core.analysis.inverse_design.quantities import NAMES, Goal
 from core.document.storage.project_file import open_project
@@ -48,7 +48,7 @@ def test_what_is_no_wish_is_refused(wants: list[str], sentence: str) -> None:
 
 def test_what_is_reached_is_told_and_saved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "found.busk"
-    assert main(["ask", SCAN, *WORN, "--want", "girth=870mm", "--out", str(out)]) == SETTLED
+    assert main(["ask", SCAN, *WORN, "--want", "girth=870mm", "--out", str(out)]) == DONE
     told = capsys.readouterr().out
     assert told.startswith("Verdict: ")
     assert re.search(r"^girth +870\.0 mm +870\.0 mm$", told, re.M)
@@ -56,7 +56,7 @@ def test_what_is_reached_is_told_and_saved(tmp_path: Path, capsys: pytest.Captur
     design = open_project(out).design
     for line in design.lines:
         assert f"{line.name}: {100.0 * line.ratio:.1f} %" in told
-    assert main(["ask", str(out), "--want", "girth=870mm", "--json"]) == SETTLED
+    assert main(["ask", str(out), "--want", "girth=870mm", "--json"]) == DONE
     again = json.loads(capsys.readouterr().out)
     assert told.startswith(f"Verdict: {headline(again['assessment']['level'])}\n"), "on what was found"
     assert again["figures"]["girth"]["reached_mm"] == pytest.approx(870.0, abs=0.05)
@@ -65,7 +65,7 @@ def test_what_is_reached_is_told_and_saved(tmp_path: Path, capsys: pytest.Captur
 
 def test_what_is_not_reached_ends_with_three_and_says_why(capsys: pytest.CaptureFixture[str]) -> None:
     wishes = ("--want", "girth=700mm", "--shortest", "mid-bust=99%", "--shortest", "full-bust=99%")
-    assert main(["ask", SCAN, *WORN, *wishes]) == NOT_SETTLED
+    assert main(["ask", SCAN, *WORN, *wishes]) == NOT_CONVERGED
     told = capsys.readouterr().out
     assert "Not reachable; this is the nearest, because " in told
     assert "full-bust is as short as it may be" in told
@@ -76,12 +76,14 @@ def test_what_is_not_reached_ends_with_three_and_says_why(capsys: pytest.Capture
 def test_a_profile_is_asked_for_from_a_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     table = tmp_path / "wish.csv"
     table.write_text("height_mm;out_mm\n330,0;135,5\n350;140\n370;138\n")
-    assert main(["ask", SCAN, *WORN, "--profile", f"right={table}", "--pressure", "2.5"]) == NOT_SETTLED
+    assert main(["ask", SCAN, *WORN, "--profile", f"right={table}", "--pressure", "2.5"]) == NOT_CONVERGED
     told = capsys.readouterr().out
     assert re.search(
         r"^profile right: 3 heights, off by \d+\.\d mm in the mean, \d+\.\d mm at most\.$", told, re.M
     )
-    assert main(["ask", SCAN, *WORN, "--profile", str(table), "--want", "lift=0mm", "--json"]) == NOT_SETTLED
+    assert (
+        main(["ask", SCAN, *WORN, "--profile", str(table), "--want", "lift=0mm", "--json"]) == NOT_CONVERGED
+    )
     figures = json.loads(capsys.readouterr().out)["figures"]
     assert list(figures) == ["lift", *(f"profile left {height}.000" for height in (330, 350, 370))]
     assert figures["profile left 330.000"]["wanted_mm"] == 135.5

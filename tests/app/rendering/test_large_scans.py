@@ -131,7 +131,7 @@ def test_a_build_that_is_cancelled_stops_while_the_skin_is_calmed(mannequin, mon
 
 
 def test_the_window_starts_without_what_only_some_commands_need():
-    rare = ("trimesh", "numba", "app.research.figures", "app.cli.commands.picture", "pandas", "IPython")
+    rare = ("trimesh", "numba", "app.research", "app.cli.commands.picture", "pandas", "IPython")
     rare += ("pyvistaqt",)
     code = (
         f"import sys, app.gui.startup, app.gui.main_window; print(*[n for n in {rare} if n in sys.modules])"

@@ -17,7 +17,7 @@ from worn_scans import Standing, axis_orders, ply_bytes
 
 from app.cli.main import main
 from app.research.accuracy import compared, judged, spreads
-from app.research.accuracy_command import run_accuracy
+from app.research.commands.accuracy import run_accuracy
 from app.research.ground_truth import FORM, TruthError, read_truths
 from core.geometry.mesh import Mesh
 from core.landmarks.as_dict import detection

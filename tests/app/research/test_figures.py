@@ -14,10 +14,10 @@ import pytest
 
 from app.cli.main import main
 from app.research.cases import Study, line_share, moved, reached_length
+from app.research.commands.figures import FIGURES, draw, make_some
 from app.research.fig_1_3_5 import figure_1
 from app.research.fig_4 import outward, profile
 from app.research.figure_style import trimmed
-from app.research.figures import FIGURES, draw, make_some
 from app.research.page import page_of
 from app.research.parameter_study import RATIOS, Finding, mirrored_mean, routes
 from app.research.parameter_study_text import Pair, pairs_of, search_words
@@ -181,7 +181,8 @@ def test_the_command_draws_what_is_asked(tmp_path: Path, capsys: pytest.CaptureF
 
 def test_figures_need_no_window() -> None:
     code = (
-        "import sys, app.research.figures; sys.exit(any(name.startswith('PySide6') for name in sys.modules))"
+        "import sys, app.research.commands.figures; "
+        "sys.exit(any(name.startswith('PySide6') for name in sys.modules))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False, capture_output=True).returncode == 0
 

@@ -9,9 +9,9 @@ from dataclasses import replace
 import pytest
 from shapes import SAMPLES
 
-from app.cli.commands.ask import goals_of
-from app.cli.exit_code import NOT_SETTLED
+from app.cli.commands.target import goals_of
 from app.cli.main import main
+from app.cli.output import NOT_CONVERGED
 from app.presenters.samples import sample_design
 from core.analysis.inverse_design.line_selection import LineSelection, optional_lines, switched_on
 from core.analysis.inverse_design.objective import NEAR, weights_of
@@ -122,14 +122,14 @@ def test_the_command_reads_priorities_and_reports_conflicts(capsys: pytest.Captu
     assert goals_of(["lift = 12 mm @ High"]) == (Goal("lift", 12.0, "high"),)
     lines = ("--line", "mid-bust=100%", "--optional", "full-bust", "--pressure", "off")
     wants = ("--want", "lift=12mm@high", "--want", "girth=858mm")
-    assert main(["ask", SCAN, *AXES, *lines, *wants, "--json"]) == NOT_SETTLED
+    assert main(["ask", SCAN, *AXES, *lines, *wants, "--json"]) == NOT_CONVERGED
     printed = json.loads(capsys.readouterr().out)
     assert printed["figures"]["lift"]["priority"] == "high"
     assert printed["switched_on"] == ["full-bust"]
     assert printed["limit_kpa"] is None
     assert {each["name"] for each in printed["conflicts"]} <= {"lift", "girth"}
     assert printed["conflicts"]
-    assert main(["ask", SCAN, *AXES, *lines, *wants]) == NOT_SETTLED
+    assert main(["ask", SCAN, *AXES, *lines, *wants]) == NOT_CONVERGED
     text = capsys.readouterr().out
     assert "; switched on" in text
     assert "as the only target" in text

@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from small_project import DESIGN
 
-from app.cli.environment import PlainStream, settle_in
+from app.cli.environment import PlainStream, set_up_streams
 from core.document.calibration_record import Calibration
 from core.document.custom_measures import OwnMeasure
 from core.document.elastic import Elastic
@@ -136,8 +136,8 @@ def test_a_terminal_gets_no_control_characters(monkeypatch: pytest.MonkeyPatch) 
     streams = {name: io.TextIOWrapper(io.BytesIO(), "utf-8") for name in ("stdout", "stderr")}
     for name, stream in streams.items():
         monkeypatch.setattr(sys, name, stream)
-    settle_in()
-    settle_in()
+    set_up_streams()
+    set_up_streams()
     assert isinstance(sys.stdout, PlainStream)
     print("a\x1b[31mb\x9bc\u202ed\te\rf", "\udcf6", file=sys.stderr)
     print("胸", flush=True)

@@ -6,7 +6,6 @@ import io
 import json
 import re
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -285,12 +284,12 @@ def test_the_list_leaves_in_the_order_of_the_window_with_what_presses(built):
     stages = stages_of(built("mannequin"), lines, [("under-bust", EDGE)])
     cuts, _, points, _ = listed(stages)
     pressed = press_list(stages, points)
-    heading, *rows = as_table(SimpleNamespace(stages=stages), cuts, pressed)
+    heading, *rows = as_table(stages, cuts, pressed)
     assert [row[0] for row in rows] == ["Full bust", "Mid-bust", "Under-bust"]
     most = {row.line: f"{row.max_kpa:.1f}" for row in pressed.rows}
     at = heading.index("Largest pressure kPa")
     assert [row[at] for row in rows] == [most[name] for name in ("full-bust", "mid-bust", "under-bust")]
-    assert {row[at] for row in as_table(SimpleNamespace(stages=stages), cuts, None)[1:]} == {""}
+    assert {row[at] for row in as_table(stages, cuts, None)[1:]} == {""}
     told = dict(zip([row.line for row in cuts.rows], [row.estimate for row in cuts.rows], strict=True))
     at = heading.index("Estimate")
     assert [row[at] == "yes" for row in rows] == [

@@ -76,4 +76,4 @@ class GarmentDesk(QObject):
         if frame is None:
             return []
         cuts = cut_list(frame.stages, frame.control_points)
-        return as_table(frame, cuts, self._window.pressure_desk.shown)
+        return as_table(frame.stages, cuts, self._window.pressure_desk.shown)

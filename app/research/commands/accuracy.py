@@ -1,9 +1,10 @@
-"""How well a folder of bodies with known answers is understood: a table, and pictures of every body."""
+"""Measure the accuracy on a folder of bodies with known values: a table, and pictures of every body."""
 
 from __future__ import annotations
 
 import json as json_text
 import sys
+from argparse import ArgumentParser, Namespace
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -12,14 +13,27 @@ from typing import Any
 
 import numpy as np
 
+from app.cli.options import add_forms
+from app.cli.output import DONE, NOT_CONVERGED
 from app.research.accuracy import OFF, TRUSTED, Case, Mark, Spread, judged, spreads
 from app.research.accuracy_figures import save_sheets, verdict
 from app.research.ground_truth import read_truths
 from core.files.atomic_write import write_text
 
-ALL_RIGHT, NOT_ALL_RIGHT = 0, 3
 SIGNED = ("height", "level", "girth")
 BY_KIND = ("bust point to nipple-apex", "fold height", "bust girth", "underbust girth")
+
+
+def add_options(parser: ArgumentParser) -> None:
+    """Add the options of ``busk accuracy``."""
+    parser.add_argument("folder", metavar="DIR", help="folder of scans with a truth.json")
+    add_forms(parser)
+    parser.add_argument("--out", metavar="PLACE", help="output folder")
+
+
+def run(options: Namespace) -> int:
+    """Print the accuracy, and write tables and pictures."""
+    return run_accuracy(options.folder, options.out, options.json)
 
 
 def run_accuracy(folder: Path, out: Path | None, json: bool) -> int:
@@ -45,7 +59,7 @@ def run_accuracy(folder: Path, out: Path | None, json: bool) -> int:
             write_text(out / name, content)
         save_sheets(cases, folder, out)
         print(f"tables and pictures written to {out}", file=sys.stderr)
-    return ALL_RIGHT if all(_as_wished(case) for case in cases) else NOT_ALL_RIGHT
+    return DONE if all(_as_wished(case) for case in cases) else NOT_CONVERGED
 
 
 def accuracy_text(cases: Sequence[Case], strange: Sequence[str] = ()) -> Iterator[str]:

@@ -1,16 +1,19 @@
-"""The trial of every volume control: one table with a row for each case, and a page that sums them up."""
+"""Compare all volume controls: a table with a row for each case, and a page that summarizes them."""
 
 from __future__ import annotations
 
 import csv
 import sys
 import time
+from argparse import ArgumentParser, Namespace
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import astuple, fields
 from itertools import product
 from pathlib import Path
 from statistics import median
 
+from app.cli.options import add_folder_output
+from app.cli.output import DONE, make_folder
 from app.presenters.samples import SAMPLES, sample_design
 from app.research.control_study import CONTROLS, LONGEST, RIPPLE_TURNS, TURNS, Subject, Trial, trials
 from app.research.sphere import sphere_control
@@ -48,6 +51,19 @@ WHAT_IS_CALM = (
     "solutions with this defect of the control mesh: they are in equilibrium but do not "
     "represent a real body."
 )
+
+
+def add_options(parser: ArgumentParser) -> None:
+    """Add the options of ``busk controls``."""
+    parser.add_argument("--quick", action="store_true", help="run a few cases only")
+    add_folder_output(parser)
+
+
+def run(options: Namespace) -> int:
+    """Write the table and the page."""
+    run_trials(make_folder(options.out), options.quick)
+    print(f"written to {options.out}")
+    return DONE
 
 
 def run_trials(out: Path, quick: bool = False) -> list[Trial]:
@@ -114,8 +130,8 @@ def _what_was_run(made: Sequence[Trial], quick: bool) -> str:
         _listed(t.line_stiffness for t in made if t.line_force == force) for force in ("explicit", "implicit")
     )
     return (
-        f"Written by `busk sweep{' --quick' if quick else ''}`, Busk {__version__}: {len(made)} cases. One "
-        f"line is worn on each of {len(models)} models: "
+        f"Written by `busk controls{' --quick' if quick else ''}`, Busk {__version__}: {len(made)} cases. "
+        f"One line is worn on each of {len(models)} models: "
         f"{', '.join(dict.fromkeys(t.subject for t in made))}; the member laws {', '.join(LAWS)} with lines "
         f"of stiffness {stiff}, and force density with a line force that is kept during the turn at "
         f"stiffness {soft}. It is set to {_listed(100.0 * t.ratio for t in made)} % of its rest length and "

@@ -1,10 +1,13 @@
-"""The figures of the paper, made again from the sample bodies and the sphere, and the page on them."""
+"""Reproduce the figures of the paper from the sample bodies and the sphere, with a page on them."""
 
 from __future__ import annotations
 
+from argparse import ArgumentParser, Namespace
 from collections.abc import Callable, Collection
 from pathlib import Path
 
+from app.cli.options import add_folder_output
+from app.cli.output import DONE, make_folder
 from app.research.cases import Study
 from app.research.fig_1_3_5 import figure_1, figure_3, figure_5
 from app.research.fig_2 import figure_2
@@ -29,6 +32,22 @@ FIGURES: dict[str, Callable[[Study], Figure]] = {
     "10": figure_10,
 }
 """How each figure is drawn, by its number: 1 to 7 are the paper's, the others ours."""
+
+
+def add_options(parser: ArgumentParser) -> None:
+    """Add the options of ``busk figures``."""
+    parser.add_argument("--only", action="append", metavar="N", help="only this figure; may be repeated")
+    add_folder_output(parser)
+
+
+def run(options: Namespace) -> int:
+    """Write the figures, and the page on all of them."""
+    out = make_folder(options.out)
+    if options.only:
+        make_some(options.only, out)
+    else:
+        make_figures(out)
+    return DONE
 
 
 def say(text: str) -> None:

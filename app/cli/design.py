@@ -1,0 +1,162 @@
+"""Read the design of a command from its file and options, and save it as a project."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from app.cli.options import NUMBERS, SWITCHES, WORDS
+from core.control_mesh.template import read_template
+from core.document.design import Design, ScanSource
+from core.document.document import Document
+from core.document.line_notation import own_line
+from core.document.storage.backups import backed_up
+from core.document.storage.project_file import SUFFIX, is_project, open_project, save_project
+from core.errors import LineError, UserError
+from core.garment.elastic_library import find_elastic, read_elastic
+from core.landmarks.manual import placed_mark
+from core.mechanics.constraint_lines import Line, length_ratio
+from core.pipeline.build import Stages, build
+from core.scan.edits import ScanEdits, hole_centre
+
+_ON = dict.fromkeys(("yes", "on", "true", "1"), True) | dict.fromkeys(("no", "off", "false", "0"), False)
+_FIRM = {"yes": 0.1, "on": 0.1, "firm": 0.1, "no": 0.0, "off": 0.0, "free": 0.0}
+
+
+def design_of(options: argparse.Namespace) -> Design:
+    """Return the design of a project, or a new one for a scan, changed by the options. Raises UserError."""
+    path = options.input
+    design = open_project(path).design if is_project(path) else Design(ScanSource(path))
+    axes = {key: getattr(options, key) for key in ("unit", "up", "front") if getattr(options, key, None)}
+    scan = design.scan.set_up(**axes)
+    design = replace(design, scan=replace(scan, edits=_edits_of(scan.edits, options)))
+    settings = settings_of(getattr(options, "settings", None) or [])
+    design = replace(design.with_template(settings.pop("template", design.template)), **settings)
+    for text in getattr(options, "path", None) or []:
+        design = design.with_own_line(own_line(text, read_template(design.template)))
+    for mark in map(placed_mark, getattr(options, "landmark", None) or []):
+        design = design.with_placed(mark.name, mark.position)
+    return replace(design, volume=getattr(options, "volume", None) or design.volume)
+
+
+def stages_of(options: argparse.Namespace) -> Stages:
+    """Build the design of ``design_of`` with the lines and elastics of the options. Raises UserError."""
+    return with_lines_and_elastics(build(design_of(options)), options.line or [], options.elastic or [])
+
+
+def with_lines_and_elastics(stages: Stages, lines: Sequence[str], elastics: Sequence[str]) -> Stages:
+    """Return the stages of a design with ``lines``, NAME=LENGTH, and ``elastics``, LINE=ELASTIC."""
+    design = apply_lines(stages.design, stages.model.lines, lines)
+    return build(apply_elastics(design, elastics), stages)
+
+
+def _edits_of(edits: ScanEdits, options: argparse.Namespace) -> ScanEdits:
+    """Return the edits of a scan, changed by the options. Raises UserError."""
+    named = {"low": "keep_from", "high": "keep_to", "kept": "mirror"}
+    given = {key: getattr(options, option, None) for key, option in named.items()}
+    edits = replace(edits, **{key: value for key, value in given.items() if value is not None})
+    for text in getattr(options, "fill", None) or []:
+        edits = replace(edits, fill_all=True) if text == "all" else edits.with_filled(hole_centre(text))
+    return edits
+
+
+def apply_lines(design: Design, lines: Sequence[Line], requests: Sequence[str]) -> Design:
+    """Return a design with lengths of ``lines`` set by requests, NAME=LENGTH each. Raises LineError."""
+    for request in requests:
+        name, equals, text = request.partition("=")
+        line = next((line for line in lines if line.name.lower() == name.strip().lower()), None)
+        if line is None or not equals:
+            names = ", ".join(line.name for line in lines)
+            raise LineError(f"'{request}' is not a line.", f"Enter NAME=LENGTH. Lines: {names}.")
+        ratio = length_ratio(text, line.name, line.rest_length, line.whole_length)
+        design = design.with_line(line.name, ratio)
+    return design
+
+
+def apply_elastics(design: Design, requests: Sequence[str]) -> Design:
+    """Return a design with elastics of active lines set by requests, LINE=ELASTIC each. Raises LineError."""
+    for request in requests:
+        name, equals, elastic = (part.strip() for part in request.partition("="))
+        line = next((each for each in design.worn() if each.lower() == name.lower()), None)
+        if line is None or not equals:
+            active = ", ".join(sorted(design.worn())) or "none"
+            raise LineError(
+                f"'{request}' is not an active line.", f"Enter LINE=ELASTIC. Active lines: {active}."
+            )
+        chosen = read_elastic(Path(elastic)) if elastic.lower().endswith(".csv") else find_elastic(elastic)
+        design = design.with_elastic(line, chosen)
+    return design
+
+
+def settings_of(pairs: Sequence[str]) -> dict[str, Any]:
+    """Return the fields of a design that ``KEY=VALUE`` pairs set; hyphens and underscores are the same.
+
+    Raises UserError with the valid keys or words; ranges are checked by the design.
+    """
+    values: dict[str, Any] = {}
+    for pair in pairs:
+        key, equals, value = pair.partition("=")
+        key, value = key.strip().lower().replace("-", "_"), value.strip().lower()
+        if not equals or key not in _READERS:
+            raise UserError(f"'{pair}' is not a setting.", f"Enter KEY=VALUE. Keys: {', '.join(_READERS)}.")
+        values[key] = _READERS[key](key, value)
+    return values
+
+
+def _word(key: str, value: str) -> str:
+    plain = value.replace("_", "-").replace(" ", "-")
+    if plain not in WORDS[key]:
+        raise UserError(f"'{value}' is not a value of {key}.", f"Choose one of: {', '.join(WORDS[key])}.")
+    return plain
+
+
+def _number(key: str, value: str) -> float:
+    try:
+        return float(value.replace(",", "."))
+    except ValueError:
+        raise UserError(f"The {key} '{value}' is not a number.", f"Enter for example {key}=1.5.") from None
+
+
+def _gain(key: str, value: str) -> float | None:
+    return None if value == "auto" else _number(key, value)
+
+
+def _firm_chest(key: str, value: str) -> float:
+    return _FIRM[value] if value in _FIRM else _number(key, value)
+
+
+def _switch(key: str, value: str) -> bool:
+    if value not in _ON:
+        raise UserError(f"'{value}' is not a value of {key}.", "Choose one of: yes, no.")
+    return _ON[value]
+
+
+_READERS: dict[str, Callable[[str, str], Any]] = {
+    **dict.fromkeys(WORDS, _word),
+    **dict.fromkeys(NUMBERS, _number),
+    **dict.fromkeys(SWITCHES, _switch),
+    "gain": _gain,
+    "firm_chest": _firm_chest,
+}
+
+
+def check_project_name(out: str) -> None:
+    """Raise UserError unless ``out`` is empty or the name of a project file."""
+    if out and not is_project(out):
+        raise UserError(
+            f"{out} is not a project file name.", f"Specify a project file: --out design{SUFFIX}."
+        )
+
+
+def save_design(source: str, out: str, design: Design, stages: Stages) -> None:
+    """Save a design as the project ``out``: a new one, or that of ``source`` with this design.
+
+    The former file is kept as a backup. Nothing is saved if ``out`` is empty.
+    """
+    if out:
+        document = open_project(source) if is_project(source) else Document.of(design)
+        with backed_up(Path(out)):
+            save_project(out, document.with_design(design), stages.scan, None)
