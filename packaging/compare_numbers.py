@@ -26,7 +26,15 @@ from core.scan.readers.registry import read_triangles  # noqa: E402
 
 CASES = {
     "adaptive": ["mannequin.ply", "--line", "mid-bust=93%"],
-    "conventional": ["mannequin.ply", "--line", "mid-bust=60%", "--volume", "conventional", "--turns", "300"],
+    "conventional": [
+        "mannequin.ply",
+        "--line",
+        "mid-bust=60%",
+        "--volume",
+        "conventional",
+        "--iterations",
+        "300",
+    ],
     "exact": ["mannequin.ply", "--line", "mid-bust=90%", "--line", "full-bust=95%", "--volume", "exact"],
     "sliding": ["person.ply", "--line", "mid-bust=92%", "--settings", "line_contact=sliding"],
     "co-rotated": ["person.ply", "--line", "mid-bust=-20mm", "--settings", "member_law=co-rotated"],

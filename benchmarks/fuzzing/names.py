@@ -16,8 +16,8 @@ from typing import Any
 
 import ezdxf
 
-from app.cli.commands.cut import Cut, cut_text
-from app.cli.solved_design import Worn, run_to_body
+from app.cli.commands.cut import FORMS, Cut
+from app.cli.solved_design import SolvedDesign, solve_valid
 from app.presenters.export import Manner, Outcome
 from app.presenters.export_preview import make_ready
 from core.document.custom_measures import OwnMeasure
@@ -99,7 +99,7 @@ def run(recipe: Any) -> str:
         assert opened.own_lines == design.own_lines
         assert opened.elastics == design.elastics
         stages = build(design, _stages())
-        solution = run_to_body(stages)
+        solution = solve_valid(stages)
         points = solution.control_points
         outcome = Outcome(stages, points, (), named=("names", design.customer))
         for name in FILES:
@@ -107,9 +107,9 @@ def run(recipe: Any) -> str:
             drawn = in_one_go(ready.draw()) if ready.draw else None
             ready.write(Path(folder) / name, drawn, quiet)
             _check(Path(folder) / name)
-        cut = Cut(cut_list(stages, points), Worn(solution, True, []))
+        cut = Cut(cut_list(stages, points), SolvedDesign(solution, []))
         for form in ("", "csv", "json"):
-            _check_text(cut_text(cut, form, None), form)
+            _check_text(FORMS[form](cut), form)
     return "written"
 
 

@@ -12,8 +12,8 @@ from page_commands import PAGES, PLACEHOLDER, ROOT, commands_of, furnish, inline
 from app.cli.parser import COMMANDS, command_options, command_parser, window_options
 from core.errors import UserError
 
-LENGTHY = ("calibrate", "demo", "figures", "self-test", "spread", "sweep")
-"""Commands that take long, under whatever name: they are parsed alone."""
+LENGTHY = ("calibrate", "demo", "figures", "self-test", "uncertainty", "controls")
+"""Commands that take long: they are parsed alone."""
 
 DONE = (0, 3)
 """Exit codes of a command that wrote its results, converged or not."""
@@ -37,7 +37,7 @@ def test_shown_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.chdir(tmp_path)
     failed = {}
     for command in SHOWN:
-        if words_of(command)[0] in LENGTHY or "--spread" in command or PLACEHOLDER.search(command):
+        if words_of(command)[0] in LENGTHY or "--uncertainty" in command or PLACEHOLDER.search(command):
             continue
         code, printed = run(command)
         if code not in DONE:

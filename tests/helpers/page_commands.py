@@ -34,7 +34,7 @@ def commands_of(path: Path) -> Iterator[str]:
 
 
 def inline_of(path: Path) -> Iterator[str]:
-    """Yield what follows busk in running text, as ``cut --as-worn``."""
+    """Yield what follows busk in running text, as ``cut --keep-fit``."""
     yield from INLINE.findall(CODE.sub("", path.read_text("utf-8")))
 
 

@@ -16,7 +16,7 @@ from app.presenters.assessment import assessment_lines
 from app.presenters.symmetry import even_summary, evened_words, left_as_it_is, parted_titles
 from app.presenters.target_shape import change_words, reasons
 from core import __version__
-from core.analysis.inverse_design.balance_quantity import FURTHER_OUT, HIGHER
+from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER
 from core.analysis.symmetry.balance import EVEN, Evened, make_even
 from core.analysis.symmetry.compare import BeforeAfter, Evenness, even_rows, evenness
 from core.analysis.symmetry.split_sides import ENOUGH, parted

@@ -33,9 +33,7 @@ from core import __version__
 from core.analysis.inverse_design.conflicts import Conflict
 from core.analysis.inverse_design.line_selection import LineSelection, optional_lines, switched_on
 from core.analysis.inverse_design.profile_csv import profile_goals, read_profile
-from core.analysis.inverse_design.profile_quantity import section_of
-from core.analysis.inverse_design.quantities import Goal
-from core.analysis.inverse_design.readings import NAMES
+from core.analysis.inverse_design.quantities import NAMES, Goal, section_of
 from core.analysis.inverse_design.search import Bounds
 from core.analysis.inverse_design.solve import Reply
 from core.errors import LineError, UserError

@@ -9,13 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.cli.commands.calibrate import spoken
 from app.cli.main import main
-from app.presenters.samples import sample_design
 from benchmarks.worn_pairs import scanned, worn_mesh, written
-from core.control_mesh.template import read_template
 from core.document.document import Document
-from core.document.line_notation import ready_made
 from core.document.storage.project_file import open_project, save_project
 from core.pipeline.build import build
 
@@ -37,13 +33,8 @@ def test_it_tells_finds_and_saves(pair: tuple[str, str], tmp_path: Path, capsys)
     out = str(tmp_path / "calibrated.busk")
     assert main(["calibrate", *pair, "--out", out]) == 0
     said = capsys.readouterr().out
-    assert said.startswith("worn.ply lies on the first scan: 100 % of the still skin within 5 mm")
-    assert "line stiffness" in said
-    assert "firm chest" in said
-    assert "hold for this person and this garment" in said
-    weak = [line for line in said.splitlines() if line.endswith("told weakly")]
-    assert any(line.startswith("firm chest") for line in weak)
-    assert f"{2 - len(weak)} of 2 numbers told to within 5 %, by" in said
+    assert said.startswith("100 % of the skin")
+    assert said.endswith(f"written to {out}\n")
     design = open_project(out).design
     assert design.calibration is not None
     assert design.line_stiffness == pytest.approx(6.0, rel=0.15)
@@ -64,20 +55,11 @@ def test_it_tells_finds_and_saves(pair: tuple[str, str], tmp_path: Path, capsys)
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["--thickness", "25"], "Cloth is not 25 mm thick"),
-        (["--out", "found.ply"], "found.ply is no name of a project"),
+        (["--thickness", "25"], "thickness 25 mm is out of range"),
+        (["--out", "found.ply"], "found.ply is not a project file name"),
         (["--unit", "cm"], "is not the size of a body"),
     ],
 )
 def test_what_cannot_be_is_refused(pair: tuple[str, str], words: list[str], said: str, capsys) -> None:
     assert main(["calibrate", *pair, *words]) == 2
     assert said in capsys.readouterr().err
-
-
-def test_a_number_that_linked_lines_share_is_told_of_both() -> None:
-    straps = ready_made(read_template("168"))["straps"]
-    linked = replace(sample_design(), own_lines=straps)
-    apart = linked.with_traits(replace(linked.traits_of("strap left"), linked=False))
-    told = [spoken("stiffness of strap left", design) for design in (linked, apart)]
-    assert told == ["stiffness of strap, both", "stiffness of strap left"]
-    assert spoken("line_stiffness", linked) == "line stiffness"

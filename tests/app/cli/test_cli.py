@@ -95,7 +95,7 @@ def test_the_exit_code_says_whether_it_settled(
 
 
 def test_turns_are_made_exactly_as_often_as_asked(mannequin: Path, tmp_path: Path) -> None:
-    main(["solve", str(mannequin), "--line", "mid-bust=97%", "--turns", "7", "--out", str(tmp_path)])
+    main(["solve", str(mannequin), "--line", "mid-bust=97%", "--iterations", "7", "--out", str(tmp_path)])
     assert len((tmp_path / "turns.csv").read_text("utf-8").splitlines()) == 8
 
 
@@ -107,7 +107,7 @@ def test_settings_reach_the_solver(mannequin: Path, tmp_path: Path) -> None:
         "mid-bust=97%",
         "--volume",
         "conventional",
-        "--turns",
+        "--iterations",
         "80",
     ]
     arguments += [
@@ -128,11 +128,11 @@ def test_settings_reach_the_solver(mannequin: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        (["--line", "wing=97%"], "names no line"),
-        (["--line", "mid-bust"], "names no line"),
+        (["--line", "wing=97%"], "is not a line"),
+        (["--line", "mid-bust"], "is not a line"),
         (["--line", "mid-bust=soon"], "not a length"),
         (["--line", "mid-bust=20%"], "Stay between"),
-        (["--settings", "colour=red"], "no setting"),
+        (["--settings", "colour=red"], "not a setting"),
         (["--settings", "gain=high"], "not a number"),
         (["--settings", "gain=11"], "It goes from 0 to 10"),
         (["--settings", "member-law=soft"], "force-density, prestressed, co-rotated"),
@@ -165,18 +165,18 @@ def test_bad_requests_get_one_sentence(
     [
         (["--frob"], "Unrecognized arguments: --frob"),
         (["solve", "body.ply"], "required: --out"),
-        (["solve", "body.ply", "--out", "o", "--turns", "abc"], "'abc' is no number of turns"),
-        (["solve", "body.ply", "--out", "o", "--turns", "0"], "'0' is no number of turns"),
+        (["solve", "body.ply", "--out", "o", "--iterations", "abc"], "'abc' is not a number of iterations"),
+        (["solve", "body.ply", "--out", "o", "--iterations", "0"], "'0' is not a number of iterations"),
         (["solve", "body.ply", "--out", "o", "--volume", "all"], "invalid choice: 'all'"),
-        (["picture", "body.ply", "--out", "a.png", "--size", "0x0"], "'0x0' is no size"),
-        (["picture", "body.ply", "--out", "a.png", "--size", "800"], "'800' is no size"),
-        (["picture", "body.ply", "--out", "a"], "ends in .png"),
+        (["picture", "body.ply", "--out", "a.png", "--size", "0x0"], "'0x0' is not a size"),
+        (["picture", "body.ply", "--out", "a.png", "--size", "800"], "'800' is not a size"),
+        (["picture", "body.ply", "--out", "a"], "ending in .png"),
         (["picture", "body.ply", "--out", "a.png", "--window", "--view", "left"], "not allowed with"),
         *(
             ([command, "body.ply", "--json", "--csv"], "--csv: not allowed with argument --json")
-            for command in ("measure", "cut", "press")
+            for command in ("measure", "cut", "pressure")
         ),
-        (["picture", "body.ply", "--out", "a.jpg", "--window"], "ends in .png"),
+        (["picture", "body.ply", "--out", "a.jpg", "--window"], "ending in .png"),
     ],
 )
 def test_bad_words_get_one_sentence(

@@ -18,6 +18,7 @@ from core.pipeline.build import build
 
 SAMPLES = Path(__file__).parents[3] / "resources" / "samples"
 SCAN = SAMPLES / "mannequin.ply"
+OPTIONS = {"control": "control-mesh", "flat": "strips", "measures": "measurements"}
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +31,11 @@ def anna(tmp_path_factory):
 
 def test_all_files_of_a_project_at_once(tmp_path, anna, capsys):
     names = {"body": "x.glb", "control": "y.obj", "lines": "z.dxf", "flat": "w.svg", "measures": "m.smis"}
-    words = [word for what, name in names.items() for word in (f"--{what}", str(tmp_path / name))]
+    words = [
+        word
+        for what, name in names.items()
+        for word in (f"--{OPTIONS.get(what, what)}", str(tmp_path / name))
+    ]
     turn = ["--turntable", str(tmp_path / "t.gif"), "--frames", "2", "--size", "64x64"]
     assert main(["export", anna, *words, *turn]) == 0
     said = capsys.readouterr()
@@ -59,8 +64,8 @@ def test_unit_and_axes_are_those_that_are_told(tmp_path, anna):
 
 
 def test_before_is_the_body_at_rest_and_after_the_reshaped_one(tmp_path, anna):
-    for name, words in (("before", ["--before"]), ("after", [])):
-        files = ["--body", str(tmp_path / f"{name}.ply"), "--measures", str(tmp_path / f"{name}.json")]
+    for name, words in (("before", ["--original"]), ("after", [])):
+        files = ["--body", str(tmp_path / f"{name}.ply"), "--measurements", str(tmp_path / f"{name}.json")]
         assert main(["export", anna, *files, "--unit", "mm", *words]) == 0
     before, after = (trimesh.load_mesh(tmp_path / f"{name}.ply") for name in ("before", "after"))
     rest = build(Design(ScanSource(str(SCAN)))).body.mesh
@@ -72,7 +77,7 @@ def test_before_is_the_body_at_rest_and_after_the_reshaped_one(tmp_path, anna):
 
 
 def test_a_scan_is_exported_with_lines_that_are_told(tmp_path, capsys):
-    words = ["--line", "under-bust=97%", "--flat", str(tmp_path / "w.dxf")]
+    words = ["--line", "under-bust=97%", "--strips", str(tmp_path / "w.dxf")]
     assert main(["export", str(SCAN), *words]) == 0
     assert "Under-bust" in capsys.readouterr().out
 
@@ -80,17 +85,17 @@ def test_a_scan_is_exported_with_lines_that_are_told(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        ([], "Nothing is to be written"),
+        ([], "No output specified"),
         (["--body", "x.step"], "does not write .step files"),
         (["--lines", "x.svg"], "does not draw lines as .svg"),
-        (["--flat", "x.pdf"], "does not draw lines as .pdf"),
-        (["--measures", "x.xls"], "does not write measures as .xls"),
-        (["--measures", "x.vit", "--unit", "m"], "cannot be in m"),
+        (["--strips", "x.pdf"], "does not draw lines as .pdf"),
+        (["--measurements", "x.xls"], "does not write measures as .xls"),
+        (["--measurements", "x.vit", "--unit", "m"], "cannot be in m"),
         (["--turntable", "x.mp4"], "does not make turntables as .mp4"),
         (["--turntable", "x.gif", "--frames", "1"], "cannot have 1 frames"),
         (["--body", "x.ply", "--unit", "ell"], "There is no unit 'ell'"),
         (["--body", "x.ply", "--axes", "x-up"], "There is no set of axes 'x-up'"),
-        (["--body", "x.ply", "--control", "x.ply"], "x.ply is to hold two things"),
+        (["--body", "x.ply", "--control-mesh", "x.ply"], "x.ply is specified for two outputs"),
     ],
 )
 def test_what_cannot_be_is_refused_before_anything_is_solved(monkeypatch, capsys, anna, words, said):

@@ -26,12 +26,12 @@ def runaway(mannequin: Path, tmp_path: Path) -> Path:
     [
         ["measure"],
         ["cut"],
-        ["cut", "--as-worn", "--elastic", "mid-bust=plush 12"],
-        ["press"],
+        ["cut", "--keep-fit", "--elastic", "mid-bust=plush 12"],
+        ["pressure"],
         ["report", "--out", "a.pdf"],
-        ["export", "--measures", "a.csv"],
+        ["export", "--measurements", "a.csv"],
         ["export", "--body", "a.glb"],
-        ["export", "--flat", "a.svg"],
+        ["export", "--strips", "a.svg"],
     ],
     ids=" ".join,
 )

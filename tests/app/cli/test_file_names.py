@@ -22,8 +22,8 @@ from app.cli.main import BAD_INPUT, main
         ([""], "No file is named. "),
         (["detect", "a\nb\r\x1b[31m.ply"], "There is no file a\\nb\\r\\x1b[31m.ply. "),
         (["measure", "anna.ply", "--out", "nowhere/a.csv"], f"{Path('nowhere/a.csv')} cannot be written: "),
-        (["picture", "anna.ply", "--out", "nowhere/a.png"], "There is no folder nowhere. "),
-        (["report", "anna.ply", "--out", "nowhere/a.pdf"], "There is no folder nowhere. "),
+        (["picture", "anna.ply", "--out", "nowhere/a.png"], "Folder nowhere does not exist. "),
+        (["report", "anna.ply", "--out", "nowhere/a.pdf"], "Folder nowhere does not exist. "),
         (["export", "anna.ply", "--body", "anna.ply/a.glb"], "anna.ply/a.glb cannot be written: "),
     ],
 )

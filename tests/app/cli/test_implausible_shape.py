@@ -54,7 +54,7 @@ def test_a_shape_that_is_no_body_is_named_and_the_line_to_blame(
 @pytest.mark.parametrize(
     ("words", "code", "told", "warned"),
     [
-        (["--settings", "line_force=explicit"], 3, "diverging after ", "The turns ran away: "),
+        (["--settings", "line_force=explicit"], 3, "diverging after ", "The solver diverged: "),
         (["--volume", "exact"], 0, " Newton steps, volume error +0.0000 % (+0.00 ml)", ""),
         (
             ["--volume", "exact", "--settings", "dense_volume=yes"],
@@ -62,7 +62,7 @@ def test_a_shape_that_is_no_body_is_named_and_the_line_to_blame(
             " volume error +0.0000 % (+0.00 ml)",
             "",
         ),
-        (["--turns", "1"], 3, "settling after 1 turn, ", ""),
+        (["--iterations", "1"], 3, "settling after 1 iteration, ", ""),
     ],
 )
 def test_the_last_line_tells_how_it_ended(

@@ -6,7 +6,8 @@ from dataclasses import fields, replace
 
 import pytest
 
-from app.cli.options import NUMBERS, SWITCHES, WORDS, settings_of
+from app.cli.design import settings_of
+from app.cli.options import NUMBERS, SWITCHES, WORDS
 from core.document.design import Design, ScanSource
 
 

@@ -38,7 +38,7 @@ def test_a_sheet_with_no_display(mannequin: Path, tmp_path: Path) -> None:
     done = subprocess.run(command, cwd=tmp_path, env=path, capture_output=True, text=True, check=False)
     assert done.returncode == DONE, done.stderr
     assert "written to sheet.pdf, sheet.json, sheet.csv" in done.stdout
-    assert "could not be drawn" not in done.stderr
+    assert "could not be rendered" not in done.stderr
     data = json.loads((tmp_path / "sheet.json").read_text("utf-8"))
     pdf = Pdf(tmp_path / "sheet.pdf")
     text = pdf.text()
@@ -87,10 +87,10 @@ def test_a_sheet_in_inches_and_its_data_in_millimetres(
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
-        (["--out", "sheet.txt"], "ends in .pdf"),
-        (["--out", "nowhere/sheet.pdf"], "no folder"),
-        (["--out", "sheet.pdf", "--json", "sheet.csv"], "ends in .json"),
-        (["--out", "sheet.pdf", "--system", "xx"], "no table of sizes 'xx'"),
+        (["--out", "sheet.txt"], "ending in .pdf"),
+        (["--out", "nowhere/sheet.pdf"], "does not exist"),
+        (["--out", "sheet.pdf", "--json", "sheet.csv"], "ending in .json"),
+        (["--out", "sheet.pdf", "--system", "xx"], "Unknown size system 'xx'"),
         (["--out", "sheet.pdf", "--allowance", "40"], "cannot be taken off"),
         ([], "--out"),
         (["--out", "a.pdf", *RUNS_AWAY], "ran away"),
@@ -119,7 +119,7 @@ def test_the_sheet_comes_without_pictures_where_they_cannot_be_drawn(
     monkeypatch.setattr("pyvista.Plotter", fails)
     out = tmp_path / "sheet.pdf"
     assert main(["report", str(mannequin), "--out", str(out)]) == DONE
-    assert "could not be drawn" in capsys.readouterr().err
+    assert "could not be rendered" in capsys.readouterr().err
     assert "The pictures of the body could not be drawn here" in Pdf(out).text()
 
 

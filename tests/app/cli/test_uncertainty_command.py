@@ -1,4 +1,4 @@
-"""busk spread: what it prints, as JSON and as a table, and what it refuses."""
+"""busk uncertainty: what it prints, as JSON and as a table, and what it refuses."""
 
 from __future__ import annotations
 
@@ -26,22 +26,22 @@ def mannequin(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_it_prints_figures_with_what_they_may_be_off_by(
     mannequin: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["spread", str(mannequin), *WORN, *QUICK]) == 0
+    assert main(["uncertainty", str(mannequin), *WORN, *QUICK]) == 0
     said = capsys.readouterr().out
     assert said.startswith("Verdict: Check before use\n  Mid-bust presses with ")
-    assert re.search(r"Waist girth \(narrowest\) {18}69\d\.\d ±  2\.5 ", said)
-    assert "mid-bust: length to cut" in said
-    assert "if the line slides over it" in said
+    assert re.search(r"^Waist girth \(narrowest\) +69\d\.\d ± +2\.5 ", said, re.M)
+    assert "mid-bust: cut length" in said
+    assert "skin contact sliding" in said
     assert re.search(r"mid-bust: tension +\d+\.\d \(\d+\.\d to \d+(\.\d)?\)", said)
     assert "Hip girth" not in said  # the scan shows none
-    assert "Left out:" in said
+    assert "Not included:" in said
 
 
 def test_it_writes_shares_as_json_and_standard_deviations_as_a_table(
     mannequin: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     wider = (*WORN, *QUICK, "--assume", "sds=3", "--assume", "skin_mm=0.4")
-    assert main(["spread", str(mannequin), *wider, "--json"]) == 0
+    assert main(["uncertainty", str(mannequin), *wider, "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert told["assessment"]["level"] == "caution"
     waist = told["figures"]["before:waist_girth"]
@@ -49,7 +49,7 @@ def test_it_writes_shares_as_json_and_standard_deviations_as_a_table(
     assert waist["shares"]["scan"] == pytest.approx(1.0)
     assert told["figures"]["before:hip_girth"]["plus_minus"] is None
     assert told["figures"]["cut:mid-bust"]["other_contact"] > 300.0
-    assert main(["spread", str(mannequin), *WORN, *QUICK, "--csv"]) == 0
+    assert main(["uncertainty", str(mannequin), *WORN, *QUICK, "--csv"]) == 0
     rows = {row["key"]: row for row in csv.DictReader(io.StringIO(capsys.readouterr().out))}
     pull = rows["tension:mid-bust"]
     parts = [float(pull[name]) for name in ("tissue", "tape", "elastic") if pull[name]]
@@ -60,17 +60,17 @@ def test_it_writes_shares_as_json_and_standard_deviations_as_a_table(
 
 
 def test_a_bare_body_is_told_at_rest_alone(mannequin: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["spread", str(mannequin), *QUICK]) == 0
+    assert main(["uncertainty", str(mannequin), *QUICK]) == 0
     said = capsys.readouterr().out
-    assert said.startswith("Verdict: No active lines\n\nNo line is worn: the body at rest.")
-    assert re.search(r"Waist girth \(narrowest\) {18}69\d\.\d ±  2\.5 mm", said)
+    assert said.startswith("Verdict: No active lines\n\nNo active lines: ")
+    assert re.search(r"^Waist girth \(narrowest\) +69\d\.\d ± +2\.5 +mm", said, re.M)
     assert "anatomical waist may be elsewhere" in said
-    assert not any(word in said for word in ("change", "slides", "Bust point up", "Elastics:"))
+    assert not any(word in said for word in ("sliding", "as set", "Bust point up", "Elastics:"))
 
 
 @pytest.mark.parametrize("wrong", ["tape=3", "skin_mm=thick", "skin_mm=-1"])
 def test_what_cannot_be_assumed_is_said(
     mannequin: Path, capsys: pytest.CaptureFixture[str], wrong: str
 ) -> None:
-    assert main(["spread", str(mannequin), "--assume", wrong]) == 2
+    assert main(["uncertainty", str(mannequin), "--assume", wrong]) == 2
     assert capsys.readouterr().err

@@ -15,7 +15,7 @@ from pdf_tools import Pdf
 from PySide6.QtGui import QImage
 
 from app.cli.commands import report as reported
-from app.cli.commands.report import SheetWishes, run_report
+from app.cli.commands.report import ReportOptions, write_report
 from app.gui.theme.stylesheet import load_fonts
 from app.presenters.samples import sample_design
 from app.report.cut_rows import line_notes, vague_forces
@@ -153,9 +153,9 @@ def test_it_stands_on_paper(mannequin: Path, tmp_path: Path, monkeypatch: pytest
     monkeypatch.setattr(reported, "spread_of", spread)
     monkeypatch.setattr(reported, "_pictures", lambda _: {})
     design, out = sample_design().with_line("mid-bust", 0.95), tmp_path / "sheet.pdf"
-    run_report(str(mannequin), design, [], [], SheetWishes(str(out)))
+    write_report(str(mannequin), design, [], [], ReportOptions(str(out)))
     assert "± 7.4" not in Pdf(out).text()
-    run_report(str(mannequin), design, [], [], SheetWishes(str(out), spread=True))
+    write_report(str(mannequin), design, [], [], ReportOptions(str(out), uncertainty=True))
     said = Pdf(out).text()
     assert all(each in said for each in ("± 7.4", "± 8.4", "± 0.2 mm", "± 1.4", "twice the standard"))
     assert said.index("Lift of the bust points") < said.index("± 0.2 mm") < said.index("Measures")

@@ -268,7 +268,7 @@ def test_the_command_prints_what_python_says(mannequin, built, capsys, tmp_path)
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        ([], "No line is worn"),
+        ([], "No active lines"),
         (["--line", "mid-bust=70%", "--elastic", "waist=picot 10"], "names no worn line.*worn are: mid-bust"),
         (["--line", "mid-bust=70%", "--elastic", "mid-bust=rope"], "No elastic is called 'rope'"),
         (["--line", "mid-bust=52%", "--elastic", "mid-bust=strap 10"], "stretched by .*ends at 70 %"),

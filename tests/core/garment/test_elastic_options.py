@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from app.cli import elastic_list as elastics
+from app.cli.commands import cut
 from app.cli.main import main
 from core.document.elastic import Elastic
 from core.document.lines import WornLine
@@ -169,28 +169,28 @@ def test_the_command_line_lists_effects_and_names_the_nearest(
     few = {name: find_elastic(name) for name in ("strap 15", "strap 20")}
     monkeypatch.setattr(elastics, "library", lambda: few)
     words = ["cut", str(mannequin), "--line", "mid-bust=94%", "--set", "line_contact=sliding"]
-    assert main([*words, "--elastics", "mid-bust", "--as-worn"]) == 0
+    assert main([*words, "--elastics", "mid-bust", "--keep-fit"]) == 0
     listed = capsys.readouterr().out
     assert "Strap 15 mm" in listed
     assert "Too weak" in listed
     assert "Lift kept: 1" in listed
-    assert main([*words, "--elastic", "mid-bust=strap 15", "--as-worn"]) == 2
+    assert main([*words, "--elastic", "mid-bust=strap 15", "--keep-fit"]) == 2
     assert "Nearest elastic that works: Strap 20 mm." in capsys.readouterr().err
-    assert main([*words, "--elastic", "mid-bust=strap 20", "--as-worn"]) in (0, 3)
+    assert main([*words, "--elastic", "mid-bust=strap 20", "--keep-fit"]) in (0, 3)
     assert "with a band that does not stretch." in capsys.readouterr().out
-    assert main([*words, "--elastic", "mid-bust=strap 20", "--as-worn", "--json"]) in (0, 3)
+    assert main([*words, "--elastic", "mid-bust=strap 20", "--keep-fit", "--json"]) in (0, 3)
     assert json.loads(capsys.readouterr().out)["rows"][0]["elastic"] == "Strap 20 mm"
     assert main([*words, "--elastics", "no line"]) == 2
     assert "There is no line 'no line'" in capsys.readouterr().err
     for form in ("--json", "--csv", "--out=list.json"):
         assert main([*words, "--elastics", "mid-bust", form]) == 2
-        assert "a table to read" in capsys.readouterr().err
+        assert "as text only" in capsys.readouterr().err
 
 
 def test_the_list_of_elastics_is_written_where_it_is_asked_for(
     mannequin: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(elastics, "library", lambda: {"strap": find_elastic("strap 15")})
+    monkeypatch.setattr(cut, "library", lambda: {"strap": find_elastic("strap 15")})
     out = tmp_path / "list.txt"
     assert main(["cut", str(mannequin), "--elastics", "mid-bust", "--out", str(out)]) == 0
     assert capsys.readouterr().out == f"written to {out}\n"

@@ -93,7 +93,7 @@ def test_the_command_cuts_for_the_shape_that_is_there(mannequin, capsys):
     words = ["cut", str(mannequin), "--line", "mid-bust=97%", "--json"]
     assert main(words) == 0
     bare = json.loads(capsys.readouterr().out)["rows"][0]
-    assert main([*words, "--elastic", "mid-bust=strap 15", "--as-worn"]) == 0
+    assert main([*words, "--elastic", "mid-bust=strap 15", "--keep-fit"]) == 0
     row = json.loads(capsys.readouterr().out)["rows"][0]
     assert bare["cut_mm"] is None
     assert row["reached_front_mm"] == pytest.approx(bare["reached_front_mm"], rel=1e-4)

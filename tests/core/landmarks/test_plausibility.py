@@ -11,7 +11,7 @@ import pytest
 import trimesh
 from altered_bodies import smooth_step
 
-from app.cli.commands.detect import found_text
+from app.cli.commands.detect import landmarks_text
 from core.errors import LandmarkError
 from core.geometry.mesh import Mesh, Points
 from core.landmarks.as_dict import detection
@@ -114,7 +114,7 @@ def test_a_lean_is_told_with_its_angle_and_the_up_that_corrects_it(degrees):
 def test_the_command_line_names_the_direction_that_corrects_a_lean():
     leaning = replace(found("mannequin"), hints=(Hint("lean", "The trunk leans.", "-0.1,0.3,0.9"),))
     told = detection(body_of(sample("mannequin").vertices, name="mannequin"), leaning)
-    assert "--up=-0.1,0.3,0.9" in found_text(told)
+    assert "--up=-0.1,0.3,0.9" in landmarks_text(told)
 
 
 def test_a_lean_that_was_corrected_is_not_told():

@@ -11,7 +11,7 @@ import trimesh
 from scipy.spatial import cKDTree
 from shapes import SAMPLES
 
-from app.cli.commands.symmetry import run_even
+from app.cli.commands.symmetry import compare
 from app.presenters.symmetry import even_summary
 from core.document.design import Design, ScanSource
 from core.document.serialization import from_json, to_json
@@ -183,7 +183,7 @@ def test_a_crop_without_a_bust_is_refused_and_the_last_build_is_reused(person):
 
 def test_the_symmetry_of_a_mirrored_body_comes_with_the_warning():
     source = ScanSource(str(SAMPLES / "person.ply"), edits=ScanEdits(kept="right"))
-    found = run_even(source.path, Design(source), (), (), make=False)
-    assert found.told.before.furthest < 0.5
+    found = compare(build(Design(source)), balance=False)
+    assert found.compared.before.furthest < 0.5
     assert mirror_sentence("right") in found.warnings
-    assert mirror_sentence("right") in even_summary(found.told, found.stages).says
+    assert mirror_sentence("right") in even_summary(found.compared, found.stages).says
