@@ -68,7 +68,7 @@ def test_a_file_that_is_not_there_is_told_where_it_is_seen(
     monkeypatch.setattr(sys, "stderr", _Terminal())
     assert not is_seen_in_window("gone.busk")
     assert main(["gone.busk"]) == BAD_INPUT
-    assert "There is no file gone.busk" in sys.stderr.getvalue()
+    assert "gone.busk is neither" in sys.stderr.getvalue()
 
 
 @pytest.mark.usefixtures("empty_house")
@@ -221,6 +221,6 @@ def test_an_interrupt_ends_a_command_without_a_traceback(
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("core.pipeline.build.read_body", interrupted)
+    monkeypatch.setattr("app.cli.commands.detect.read_body", interrupted)
     assert main(["detect", str(mannequin)]) == INTERRUPTED
     assert capsys.readouterr() == ("", "")

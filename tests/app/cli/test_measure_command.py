@@ -74,7 +74,7 @@ def test_text_and_table_tell_the_same(project: Path, capsys: pytest.CaptureFixtu
         title = f"{row['title']}, {row['side']}" if row["side"] else row["title"]
         line = next(line for line in text if line.startswith(f"{title} "))
         if row["after"]:
-            assert f"{float(row['after']):z.1f}" in line
+            assert f"{float(row['after']):z.{0 if row['unit'] == 'ml' else 1}f}" in line
         else:
             assert row["note"] in line
 

@@ -269,7 +269,7 @@ def test_the_command_prints_what_python_says(mannequin, built, capsys, tmp_path)
     ("words", "sentence"),
     [
         ([], "No active lines"),
-        (["--line", "mid-bust=70%", "--elastic", "waist=picot 10"], "names no worn line.*worn are: mid-bust"),
+        (["--line", "mid-bust=70%", "--elastic", "waist=picot 10"], "is not an active line.*: mid-bust"),
         (["--line", "mid-bust=70%", "--elastic", "mid-bust=rope"], "No elastic is called 'rope'"),
         (["--line", "mid-bust=52%", "--elastic", "mid-bust=strap 10"], "stretched by .*ends at 70 %"),
     ],

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from app.cli import solved_design
 from app.cli.commands import cut
 from app.cli.main import main
 from core.document.elastic import Elastic
@@ -167,7 +168,8 @@ def test_the_command_line_lists_effects_and_names_the_nearest(
     mannequin: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     few = {name: find_elastic(name) for name in ("strap 15", "strap 20")}
-    monkeypatch.setattr(elastics, "library", lambda: few)
+    for module in (cut, solved_design):
+        monkeypatch.setattr(module, "library", lambda: few)
     words = ["cut", str(mannequin), "--line", "mid-bust=94%", "--set", "line_contact=sliding"]
     assert main([*words, "--elastics", "mid-bust", "--keep-fit"]) == 0
     listed = capsys.readouterr().out
