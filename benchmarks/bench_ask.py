@@ -28,18 +28,18 @@ from app.presenters.samples import SAMPLES, sample_design
 from core.analysis.inverse_design.objective import INSIDE
 from core.analysis.inverse_design.profile_csv import profile_goals
 from core.analysis.inverse_design.quantities import GIRTH, NAMES, Goal, profile_name, reading
-from core.analysis.inverse_design.solve import ask
+from core.analysis.inverse_design.solve import solve_targets
 from core.document.design import Design, ScanSource
 from core.document.presets import built_in, with_preset
 from core.errors import UserError
 from core.garment.elastic_library import find_elastic
 from core.garment.pressure import pressures
-from core.garment.pressure_limits import comfort
+from core.garment.pressure_limits import pressure_limits
 from core.garment.tension import line_tensions
-from core.mechanics.mesh_quality import CALM_RANGE, Condition
+from core.mechanics.mesh_quality import STRAINED_RANGE, MeshQuality
 from core.pipeline.active_lines import free_lines
 from core.pipeline.build import Stages, build
-from core.pipeline.solve import run
+from core.pipeline.solve import solve
 from core.scan.readers.registry import FORMATS
 
 MET = 0.5  # mm
@@ -88,7 +88,7 @@ def worn(rng: np.random.Generator, stages: Stages) -> Stages:
         for line in stages.model.lines if preset is None else ():
             if line.constrains:
                 design = design.with_line(line.name, 1.0)
-        for name in sorted(design.worn()):
+        for name in sorted(design.active_lines()):
             design = design.with_line(name, 1.0)
         dressed = build(design, stages)
         if 2 <= len(free_lines(dressed)) <= 4:
@@ -109,14 +109,14 @@ def known(rng: np.random.Generator, start: Stages) -> tuple[Stages, np.ndarray]:
     """Return a design with lengths by chance, and its control points, where the body looks natural."""
     while True:
         design = start.design
-        elastic = start.design.worn_elastics()
+        elastic = start.design.active_elastics()
         for group in free_lines(start):
             low, high = (SHORTEST_ELASTIC, LOOSE) if elastic else (SHORTEST, 1.0)
             ratio = round(float(rng.uniform(low, high)), 4)
             for name in group:
                 design = design.with_line(name, ratio)
         stages = build(design, start)
-        solution = run(stages)
+        solution = solve(stages)
         condition = solution.verdict.condition
         if solution.verdict.motion != "settled" or condition is None or not _calm(condition):
             continue
@@ -125,14 +125,14 @@ def known(rng: np.random.Generator, start: Stages) -> tuple[Stages, np.ndarray]:
             continue
         if (
             not elastic
-            or max(each.largest for each in pressures(stages, points).values()) < comfort().red_kpa
+            or max(each.largest for each in pressures(stages, points).values()) < pressure_limits().red_kpa
         ):
             return stages, points
 
 
-def _calm(condition: Condition) -> bool:
+def _calm(condition: MeshQuality) -> bool:
     """Tell whether a body looks natural, and does not only just do so: that is as far as is asked for."""
-    low, high = CALM_RANGE
+    low, high = STRAINED_RANGE
     return condition.shortest > low + INSIDE and condition.longest < high - INSIDE and not condition.strained
 
 
@@ -158,10 +158,10 @@ def case(rng: np.random.Generator, start: Stages, *, curve: bool = False) -> Cas
         section, rows = names[0].split()[1], [(float(goal.name.split()[2]), goal.value) for goal in goals]
         goals = profile_goals(start, section, np.array(rows))
     begun = time.process_time()
-    reply = ask(start, goals)
+    reply = solve_targets(start, goals)
     seconds = time.process_time() - begun
     solved = build(reply.design, start)
-    after = run(solved).control_points
+    after = solve(solved).control_points
     miss = max(abs(reading(solved, goal.name)(after).value - goal.value) for goal in goals)
     lines = ", ".join(f"{line.name} {100.0 * line.ratio:.1f}" for line in truth.design.lines)
     name = f"{start.design.scan.name}, {start.design.line_contact}, {lines}"
@@ -179,7 +179,7 @@ def too_far(number: int, start: Stages, wished: Case) -> Case:
         more = TOO_FAR * rng.choice([-1.0, 1.0], size=len(names))
     goals = tuple(Goal(goal.name, goal.value + off) for goal, off in zip(wished.goals, more, strict=True))
     begun = time.process_time()
-    reply = ask(start, goals)
+    reply = solve_targets(start, goals)
     seconds = time.process_time() - begun
     return Case(wished.name, goals, reply.miss, seconds, reply.answers, reply.reachable)
 

@@ -20,7 +20,7 @@ from threadpoolctl import threadpool_limits
 
 from core.control_mesh.fit import ControlMesh, fit_control_mesh
 from core.control_mesh.template import read_template
-from core.deformation.blend_region import patch_fade
+from core.deformation.blend_region import blend_weights
 from core.deformation.incremental_normals import MovingFaces, moving_faces
 from core.deformation.tffd import Binding, bind
 from core.geometry import kernels
@@ -85,20 +85,20 @@ def updates(
     """Give what is done in a frame, in the forms compared."""
     operator, wide = binding.operator, double.operator
     change, rest = binding.change(points), moving.rest
-    places = operator.added(change, rest)
+    places = operator.apply(change, rest)
     rows = binding.operator.of_rows(np.arange(len(binding.moving)))
     dense = rows.toarray().astype(np.float32)
     single = change.astype(np.float32)
     tables = operator.weights, operator.starts, operator.columns
 
     def frame() -> None:
-        now = operator.added(binding.change(points), rest)
+        now = operator.apply(binding.change(points), rest)
         moving.normals(now)
         tapes(now)
 
     return {
-        "t-FFD update": lambda: operator.added(binding.change(points), rest),
-        "  in double precision": lambda: wide.added(double.change(points), rest),
+        "t-FFD update": lambda: operator.apply(binding.change(points), rest),
+        "  in double precision": lambda: wide.apply(double.change(points), rest),
         "  t-FFD in numpy": lambda: kernels.blend_plain(*tables, single, rest),
         "  scipy, row by row": lambda: binding.rest_moving + rows @ change,
         "  one dense product": lambda: binding.rest_moving + dense @ single,
@@ -174,8 +174,8 @@ def others(binding: Binding, moving: MovingFaces, points: Points) -> dict[str, W
 
 
 def measure(name: str, mesh: Mesh, control: ControlMesh, marks: Landmarks) -> None:
-    once = {"patch": lambda: patch_fade(mesh, control)}
-    fade = patch_fade(mesh, control).fade
+    once = {"patch": lambda: blend_weights(mesh, control)}
+    fade = blend_weights(mesh, control).fade
     binding, double = (bind(mesh, control.mesh, fade, fixed=control.fixed, single=s) for s in (True, False))
     once["bind"] = lambda: bind(mesh, control.mesh, fade, fixed=control.fixed, single=True)
     moving = moving_faces(mesh, binding.moving)

@@ -25,17 +25,17 @@ from bench_ask import bodies
 from pages import put, table
 from worn_pairs import bent, rough, scanned, worn_mesh, written
 
-from core.analysis.calibration.api import calibrate, read_worn
+from core.analysis.calibration.api import calibrate, read_fitting_scan
 from core.analysis.calibration.parameters import (
     FIRM_CHEST,
     LINE_STIFFNESS,
     PRESTRESS,
     STIFFNESS,
     TISSUE,
-    Number,
-    candidates,
+    Parameter,
+    candidate_parameters,
 )
-from core.analysis.calibration.registration import moved
+from core.analysis.calibration.registration import transform_points
 from core.document.design import Design, ScanSource
 from core.errors import UserError
 from core.garment.elastic_library import find_elastic
@@ -89,7 +89,7 @@ def garment(rng: np.random.Generator, base: Design, kind: str) -> Design:
 def truth_of(rng: np.random.Generator, stages: Stages, *, each: bool = True) -> Design:
     """Return the design with true numbers by chance; ``each`` line has a stiffness of its own."""
     design = stages.design
-    for number in candidates(stages, lengths=False, each=each):
+    for number in candidate_parameters(stages, lengths=False, each=each):
         if number.kind == FIRM_CHEST:
             value = float(rng.uniform(0.03, 0.15))
         elif number.kind == PRESTRESS:
@@ -98,7 +98,7 @@ def truth_of(rng: np.random.Generator, stages: Stages, *, each: bool = True) -> 
             value = float(rng.uniform(300.0, 900.0))
         else:
             value = float(np.exp(rng.uniform(np.log(4.0), np.log(20.0))))
-        design = number.put(design, value)
+        design = number.with_value(design, value)
     return design
 
 
@@ -119,17 +119,17 @@ def case(
         stages = build(replace(stages.design, scan=ScanSource(first, unit="mm")))
     here = stages.body.pose.file_to_mm if stages is not real else np.eye(4)
     if before == "noisy":
-        skin = real.body.mesh.moved(moved(here, real.body.mesh.vertices))
+        skin = real.body.mesh.moved(transform_points(here, real.body.mesh.vertices))
         worn_skin = worn_mesh(stages, replace(truth, scan=stages.design.scan), finer, skin)
     else:
         worn_skin = worn_mesh(real, truth, finer)
-        worn_skin = worn_skin.moved(moved(here, worn_skin.vertices))
+        worn_skin = worn_skin.moved(transform_points(here, worn_skin.vertices))
     if height:
         worn_skin = bent(worn_skin, rng, height)
     mesh, matrix = scanned(worn_skin, stages, rng, spacing=spacing)
     path = written(mesh, folder / "worn.ply")
     begun = time.process_time()
-    worn = read_worn(stages, ScanSource(path, unit="mm"))
+    worn = read_fitting_scan(stages, ScanSource(path, unit="mm"))
     found = calibrate(stages, worn)
     seconds = time.process_time() - begun
     # Reading sets it upright: its frame is not that of the file.
@@ -137,23 +137,30 @@ def case(
     turn = float(np.degrees(np.linalg.norm([back[2, 1], back[0, 2], back[1, 0]])))
     middle = np.append(stages.control.mesh.vertices.mean(axis=0), 1.0)
     shift = float(np.linalg.norm((back @ middle - middle)[:3]))
-    rms = found.before.all_of_it.rms, found.after.all_of_it.rms
+    rms = found.before.total.rms, found.after.total.rms
     return Case(kind, found.met, turn, shift, tuple(offs(stages, truth, found)), *rms, seconds)
 
 
 def offs(stages, truth, found):
     """Yield how far off each number is."""
-    every = [*candidates(stages, lengths=False, each=True), *candidates(stages, lengths=False, each=False)]
-    by_name: dict[str, Number] = {number.name: number for number in every}
+    every = [
+        *candidate_parameters(stages, lengths=False, each=True),
+        *candidate_parameters(stages, lengths=False, each=False),
+    ]
+    by_name: dict[str, Parameter] = {number.name: number for number in every}
     for one in found.calibration.numbers:
         number = by_name[one.name]
         stiffness = number.kind in (STIFFNESS, LINE_STIFFNESS)
         kind = "stiffness of lines" if stiffness else number.kind.replace("_", " ")
         # One that was found for all lines is held against that of each.
-        of = [Number(STIFFNESS, (line,)) for line in number.lines] if stiffness else [number]
+        of = [Parameter(STIFFNESS, (line,)) for line in number.lines] if stiffness else [number]
         for each in of:
             yield Off(
-                kind, one.after / each.of(truth) - 1.0, one.plus_minus / one.after, not one.kept, one.told
+                kind,
+                one.after / each.value_in(truth) - 1.0,
+                one.plus_minus / one.after,
+                not one.kept,
+                one.told,
             )
 
 

@@ -24,12 +24,12 @@ from pages import put, table
 from threadpoolctl import threadpool_limits
 
 from core.analysis.diagnosis.diagnose import Diagnosis, diagnose
-from core.analysis.diagnosis.trial_run import standing
+from core.analysis.diagnosis.trial_run import run_trial
 from core.document.design import Design
 from core.document.presets import built_in, with_preset
 from core.errors import UserError
-from core.mechanics.solver_comparison import Comparison
-from core.pipeline.build import Stages, build, targets_of
+from core.mechanics.solver_comparison import SolverComparison
+from core.pipeline.build import Stages, build, line_targets
 
 KINDS = ("vibrating", "diverging", "folded", "overstrained", "strained", "unreachable")
 WANTED = {"vibrating": 0.5, "diverging": 0.05, "folded": 0.1, "overstrained": 0.15, "strained": 0.15}
@@ -48,7 +48,7 @@ class Case:
     @property
     def ended(self) -> bool:
         """Whether what was named ended it."""
-        calm = ("settled",) if self.found.complaint == "strained" else ("settled", "strained")
+        calm = ("settled",) if self.found.problem == "strained" else ("settled", "strained")
         return self.after in calm
 
 
@@ -63,7 +63,7 @@ def drawn(rng: np.random.Generator, stages: Stages) -> Stages:
         moving = [line.name for line in stages.model.lines if line.constrains]
         for name in rng.choice(moving, rng.integers(1, len(moving) + 1), replace=False).tolist():
             design = design.with_line(name, 1.0)
-    for names in dict.fromkeys(design.linked(name) for name in sorted(design.worn())):
+    for names in dict.fromkeys(design.linked_pair(name) for name in sorted(design.active_lines())):
         ratio = round(float(rng.uniform(0.55, 1.12) if rng.random() < 0.6 else rng.uniform(0.85, 1.0)), 3)
         for name in names:
             design = design.with_line(name, ratio)
@@ -80,26 +80,26 @@ def ends(stages: Stages, design: Design | None = None) -> str:
     """Return how the window's runs of ``stages`` end, or of another design that goes on from there."""
     with threadpool_limits(1):
         change = stages.body_change if stages.design.dense_volume else None
-        comparison = Comparison(stages.model, targets_of(stages.design, stages), stages.watch, change)
+        comparison = SolverComparison(stages.model, line_targets(stages.design, stages), stages.watch, change)
         _to_rest(comparison)
         if design is not None:
             after = build(design, stages)
-            comparison.retarget(after.model, targets_of(design, after), fresh=True)
+            comparison.retarget(after.model, line_targets(design, after), fresh=True)
             _to_rest(comparison)
             if comparison.verdict.motion == "settling":  # as the window does after a change of the doctor's
-                comparison.retarget(after.model, targets_of(design, after))
+                comparison.retarget(after.model, line_targets(design, after))
                 _to_rest(comparison)
             stages = after
     held = stages.design.line_hold == "held"
-    if (held or comparison.main is None) and not comparison.exact.found:
+    if (held or comparison.main is None) and not comparison.exact.is_converged:
         return "unreachable"
     if held and comparison.main is not None and not comparison.main.sane:
         return "unreachable"
-    return comparison.verdict.told
+    return comparison.verdict.display_state
 
 
-def _to_rest(comparison: Comparison) -> None:
-    while not comparison.resting:
+def _to_rest(comparison: SolverComparison) -> None:
+    while not comparison.is_finished:
         comparison.advance()
 
 
@@ -109,10 +109,10 @@ def case(stages: Stages) -> Case:
     found = diagnose(stages)
     seconds = time.process_time() - begun
     after = "nothing found"
-    if found.cure is not None:
-        cured = found.cure.change.design
+    if found.best_fix is not None:
+        cured = found.best_fix.change.design
         after = ends(build(cured, stages))
-        if after in ("settled", "strained") and found.complaint != "unreachable":
+        if after in ("settled", "strained") and found.problem != "unreachable":
             after = ends(stages, cured)
     design = stages.design
     lines = ", ".join(f"{line.name} {100.0 * line.ratio:.1f}" for line in design.lines)
@@ -131,7 +131,7 @@ def cases(rng: np.random.Generator, on: list[Stages], count: int) -> Iterator[Ca
         try:
             stages = drawn(rng, on[tries % len(on)])
             with threadpool_limits(1):
-                complaint = standing(stages).complaint
+                complaint = run_trial(stages).problem
         except UserError:
             continue
         if room.get(complaint, 0):
@@ -141,7 +141,7 @@ def cases(rng: np.random.Generator, on: list[Stages], count: int) -> Iterator[Ca
 
 def said(one: Case) -> str:
     """Return what was named, in a few words."""
-    cure = one.found.cure
+    cure = one.found.best_fix
     if cure is None:
         return "nothing"
     change = cure.change
@@ -153,12 +153,12 @@ def said(one: Case) -> str:
 
 def rows(done: list[Case]) -> Iterator[tuple[str, ...]]:
     """Yield what holds for all cases and for each kind."""
-    groups = {"all": done} | {kind: [each for each in done if each.found.complaint == kind] for kind in KINDS}
+    groups = {"all": done} | {kind: [each for each in done if each.found.problem == kind] for kind in KINDS}
     groups |= {how: [each for each in done if f" {how}," in each.name] for how in ("glued", "sliding")}
     for name, chosen in groups.items():
         if chosen:
             seconds = [each.seconds for each in chosen]
-            named = sum(each.found.fight.worst is not None for each in chosen)
+            named = sum(each.found.forces.worst is not None for each in chosen)
             yield (
                 name,
                 str(len(chosen)),
@@ -175,13 +175,15 @@ def changes(done: list[Case]) -> Iterator[tuple[str, ...]]:
     """Yield what kinds of change were named, and how large they are."""
     kinds = Counter(_kind(each) for each in done)
     for kind, count in kinds.most_common():
-        sizes = [each.found.cure.change.size for each in done if _kind(each) == kind and each.found.cure]
+        sizes = [
+            each.found.best_fix.change.size for each in done if _kind(each) == kind and each.found.best_fix
+        ]
         figures = [f"{of(sizes):.1f}" for of in (min, statistics.median, max)] if any(sizes) else [""] * 3
         yield (kind, str(count), *figures)
 
 
 def _kind(one: Case) -> str:
-    cure = one.found.cure
+    cure = one.found.best_fix
     if cure is None:
         return "nothing found"
     kind = {
@@ -206,7 +208,7 @@ def main() -> None:
     for one in cases(rng, list(bodies(options.folder)), options.cases):
         done.append(one)
         mark = "     " if one.ended else "MISS "
-        told = f"{one.found.complaint} -> {said(one)} -> {one.after}"
+        told = f"{one.found.problem} -> {said(one)} -> {one.after}"
         print(f"{mark}{one.seconds:5.2f} s {one.name}: {told}", flush=True)
     heads = ("", "cases", "ended", "of them", "a pair named", "in the middle", "at 95 %", "at most")
     ended = table(heads, rows(done))

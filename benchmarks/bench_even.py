@@ -25,20 +25,20 @@ import numpy as np
 from bench_ask import bodies
 from pages import put, table
 
-from core.analysis.symmetry.balance import Evened, make_even
-from core.analysis.symmetry.compare import Evenness, evenness
+from core.analysis.symmetry.balance import BalanceResult, make_even
+from core.analysis.symmetry.compare import Evenness, compare_sides
 from core.analysis.symmetry.split_sides import ENOUGH
 from core.control_mesh.template import read_template
 from core.deformation.incremental_normals import volume_change
 from core.document.design import ScanSource
-from core.document.line_notation import ready_made
+from core.document.line_notation import ready_made_lines
 from core.document.split_lines import split
 from core.errors import UserError
 from core.export.mesh import write_mesh
 from core.geometry.mesh import Mesh
 from core.measurements.table import measures
 from core.pipeline.build import Stages, build
-from core.pipeline.solve import run
+from core.pipeline.solve import solve
 
 ALTERATIONS = (("up", 5.0), ("up", -12.0), ("out", 4.0), ("swollen", 3.0), ("swollen", 8.0))
 """What is done to one breast, and by how much at its bust point [mm]."""
@@ -76,18 +76,18 @@ class Altered:
 
 def _ml(told: Evenness) -> float:
     assert told.skin is not None
-    return told.skin.in_all
+    return told.skin.total
 
 
 def _breasts(stages: Stages) -> float:
     """Return by how much the left breast is larger within its root [ml], if that is known."""
-    found = measures(stages.body.calm, stages.landmarks)["asymmetry_volume"].value
+    found = measures(stages.body.smoothed, stages.landmarks)["asymmetry_volume"].value
     return np.nan if found is None else found
 
 
 def at_rest(stages: Stages) -> Evenness:
     """Return how left and right of a body differ at rest."""
-    return evenness(stages, stages.control.mesh.vertices).before
+    return compare_sides(stages, stages.control.mesh.vertices).before
 
 
 def altered(stages: Stages, kind: str, amount: float, side: str, folder: Path) -> Altered:
@@ -137,7 +137,7 @@ def halves(on: list[Stages]) -> Iterator[tuple[str, float, float]]:
             whole = build(replace(stages.design, **choice).with_line("mid-bust", 0.95), stages)
             parts = build(split(whole.design, template, "mid-bust"), whole)
             rest = stages.control.mesh.vertices
-            moves = [run(each).control_points - rest for each in (whole, parts)]
+            moves = [solve(each).control_points - rest for each in (whole, parts)]
             off = float(np.linalg.norm(moves[1] - moves[0], axis=1).max())
             yield name, off, float(np.linalg.norm(moves[0], axis=1).max())
 
@@ -148,55 +148,55 @@ def uneven(rng: np.random.Generator, stages: Stages) -> Stages:
     design = replace(stages.design, line_contact=str(rng.choice(CONTACTS)))
     for name in WORN[: int(rng.integers(1, 3))]:
         design = split(design.with_line(name, 1.0), template, name)
-    for line in ready_made(template)["straps"]:
-        design = design.with_own_line(line).with_line(line.name, 1.0)
-    for name in sorted(design.worn()):
+    for line in ready_made_lines(template)["straps"]:
+        design = design.with_custom_line(line).with_line(line.name, 1.0)
+    for name in sorted(design.active_lines()):
         design = design.with_line(name, round(float(rng.uniform(0.9, 1.0)), 3))
     return build(design, stages)
 
 
-def even_again(rng: np.random.Generator, on: list[Stages], cases: int) -> list[tuple[Evened, float]]:
+def even_again(rng: np.random.Generator, on: list[Stages], cases: int) -> list[tuple[BalanceResult, float]]:
     """Return what makes uneven designs on even bodies even, with processor time [s]."""
-    found: list[tuple[Evened, float]] = []
+    found: list[tuple[BalanceResult, float]] = []
     number = 0
     while len(found) < cases:
         stages = uneven(rng, on[number % len(on)])
         number += 1
-        solution = run(stages)
+        solution = solve(stages)
         condition = solution.verdict.condition
         if solution.verdict.motion != "settled" or condition is None or condition.strained:
             continue
-        if evenness(stages, solution.control_points).after.furthest < 2.0 * ENOUGH:
+        if compare_sides(stages, solution.control_points).after.largest_difference < 2.0 * ENOUGH:
             continue
         found.append(_timed(stages))
     return found
 
 
-def _timed(stages: Stages) -> tuple[Evened, float]:
+def _timed(stages: Stages) -> tuple[BalanceResult, float]:
     begun = time.process_time()
     made = make_even(stages)
     seconds = time.process_time() - begun
     words = f"({made.before.higher:+.2f}, {made.before.further_out:+.2f}) mm"
     after = f"({made.after.higher:+.2f}, {made.after.further_out:+.2f}) mm"
-    lines = ", ".join(f"{line.name} {100.0 * line.ratio:.1f}" for line in made.reply.design.lines)
+    lines = ", ".join(f"{line.name} {100.0 * line.ratio:.1f}" for line in made.result.design.lines)
     name = f"{stages.design.scan.name}, {stages.design.line_contact}"
     wishes = f"{1e3 * seconds:.0f} ms, {len(made.goals)} wishes"
     print(f"{name}: {words} -> {after}, {wishes}; {lines}", flush=True)
     return made, seconds
 
 
-def as_they_are(on: list[Stages]) -> Iterator[tuple[str, Evened, float]]:
+def as_they_are(on: list[Stages]) -> Iterator[tuple[str, BalanceResult, float]]:
     """Yield what makes uneven bodies even, with whole lines and a linked pair of straps, parted first."""
     for stages in on:
-        if at_rest(stages).furthest < 2.0 * ENOUGH:
+        if at_rest(stages).largest_difference < 2.0 * ENOUGH:
             continue
         template = read_template(stages.design.template)
         for contact in CONTACTS:
             design = replace(stages.design, line_contact=contact)
             for name in WORN:
                 design = design.with_line(name, 0.97)
-            for line in ready_made(template)["straps"]:
-                design = design.with_own_line(line).with_line(line.name, 0.97)
+            for line in ready_made_lines(template)["straps"]:
+                design = design.with_custom_line(line).with_line(line.name, 0.97)
             yield f"{stages.design.scan.name}, {contact}", *_timed(build(design, stages))
 
 
@@ -208,17 +208,17 @@ def _row(name: str, cases: list[Altered]) -> tuple[str, ...]:
     return name, str(len(cases)), f"{ml.min():.0f} to {ml.max():.0f}", *told
 
 
-def _even_row(name: str, made: list[tuple[Evened, float]]) -> tuple[str, ...]:
-    before = [each.before.furthest for each, _ in made]
-    after = [each.after.furthest for each, _ in made]
+def _even_row(name: str, made: list[tuple[BalanceResult, float]]) -> tuple[str, ...]:
+    before = [each.before.largest_difference for each, _ in made]
+    after = [each.after.largest_difference for each, _ in made]
     seconds = [taken for _, taken in made]
-    kept = [len(each.goals) == 4 and each.reply.reachable for each, _ in made]
+    kept = [len(each.goals) == 4 and each.result.reachable for each, _ in made]
     return (
         name,
         str(len(made)),
         f"{statistics.median(before):.1f} / {max(before):.1f} mm",
         f"{statistics.median(after):.2f} / {max(after):.2f} mm",
-        str(sum(each.even for each, _ in made)),
+        str(sum(each.is_balanced for each, _ in made)),
         str(sum(kept)),
         f"{1e3 * statistics.median(seconds):.0f} / {1e3 * max(seconds):.0f} ms",
     )
@@ -235,12 +235,12 @@ def main() -> None:
     on = list(bodies(options.folder))
     tables = {"read": _read_table(read_back(on)), "halves": _halves_table(list(halves(on)))}
     rng = np.random.default_rng(2028)
-    even = [stages for stages in on if at_rest(stages).furthest < ENOUGH]
+    even = [stages for stages in on if at_rest(stages).largest_difference < ENOUGH]
     made = even_again(rng, even, options.cases)
     groups = {
         "all": made,
         **{
-            contact: [each for each in made if each[0].reply.design.line_contact == contact]
+            contact: [each for each in made if each[0].result.design.line_contact == contact]
             for contact in CONTACTS
         },
     }
@@ -274,13 +274,13 @@ def _halves_table(found: list[tuple[str, float, float]]) -> str:
     return table(("lines", "bodies", "control points elsewhere", "of moves up to"), rows)
 
 
-def _body_row(name: str, made: Evened) -> tuple[str, ...]:
+def _body_row(name: str, made: BalanceResult) -> tuple[str, ...]:
     told = (
         f"{each.higher:+.1f}, {each.further_out:+.1f} mm" for each in (made.rest, made.before, made.after)
     )
-    reply = made.reply
-    why = [*(f"{line} at its end" for line in reply.at_end), *(["strain"] if reply.strained else [])]
-    return name, *told, "" if made.even else ", ".join(why)
+    reply = made.result
+    why = [*(f"{line} at its end" for line in reply.at_limit), *(["strain"] if reply.strained else [])]
+    return name, *told, "" if made.is_balanced else ", ".join(why)
 
 
 if __name__ == "__main__":

@@ -21,10 +21,10 @@ sys.path[:0] = [str(Path(__file__).parent.parent), str(Path(__file__).parent.par
 
 from hard_cases import HardCase, hard_case  # noqa: E402
 
-from core.mechanics.convergence import Verdict  # noqa: E402
+from core.mechanics.convergence import Convergence  # noqa: E402
 
 
-def ending(case: HardCase, control: str) -> tuple[float, Verdict, float]:
+def ending(case: HardCase, control: str) -> tuple[float, Convergence, float]:
     """Residual [mm], verdict and seconds."""
     start = time.perf_counter()
     residual, verdict = case.exact() if control == "exact" else case.turns(control)

@@ -30,19 +30,19 @@ from threadpoolctl import threadpool_limits
 
 from core.analysis.length_limits.limits import Limits, limits_of
 from core.document.design import Design
-from core.document.lines import WornLine
+from core.document.lines import ActiveLine
 from core.document.presets import built_in, with_preset
 from core.errors import UserError
 from core.garment.cut_list import is_strap
 from core.garment.elastic_library import find_elastic
 from core.garment.pressure import pressures
-from core.garment.pressure_limits import comfort
+from core.garment.pressure_limits import pressure_limits
 from core.mechanics.constraint_lines import RATIO_LIMITS
 from core.mechanics.exact_solution import solve_exact
-from core.mechanics.iteration import Targets, at_rest, turn
+from core.mechanics.iteration import LineTargets, initial_state, step
 from core.mechanics.solver_comparison import shape_of
 from core.pipeline.active_lines import free_lines
-from core.pipeline.build import Stages, build, targets_of
+from core.pipeline.build import Stages, build, line_targets
 
 NEAR = 0.005
 STEP, FINE = 0.005, 0.0005
@@ -91,7 +91,7 @@ class Slider:
     def _built(self, ratio: float) -> Stages | UserError:
         design = self._stages.design
         others = tuple(line for line in design.lines if line.name not in self._names)
-        tried = replace(design, lines=(*others, *(WornLine(name, ratio) for name in self._names)))
+        tried = replace(design, lines=(*others, *(ActiveLine(name, ratio) for name in self._names)))
         try:
             return build(tried, self._stages)
         except UserError as refused:
@@ -101,19 +101,21 @@ class Slider:
         stages = self.built(ratio)
         if isinstance(stages, UserError):
             return frozenset({"stretched" if "table ends" in stages.message else "unreachable"})
-        model, ratios = stages.model, targets_of(stages.design, stages).ratios
+        model, ratios = stages.model, line_targets(stages.design, stages).ratios
         balance = solve_exact(model, ratios)
-        if not balance.found:
+        if not balance.is_converged:
             return frozenset({"unreachable"})
         points = model.tensegric.expand(balance.state.moved)
-        condition = shape_of(model).condition(points)
+        condition = shape_of(model).quality(points)
         shown = {sign for sign in list(KINDS)[:4] if getattr(condition, sign)}
         lines = [line for line in model.lines if line.name in self._names]
         if min(line.length(points) / line.rest_length - ratio for line in lines) < -1e-9:
             shown.add("slack")
-        made = {line.name for line in lines if not is_strap(stages, line)} & {*stages.design.worn_elastics()}
+        made = {line.name for line in lines if not is_strap(stages, line)} & {
+            *stages.design.active_elastics()
+        }
         worn = pressures(stages, points) if made else {}
-        if any(worn[name].largest > comfort().red_kpa for name in made):
+        if any(worn[name].largest > pressure_limits().red_kpa for name in made):
             shown.add("pressing")
         return frozenset(shown)
 
@@ -122,10 +124,10 @@ class Slider:
         stages = self.built(ratio)
         if isinstance(stages, UserError):
             return False
-        targets = Targets(targets_of(stages.design, stages).ratios, "conventional", stages.gain)
-        state, errors = at_rest(stages.model), []
+        targets = LineTargets(line_targets(stages.design, stages).ratios, "conventional", stages.gain)
+        state, errors = initial_state(stages.model), []
         for made in range(1, TURNS + 1):
-            state, measured = turn(stages.model, targets, state)
+            state, measured = step(stages.model, targets, state)
             errors.append(measured.error)
             if measured.step < STILL:
                 return False
@@ -154,10 +156,10 @@ def scanned(
 
 def told(limits: Limits, sign: str) -> list[float]:
     """Return where a sign begins or ends within the way that was looked at."""
-    assert limits.looked is not None
+    assert limits.evaluated is not None
     if sign == "unreachable":
         return [end.ratio for end in (limits.last, limits.longest) if end is not None]
-    first, last = limits.looked.short.ratio, limits.looked.long.ratio
+    first, last = limits.evaluated.short.ratio, limits.evaluated.long.ratio
     if sign != "slack" and limits.shows["slack"] and limits.shows["slack"][-1].short.ratio > first:
         last = limits.shows["slack"][-1].short.ratio
     ends = [(span.short.ratio, span.long.ratio) for span in limits.shows.get(sign, ())]
@@ -169,11 +171,11 @@ def compared(case: str, stages: Stages, names: tuple[str, ...]) -> Iterator[Boun
     """Yield the boundaries of a slider, as they are told and as a scan finds them."""
     limits = limits_of(stages, names[0], through=False)
     slider = Slider(stages, names)
-    if limits.looked is None:
+    if limits.evaluated is None:
         found = [r for r in np.arange(0.5, 1.3, 0.02) if "unreachable" not in slider.signs(round(r, 3))]
         yield from (Boundary(case, "unreachable", None, ratio) for ratio in found[:1])
         return
-    first, last = limits.looked.short.ratio, limits.looked.long.ratio
+    first, last = limits.evaluated.short.ratio, limits.evaluated.long.ratio
     low, high = max(first - BEYOND, RATIO_LIMITS[0]), min(last + BEYOND, RATIO_LIMITS[1])
     slack = limits.shows["slack"]
     if slack and slack[-1].short.ratio > first:
@@ -235,7 +237,7 @@ def groups(stages: Stages) -> Iterator[tuple[str, ...]]:
     """Yield the sliders: lines that move anything, linked ones together."""
     seen: set[str] = set()
     for line in stages.model.lines:
-        group = stages.design.linked(line.name)
+        group = stages.design.linked_pair(line.name)
         if line.constrains and not seen & set(group):
             seen |= set(group)
             yield group

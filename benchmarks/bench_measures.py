@@ -11,7 +11,7 @@ from threadpoolctl import threadpool_limits
 from core.document.design import Design, ScanSource
 from core.measurements.table import before_after, measures
 from core.pipeline.build import build
-from core.pipeline.solve import run
+from core.pipeline.solve import solve
 
 SAMPLES = Path(__file__).parent.parent / "resources" / "samples"
 
@@ -30,8 +30,8 @@ def main() -> None:
     """Print one line a sample."""
     for path in sorted(SAMPLES.glob("*.ply")):
         stages = build(Design(ScanSource(str(path)), volume="exact").with_line("mid-bust", 0.95))
-        points, body = run(stages).control_points, stages.body
-        once = seconds(lambda body=body, marks=stages.landmarks: measures(body.calm, marks))
+        points, body = solve(stages).control_points, stages.body
+        once = seconds(lambda body=body, marks=stages.landmarks: measures(body.smoothed, marks))
         both = seconds(lambda stages=stages, points=points: before_after(stages, points))
         print(f"{path.stem}, {len(body.mesh.vertices)} vertices: {once:.2f} s, before and after {both:.2f} s")
 

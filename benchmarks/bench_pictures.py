@@ -16,11 +16,11 @@ import pyvista as pv
 from app.presenters.lines import bands
 from app.rendering.ambient_occlusion import bake_occlusion
 from app.rendering.display import off_screen
-from app.rendering.offscreen import Studio
+from app.rendering.offscreen import OffscreenRenderer
 from app.rendering.scene import Scene
 from core.document.design import Design, ScanSource
 from core.pipeline.build import build
-from core.pipeline.solve import run
+from core.pipeline.solve import solve
 from core.progress import in_one_go
 
 SAMPLE = Path(__file__).parents[1] / "resources" / "samples" / "mannequin.ply"
@@ -28,7 +28,7 @@ SIZES = ((480, 540), (640, 720), (960, 1080), (2000, 2250))
 ROUNDS = 8
 
 
-def pieces(studio: Studio, size: tuple[int, int]) -> list[float]:
+def pieces(studio: OffscreenRenderer, size: tuple[int, int]) -> list[float]:
     """Return what each piece of one picture takes [ms]."""
     taken: list[float] = []
     begun = time.perf_counter()
@@ -38,7 +38,7 @@ def pieces(studio: Studio, size: tuple[int, int]) -> list[float]:
         taken.append(1e3 * (time.perf_counter() - begun))
         begun = time.perf_counter()
 
-    in_one_go(studio.shot(size), hear)
+    in_one_go(studio.render(size), hear)
     return taken
 
 
@@ -54,9 +54,9 @@ def at_once(scene: Scene, size: tuple[int, int]) -> float:
 def main() -> None:
     off_screen()
     stages = build(Design(ScanSource(str(SAMPLE))).with_line("mid-bust", 0.95))
-    points, worn = run(stages).control_points, bands(stages, ())
+    points, worn = solve(stages).control_points, bands(stages, ())
     begun = time.perf_counter()
-    studio = Studio(stages, points, worn, bake_occlusion(stages.body.mesh))
+    studio = OffscreenRenderer(stages, points, worn, bake_occlusion(stages.body.mesh))
     in_one_go(studio.set_up())
     print(f"soft shadows and setting up: {1e3 * (time.perf_counter() - begun):.0f} ms")
     plotter = pv.Plotter(off_screen=True, lighting="none")
@@ -66,8 +66,8 @@ def main() -> None:
     plotter.enable_anti_aliasing("ssaa")
     with studio:
         for size in SIZES:
-            studio.stand_back(size, "front")
-            scene.look_from(studio.scene.view)
+            studio.frame_bust(size, "front")
+            scene.set_camera(studio.scene.view)
             pieces(studio, size), at_once(scene, size)
             rounds = [(pieces(studio, size), at_once(scene, size)) for _ in range(ROUNDS)]
             longest = max(max(taken) for taken, _ in rounds)

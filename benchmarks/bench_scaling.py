@@ -22,10 +22,10 @@ from core.geometry.mesh import Mesh
 from core.mechanics.exact_solution import solve_exact
 from core.mechanics.gain_limit import gain_limit
 from core.mechanics.hessian_layout import layout_of
-from core.mechanics.iteration import Targets, at_rest, turn
+from core.mechanics.iteration import LineTargets, initial_state, step
 from core.mechanics.model import ConstrainedModel, constrained_model
-from core.mechanics.newton import Balance
-from core.mechanics.options import DEFAULT_LINE_STIFFNESS, Mechanics
+from core.mechanics.newton import Equilibrium
+from core.mechanics.options import DEFAULT_LINE_STIFFNESS, ModelOptions
 from core.mechanics.potential import Potential
 
 HEIGHTS = (-150.0, -92.0, -30.0, 0.0, 38.0, 70.0, 105.0, 145.0)
@@ -72,7 +72,7 @@ def milliseconds(work: Work, least: int = 1) -> float:
     return statistics.median(taken)
 
 
-def follow(model: ConstrainedModel, end: float) -> tuple[list[Balance], float]:
+def follow(model: ConstrainedModel, end: float) -> tuple[list[Equilibrium], float]:
     """The balances along a slider's path from rest in steps of 1 %, and the median cost of a step [ms]."""
     balances, taken = [solve_exact(model, (1.0,))], []
     for ratio in np.linspace(1.0, end, round(100.0 * abs(1.0 - end)) + 1)[1:]:
@@ -85,13 +85,13 @@ def follow(model: ConstrainedModel, end: float) -> tuple[list[Balance], float]:
 def measure(tall: int, half: int) -> None:
     control = torso(tall, half)
     # A tape's stiffness per millimetre stays: shorter segments are stiffer.
-    choice = Mechanics(line_stiffness=DEFAULT_LINE_STIFFNESS * half / 6.0)
+    choice = ModelOptions(line_stiffness=DEFAULT_LINE_STIFFNESS * half / 6.0)
     build = milliseconds(lambda: constrained_model(control, mechanics=choice))
     model = constrained_model(control, mechanics=choice)
     layout = milliseconds(lambda: layout_of(model.tensegric, model.segments, model.volume))
     limit = milliseconds(lambda: gain_limit(model))
-    state, _ = turn(model, Targets((SHORTEST,)), at_rest(model))
-    one = milliseconds(lambda: turn(model, Targets((SHORTEST,)), state), 5)
+    state, _ = step(model, LineTargets((SHORTEST,)), initial_state(model))
+    one = milliseconds(lambda: step(model, LineTargets((SHORTEST,)), state), 5)
     cold = milliseconds(lambda: solve_exact(model, (SHORTEST,)))
     _, warm = follow(model, SHORTEST)
     print(
@@ -117,12 +117,12 @@ def compare(model: ConstrainedModel, ratio: float) -> None:
         print(f"        {name:10}{balance.steps:3} steps   {quality(model, balance, ratio)}")
 
 
-def quality(model: ConstrainedModel, balance: Balance, ratio: float) -> str:
+def quality(model: ConstrainedModel, balance: Equilibrium, ratio: float) -> str:
     """Energy, residual and volume error of an answer, in words."""
     potential = Potential(model, (ratio,))
     energy = potential.energy(potential.at(balance.state.moved))
     volume = model.volume.volume(model.tensegric.expand(balance.state.moved)) / model.volume.rest_volume - 1.0
-    found = "" if balance.found else "   NOT FOUND"
+    found = "" if balance.is_converged else "   NOT FOUND"
     return f"energy {energy:.4f}   residual {balance.residual:.0e} mm   volume {volume:+.0e}{found}"
 
 

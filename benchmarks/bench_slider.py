@@ -19,9 +19,9 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from core.document.design import Design, ScanSource
-from core.document.lines import WornLine
+from core.document.lines import ActiveLine
 from core.mechanics.exact_solution import solve_exact
-from core.mechanics.iteration import Targets, at_rest, turn
+from core.mechanics.iteration import LineTargets, initial_state, step
 from core.pipeline.build import Stages, build
 from core.pipeline.observables import Tapes
 
@@ -66,7 +66,7 @@ def drag(stages: Stages) -> dict[str, float]:
         parts["frame"].append(1e3 * (done - start))
         parts["steps"].append(balance.steps)
         parts["from rest"].append(milliseconds(partial(solve_exact, model, ratios)))
-    one = partial(turn, model, Targets((1.0, 0.9, 1.0)), at_rest(model), stages.watch)
+    one = partial(step, model, LineTargets((1.0, 0.9, 1.0)), initial_state(model), stages.watch)
     parts["turn"] = [milliseconds(one) for _ in range(99)]
     return {name: statistics.median(values) for name, values in parts.items()}
 
@@ -79,7 +79,7 @@ def main() -> None:
             print(f"{Path(scan).name:24}" + "".join(f"{name:>11}" for name in HEADS))
             for name, choice in CHOICES.items():
                 source = ScanSource(str(Path(scan).absolute()))
-                stages = build(Design(source, lines=(WornLine("mid-bust", 0.95),), **choice), stages)
+                stages = build(Design(source, lines=(ActiveLine("mid-bust", 0.95),), **choice), stages)
                 medians = drag(stages)
                 print(f"  {name:22}" + "".join(f"{medians[head]:11.2f}" for head in HEADS))
 

@@ -23,7 +23,7 @@ import numpy as np
 from scipy.optimize import NonlinearConstraint, minimize
 from threadpoolctl import threadpool_limits
 
-from core.analysis.length_limits.limits import shortest
+from core.analysis.length_limits.limits import limits_from
 from core.control_mesh.fit import fit_control_mesh
 from core.control_mesh.template import read_template
 from core.geometry.mesh import Floats
@@ -31,9 +31,9 @@ from core.landmarks.detect import find_landmarks
 from core.mechanics.exact_solution import solve_exact
 from core.mechanics.gain_limit import gain_limit
 from core.mechanics.hessian_layout import layout_of
-from core.mechanics.iteration import Targets, at_rest, turn
+from core.mechanics.iteration import LineTargets, initial_state, step
 from core.mechanics.model import ConstrainedModel, constrained_model
-from core.mechanics.potential import Place, Potential
+from core.mechanics.potential import Evaluation, Potential
 from core.scan.body import read_scan
 
 try:
@@ -53,12 +53,12 @@ class Posed:
         self.potential = Potential(model, ratios)
         self.size = 3 * len(model.tensegric.free)
         self.held = len(self.potential.wanted)
-        self._seen: tuple[Floats, Place] | None = None
+        self._seen: tuple[Floats, Evaluation] | None = None
         rough = np.random.default_rng(1).normal(size=self.size)
         pattern = self.hessian(rough, np.ones(self.held)) != 0.0
         self.rows, self.columns = np.nonzero(np.tril(pattern | pattern.T))
 
-    def at(self, flat: Floats) -> Place:
+    def at(self, flat: Floats) -> Evaluation:
         """The place ``flat``, looked at once however many functions ask for it."""
         if self._seen is None or not np.array_equal(self._seen[0], flat):
             self._seen = flat.copy(), self.potential.at(flat.reshape(-1, 3))
@@ -172,13 +172,13 @@ def measure(scan: str) -> None:
         contest(model, (1.0, ratio, 1.0))
     ratios = (1.0, 0.9, 1.0)
     near = solve_exact(model, (1.0, 0.9 + NEAR, 1.0))
-    state, _ = turn(model, Targets(ratios), at_rest(model))
+    state, _ = step(model, LineTargets(ratios), initial_state(model))
     parts: dict[str, Work] = {
         "exact, cold": lambda: solve_exact(model, ratios),
         f"exact, {100 * NEAR:.1f} % on": lambda: solve_exact(model, ratios, near=near),
-        "one turn": lambda: turn(model, Targets(ratios), state),
+        "one turn": lambda: step(model, LineTargets(ratios), state),
         "gain limit": lambda: gain_limit(model),
-        "shortest line": lambda: shortest(model, (1.0, 1.0, 1.0), "mid-bust"),
+        "shortest line": lambda: limits_from(model, (1.0, 1.0, 1.0), "mid-bust"),
         "model": make,
         "layout": lambda: layout_of(model.tensegric, model.segments, model.volume),
     }

@@ -20,11 +20,11 @@ from pathlib import Path
 
 import numpy as np
 
-from core.analysis.uncertainty.estimate import Spreading
-from core.analysis.uncertainty.input_uncertainty import assumed
-from core.analysis.uncertainty.monte_carlo import Sampled, sampled
-from core.analysis.uncertainty.parameters import knobs, turned
-from core.analysis.uncertainty.perturbed_solutions import Trials
+from core.analysis.uncertainty.estimate import UncertaintyEstimator
+from core.analysis.uncertainty.input_uncertainty import default_uncertainty
+from core.analysis.uncertainty.monte_carlo import Samples, sample
+from core.analysis.uncertainty.parameters import perturb, uncertain_parameters
+from core.analysis.uncertainty.perturbed_solutions import PerturbedSolutions
 from core.document.design import Design, ScanSource
 from core.errors import UserError
 from core.garment.elastic_library import find_elastic
@@ -71,27 +71,27 @@ def _touching(design: Design, contact: str) -> Design:
 
 def measure(name: str, stages: Stages, draws: int) -> str:
     """Print how both ways spread one design; returns its row of the table."""
-    trials = Trials(stages)
+    trials = PerturbedSolutions(stages)
     begun = time.process_time()
-    spread = Spreading(trials).whole()
+    spread = UncertaintyEstimator(trials).estimate()
     told = time.process_time() - begun
     begun = time.process_time()
-    found = sampled(trials, knobs(stages, assumed()), draws)
+    found = sample(trials, uncertain_parameters(stages, default_uncertainty()), draws)
     drawn = time.process_time() - begun
-    sds = found.sds()
+    sds = found.deviations()
     print(f"\n{name}: propagated in {told:.1f} s of a processor, {draws} draws in {drawn:.0f} s")
     print(
         f"  no answer: {spread.failed} knobs, {found.failed} draws; "
         f"skin ± {spread.sds * spread.skin.max():.2f} mm at most"
     )
     for key in SHOWN:
-        if key in sds and key in spread.doubts:
-            off = spread.sds * spread.doubts[key].sd  # of forces too, which are told as a range
+        if key in sds and key in spread.by_output:
+            off = spread.sds * spread.by_output[key].sd  # of forces too, which are told as a range
             print(f"  {key:24} ± {off:7.2f}   sampled {spread.sds * sds[key]:7.2f}")
     cells = {}
     # As in the draws all landmarks are placed: a fold that is placed leads the root another way by itself.
-    turning = knobs(stages, assumed())
-    base = trials(turned(stages, dict.fromkeys(turning, 0.0))).figures
+    turning = uncertain_parameters(stages, default_uncertainty())
+    base = trials(perturb(stages, dict.fromkeys(turning, 0.0))).values
     for kind in KINDS:
         of_kind = [(key, ratio) for key, ratio in _ratios(spread, sds) if _kind(key) == kind]
         if of_kind:
@@ -112,13 +112,13 @@ def _kind(key: str) -> str:
     return key.partition(":")[0].partition(" ")[0]
 
 
-def _within(spread: Spread, found: Sampled, key: str, base: float) -> float:
+def _within(spread: Spread, found: Samples, key: str, base: float) -> float:
     """Return what part of the draws lies where the figure is told to lie; roots are not sampled."""
     values, kind = found.values(key), _kind(key)
     if kind in FORCES:
         low, high = spread.between(key, base) or (0.0, 0.0)
     else:
-        parts = [each for source, each in spread.doubts[key].by_source.items() if source != ROOT]
+        parts = [each for source, each in spread.by_output[key].by_source.items() if source != ROOT]
         off = spread.sds * float(np.hypot.reduce(parts))
         low, high = base - off, base + off
     return float(((values >= low) & (values <= high)).mean())
@@ -127,7 +127,7 @@ def _within(spread: Spread, found: Sampled, key: str, base: float) -> float:
 def _ratios(spread: Spread, sds: dict[str, float]) -> Iterator[tuple[str, float]]:
     """Yield propagated over sampled of each figure that is off by more than a hair; roots are not sampled."""
     for key, sd in sds.items():
-        doubt = spread.doubts.get(key)
+        doubt = spread.by_output.get(key)
         if doubt is not None and sd > 1e-3:
             parts = [each for source, each in doubt.by_source.items() if source != "root"]
             yield key, float(np.hypot.reduce(parts)) / sd

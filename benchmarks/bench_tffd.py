@@ -19,7 +19,7 @@ from threadpoolctl import threadpool_limits
 
 from core.control_mesh.fit import ControlMesh, fit_control_mesh
 from core.control_mesh.template import read_template
-from core.deformation.blend_region import patch_fade
+from core.deformation.blend_region import blend_weights
 from core.deformation.incremental_normals import moving_faces
 from core.deformation.tffd import bind, deform, deform_moving
 from core.geometry import kernels
@@ -67,8 +67,8 @@ def measure(path: str) -> None:
     body = read_scan(path)
     mesh = body.mesh
     control = fit_control_mesh(read_template("168"), body, find_landmarks(body))
-    patch = patch_fade(mesh, control)
-    patch_ms = median_ms(lambda: patch_fade(mesh, control), 5)
+    patch = blend_weights(mesh, control)
+    patch_ms = median_ms(lambda: blend_weights(mesh, control), 5)
     print(
         f"{body.name}: {len(mesh.vertices)} vertices, {len(control.mesh.faces)} control triangles,", end=" "
     )

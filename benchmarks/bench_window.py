@@ -38,15 +38,15 @@ from app.gui.viewport.view_area import ViewArea
 from app.gui.viewport.viewport import Viewport
 from app.rendering.display import off_screen
 from core.document.design import Design, ScanSource
-from core.mechanics.solver_comparison import Comparison
+from core.mechanics.solver_comparison import SolverComparison
 from core.pipeline import live_solver as live
 from core.pipeline.live_solver import LiveSolver
 
 SAMPLE = Path(__file__).parent.parent / "resources" / "samples" / "mannequin.ply"
 LINE, SHORTEST, EVERY, SWING = "mid-bust", 0.88, 16, 2.0
 WATCHED: tuple[tuple[str, Any, str], ...] = (
-    ("solver: new lengths", Comparison, "retarget"),
-    ("solver: turns", Comparison, "advance"),
+    ("solver: new lengths", SolverComparison, "retarget"),
+    ("solver: turns", SolverComparison, "advance"),
     ("solver: frame", live, "make_frame"),
     ("show frame", FrameDispatch, "show_frame"),
     ("  view", ViewArea, "show_frame"),

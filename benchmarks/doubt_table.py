@@ -31,7 +31,7 @@ def said(folder: Path, file: str) -> list[str]:
         found = find_landmarks(body)
     except UserError:
         return ["refused"]
-    words = [hint.kind for hint in found.hints] + ["asked"] * (not body.pose.sure)
+    words = [hint.kind for hint in found.hints] + ["asked"] * (not body.pose.is_certain)
     return words + ["upright"] * (body.pose.tilt > 0.0)
 
 

@@ -27,7 +27,7 @@ from core.document.design import Design, ScanSource  # noqa: E402
 from core.document.document import Document  # noqa: E402
 from core.document.storage.backups import backups  # noqa: E402
 from core.document.storage.project_file import ScanFile, open_project, read_scan_file  # noqa: E402
-from core.document.storage.recovery import left_behind  # noqa: E402
+from core.document.storage.recovery import find_unsaved  # noqa: E402
 
 INTERVAL = 0.2
 """Seconds after an edit until it is kept aside, in this test."""
@@ -80,7 +80,7 @@ def look(folder: Path) -> tuple[int, int, tuple[str, ...]]:
     """Do as the next start does: return the numbers of the newest edits that were kept aside and that were
     saved, and what is broken.
     """
-    offers, aside = left_behind()
+    offers, aside = find_unsaved()
     broken = [str(path) for path in aside]
     kept = [each.document for each, _ in offers]
     files = [path for path in (folder / "anna.busk",) if path.exists()]
@@ -91,7 +91,7 @@ def look(folder: Path) -> tuple[int, int, tuple[str, ...]]:
             broken.append(f"{document.design.scan} has not the bytes of the scan")
     for _, recovery in offers:
         # Restored and saved: the next program begins with nothing left behind.
-        recovery.end()
+        recovery.remove()
     return _newest(kept), _newest(saved), tuple(broken)
 
 
@@ -120,7 +120,7 @@ def work(folder: Path) -> None:
     window.notices = SimpleNamespace(show_notice=print)
     session.frame = SimpleNamespace(stages=SimpleNamespace(scan=ScanFile("body.ply", SCAN)))
     chance, number = random.Random(), _last(folder / "journal")
-    session.document = Document.of(Design(ScanSource("/scans/body.ply"), unknown={"n": number}))
+    session.document = Document.single(Design(ScanSource("/scans/body.ply"), unknown={"n": number}))
     desk = KeepingDesk(window)
     session.design_changed.connect(desk.note)
     session.saved.connect(desk.show_saved)

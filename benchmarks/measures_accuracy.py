@@ -16,7 +16,7 @@ sys.path[:0] = [str(Path(__file__).parent.parent), str(Path(__file__).parent.par
 from breast_shapes import cap  # noqa: E402 - the shapes of the tests
 
 from app.research.ground_truth import Truth, read_truths  # noqa: E402
-from core.geometry.geodesic import shortest_way  # noqa: E402
+from core.geometry.geodesic import shortest_path  # noqa: E402
 from core.geometry.mesh import Mesh  # noqa: E402
 from core.landmarks.torso.cross_sections import trunk_levels  # noqa: E402
 from core.measurements.breast_volume import breast_of  # noqa: E402
@@ -29,8 +29,8 @@ def girths(folder: Path, truth: Truth) -> Iterator[tuple[str, float, float]]:
     body = read_scan(str(folder / truth.file))
     # The planes are level in the true frame; ours may stand a little otherwise, so the skin is moved there.
     move = truth.to_mm @ np.linalg.inv(body.pose.file_to_mm)
-    places = body.calm.vertices @ move[:3, :3].T + move[:3, 3]
-    skin = Mesh(places, body.calm.faces)
+    places = body.smoothed.vertices @ move[:3, :3].T + move[:3, 3]
+    skin = Mesh(places, body.smoothed.faces)
     for name, known in truth.girths.items():
         planes = dict(zip(known.offsets, known.tapes, strict=True)) or {0.0: known.tape}
         levels = trunk_levels(skin, [known.level + offset for offset in planes])
@@ -58,15 +58,15 @@ def ways() -> Iterator[tuple[str, float]]:
     for _ in range(20):
         a, b = dice.normal(size=(2, 3))
         a, b = 100.0 * a / np.linalg.norm(a), 100.0 * b / np.linalg.norm(b)
-        yield "ball", _off(length(shortest_way(ball, a, b)), 100.0 * float(np.arccos(a @ b / 1e4)))
+        yield "ball", _off(length(shortest_path(ball, a, b)), 100.0 * float(np.arccos(a @ b / 1e4)))
         u, du, v, dv = dice.uniform((0.0, 0.1, 100.0, -40.0), (0.5, 1.7, 200.0, 150.0))
         ends = between(tube, (u, v), (u + du, v + dv))
-        yield "cylinder", _off(length(shortest_way(rolled, *ends)), float(np.hypot(120.0 * du, dv)))
+        yield "cylinder", _off(length(shortest_path(rolled, *ends)), float(np.hypot(120.0 * du, dv)))
         ends = between(cone, (u, v), (u + du, v + dv))
         flat = np.sqrt(v**2 + (v + dv) ** 2 - 2.0 * v * (v + dv) * np.cos(0.5 * du))
-        yield "cone", _off(length(shortest_way(tip, *ends)), float(flat))
+        yield "cone", _off(length(shortest_path(tip, *ends)), float(flat))
         ends = between(ring, (u, -1.5), (u, -1.5 + du))
-        yield "torus", _off(length(shortest_way(tyre, *ends)), 50.0 * float(du))
+        yield "torus", _off(length(shortest_path(tyre, *ends)), 50.0 * float(du))
 
 
 def _off(found: float, true: float) -> float:

@@ -22,12 +22,12 @@ from app.presenters.samples import SAMPLES, sample_design
 from core.analysis.length_limits.limits import Length, all_limits
 from core.control_mesh.template import read_template
 from core.document.design import Design
-from core.document.line_notation import ready_made
-from core.document.lines import WornLine
+from core.document.line_notation import ready_made_lines
+from core.document.lines import ActiveLine
 from core.mechanics.exact_solution import solve_exact
 from core.pipeline.build import Stages, build
-from core.pipeline.observables import Marks
-from core.pipeline.solve import Solution, run
+from core.pipeline.observables import Observables
+from core.pipeline.solve import Solution, solve
 
 BELOW = 0.001
 """A volume error that counts as none in the table of the controls [1]."""
@@ -42,9 +42,11 @@ MODELS: dict[str, dict[str, Any]] = {
 CONTACTS = ("glued", "sliding")
 
 
-def lifts(marks: Marks, rest: Marks) -> list[float]:
+def lifts(marks: Observables, rest: Observables) -> list[float]:
     """How far bust points and foremost places rose, and the latter came forward [mm]."""
-    nipples = marks.nipple_left_z + marks.nipple_right_z - rest.nipple_left_z - rest.nipple_right_z
+    nipples = (
+        marks.bust_point_left_z + marks.bust_point_right_z - rest.bust_point_left_z - rest.bust_point_right_z
+    )
     return [nipples / 2, marks.apex_z - rest.apex_z, marks.apex_protrusion - rest.apex_protrusion]
 
 
@@ -52,7 +54,7 @@ def signed(values: list[float]) -> list[str]:
     return [f"{value:+.1f}".replace("+0.0", "0.0").replace("-0.0", "0.0") for value in values]
 
 
-def exactly(stages: Stages) -> tuple[Marks, float, int]:
+def exactly(stages: Stages) -> tuple[Observables, float, int]:
     """The exact answer: what is watched, the mid-bust line's reached over rest length, Newton steps."""
     worn = {line.name: line.ratio for line in stages.design.lines}
     model = stages.model
@@ -80,9 +82,9 @@ def choices(body: str, stage: Callable[[Design], Stages]) -> Iterator[list[str]]
 
 def controls(body: str, stage: Callable[[Design], Stages]) -> Iterator[list[str]]:
     for ratio in (0.97, 0.90, 0.80, 0.60):
-        design = replace(sample_design(body), lines=(WornLine("mid-bust", ratio),))
+        design = replace(sample_design(body), lines=(ActiveLine("mid-bust", ratio),))
         runs = {
-            control: run(stage(replace(design, volume=control)), 200)
+            control: solve(stage(replace(design, volume=control)), 200)
             for control in ("none", "conventional", "adaptive", "accumulating")
         }
         _, reached, steps = exactly(runs["adaptive"].stages)
@@ -119,7 +121,7 @@ def limits(body: str, stage: Callable[[Design], Stages]) -> Iterator[list[str]]:
         for line in all_limits(stage(replace(sample_design(body), lines=(), **model))):
             if line.line.name in ("mid-bust", "full-bust"):
                 told += [
-                    _length(line.begins[sign], line.line.rest_length)
+                    _length(line.onsets[sign], line.line.rest_length)
                     for sign in ("strained", "overstrained", "folded")
                 ]
         yield [f"{body}, {name}" if name == "default" else name, *told]
@@ -130,14 +132,14 @@ def _length(begin: Length | None, rest: float) -> str:
 
 
 def pairs(stages: dict[str, Callable[[Design], Stages]]) -> Iterator[list[str]]:
-    kinds = ready_made(read_template("168"))
+    kinds = ready_made_lines(read_template("168"))
     for contact in CONTACTS:
         for kind in ("mid-bust", "straps", "slings", "obliques", "rings"):
             told, own = [], kinds.get(kind, ())
-            worn = tuple(WornLine(line.name, 0.95) for line in own) or (WornLine(kind, 0.95),)
+            worn = tuple(ActiveLine(line.name, 0.95) for line in own) or (ActiveLine(kind, 0.95),)
             for body, stage in stages.items():
                 design = replace(sample_design(body), line_contact=contact, own_lines=own, lines=worn)
-                solution = run(stage(design))
+                solution = solve(stage(design))
                 assert solution.verdict.motion == "settled", (kind, contact, body)
                 told += signed(lifts(solution.last.marks, solution.stages.rest_marks))
             yield [kind.replace("obliques", "oblique lines"), contact, *told]
@@ -166,7 +168,7 @@ def main() -> None:
             volume = built.model.volume.rest_volume / 1000.0
             print(f"{body}, {template}: {volume:,.0f} ml, limit of the gain {built.gain_limit:.2f}")
         sliding = replace(sample_design(body), line_contact="sliding")
-        *_, reached, _ = exactly(stage(replace(sliding, lines=(WornLine("mid-bust", 0.8),))))
+        *_, reached, _ = exactly(stage(replace(sliding, lines=(ActiveLine("mid-bust", 0.8),))))
         print(f"{body}, sliding, set to 80 %: reaches {100 * reached:.1f} %")
         held = stage(replace(sliding, lines=(), line_hold="held"))
         last = {limit.line.name: limit.last for limit in all_limits(held)}

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from core.analysis.calibration.fit import exact_answer
-from core.analysis.calibration.registration import turned
-from core.deformation.blend_region import patch_fade
+from core.analysis.calibration.fit import solve_from
+from core.analysis.calibration.registration import rotation_about
+from core.deformation.blend_region import blend_weights
 from core.deformation.tffd import bind, deform
 from core.document.design import Design
 from core.export.mesh import write_mesh
@@ -32,10 +32,10 @@ def worn_mesh(stages: Stages, truth: Design, finer: int = 0, skin: Mesh | None =
     for _ in range(finer):
         mesh = split(mesh)
     if finer or skin:
-        fade = patch_fade(mesh, there.control).fade
+        fade = blend_weights(mesh, there.control).fade
         how = {"scaled_normals": truth.scaled_normals, "fixed": there.control.fixed}
         binding = bind(mesh, there.control.mesh, fade, truth.weights, **how)
-    return mesh.moved(deform(binding, exact_answer(there).place.points))
+    return mesh.moved(deform(binding, solve_from(there).place.points))
 
 
 def scanned(
@@ -66,7 +66,7 @@ def scanned(
         middle = front[rng.integers(len(front))]
         mesh = only(mesh, np.linalg.norm(mesh.vertices - middle, axis=1) > hole)
     angles = np.radians(rng.uniform([-LEAN, -LEAN, -8.0], [LEAN, LEAN, 8.0]))
-    matrix = turned(angles, mesh.vertices.mean(axis=0))
+    matrix = rotation_about(angles, mesh.vertices.mean(axis=0))
     matrix[:3, 3] += rng.uniform(-150.0, 150.0, 3)
     vertices = mesh.vertices @ matrix[:3, :3].T + matrix[:3, 3]
     return mesh.moved(vertices + noise * rng.normal(size=vertices.shape)), matrix

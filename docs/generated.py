@@ -22,7 +22,7 @@ API = {
     "Scan and landmarks": ("core.scan.body.read_scan", "core.landmarks.detect.find_landmarks"),
     "Design and solution": (
         "core.pipeline.build.build",
-        "core.pipeline.solve.run",
+        "core.pipeline.solve.solve",
         "core.pipeline.solve.Solution",
     ),
     "Measurements and sizes": (
@@ -32,9 +32,9 @@ API = {
     ),
     "Garment": (
         "core.garment.elastic_library.find_elastic",
-        "core.garment.match_shape.as_worn",
+        "core.garment.match_shape.match_lengths",
         "core.garment.cut_list.cut_list",
-        "core.garment.pressure_list.press_list",
+        "core.garment.pressure_list.pressure_list",
     ),
     "Files": (
         "core.document.storage.project_file.open_project",

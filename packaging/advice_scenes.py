@@ -13,7 +13,7 @@ from core.analysis.inverse_design.quantities import Goal, skin_of
 from core.deformation.tffd import deform
 from core.export.mesh import write_mesh
 from core.pipeline.build import Stages, build
-from core.pipeline.exact import answer_of
+from core.pipeline.exact import exact_solution
 
 _NOISE = 1.0  # of the made scan [mm]
 
@@ -38,9 +38,13 @@ def drawing_a_profile(window: MainWindow) -> None:
     profile = desk.drawn["profile left"]
     stages = window.session.frame.stages
     other = bra().with_line("strap left", 0.88).with_line("strap right", 0.88).with_line("mid-bust", 0.98)
-    outs, _ = skin_of(stages, "left", profile.spots[:, 0])(answer_of(build(other, stages)).place.points)
-    steps = np.stack([np.zeros(len(outs)), outs - profile.spots[:, 1]], axis=1)
-    desk.drawing.draw("profile left", replace(profile, steps=steps, by_hand=frozenset(range(len(outs)))))
+    outs, _ = skin_of(stages, "left", profile.handle_positions[:, 0])(
+        exact_solution(build(other, stages)).place.points
+    )
+    steps = np.stack([np.zeros(len(outs)), outs - profile.handle_positions[:, 1]], axis=1)
+    desk.drawing.draw(
+        "profile left", replace(profile, steps=steps, manual_handles=frozenset(range(len(outs))))
+    )
     desk.ask()
     wait_for(lambda: desk.answer.reply is not None and not desk.work.at_work)
     wanted = desk.answer.reply.design
@@ -78,7 +82,7 @@ def compared(window: MainWindow) -> None:
 def worn_scan(stages: Stages) -> str:
     """Write a scan with the garment on as another design predicts it; returns the file's name."""
     other = build(replace(bra(), line_stiffness=9.0, firm_chest=0.1), stages)
-    places = deform(other.binding, answer_of(other).place.points)
+    places = deform(other.binding, exact_solution(other).place.points)
     places += _NOISE * np.random.default_rng(7).normal(size=places.shape)
     path = Path(HOUSE.name) / "customer 0412 in the bra.ply"
     write_mesh(path, stages.body.mesh.moved(places + np.array([120.0, -40.0, 15.0])))

@@ -24,7 +24,7 @@ from core.measurements.definitions import DEFINITIONS
 from core.measurements.subject import Subject, subject_of
 from core.measurements.table import Measures, before_after, measures
 from core.pipeline.build import build
-from core.pipeline.solve import run
+from core.pipeline.solve import solve
 from core.scan.body import Body
 
 SIDE = 180
@@ -88,7 +88,7 @@ class Shown:
 
 def draw(folder: Path) -> list[Path]:
     """Write a picture of each measure into a folder, and return their files."""
-    solution = run(build(sample_design().with_line("mid-bust", 0.85)))
+    solution = solve(build(sample_design().with_line("mid-bust", 0.85)))
     stages = solution.stages
     usual = measured(stages.body)
     worn = replace(stages.body, mesh=solution.body)
@@ -106,7 +106,7 @@ def draw(folder: Path) -> list[Path]:
 def measured(body: Body) -> Shown:
     """Return a body with what it measures."""
     landmarks = find_landmarks(body)
-    return Shown(body, landmarks, measures(body.calm, landmarks))
+    return Shown(body, landmarks, measures(body.smoothed, landmarks))
 
 
 def draw_one(key: str, on: Shown, marks: Marks, path: Path) -> None:
@@ -128,7 +128,7 @@ def draw_one(key: str, on: Shown, marks: Marks, path: Path) -> None:
     azimuth, elevation = VIEWS.get(key, FROM_ABOVE if level else USUAL)
     seen = LOWER_TRUNK if key.startswith("hip") else SEEN.get(key, TRUNK)
     view = View(azimuth=azimuth, elevation=elevation, parallel=True)
-    scene.look_from(view.framing(seen, 1.0, margin=1.04))
+    scene.set_camera(view.framing(seen, 1.0, margin=1.04))
     _save(plotter, marks, path)
     plotter.close()
 

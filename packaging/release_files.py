@@ -25,24 +25,24 @@ import numpy as np
 from app.cli.commands.picture import draw_picture
 from core import __version__
 from core.control_mesh.template import read_template
-from core.document.calibration_record import Calibration, FoundNumber
-from core.document.custom_measures import OwnMeasure
+from core.document.calibration_record import Calibration, FittedParameter
+from core.document.custom_measures import CustomMeasurement
 from core.document.design import Design, ScanSource
 from core.document.document import Document
-from core.document.line_notation import own_line
-from core.document.lines import LineTraits
+from core.document.line_notation import parse_line
+from core.document.lines import LineSettings
 from core.document.presets import built_in, with_preset
 from core.document.storage.project_file import ScanFile, open_project, save_project
 from core.export.mesh import write_mesh
-from core.export.units_and_axes import Space
+from core.export.units_and_axes import FileSpace
 from core.garment.cut_list import cut_list
 from core.garment.elastic_library import find_elastic
-from core.garment.pressure_list import press_list
+from core.garment.pressure_list import pressure_list
 from core.geometry.mesh import Mesh
 from core.landmarks.manual import in_file
 from core.measurements.table import before_after, measure_rows
-from core.pipeline.build import build, find, read_body
-from core.pipeline.solve import run
+from core.pipeline.build import build, detect_landmarks, read_body
+from core.pipeline.solve import solve
 from core.scan.readers.registry import read_triangles
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -52,7 +52,7 @@ CORNERS = 2100
 """So many corners a scan has: few, and all that is looked for is still found on it."""
 
 
-def small_scan(sample: str, name: str, space: Space | None = None) -> ScanFile:
+def small_scan(sample: str, name: str, space: FileSpace | None = None) -> ScanFile:
     """Return a sample with few corners, in a file of this name; packed if it ends in .gz."""
     path = ROOT / "resources" / "samples" / sample
     mesh = thinned(*read_triangles(path.name, path.read_bytes()))
@@ -78,7 +78,7 @@ def thinned(points: np.ndarray, faces: np.ndarray) -> Mesh:
 def first_save() -> tuple[Document, ScanFile]:
     """Return what a beginner saves: one line, nothing else."""
     scan = small_scan("mannequin.ply", "mannequin.ply")
-    return Document.of(Design(ScanSource(scan.name)).with_line("mid-bust", 0.95)), scan
+    return Document.single(Design(ScanSource(scan.name)).with_line("mid-bust", 0.95)), scan
 
 
 def everything() -> tuple[Document, ScanFile]:
@@ -91,19 +91,19 @@ def everything() -> tuple[Document, ScanFile]:
         worn_tight_mm=12.0,
         tissue_stiffness=480.0,
         own_measures=(
-            OwnMeasure("前中心 Gore", "straight", ("bust_point_left", "front_centre")),
-            OwnMeasure("Arc", "skin", ("bust_point_left", "bust_point_right")),
-            OwnMeasure("Ribs", "girth", ("waist_front",), 60.0),
-            OwnMeasure("Chest", "girth", (), 500.0),
+            CustomMeasurement("前中心 Gore", "straight", ("bust_point_left", "front_centre")),
+            CustomMeasurement("Arc", "skin", ("bust_point_left", "bust_point_right")),
+            CustomMeasurement("Ribs", "girth", ("waist_front",), 60.0),
+            CustomMeasurement("Chest", "girth", (), 500.0),
         ),
     )
-    rest = rest.with_own_line(own_line("strap left=r2c3:r5c3", template))
-    rest = rest.with_own_line(own_line("strap right=r2c-3:r5c-3", template))
-    rest = rest.with_own_line(own_line("斜め=r1c-2,r2c-1,r3c0", template))
-    rest = rest.with_traits(LineTraits("斜め", "斜めのライン", "#e5536b", True, True, 2.5, 8.0))
+    rest = rest.with_custom_line(parse_line("strap left=r2c3:r5c3", template))
+    rest = rest.with_custom_line(parse_line("strap right=r2c-3:r5c-3", template))
+    rest = rest.with_custom_line(parse_line("斜め=r1c-2,r2c-1,r3c0", template))
+    rest = rest.with_line_settings(LineSettings("斜め", "斜めのライン", "#e5536b", True, True, 2.5, 8.0))
     plain = rest.with_line("mid-bust", 0.96).with_line("strap left", 0.97).with_line("strap right", 0.97)
     elastic = plain.with_elastic("mid-bust", find_elastic("picot 10")).with_line("mid-bust", 0.9)
-    apart = elastic.with_traits(replace(elastic.traits_of("strap left"), linked=False, title="左"))
+    apart = elastic.with_line_settings(replace(elastic.line_settings("strap left"), linked=False, title="左"))
     placed = placed_off(rest.with_line("mid-bust", 0.96), scan)
     document = Document((("A", plain), ("B", elastic), ("C", apart.with_line("strap left", 0.95))), "B")
     return document.with_design(replace(document.design, placed=placed.placed)), scan
@@ -113,14 +113,14 @@ def placed_off(design: Design, scan: ScanFile) -> Design:
     """Return the design with the left bust point placed by hand, 6 mm nearer to the middle than found."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "scan.busk"
-        _, body = read_body(save_project(path, Document.of(design), scan, None).design.scan)
-    place = find(body, ()).position("bust_point_left") - (6.0, 0.0, 0.0)
+        _, body = read_body(save_project(path, Document.single(design), scan, None).design.scan)
+    place = detect_landmarks(body, ()).position("bust_point_left") - (6.0, 0.0, 0.0)
     return design.with_placed("bust_point_left", in_file(place, body.pose.file_to_mm))
 
 
 def told_scan() -> tuple[Document, ScanFile]:
     """Return a scan in inches that lies as no guess would have it, with every choice of the model unusual."""
-    scan = small_scan("person.ply", "Körper (2).ply", Space("in", "y-up"))
+    scan = small_scan("person.ply", "Körper (2).ply", FileSpace("in", "y-up"))
     design = Design(
         ScanSource(scan.name, unit="inch", up="+y", front="+z"),
         template="120",
@@ -138,14 +138,14 @@ def told_scan() -> tuple[Document, ScanFile]:
         line_force="explicit",
         line_hold="held",
     )
-    return Document.of(design.with_line("mid-bust", 0.97)), scan
+    return Document.single(design.with_line("mid-bust", 0.97)), scan
 
 
 def preset_worn() -> tuple[Document, ScanFile]:
     """Return a set of lines as it comes with Busk, kept by the conventional control, on a packed OBJ."""
     scan = small_scan("person.ply", "person.obj.gz")
     usual = Design(ScanSource(scan.name), volume="conventional", gain=0.02)
-    return Document.of(with_preset(usual, built_in()[-1])), scan
+    return Document.single(with_preset(usual, built_in()[-1])), scan
 
 
 def calibrated() -> tuple[Document, ScanFile]:
@@ -153,12 +153,12 @@ def calibrated() -> tuple[Document, ScanFile]:
     scan = small_scan("mannequin.ply", "mannequin.ply")
     design = Design(ScanSource(scan.name), line_stiffness=11.5, firm_chest=0.04).with_line("mid-bust", 0.92)
     numbers = (
-        FoundNumber("line_stiffness", 16.0, 11.5, 0.75),
-        FoundNumber("firm_chest", 0.0, 0.04, 0.003),
-        FoundNumber("length of mid-bust", 0.92, 0.92, 0.0, kept=True),
+        FittedParameter("line_stiffness", 16.0, 11.5, 0.75),
+        FittedParameter("firm_chest", 0.0, 0.04, 0.003),
+        FittedParameter("length of mid-bust", 0.92, 0.92, 0.0, kept=True),
     )
     record = Calibration("着用 2.ply", 3.1, 1.4, numbers, 0.8)
-    return Document.of(replace(design, calibration=record)), scan
+    return Document.single(replace(design, calibration=record)), scan
 
 
 PROJECTS: Mapping[str, Callable[[], tuple[Document, ScanFile]]] = {
@@ -209,7 +209,7 @@ def values_of(design: Design) -> dict[str, Any]:
 
 def figures_of(design: Design) -> Iterator[tuple[str, float | str]]:
     """Yield what comes of a design by name: verdict, lines, volume, measures, lengths to cut, pressures."""
-    solution = run(build(design))
+    solution = solve(build(design))
     stages, points = solution.stages, solution.control_points
     yield "verdict", f"{solution.verdict.motion}, {solution.verdict.state}"
     yield "volume error [%]", 100.0 * solution.last.error
@@ -225,7 +225,7 @@ def figures_of(design: Design) -> Iterator[tuple[str, float | str]]:
             yield f"{cut.line} to cut [mm]", cut.cut_mm
         if cut.tension_n is not None:
             yield f"{cut.line} tension [N]", cut.tension_n
-    for press in press_list(stages, points).rows:
+    for press in pressure_list(stages, points).rows:
         if press.mean_kpa is not None:
             yield f"{press.line} presses [kPa]", press.mean_kpa
 

@@ -29,9 +29,9 @@ from app.gui.theme.stylesheet import apply_theme
 from app.i18n.catalog import use_language
 from app.i18n.lengths import use_unit
 from app.presenters.samples import sample_design
-from core.analysis.uncertainty.input_uncertainty import assumed
+from core.analysis.uncertainty.input_uncertainty import default_uncertainty
 from core.document.design import Design, ScanSource
-from core.document.lines import WornLine
+from core.document.lines import ActiveLine
 from core.pipeline import build as pipeline
 from core.pipeline.build import Stages, build
 
@@ -133,7 +133,7 @@ def remembered(make: Callable[..., Any]) -> Callable[..., Any]:
 
     @wraps(make)
     def again(*inputs: object, progress: object = None, **told: object) -> object:
-        return kept(core.scan.body.find_pose, *inputs, **told)
+        return kept(core.scan.body.estimate_pose, *inputs, **told)
 
     return again
 
@@ -156,7 +156,9 @@ def built() -> Callable[[str], Stages]:
 
     @cache
     def stages(sample: str) -> Stages:
-        return build(Design(ScanSource(str(SAMPLES / f"{sample}.ply")), lines=(WornLine("mid-bust", 0.97),)))
+        return build(
+            Design(ScanSource(str(SAMPLES / f"{sample}.ply")), lines=(ActiveLine("mid-bust", 0.97),))
+        )
 
     return stages
 
@@ -194,7 +196,7 @@ def own_data(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 @pytest.fixture
 def landmarks_known(monkeypatch: pytest.MonkeyPatch) -> None:
     """Assume landmarks without uncertainty: a fit for each takes too long for a test of the window."""
-    known = replace(assumed(), landmark_mm=0.0, unsure_landmark_mm=0.0)
+    known = replace(default_uncertainty(), landmark_mm=0.0, unsure_landmark_mm=0.0)
     monkeypatch.setattr("core.analysis.uncertainty.estimate.assumed", lambda: known)
 
 

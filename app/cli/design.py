@@ -12,8 +12,8 @@ from app.cli.options import NUMBERS, SWITCHES, WORDS
 from core.control_mesh.template import read_template
 from core.document.design import Design, ScanSource
 from core.document.document import Document
-from core.document.line_notation import own_line
-from core.document.storage.backups import backed_up
+from core.document.line_notation import parse_line
+from core.document.storage.backups import backup_before_write
 from core.document.storage.project_file import SUFFIX, is_project, open_project, save_project
 from core.errors import LineError, UserError
 from core.garment.elastic_library import find_elastic, read_elastic
@@ -36,7 +36,7 @@ def design_of(options: argparse.Namespace) -> Design:
     settings = settings_of(getattr(options, "settings", None) or [])
     design = replace(design.with_template(settings.pop("template", design.template)), **settings)
     for text in getattr(options, "path", None) or []:
-        design = design.with_own_line(own_line(text, read_template(design.template)))
+        design = design.with_custom_line(parse_line(text, read_template(design.template)))
     for mark in map(placed_mark, getattr(options, "landmark", None) or []):
         design = design.with_placed(mark.name, mark.position)
     return replace(design, volume=getattr(options, "volume", None) or design.volume)
@@ -158,5 +158,5 @@ def save_design(source: str, out: str, design: Design, stages: Stages) -> None:
     """
     if out:
         document = open_project(source) if is_project(source) else Document.of(design)
-        with backed_up(Path(out)):
+        with backup_before_write(Path(out)):
             save_project(out, document.with_design(design), stages.scan, None)

@@ -13,14 +13,14 @@ from app.presenters.elastics import effect_words, next_step
 from core.document.design import Design
 from core.document.elastic import ElasticError
 from core.errors import LineError
-from core.garment.assessment import Assessment, assessed
+from core.garment.assessment import Assessment, assess
 from core.garment.elastic_library import library
 from core.garment.elastic_options import KEEP_CUT, KEEP_FIT, elastic_option, outcome_of
-from core.garment.match_shape import as_worn
-from core.garment.tension import ran_away
+from core.garment.match_shape import match_lengths
+from core.garment.tension import divergence_error
 from core.pipeline.build import Stages, build
-from core.pipeline.exact import NoBalanceError
-from core.pipeline.solve import Solution, run
+from core.pipeline.exact import NoEquilibriumError
+from core.pipeline.solve import Solution, solve
 from core.pipeline.warnings import shape_warnings
 
 
@@ -43,7 +43,7 @@ class SolvedDesign:
     @cached_property
     def assessment(self) -> Assessment:
         """The overall verdict."""
-        return assessed(self.solution)
+        return assess(self.solution)
 
     @property
     def verdict(self) -> list[str]:
@@ -58,9 +58,9 @@ def is_converged(solution: Solution) -> bool:
 
 def solve_valid(stages: Stages) -> Solution:
     """Solve the design of ``stages``. Raises LineError if the solver diverged."""
-    solution = run(stages)
+    solution = solve(stages)
     if solution.verdict.motion == "diverging":
-        raise NoBalanceError(stages.design) if stages.design.line_hold == "held" else ran_away()
+        raise NoEquilibriumError(stages.design) if stages.design.line_hold == "held" else divergence_error()
     return solution
 
 
@@ -82,11 +82,11 @@ def solve_design(
     requested = apply_elastics(design, elastics)
     if not design.lines and not bare:
         raise LineError("No active lines.", "Set one: --line mid-bust=75% --elastic 'mid-bust=plush 12'.")
-    named = [name for name in requested.worn_elastics() if keep_fit or elastics]
+    named = [name for name in requested.active_elastics() if keep_fit or elastics]
     rigid = build(reduce(lambda each, name: each.with_elastic(name, None), named, design), stages)
     try:
         if keep_fit:
-            requested = as_worn(rigid, solve_valid(rigid).control_points, requested.worn_elastics())
+            requested = match_lengths(rigid, solve_valid(rigid).control_points, requested.active_elastics())
         solution = solve_valid(build(requested, stages))
     except ElasticError as problem:
         raise _with_next_step(problem, rigid, requested, KEEP_FIT if keep_fit else KEEP_CUT) from problem
@@ -106,7 +106,7 @@ def _effect_of(stages: Stages, rigid: Stages) -> tuple[str, ...]:
 
 def _with_next_step(problem: ElasticError, rigid: Stages, requested: Design, mode: str) -> LineError:
     """Return the problem of an elastic with the nearest one that works for its line."""
-    wanted = requested.worn_elastics()[problem.line]
+    wanted = requested.active_elastics()[problem.line]
     names = rigid.design.linked(problem.line)
     try:
         options = [elastic_option(rigid, names, each, mode) for each in (wanted, *library().values())]

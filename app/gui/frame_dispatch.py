@@ -44,7 +44,7 @@ class ThrottledDispatch(FrameDispatch):
     def show_frame(self, frame: Frame) -> None:
         """Pass a frame on, at once if it is not the next one of the same run."""
         former, self._frame = self._frame, frame
-        running = frame.at_work and former is not None and frame.stages.model is former.stages.model
+        running = frame.is_running and former is not None and frame.stages.model is former.stages.model
         if not running or time.monotonic() >= self._due:
             self.flush()
         elif not self._clock.isActive():

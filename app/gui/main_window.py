@@ -86,7 +86,7 @@ from app.gui.wiring import connect
 from app.i18n.catalog import tr
 from app.presenters.status import facts
 from core.pipeline.live_solver import Frame
-from core.pipeline.warnings import kept_volume
+from core.pipeline.warnings import controlled_volume
 
 
 class MainWindow(QMainWindow):
@@ -240,7 +240,7 @@ class MainWindow(QMainWindow):
         )
 
     def _show_status(self, frame: Frame) -> None:
-        self.status.set_volume(*kept_volume(frame))
+        self.status.set_volume(*controlled_volume(frame))
         self.status.set_facts(facts(frame, self.session.failure is None))
 
     def _close_panel(self) -> bool:

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 from app.i18n.catalog import listed, tr
 from app.i18n.lengths import length_number, length_unit
-from app.presenters.measurements import length_off
+from app.presenters.measurements import length_uncertainty
 from core.geometry.mesh import Floats
 from core.measurements.uncertain_value import LIFT, OUT, Spread
-from core.mechanics.iteration import Marks
+from core.mechanics.iteration import Observables
 from core.pipeline.frame import Frame
 from core.pipeline.observables import Tapes
 
@@ -26,7 +26,7 @@ class BustStep:
 
 
 @dataclass(frozen=True)
-class BustMove:
+class BustShift:
     """The moves of both bust points, against the body before."""
 
     left: BustStep
@@ -44,33 +44,38 @@ class BustMove:
         return max(abs(up), abs(forward)) > APART
 
 
-def bust_move(frame: Frame) -> BustMove:
+def bust_shift(frame: Frame) -> BustShift:
     """Return how far the bust points of a frame are from where they are on the body before."""
-    return move_between(frame.stages.rest_marks, frame.marks)
+    return shift_between(frame.stages.rest_marks, frame.marks)
 
 
 def bust_girths(frame: Frame) -> tuple[float, float]:
     """Return the girth at the level of the bust points on the original and on the reshaped body [mm]."""
     stages, rest = frame.stages, frame.stages.rest_marks
     binding, moving = stages.binding, stages.moving
-    height = 0.5 * (rest.nipple_left_z + rest.nipple_right_z)
-    places = binding.operator.added(binding.change(frame.control_points), moving.rest)
+    height = 0.5 * (rest.bust_point_left_z + rest.bust_point_right_z)
+    places = binding.operator.apply(binding.change(frame.control_points), moving.rest)
     (before,) = Tapes(moving, [height])(moving.rest)
-    (after,) = Tapes(moving, [height + bust_move(frame).mean.up])(places)
+    (after,) = Tapes(moving, [height + bust_shift(frame).mean.up])(places)
     return float(before), float(after)
 
 
-def move_between(rest: Marks, now: Marks) -> BustMove:
+def shift_between(rest: Observables, now: Observables) -> BustShift:
     """Return how far the bust points went between two states of a body."""
-    return BustMove(
-        BustStep(now.nipple_left_z - rest.nipple_left_z, now.nipple_left_out - rest.nipple_left_out),
-        BustStep(now.nipple_right_z - rest.nipple_right_z, now.nipple_right_out - rest.nipple_right_out),
+    return BustShift(
+        BustStep(
+            now.bust_point_left_z - rest.bust_point_left_z, now.bust_point_left_out - rest.bust_point_left_out
+        ),
+        BustStep(
+            now.bust_point_right_z - rest.bust_point_right_z,
+            now.bust_point_right_out - rest.bust_point_right_out,
+        ),
     )
 
 
-def ups(rest: Marks, left: Floats, right: Floats) -> Floats:
+def mean_lifts(rest: Observables, left: Floats, right: Floats) -> Floats:
     """Return the mean move up of many turns, (n,) [mm], from the heights of both bust points, each (n,)."""
-    return 0.5 * ((left - rest.nipple_left_z) + (right - rest.nipple_right_z))
+    return 0.5 * ((left - rest.bust_point_left_z) + (right - rest.bust_point_right_z))
 
 
 Offs = tuple[float | None, float | None]
@@ -79,7 +84,7 @@ Offs = tuple[float | None, float | None]
 UNKNOWN: Offs = (None, None)
 
 
-def offs_of(spread: Spread | None, side: str = "") -> Offs:
+def uncertainties_of(spread: Spread | None, side: str = "") -> Offs:
     """Return how far the move of the bust point of a ``side`` may be off, or the mean of both."""
     if spread is None:
         return UNKNOWN
@@ -105,11 +110,11 @@ def forward_words(forward: float, off: float | None = None) -> str:
 
 def _sized(move: float, off: float | None) -> str:
     # What belongs together is not parted at the end of a line.
-    told = [length_number(abs(move)), *([] if off is None else [length_off(off)])]
+    told = [length_number(abs(move)), *([] if off is None else [length_uncertainty(off)])]
     return " ".join(told).replace(" ", "\N{NO-BREAK SPACE}") + f" {length_unit()}"
 
 
-def sides_words(move: BustMove) -> tuple[str, str]:
+def sides_words(move: BustShift) -> tuple[str, str]:
     """Return the moves of left and right in words: that part of them which differs more, up or forward."""
     left, right = move.left, move.right
     if abs(left.up - right.up) >= abs(left.forward - right.forward):
@@ -117,7 +122,7 @@ def sides_words(move: BustMove) -> tuple[str, str]:
     return forward_words(left.forward), forward_words(right.forward)
 
 
-def bust_sentence(move: BustMove, offs: Offs = UNKNOWN) -> str:
+def bust_sentence(move: BustShift, offs: Offs = UNKNOWN) -> str:
     """Return a move in one line, with both sides where they differ; ``offs`` are those of the mean."""
     said = tr("Bust point {way}").format(way=step_words(move.mean, offs))
     if not move.differs:

@@ -10,12 +10,12 @@ from app.presenters.lines import line_colours, line_title, titled
 from app.rendering.band import band_width
 from core.document.design import Design
 from core.garment.cut_list import CutList, CutRow
-from core.garment.pressure_list import PressList
+from core.garment.pressure_list import PressureList
 from core.pipeline.build import Stages
 from core.pipeline.live_solver import Frame
 
 
-def garment_view(frame: Frame, cuts: CutList) -> GarmentView:
+def cut_list_view(frame: Frame, cuts: CutList) -> CutListView:
     """Return the pieces of a frame in the order of the list of lines."""
     design = frame.stages.design
     colours = line_colours((line.name for line in frame.stages.model.lines), design)
@@ -26,7 +26,7 @@ def garment_view(frame: Frame, cuts: CutList) -> GarmentView:
         for name, colour in colours.items()
         if name in pieces or name in still
     ]
-    return GarmentView(
+    return CutListView(
         tuple(views),
         tuple(told(note, design) for note in cuts.notes) if pieces else (),
         design.tissue_stiffness,
@@ -42,7 +42,7 @@ def told(sentence: str, design: Design, unit: str = "") -> str:
     return say(titled(sentence, design), unit)
 
 
-def as_table(stages: Stages, cuts: CutList, pressed: PressList | None) -> list[list[str]]:
+def as_table(stages: Stages, cuts: CutList, pressed: PressureList | None) -> list[list[str]]:
     """Return the cut list as plain cells, with a heading, in the order of the list of lines.
 
     ``pressed`` are the contact pressures of the same shape, if known. Lengths are in mm, as in files.
@@ -71,7 +71,7 @@ def as_table(stages: Stages, cuts: CutList, pressed: PressList | None) -> list[l
 def _off(name: str, design: Design, color: str) -> CutView:
     """Return what is said of a band that could be cut though no line pulls there."""
     notes = (tr("On the rib cage: it moves nothing, but it can be cut."),)
-    elastic = say(design.traits_of(name).elastic)
+    elastic = say(design.line_settings(name).elastic)
     return CutView(name, line_title(name, design), color, band_width(name, design), elastic, notes=notes)
 
 
@@ -136,7 +136,7 @@ class CutView:
 
 
 @dataclass(frozen=True)
-class GarmentView:
+class CutListView:
     """All pieces, and what holds for all of them; ``tissue`` [N/m] is what the newtons rest on.
 
     ``worn`` tells whether any line is: bands on points that do not move can be cut all the same. ``bare``

@@ -11,8 +11,8 @@ from app.presenters.lines import line_title, row_title
 from app.presenters.status import state_title
 from core.analysis.diagnosis.candidate_changes import Change
 from core.analysis.diagnosis.diagnose import Diagnosis
-from core.analysis.diagnosis.fix import Cure
-from core.analysis.diagnosis.opposing_constraints import Pull
+from core.analysis.diagnosis.fix import Fix
+from core.analysis.diagnosis.opposing_constraints import ConstraintForce
 from core.garment.assessment import BAD, Assessment, Finding
 
 BUTTONS = 2
@@ -28,7 +28,7 @@ def sentence(found: Diagnosis, swing: float) -> str:
 
     ``swing`` [mm] is how far the bust point swings to either side.
     """
-    worst = found.fight.worst
+    worst = found.forces.worst
     if worst is None:
         return _plain(found, swing)
     words = {
@@ -52,7 +52,7 @@ def sentence(found: Diagnosis, swing: float) -> str:
         "unreachable": tr("{one} and {other} pull against each other: no balance is found."),
     }
     one, other = (_name(found, pull) for pull in (worst.one, worst.other))
-    what = "volume" if found.complaint == "vibrating" and swing < _SEEN else found.complaint
+    what = "volume" if found.problem == "vibrating" and swing < _SEEN else found.problem
     percent = number(100.0 * found.verdict.amplitude, 2)
     values = {"swing": length(swing), "percent": percent, "period": _period(found)}
     return words[what].format(one=one, other=other, **values)
@@ -93,7 +93,7 @@ def _leading(found: Diagnosis) -> str:
     return tr("Tried, it leaves {what}:").format(what=first)
 
 
-def shown_fixes(found: Diagnosis) -> tuple[Cure, ...]:
+def shown_fixes(found: Diagnosis) -> tuple[Fix, ...]:
     """Return the fixes that have a button: the best, and the next if a narrow window has room."""
     best = found.fixes[:BUTTONS]
     return best if sum(_wide(change_words(found, cure.change)) for cure in best) <= _ROOM else best[:1]
@@ -104,7 +104,7 @@ def _wide(words: str) -> int:
     return sum(2 if letter > "\u2e80" else 1 for letter in words)
 
 
-def _left(cure: Cure) -> str:
+def _left(cure: Fix) -> str:
     return listed(dict.fromkeys(_topic(each) for each in cure.remains)) or tr("no problems")
 
 
@@ -138,7 +138,7 @@ def change_words(found: Diagnosis, change: Change) -> str:
         }
         longer = ratio > design.ratio(change.lines[0])
         what = tr("Lengthen {line} by {length}") if longer else tr("Shorten {line} by {length}")
-        if found.complaint == "unreachable":  # that length is nowhere to be seen
+        if found.problem == "unreachable":  # that length is nowhere to be seen
             what = tr("Set {line} to {percent} %")
         what = what.format(**values)
     elif change.kind == "together":
@@ -146,7 +146,7 @@ def change_words(found: Diagnosis, change: Change) -> str:
         what = what.format(length=length(found.moves_mm(change), 0))
     elif change.kind == "width":
         what = tr("Widen {line} to {length}")
-        width = change.design.traits_of(change.lines[0]).width
+        width = change.design.line_settings(change.lines[0]).width
         what = what.format(line=row_title(change.lines[0], design), length=length(width or 0.0, 0))
     elif change.kind == "off":
         what = tr("Take {line} off").format(line=row_title(change.lines[0], design))
@@ -155,12 +155,12 @@ def change_words(found: Diagnosis, change: Change) -> str:
 
 def details(found: Diagnosis) -> str:
     """Return all figures, a line each: what fights and what ends it stand first."""
-    pair = [_pair(found)] if found.complaint else []
+    pair = [_pair(found)] if found.problem else []
     return "\n".join([*pair, *_changes(found), *_run(found), *_forces(found)])
 
 
 def _pair(found: Diagnosis) -> str:
-    worst = found.fight.worst
+    worst = found.forces.worst
     if worst is None:
         return tr("No two of them stand out as pulling against each other.")
     words = tr("{one} and {other}: {angle}° apart in what they do to the skin")
@@ -177,10 +177,10 @@ def _run(found: Diagnosis) -> Iterator[str]:
     if found.onset is not None and 1.0 + _STEADY < found.onset < float("inf"):
         words = tr("A small swing grows by {percent} % a turn")
         yield words.format(percent=number(100.0 * (found.onset - 1.0)))
-    if found.bears is not None:
+    if found.gain_limit is not None:
         words = tr("Gain {gain}: {percent} % of the {most} that this shape bears")
-        share = number(100.0 * found.stages.gain / found.bears, 0)
-        yield words.format(gain=number(found.stages.gain, 2), percent=share, most=number(found.bears, 2))
+        share = number(100.0 * found.stages.gain / found.gain_limit, 0)
+        yield words.format(gain=number(found.stages.gain, 2), percent=share, most=number(found.gain_limit, 2))
 
 
 def _growth(growth: float) -> str:
@@ -193,20 +193,20 @@ def _growth(growth: float) -> str:
 
 
 def _forces(found: Diagnosis) -> Iterator[str]:
-    fight = found.fight
+    fight = found.forces
     if fight.share < 1.0:
         words = tr("Forces in the last balance, {percent} % of the way from rest to these lengths:")
         yield words.format(percent=number(100.0 * fight.share, 0))
-    elif fight.pulls:
+    elif fight.forces:
         yield tr("Forces in the balance at these lengths, on the tissue that is assumed:")
-    for pull in fight.pulls:
+    for pull in fight.forces:
         yield "  " + _force(found, pull)
-    if fight.pulls:
+    if fight.forces:
         yield "  " + tr("The skin itself: {newtons} N").format(newtons=number(fight.skin))
         yield "  " + tr("Forces at all points added up: what a line pulls with along itself is in Garment.")
 
 
-def _force(found: Diagnosis, pull: Pull) -> str:
+def _force(found: Diagnosis, pull: ConstraintForce) -> str:
     name, newtons = _name(found, pull), number(pull.newtons)
     if pull.lines:
         words = tr("{name}: {newtons} N, {angle}° to the volume")
@@ -227,7 +227,7 @@ def _changes(found: Diagnosis) -> Iterator[str]:
         said = joined((tr("{headline}.").format(headline=view.headline), *(each for each, _ in view.reasons)))
         change = change_words(found, cure.change)
         yield "  " + tr("{place}. {change}: {what}").format(place=place, change=change, what=said)
-        if cure.choice_ends:
+        if cure.option_result:
             yield "     " + _parts(cure)
         if cure.change.kind == "together":
             after = cure.change.design
@@ -241,14 +241,14 @@ def _changes(found: Diagnosis) -> Iterator[str]:
     if found.nearest is not None:
         words = tr("Nearest: {change}; it ends as “{state}”")
         said = change_words(found, found.nearest.change)
-        yield words.format(change=said, state=state_title(found.nearest.left))
+        yield words.format(change=said, state=state_title(found.nearest.remaining_problem))
 
 
-def _parts(cure: Cure) -> str:
+def _parts(cure: Fix) -> str:
     """Return which part of a double change ends what; ``cure`` knows how each did alone."""
-    if _trouble(cure.choice_ends) == _trouble(cure.lengths_end):
+    if _trouble(cure.option_result) == _trouble(cure.lengths_result):
         words = tr("Neither is enough alone: it would still end as “{state}”")
-        return words.format(state=state_title(cure.choice_ends))
+        return words.format(state=state_title(cure.option_result))
     choice = {
         "gain": tr("The gain"),
         "volume": tr("The control"),
@@ -257,7 +257,7 @@ def _parts(cure: Cure) -> str:
     }[cure.change.setting[0]]
     length = tr("the lengths") if cure.change.kind == "together" else tr("the length")
     words = tr("{choice} ends {one}, {length} {other}")
-    troubles = {"one": _trouble(cure.choice_ends), "other": _trouble(cure.lengths_end)}
+    troubles = {"one": _trouble(cure.option_result), "other": _trouble(cure.lengths_result)}
     return words.format(choice=choice, length=length, **troubles)
 
 
@@ -273,7 +273,7 @@ def _trouble(complaint: str) -> str:
     return words.get(complaint, tr("the strain"))
 
 
-def _name(found: Diagnosis, pull: Pull) -> str:
+def _name(found: Diagnosis, pull: ConstraintForce) -> str:
     if not pull.lines:
         return tr("the volume")
     title = row_title if len(pull.lines) > 1 else line_title

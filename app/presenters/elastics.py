@@ -31,7 +31,7 @@ def elastic_views(
 
 
 def _view(elastic: Elastic, where: str, own: bool) -> ElasticView:
-    forces = tuple(number(elastic.force(e), 1) if e <= elastic.reach + 1e-9 else "" for e in TOLD_AT)
+    forces = tuple(number(elastic.force(e), 1) if e <= elastic.max_elongation + 1e-9 else "" for e in TOLD_AT)
     return ElasticView(
         elastic.name,
         elastic.name if own else say(elastic.name),
@@ -132,7 +132,7 @@ def choice_view(
     rows = [outcome.rows[name] for name in names if name in outcome.rows]
     far, usable = any(row.far for row in rows), option.outcome is not None
     stretch = [row.elongation for row in rows if row.elongation is not None]
-    one = rows[0] if rows and set(names) <= set(design.linked(names[0])) else None
+    one = rows[0] if rows and set(names) <= set(design.linked_pair(names[0])) else None
     name = one.line if one is not None else ""
     return ChoiceView(
         title,
@@ -163,7 +163,7 @@ def _note(option: ElasticOption, rigid: Outcome | None, far: bool, name: str) ->
     if longer > LEAST_LENGTH:
         notes.append(tr("{length} longer on the body").format(length=length(longer)))
     if far:
-        end = f"{100 * option.elastic.reach:g}"
+        end = f"{100 * option.elastic.max_elongation:g}"
         notes.append(tr("Stretched far, its table ends at {end} %").format(end=end))
     kept = kept_words(option.outcome, rigid) if rigid is not None else ""
     if kept:

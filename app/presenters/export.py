@@ -151,7 +151,7 @@ def format_title(kind: str) -> str:
     return {"webp": "WebP"}.get(kind, kind.upper())
 
 
-def usual(what: str, key: str) -> str:
+def default_value(what: str, key: str) -> str:
     """Return what holds until something else is chosen."""
     space = {"unit": "cm" if what == "measures" else "mm", "axes": "z-up"}
     sizes = {"picture": "2000x2250", "turntable": "640x720"}
@@ -235,7 +235,7 @@ def _seconds() -> Choice:
 
 
 @dataclass(frozen=True)
-class Manner:
+class ExportOptions:
     """How something is written; each kind of file asks for what concerns it.
 
     ``unit`` and ``axes`` are None where the usual ones will do; ``before`` takes the body at rest in place of
@@ -257,7 +257,7 @@ class Manner:
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome:
+class ExportSource:
     """A body at rest and as ``control_points``, (n, 3) [mm], reshape it, with the turns that led there.
 
     What is worked out for one file is kept for the next. ``hidden`` are lines that pictures leave out,
@@ -315,7 +315,7 @@ class Outcome:
 _OF_FORMAT = ("unit", "axes")  # each program that opens a format asks for its own
 
 
-class Choices:
+class ExportSettings:
     """What was chosen, from the ``text`` of a former session; what in it is no choice is forgotten."""
 
     def __init__(self, text: str) -> None:
@@ -360,17 +360,17 @@ class Choices:
         for setting in settings_of(self.find(what), kind):
             kept = self._kept.get(_key(what, kind, setting.key))
             known = any(kept == value for value, _ in setting.options)
-            chosen[setting.key] = str(kept) if known else usual(what, setting.key)
+            chosen[setting.key] = str(kept) if known else default_value(what, setting.key)
         return chosen | {"format": kind}
 
     def choose(self, what: str, key: str, value: str) -> None:
         """Remember one choice for something."""
         self._kept[_key(what, self.kind(what), key)] = value
 
-    def manner(self, what: str, kind: str = "", view: View | None = None) -> Manner:
+    def manner(self, what: str, kind: str = "", view: View | None = None) -> ExportOptions:
         """Return how to write something in its format or another ``kind``; ``view`` is the view now."""
         chosen = self.values(what, kind)
-        manner = Manner(
+        manner = ExportOptions(
             unit=chosen.get("unit"),
             axes=chosen.get("axes"),
             before=chosen.get("shape") == "before",

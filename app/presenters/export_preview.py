@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from app.i18n.catalog import listed, number, say, tr
 from app.i18n.lengths import length
-from app.presenters.export import Manner, Outcome
+from app.presenters.export import ExportOptions, ExportSource
 from app.presenters.measurements import measure_title
 from core import __version__
 from core.errors import UserError
@@ -25,25 +25,25 @@ from core.export.band_geometry import (
     SHOULDER,
     SIDE_SEAM,
     UPPER,
+    line_curves,
     strips,
-    worn_curves,
 )
 from core.export.drawings import CURVE_FORMATS, STRIP_FORMATS, drawing_kind, write_curves, write_strips
 from core.export.measurement_files import (
     LENGTHS_ALONE,
-    MeasuresSheet,
-    measures_kind,
+    MeasurementTable,
+    measurement_file_kind,
     seamly_names,
-    write_measures,
+    write_measurements,
 )
 from core.export.mesh import kind_of, write_control_points, write_mesh
-from core.export.solution_report import write_turns
-from core.export.units_and_axes import Space, space_of
+from core.export.solution_report import write_iterations
+from core.export.units_and_axes import FileSpace, space_of
 from core.geometry.mesh import Mesh
 from core.progress import Pieces, Progress, part_of
 
 if TYPE_CHECKING:
-    from app.rendering.offscreen import Studio
+    from app.rendering.offscreen import OffscreenRenderer
     from app.rendering.turntable import Turntable
 
 USUAL_UNIT = "cm"
@@ -53,7 +53,7 @@ Write = Callable[[Path, Any, Progress], list[Path] | None]
 
 
 @dataclass(frozen=True, eq=False)
-class Ready:
+class ExportPreview:
     """A file that can be written: what will be in it, and how, in words.
 
     ``draw``, if there is any, comes first: it belongs to the window's thread, and what it returns is for
@@ -67,7 +67,9 @@ class Ready:
     draw: Callable[[], Pieces[Any]] | None = None
 
 
-def make_ready(what: str, path: str | Path, outcome: Outcome, manner: Manner) -> Ready:
+def prepare_export(
+    what: str, path: str | Path, outcome: ExportSource, manner: ExportOptions
+) -> ExportPreview:
     """Work out what will be in a file of that name. Raises UserError if it cannot be written so.
 
     ``what`` is a word of ``WAYS``.
@@ -76,40 +78,40 @@ def make_ready(what: str, path: str | Path, outcome: Outcome, manner: Manner) ->
     return WAYS[what][1](str(path), outcome, manner)
 
 
-def check(what: str, path: str | Path, manner: Manner) -> None:
+def check(what: str, path: str | Path, manner: ExportOptions) -> None:
     """Raise UserError if no file of that name can be written in that manner, whatever is in it."""
-    Space(manner.unit or "mm", manner.axes or "z-up")
+    FileSpace(manner.unit or "mm", manner.axes or "z-up")
     WAYS[what][0](str(path), manner)
 
 
-def _mesh_kind(path: str, manner: Manner) -> None:
+def _mesh_kind(path: str, manner: ExportOptions) -> None:
     kind_of(path)
 
 
-def _control_kind(path: str, manner: Manner) -> None:
+def _control_kind(path: str, manner: ExportOptions) -> None:
     if not path.lower().endswith(".csv"):
         kind_of(path)
 
 
-def _turntable_kind(path: str, manner: Manner) -> None:
+def _turntable_kind(path: str, manner: ExportOptions) -> None:
     from app.rendering.turntable import turntable_kind  # noqa: PLC0415 (brings VTK along)
 
     turntable_kind(path)
     _turntable_of(manner)
 
 
-def _picture_kind(path: str, manner: Manner) -> None:
+def _picture_kind(path: str, manner: ExportOptions) -> None:
     from app.rendering.offscreen import picture_kind  # noqa: PLC0415 (brings VTK along)
 
     picture_kind(path)
 
 
-def _table_kind(path: str, manner: Manner) -> None:
+def _table_kind(path: str, manner: ExportOptions) -> None:
     if not path.lower().endswith(".csv"):
         raise UserError("A table is a .csv file.", "Choose a name that ends in .csv.")
 
 
-def _in_space(space: Space) -> str:
+def _in_space(space: FileSpace) -> str:
     axes = {"z-up": tr("z-up"), "y-up": tr("y-up"), "z-up-front-y": tr("z-up-front-y")}[space.axes]
     return tr("in {unit}, {axes}").format(unit=_unit_words(space.unit), axes=axes)
 
@@ -118,39 +120,41 @@ def _unit_words(unit: str) -> str:
     return tr("inches") if unit == "in" else unit
 
 
-def _body(path: str, outcome: Outcome, manner: Manner) -> Ready:
+def _body(path: str, outcome: ExportSource, manner: ExportOptions) -> ExportPreview:
     return _mesh(path, outcome.body(manner.before), manner)
 
 
-def _control(path: str, outcome: Outcome, manner: Manner) -> Ready:
+def _control(path: str, outcome: ExportSource, manner: ExportOptions) -> ExportPreview:
     points = outcome.points(manner.before)
     control = outcome.stages.control
     if not path.lower().endswith(".csv"):
         return _mesh(path, control.mesh.moved(points), manner)
     told = tr("{count} control points").format(count=number(len(points), 0))
-    return Ready(told, _in_space(Space()), lambda at, _, hear: write_control_points(at, control, points))
+    return ExportPreview(
+        told, _in_space(FileSpace()), lambda at, _, hear: write_control_points(at, control, points)
+    )
 
 
-def _mesh(path: str, mesh: Mesh, manner: Manner) -> Ready:
+def _mesh(path: str, mesh: Mesh, manner: ExportOptions) -> ExportPreview:
     space = space_of(kind_of(path), manner.unit, manner.axes)
     told = tr("{points} points, {triangles} triangles").format(
         points=number(len(mesh.vertices), 0), triangles=number(len(mesh.faces), 0)
     )
-    return Ready(told, _in_space(space), lambda at, _, hear: write_mesh(at, mesh, hear, space))
+    return ExportPreview(told, _in_space(space), lambda at, _, hear: write_mesh(at, mesh, hear, space))
 
 
-def _lines(path: str, outcome: Outcome, manner: Manner) -> Ready:
-    curves = worn_curves(outcome.stages, outcome.points(manner.before), *outcome.looks)
+def _lines(path: str, outcome: ExportSource, manner: ExportOptions) -> ExportPreview:
+    curves = line_curves(outcome.stages, outcome.points(manner.before), *outcome.looks)
     space = space_of(drawing_kind(path, CURVE_FORMATS), manner.unit, manner.axes)
     told = listed(f"{curve.title} {length(curve.length)}" for curve in curves)
-    return Ready(told, _in_space(space), lambda at, _, hear: write_curves(at, curves, space))
+    return ExportPreview(told, _in_space(space), lambda at, _, hear: write_curves(at, curves, space))
 
 
-def _flat(path: str, outcome: Outcome, manner: Manner) -> Ready:
+def _flat(path: str, outcome: ExportSource, manner: ExportOptions) -> ExportPreview:
     drawn = strips(outcome.stages, outcome.control_points, *outcome.looks)
     told = listed(f"{each.title} {length(each.length)}" for each in drawn)
     heading = f"Busk {__version__} · {outcome.whose}"
-    return Ready(told, "1:1", lambda at, _, hear: write_strips(at, drawn, heading, _strip_words))
+    return ExportPreview(told, "1:1", lambda at, _, hear: write_strips(at, drawn, heading, _strip_words))
 
 
 def _strip_words(text: str) -> str:
@@ -170,7 +174,7 @@ def _strip_words(text: str) -> str:
     return marks.get(text) or say(text, "mm")
 
 
-def _measures(path: str, outcome: Outcome, manner: Manner) -> Ready:
+def _measures(path: str, outcome: ExportSource, manner: ExportOptions) -> ExportPreview:
     when, unit = "before" if manner.before else "after", manner.unit or USUAL_UNIT
     rows = [row for row in outcome.measures if row[when] is not None]
     titles = {row["key"]: measure_title(row) for row in rows}
@@ -178,33 +182,33 @@ def _measures(path: str, outcome: Outcome, manner: Manner) -> Ready:
     unsure = listed(titles[row["key"]] for row in rows if row["estimate"])
     note = f"Busk {__version__}, {outcome.design.scan.name}, {'at rest' if manner.before else 'reshaped'}."
     note += f" Estimates: {unsure}." if unsure else ""
-    sheet = MeasuresSheet(values, unit, titles, note)
+    sheet = MeasurementTable(values, unit, titles, note)
     told = tr("{count} measures at rest") if manner.before else tr("{count} measures as reshaped")
     how = tr("in {unit}").format(unit=_unit_words(unit))
     # Files for pattern programs hold lengths alone, each by its name there.
-    kind = measures_kind(path, unit)
+    kind = measurement_file_kind(path, unit)
     count = len(seamly_names(sheet.lengths) if kind in LENGTHS_ALONE else values)
-    return Ready(told.format(count=count), how, lambda at, _, hear: write_measures(at, sheet))
+    return ExportPreview(told.format(count=count), how, lambda at, _, hear: write_measurements(at, sheet))
 
 
-def _turns(path: str, outcome: Outcome, manner: Manner) -> Ready:
+def _turns(path: str, outcome: ExportSource, manner: ExportOptions) -> ExportPreview:
     records = outcome.records
     told = tr("Turns: {count}").format(count=number(len(records), 0))
-    return Ready(told, "", lambda at, _, hear: write_turns(at, records, outcome.stages))
+    return ExportPreview(told, "", lambda at, _, hear: write_iterations(at, records, outcome.stages))
 
 
-def _picture(path: str, outcome: Outcome, manner: Manner) -> Ready:
+def _picture(path: str, outcome: ExportSource, manner: ExportOptions) -> ExportPreview:
     def draw() -> Pieces[Any]:
         with _studio(outcome, manner) as studio:
             yield from part_of(studio.set_up(), 0.0, 0.0)
             if isinstance(manner.view, str):
-                studio.stand_back(manner.size, manner.view)
+                studio.frame_bust(manner.size, manner.view)
             else:
-                studio.scene.look_from(manner.view)
+                studio.scene.set_camera(manner.view)
             studio.scene.before(manner.before)
             studio.scene.set_visible("bands", manner.bands)
             studio.scene.set_visible("floor", not manner.clear)
-            return (yield from studio.shot(manner.size))
+            return (yield from studio.render(manner.size))
 
     def write(at: Path, drawn: Any, hear: Progress) -> None:
         from app.rendering.offscreen import write_picture  # noqa: PLC0415 (brings VTK along)
@@ -213,18 +217,18 @@ def _picture(path: str, outcome: Outcome, manner: Manner) -> Ready:
 
     _ = outcome.occlusion  # it takes a while, and any thread will do
     told = tr("{width} × {height} pixels")
-    return Ready(told.format(width=manner.size[0], height=manner.size[1]), "", write, draw)
+    return ExportPreview(told.format(width=manner.size[0], height=manner.size[1]), "", write, draw)
 
 
-def _turntable(path: str, outcome: Outcome, manner: Manner) -> Ready:
+def _turntable(path: str, outcome: ExportSource, manner: ExportOptions) -> ExportPreview:
     turntable = _turntable_of(manner)
 
     def draw() -> Pieces[Any]:
-        from app.rendering.turntable import turn_round  # noqa: PLC0415 (brings VTK along)
+        from app.rendering.turntable import render_turntable  # noqa: PLC0415 (brings VTK along)
 
         with _studio(outcome, manner) as studio:
             yield from part_of(studio.set_up(), 0.0, 0.0)
-            return (yield from turn_round(studio, turntable))
+            return (yield from render_turntable(studio, turntable))
 
     def write(at: Path, drawn: Any, hear: Progress) -> list[Path]:
         from app.rendering.turntable import write_turntable  # noqa: PLC0415 (brings VTK along)
@@ -233,10 +237,10 @@ def _turntable(path: str, outcome: Outcome, manner: Manner) -> Ready:
 
     _ = outcome.occlusion
     told = tr("{count} pictures in {seconds} s")
-    return Ready(told.format(count=manner.frames, seconds=f"{manner.seconds:g}"), "", write, draw)
+    return ExportPreview(told.format(count=manner.frames, seconds=f"{manner.seconds:g}"), "", write, draw)
 
 
-def _turntable_of(manner: Manner) -> Turntable:
+def _turntable_of(manner: ExportOptions) -> Turntable:
     from app.rendering.turntable import Turntable  # noqa: PLC0415 (brings VTK along)
 
     labels = tr("before"), tr("after")
@@ -244,12 +248,12 @@ def _turntable_of(manner: Manner) -> Turntable:
 
 
 @contextmanager
-def _studio(outcome: Outcome, manner: Manner) -> Iterator[Studio]:
+def _studio(outcome: ExportSource, manner: ExportOptions) -> Iterator[OffscreenRenderer]:
     from app.presenters.lines import bands  # noqa: PLC0415
-    from app.rendering.offscreen import Studio  # noqa: PLC0415 (brings VTK along)
+    from app.rendering.offscreen import OffscreenRenderer  # noqa: PLC0415 (brings VTK along)
 
     shown = bands(outcome.stages, outcome.hidden)
-    with Studio(
+    with OffscreenRenderer(
         outcome.stages,
         outcome.control_points,
         shown,
@@ -260,12 +264,17 @@ def _studio(outcome: Outcome, manner: Manner) -> Iterator[Studio]:
         yield studio
 
 
-WAYS: dict[str, tuple[Callable[[str, Manner], object], Callable[[str, Outcome, Manner], Ready]]] = {
+WAYS: dict[
+    str,
+    tuple[
+        Callable[[str, ExportOptions], object], Callable[[str, ExportSource, ExportOptions], ExportPreview]
+    ],
+] = {
     "body": (_mesh_kind, _body),
     "control": (_control_kind, _control),
     "lines": (lambda path, _: drawing_kind(path, CURVE_FORMATS), _lines),
     "flat": (lambda path, _: drawing_kind(path, STRIP_FORMATS), _flat),
-    "measures": (lambda path, manner: measures_kind(path, manner.unit or USUAL_UNIT), _measures),
+    "measures": (lambda path, manner: measurement_file_kind(path, manner.unit or USUAL_UNIT), _measures),
     "picture": (_picture_kind, _picture),
     "turntable": (_turntable_kind, _turntable),
     "turns": (_table_kind, _turns),

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from app.i18n.catalog import number, tr
-from core.analysis.length_limits.zones import AMBER, GREEN, RED, SLACK, Leeway, Reason, Zone
-from core.garment.pressure_limits import comfort
+from core.analysis.length_limits.zones import AMBER, GREEN, RED, SLACK, LengthLimits, Reason, Zone
+from core.garment.pressure_limits import pressure_limits
 from core.mechanics.constraint_lines import RATIO_LIMITS
 
 KEY_ORDER = GREEN, AMBER, RED, SLACK
@@ -14,12 +14,12 @@ _TONES = {AMBER: "warn", RED: "bad"}
 _SHORT = 28  # letters that have room in one line
 
 
-def tone_at(leeway: Leeway | None, ratio: float) -> str:
+def tone_at(leeway: LengthLimits | None, ratio: float) -> str:
     """Return how a set length [1] stands: "bad" in the red, "warn" in the amber, else nothing."""
     return _TONES.get(leeway.at(ratio).tone, "") if leeway is not None else ""
 
 
-def key(leeway: Leeway) -> dict[str, str]:
+def legend_entries(leeway: LengthLimits) -> dict[str, str]:
     """Return what zones of each tone mean and from where to where they go, of those that the line has.
 
     Of all that is red it is what comes first, and where it folds if that is known.
@@ -34,7 +34,7 @@ def _in_a_row(words: list[str]) -> str:
     return " \N{MIDDLE DOT} ".join(whole if len(words) > 1 else words)
 
 
-def _in_key(leeway: Leeway, tone: str) -> list[str]:
+def _in_key(leeway: LengthLimits, tone: str) -> list[str]:
     zones = [zone for zone in leeway.zones if zone.tone == tone]
     if tone == GREEN:
         valid = tr("valid shape") if leeway.pressure_known else tr("valid shape (without pressure)")
@@ -43,11 +43,11 @@ def _in_key(leeway: Leeway, tone: str) -> list[str]:
     if tone == RED:  # what is worse lies below
         red = [reason for zone in zones for reason in _told(zone)]
         folds = [reason for reason in red[1:] if reason.why in ("folded", "inverted")]
-        return [placed(reason) for reason in (*red[:1], *folds[:1])]
-    return [placed(reason) for reason in reasons]
+        return [short_reason(reason) for reason in (*red[:1], *folds[:1])]
+    return [short_reason(reason) for reason in reasons]
 
 
-def hint(leeway: Leeway, ratio: float) -> str:
+def hint(leeway: LengthLimits, ratio: float) -> str:
     """Return what is told where the pointer rests: the zone of a length [1], and why it is one.
 
     Where a reason holds for just the lengths of the zone, these are told once.
@@ -58,7 +58,7 @@ def hint(leeway: Leeway, ratio: float) -> str:
     alike = any((each.short, each.long) == (zone.short, zone.long) for each in reasons)
     lines = [] if alike or zone.tone == SLACK else [_range(_name(zone), zone.short, zone.long)]
     explained = tr("{reason}: {meaning}.")
-    lines += [explained.format(reason=_upper(placed(each)), meaning=meaning(each)) for each in reasons]
+    lines += [explained.format(reason=_upper(short_reason(each)), meaning=meaning(each)) for each in reasons]
     if zone.tone == GREEN and not leeway.pressure_known:
         lines.append(tr("Pressure is not looked at: it is made of no elastic."))
     return "\n".join(_glued(line) for line in lines)
@@ -70,13 +70,13 @@ def length_tip(short: float, long: float) -> str:
     return said.format(short=number(100.0 * short, 0), long=number(100.0 * long, 0))
 
 
-def refusal(leeway: Leeway | None) -> str:
+def resistance_reason(leeway: LengthLimits | None) -> str:
     """Return why a hand meets resistance, empty if there is nothing red below."""
     reasons = _told(leeway.zones[0]) if leeway is not None and leeway.zones[0].tone == RED else ()
-    return tr("Not this short: {reason}.").format(reason=placed(reasons[0])) if reasons else ""
+    return tr("Not this short: {reason}.").format(reason=short_reason(reasons[0])) if reasons else ""
 
 
-def placed(reason: Reason) -> str:
+def short_reason(reason: Reason) -> str:
     """Return a reason in a few words, and the lengths that it holds for."""
     words = {
         "strained": tr("strained"),
@@ -90,7 +90,7 @@ def placed(reason: Reason) -> str:
         "stretched": tr("beyond the table of its elastic"),
         "unreachable": tr("cannot be reached"),
     }[reason.why]
-    if reason.always:
+    if reason.is_independent:
         return tr("{what} by the other lines, whatever this one does").format(what=words)
     where = _range(words, reason.short, reason.long)
     return tr("{where} (by the other lines)").format(where=where) if _of_others(reason) else where
@@ -103,7 +103,7 @@ def meaning(reason: Reason) -> str:
         "vibrating": tr("turns with the conventional force do not come to rest"),
         "restless": tr("lines act one turn late and are too stiff for that; choose in step, or softer lines"),
         "pressing": tr("its band presses with more than {kpa} kPa somewhere").format(
-            kpa=number(comfort().red_kpa, 0)
+            kpa=number(pressure_limits().red_kpa, 0)
         ),
         "slack": tr("it would have to push, which no band can"),
         "overstrained": tr("skin is stretched or pressed together by more than 30 % somewhere"),
@@ -119,7 +119,7 @@ def _told(zone: Zone) -> tuple[Reason, ...]:
     return tuple(reason for reason in zone.reasons if reason.tone == zone.tone)
 
 
-def _beside(leeway: Leeway, zone: Zone) -> tuple[Zone, ...]:
+def _beside(leeway: LengthLimits, zone: Zone) -> tuple[Zone, ...]:
     """Return the zones beside one, the shorter first."""
     at = leeway.zones.index(zone)
     return (*leeway.zones[max(at - 1, 0) : at], *leeway.zones[at + 1 : at + 2])

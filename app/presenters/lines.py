@@ -10,7 +10,7 @@ from functools import cache
 from app.i18n.catalog import listed, number, say, tr
 from app.i18n.lengths import length
 from app.rendering.band import OFF_WIDTH, Band, band_width
-from core.analysis.length_limits.zones import Leeway
+from core.analysis.length_limits.zones import LengthLimits
 from core.control_mesh.embedding import embed
 from core.control_mesh.straps import Tail
 from core.control_mesh.template import Template, read_template
@@ -27,13 +27,13 @@ LINE_COLOURS = {"full-bust": "#0A5F73", "mid-bust": "#E5536B", "under-bust": "#5
 OWN_COLOURS = ("#E2A32F", "#6FA3F5", "#7A1F2E", "#A9ABC9", "#8C8B2C", "#C2571A")
 """Colours of own lines, one after the other; a pair of lines for both sides shares one."""
 
-Shown = tuple[Leeway, bool]
+Shown = tuple[LengthLimits, bool]
 """How far a line can go, and whether that was of the design before."""
 
 
 def line_title(name: str, design: Design | None = None) -> str:
     """Return a line's name in the window's language, or the title that ``design`` gives it."""
-    own = design.traits_of(name).title if design else ""
+    own = design.line_settings(name).title if design else ""
     if own:
         side = _side(name)
         return listed((own, side)) if side else own
@@ -74,22 +74,22 @@ def pair_title(name: str, design: Design) -> str:
     }
     if kind == "strap" and not all(each.over_shoulder for each in design.own_lines if each.name == name):
         titles[kind] = tr("Upper-chest straps")
-    return design.traits_of(name).title or titles.get(kind, kind[:1].upper() + kind[1:])
+    return design.line_settings(name).title or titles.get(kind, kind[:1].upper() + kind[1:])
 
 
 def row_title(name: str, design: Design) -> str:
     """Return what the row of a line is called: that of its pair if it is linked."""
-    return pair_title(name, design) if len(design.linked(name)) > 1 else line_title(name, design)
+    return pair_title(name, design) if len(design.linked_pair(name)) > 1 else line_title(name, design)
 
 
 def told_title(name: str, design: Design) -> str:
     """Return what the row of a line is called where others follow: "Mid-bust (left)", "Straps"."""
     side = _side(name)
-    if not side or len(design.linked(name)) > 1:
+    if not side or len(design.linked_pair(name)) > 1:
         return row_title(name, design)
     kind = kind_of(name)
     titles = {"strap": tr("Strap"), "sling": tr("Sling"), "oblique": tr("Oblique"), "ring": tr("Ring")}
-    line = design.traits_of(name).title or titles.get(kind) or line_title(kind)
+    line = design.line_settings(name).title or titles.get(kind) or line_title(kind)
     return tr("{line} ({side})").format(line=line, side=side)
 
 
@@ -132,7 +132,7 @@ def line_colours(names: Iterable[str], design: Design | None = None) -> dict[str
     colours |= {name: OWN_COLOURS[kinds.index(kind_of(name)) % len(OWN_COLOURS)] for name in own}
     if design is None:
         return colours
-    return {name: design.traits_of(name).colour or colour for name, colour in colours.items()}
+    return {name: design.line_settings(name).colour or colour for name, colour in colours.items()}
 
 
 def line_views(
@@ -142,7 +142,7 @@ def line_views(
     lines = {line.name: line for line in frame.stages.model.lines}
     rows = []
     for name, colour in line_colours(lines, design).items():
-        pair = tuple(each for each in sorted(design.linked(name)) if each in lines)
+        pair = tuple(each for each in sorted(design.linked_pair(name)) if each in lines)
         if name == pair[0]:
             view = _view(design, frame, [lines[each] for each in pair], colour)
             leeway, stale = (leeways or {}).get(name, (None, False))
@@ -155,7 +155,7 @@ def line_views(
 
 def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineView:
     """Return the row of a line, or of a linked pair whose lengths are the mean of both."""
-    name, traits = lines[0].name, design.traits_of(lines[0].name)
+    name, traits = lines[0].name, design.line_settings(lines[0].name)
     tail = frame.stages.tails.get(name)
     own = {each.name for each in design.own_lines}
     sides = [SideView(_side(line.name), line.rest_length, frame.lengths[line.name]) for line in lines]
@@ -270,7 +270,7 @@ class LineView:
     width_mm: float = 12.0
     stiffness: float | None = None
     usual_stiffness: float = 16.0
-    leeway: Leeway | None = None
+    leeway: LengthLimits | None = None
     stale: bool = False
     apart: str = ""
     pair_title: str = ""
@@ -309,7 +309,7 @@ def drawn(stages: Stages) -> tuple[_Drawn, ...]:
     """Return how the lines of a body are drawn, in the order of the list."""
     names, design = [line.name for line in stages.model.lines], stages.design
     # What cannot pull is not put on and taken off: it measures, and is drawn as it lies.
-    off = {line.name for line in stages.model.lines if line.constrains} - design.worn()
+    off = {line.name for line in stages.model.lines if line.constrains} - design.active_lines()
     return tuple(
         _Drawn(
             name,
@@ -344,7 +344,7 @@ def band_label(design: Design, frame: Frame, name: str) -> tuple[str, str]:
     if not line.constrains:
         return title, length(line.rest_length)
     ratio = design.ratio(name)
-    if design.traits_of(name).elastic:
+    if design.line_settings(name).elastic:
         stretch = frame.lengths[name] / (ratio * line.rest_length) - 1.0
         said = tr("stretched by {value}").format(value=f"{number(100.0 * stretch)} %")
         return f"{title} {length(frame.lengths[name])}", said

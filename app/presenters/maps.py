@@ -11,19 +11,26 @@ import numpy as np
 
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length, shown_value
-from app.presenters.bust_shift import BustMove, BustStep, bust_sentence, forward_words, offs_of, step_words
+from app.presenters.bust_shift import (
+    BustShift,
+    BustStep,
+    bust_sentence,
+    forward_words,
+    step_words,
+    uncertainties_of,
+)
 from app.presenters.pressure import limit_marks
 from app.rendering.palette import MAP_AMOUNT, MAP_LESS, MAP_MORE
 from app.rendering.vertex_colors import Ramp
 from core.garment.pressure import mmhg
-from core.garment.pressure_limits import comfort
-from core.garment.pressure_list import PressList
+from core.garment.pressure_limits import pressure_limits
+from core.garment.pressure_list import PressureList
 from core.geometry.mesh import Floats, Indices, Mesh, Points
-from core.geometry.mirror_plane import Sides, mirror_plane
+from core.geometry.mirror_plane import SideComparison, mirror_plane
 from core.measurements.uncertain_value import Spread
-from core.pipeline.build import Stages, targets_of
+from core.pipeline.build import Stages, line_targets
 from core.pipeline.live_solver import Frame
-from core.pipeline.surface_fields import StrainOnBody, moved_outward, pulls
+from core.pipeline.surface_fields import StrainOnBody, line_forces, normal_displacement
 
 LINE_MAPS = ("pull", "pressure")
 """Maps that lie on the bands."""
@@ -110,7 +117,7 @@ def _line_maps() -> list[MapKind]:
 
 
 def _pressure_tip() -> str:
-    limits = comfort()
+    limits = pressure_limits()
     amber, red = (
         f"{number(kpa, 0)} kPa ({number(mmhg(kpa), 0)} mmHg)" for kpa in (limits.amber_kpa, limits.red_kpa)
     )
@@ -121,7 +128,7 @@ def _pressure_tip() -> str:
     ).format(amber=amber, red=red)
 
 
-def pressure_note(listed: PressList | None, stale: bool) -> str:
+def pressure_note(listed: PressureList | None, stale: bool) -> str:
     """Return what is to be said under the legend of pressure before all; ``stale`` is of a former shape."""
     if listed is None:
         return tr("Worked out as soon as the run rests.")
@@ -160,11 +167,11 @@ def rounded_up(value: float) -> float:
     return next(unit * power for unit in _ROUND if unit * power >= value * (1.0 - 1e-9))
 
 
-def section_words(axis: str, side: str, move: BustMove, spread: Spread | None = None) -> str:
+def section_words(axis: str, side: str, move: BustShift, spread: Spread | None = None) -> str:
     """Return how far the bust points went, in words; a plane across x has that of its ``side`` alone."""
     if axis != "x":
-        return bust_sentence(move, offs_of(spread))
-    offs = offs_of(spread, side)
+        return bust_sentence(move, uncertainties_of(spread))
+    offs = uncertainties_of(spread, side)
     if side == "left":
         return tr("Bust point left {way}").format(way=step_words(move.left, offs))
     return tr("Bust point right {way}").format(way=step_words(move.right, offs))
@@ -204,7 +211,7 @@ class MapKind:
     marks: tuple[Mark, ...] = ()
 
 
-class BodyNow:
+class BodyState:
     """``places`` [mm] and ``normals`` [1] of all vertices, (n, 3), follow the frames of one body and fit."""
 
     def __init__(self, frame: Frame) -> None:
@@ -214,13 +221,13 @@ class BodyNow:
         self.normals: Points = self.rest.vertex_normals.copy()
         self.follow(frame)
 
-    def is_of(self, frame: Frame) -> bool:
+    def belongs_to(self, frame: Frame) -> bool:
         """Tell whether a frame is of the body and the fit that all this was worked out for."""
         old, new = self.stages, frame.stages
         return old.moving is new.moving and old.control is new.control and old.patch is new.patch
 
     def follow(self, frame: Frame) -> None:
-        """Be as this frame shows it; ``is_of`` must hold."""
+        """Be as this frame shows it; ``belongs_to`` must hold."""
         self.frame, self.stages = frame, frame.stages
         rows = frame.stages.moving.vertices
         self.places[rows], self.normals[rows] = frame.points, frame.normals
@@ -231,11 +238,11 @@ class BodyNow:
         return self.rest.vertices.min(axis=0), self.rest.vertices.max(axis=0)
 
     @cached_property
-    def sides(self) -> Sides:
+    def sides(self) -> SideComparison:
         """Its left laid over its right."""
         stages = self.stages
         middle = mirror_plane(self.rest, stages.patch.fade == 0.0, stages.moving.middle)
-        return Sides(self.rest, stages.moving.vertices, middle)
+        return SideComparison(self.rest, stages.moving.vertices, middle)
 
     @cached_property
     def _strain(self) -> StrainOnBody:
@@ -253,14 +260,14 @@ class BodyNow:
     def values(self, name: str) -> Floats:
         """Return the values of a map of the body at ``rows`` [mm, %], (k,); NaN where there is none."""
         if name == "displacement":
-            return moved_outward(self.stages.moving.rest, self._rest_normals, self.frame.points)
+            return normal_displacement(self.stages.moving.rest, self._rest_normals, self.frame.points)
         if name == "strain":
             return 100.0 * self._strain(self.frame.control_points)
-        return self.sides.differ(self.places, self.normals, self.sides.rows)
+        return self.sides.protrusion_difference(self.places, self.normals, self.sides.rows)
 
     @cached_property
     def _sides_at_rest(self) -> Floats:
-        return self.sides.differ(self.rest.vertices, self.rest.vertex_normals)
+        return self.sides.protrusion_difference(self.rest.vertices, self.rest.vertex_normals)
 
     def at_rest(self, name: str) -> Floats:
         """Return the values of a map at all vertices of the body at rest, (n,); they are the caller's own."""
@@ -270,6 +277,6 @@ class BodyNow:
 
     def pulls(self) -> dict[str, Floats]:
         """Return how the segments of the worn lines pull, by line, each (k,) [%]."""
-        ratios = targets_of(self.stages.design, self.stages).ratios
-        found = pulls(self.stages.model, self.frame.control_points, ratios)
+        ratios = line_targets(self.stages.design, self.stages).ratios
+        found = line_forces(self.stages.model, self.frame.control_points, ratios)
         return {name: 100.0 * share for name, share in found.items()}

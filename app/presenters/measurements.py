@@ -10,14 +10,14 @@ from app.i18n.catalog import colon, number, say, tr
 from app.i18n.lengths import decimal_length, length, length_number, shown_digits, shown_unit, shown_value
 from app.presenters.landmarks import landmark_title
 from app.presenters.lines import line_title
-from core.document.custom_measures import LONGEST_NAME, OwnMeasure
+from core.document.custom_measures import LONGEST_NAME, CustomMeasurement
 from core.errors import UserError
 from core.landmarks.types import CERTAIN
 from core.measurements.custom import OWN
 from core.measurements.definitions import Measure, definition_of
 from core.measurements.table import Measures, measure_rows
-from core.measurements.uncertain_value import LIFT, OUT, digits, rounded
-from core.mechanics.iteration import Marks
+from core.measurements.uncertain_value import LIFT, OUT, round_uncertainty, uncertainty_digits
+from core.mechanics.iteration import Observables
 from core.pipeline.live_solver import Frame
 
 
@@ -29,13 +29,13 @@ def measure_views(frame: Frame) -> list[MeasureView]:
 
 
 def measured_views(
-    before: Measures, after: Measures | None, own: Sequence[OwnMeasure] = ()
+    before: Measures, after: Measures | None, own: Sequence[CustomMeasurement] = ()
 ) -> list[MeasureView]:
     """Return what was measured on the body at rest and reshaped, group by group.
 
     ``own`` are the measures of the designer's own.
     """
-    told = {f"{OWN}{each.name}": own_words(each) for each in own}
+    told = {f"{OWN}{each.name}": description(each) for each in own}
     views = [_measured(row, told) for row in measure_rows(before, after)]
     groups = list(dict.fromkeys(view.group for view in views))
     return sorted(views, key=lambda view: groups.index(view.group))
@@ -94,8 +94,8 @@ def _bust_rows(frame: Frame) -> Iterator[MeasureView]:
     up, was_up = _up(now) - low, _up(rest) - low
     yield MeasureView(height.format(what=both), "mm", was_up, up, above, exact=True, moves=LIFT)
     for side, was, then, moves in (
-        (left, rest.nipple_left_z, now.nipple_left_z, f"{LIFT} left"),
-        (right, rest.nipple_right_z, now.nipple_right_z, f"{LIFT} right"),
+        (left, rest.bust_point_left_z, now.bust_point_left_z, f"{LIFT} left"),
+        (right, rest.bust_point_right_z, now.bust_point_right_z, f"{LIFT} right"),
     ):
         yield MeasureView(height.format(what=side), "mm", was - low, then - low, above, moves=moves)
     yield MeasureView(forward.format(what=both), "mm", _out(rest), _out(now), before, exact=True, moves=OUT)
@@ -130,12 +130,12 @@ def _line_rows(frame: Frame) -> Iterator[MeasureView]:
         )
 
 
-def _up(marks: Marks) -> float:
-    return 0.5 * (marks.nipple_left_z + marks.nipple_right_z)
+def _up(marks: Observables) -> float:
+    return 0.5 * (marks.bust_point_left_z + marks.bust_point_right_z)
 
 
-def _out(marks: Marks) -> float:
-    return 0.5 * (marks.nipple_left_out + marks.nipple_right_out)
+def _out(marks: Observables) -> float:
+    return 0.5 * (marks.bust_point_left_out + marks.bust_point_right_out)
 
 
 @dataclass(frozen=True)
@@ -225,7 +225,7 @@ class MeasureView:
 
     def written_off(self, off: float) -> str:
         """Return how far a value may be off as it stands in the table."""
-        return length_off(off) if self.unit == "mm" else plus_minus(off)
+        return length_uncertainty(off) if self.unit == "mm" else plus_minus(off)
 
     @property
     def unit_shown(self) -> str:
@@ -252,13 +252,13 @@ class MeasureView:
 
 def plus_minus(off: float) -> str:
     """Return how far a figure may be off as it is written."""
-    return f"± {number(rounded(off), digits(off))}"
+    return f"± {number(round_uncertainty(off), uncertainty_digits(off))}"
 
 
-def length_off(off: float) -> str:
+def length_uncertainty(off: float) -> str:
     """Return how far a length [mm] may be off as it is written, in the unit in use; never as nothing."""
-    told, least = rounded(off), 10.0 ** -shown_digits(digits(off)) / shown_value(1.0)
-    return f"± {decimal_length(max(told, least), digits(off))}"
+    told, least = round_uncertainty(off), 10.0 ** -shown_digits(uncertainty_digits(off)) / shown_value(1.0)
+    return f"± {decimal_length(max(told, least), uncertainty_digits(off))}"
 
 
 def digits_of(unit: str) -> int:
@@ -273,7 +273,7 @@ def measure_title(row: Mapping[str, Any]) -> str:
     return sides.get(row["side"], "{what}").format(what=title)
 
 
-def own_words(own: OwnMeasure) -> str:
+def description(own: CustomMeasurement) -> str:
     """Return how a measure of the designer's own is taken."""
     places = [landmark_title(name) for name in own.marks]
     if own.kind != "girth":
@@ -295,7 +295,7 @@ def own_words(own: OwnMeasure) -> str:
     return words.format(place=places[0], length=length(abs(own.level), 0))
 
 
-def draft_of(own: OwnMeasure) -> Draft:
+def to_draft(own: CustomMeasurement) -> Draft:
     """Return a measure as the form shows it."""
     if own.kind != "girth":
         return Draft(own.name, own.kind, (own.marks[0], own.marks[1]))
@@ -303,7 +303,7 @@ def draft_of(own: OwnMeasure) -> Draft:
     return Draft(own.name, own.kind, at=at, level=own.level)
 
 
-def measure_of(draft: Draft, suggested: str, taken: Collection[str]) -> OwnMeasure | None:
+def from_draft(draft: Draft, suggested: str, taken: Collection[str]) -> CustomMeasurement | None:
     """Return the measure of a draft, None while a place is missing.
 
     Without a name it gets the ``suggested`` one. Raises UserError if its name is ``taken``.
@@ -315,7 +315,7 @@ def measure_of(draft: Draft, suggested: str, taken: Collection[str]) -> OwnMeasu
     name = draft.name or _free(suggested, taken)
     if name in taken:
         raise UserError(f"There is a measure {name} already.", "Give it a name of its own.")
-    return OwnMeasure(name, draft.kind, draft.marks, draft.level if draft.kind == "girth" else 0.0)
+    return CustomMeasurement(name, draft.kind, draft.marks, draft.level if draft.kind == "girth" else 0.0)
 
 
 def suggested_name(draft: Draft, titles: Mapping[str, str]) -> str:
@@ -332,7 +332,7 @@ def suggested_name(draft: Draft, titles: Mapping[str, str]) -> str:
     return tr("Girth, {place}").format(place=place)[:LONGEST_NAME]
 
 
-def said_of(before: Measure, after: Measure) -> tuple[str, str, str]:
+def value_texts(before: Measure, after: Measure) -> tuple[str, str, str]:
     """Return what a measure is now, what is said of it, and what is doubtful in it or why it is missing."""
     if before.value is None or after.value is None:
         return "", "", say(before.note or after.note)

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from app.i18n.catalog import tr
 from app.i18n.lengths import length_unit, shown_value
-from app.presenters.bust_shift import move_between, ups
+from app.presenters.bust_shift import mean_lifts, shift_between
 from app.presenters.lines import line_title
-from core.mechanics.iteration import Marks, Record
+from core.mechanics.iteration import Observables, Record
 from core.pipeline.live_solver import Frame
 
 PLOTTED_TURNS = 600
@@ -24,7 +24,7 @@ PLOT_INTERVAL = 100
 """Milliseconds between two pictures of plots and figures: the body is what has to follow the hand."""
 
 _FOLLOWED = attrgetter(
-    "turn", "error", "error_ml", "marks.nipple_left_z", "marks.nipple_right_z", "marks.apex_z"
+    "iteration", "error", "error_ml", "marks.bust_point_left_z", "marks.bust_point_right_z", "marks.apex_z"
 )
 """What is plotted of a record: in one call, because hundreds of them are read at each picture."""
 
@@ -37,7 +37,9 @@ def tracks(frame: Frame) -> dict[str, Track]:
         watched = [row for row in records[-PLOTTED_TURNS:] if row.marks is not None]
         figures = np.array(list(map(_FOLLOWED, watched)), dtype=np.float64).reshape(-1, 6)
         turns, error, error_ml, left, right, apex = figures.T
-        result[control] = Track(turns, 100.0 * error, error_ml, ups(rest, left, right), apex - rest.apex_z)
+        result[control] = Track(
+            turns, 100.0 * error, error_ml, mean_lifts(rest, left, right), apex - rest.apex_z
+        )
     return result
 
 
@@ -61,20 +63,20 @@ def table_of(frame: Frame) -> tuple[list[str], list[Sequence[object]]]:
     ]
     rest = frame.stages.rest_marks
     rows: list[Sequence[object]] = [
-        (control, row.turn, *_record_figures(row, row.marks or rest, rest), row.step, *row.lengths)
+        (control, row.iteration, *_record_figures(row, row.marks or rest, rest), row.step, *row.lengths)
         for control, records in frame.tracks.items()
         for row in records
     ]
     return heading, rows
 
 
-def _record_figures(row: Record, marks: Marks, rest: Marks) -> tuple[float, float, float, float]:
+def _record_figures(row: Record, marks: Observables, rest: Observables) -> tuple[float, float, float, float]:
     return 100.0 * row.error, row.error_ml, *_heights(marks, rest)
 
 
-def _heights(marks: Marks, rest: Marks) -> tuple[float, float]:
+def _heights(marks: Observables, rest: Observables) -> tuple[float, float]:
     """Return how far the bust points, on an average, and the apex lie above where they are at rest [mm]."""
-    return move_between(rest, marks).mean.up, marks.apex_z - rest.apex_z
+    return shift_between(rest, marks).mean.up, marks.apex_z - rest.apex_z
 
 
 TOLERANCE_PERCENT = 0.1

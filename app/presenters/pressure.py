@@ -10,24 +10,24 @@ from app.presenters.lines import LineView, line_colours, line_title, titled
 from core.document.design import Design
 from core.garment.assessment import UNKNOWN_PRESSURE
 from core.garment.pressure import LEFT_OUT, NOT_FOR_STRAPS, mmhg
-from core.garment.pressure_limits import AMBER, GREEN, RED, comfort
-from core.garment.pressure_list import PressList, PressRow
+from core.garment.pressure_limits import AMBER, GREEN, RED, pressure_limits
+from core.garment.pressure_list import PressureList, PressureRow
 
 
-def light_word(light: str) -> str:
+def rating_text(light: str) -> str:
     """Return in a word what "green", "amber" or "red" means."""
     return {GREEN: tr("gentle"), AMBER: tr("snug"), RED: tr("too tight")}[light]
 
 
-def light_limits() -> LightLimits:
+def rating_limits() -> RatingLimits:
     """Return the limits of the light in words."""
-    limits, colon = comfort(), "：" if language() == "ja" else ": "
+    limits, colon = pressure_limits(), "：" if language() == "ja" else ": "
     told = [f"{each.named(language())}{colon}{each.words.told(language())}" for each in limits.sources]
     doubts = [words.told(language()) for words in limits.doubts]
-    return LightLimits(
+    return RatingLimits(
         limits.amber_kpa,
         limits.red_kpa,
-        (light_word(GREEN), light_word(AMBER), light_word(RED)),
+        (rating_text(GREEN), rating_text(AMBER), rating_text(RED)),
         limits.sources[0].named(language()),
         (*doubts, *told),
         tuple(say(each) for each in LEFT_OUT),
@@ -36,43 +36,43 @@ def light_limits() -> LightLimits:
 
 def limit_marks() -> tuple[tuple[float, str, str], ...]:
     """Return the limits as marks on a legend: pressure [kPa], tone and word."""
-    limits = comfort()
+    limits = pressure_limits()
     marks = (limits.amber_kpa, AMBER), (limits.red_kpa, RED)
-    return tuple((kpa, TONES[light], light_word(light)) for kpa, light in marks)
+    return tuple((kpa, TONES[light], rating_text(light)) for kpa, light in marks)
 
 
-def pressure_views(listed: PressList, design: Design, stale: bool) -> dict[str, PressureView]:
+def pressure_views(listed: PressureList, design: Design, stale: bool) -> dict[str, PressureView]:
     """Return what each line presses with, by line; figures of a former shape are ``stale`` and no light."""
     return {row.line: _view(row, design, stale) for row in listed.rows}
 
 
-def _view(row: PressRow, design: Design, stale: bool) -> PressureView:
+def _view(row: PressureRow, design: Design, stale: bool) -> PressureView:
     notes = [say(titled(note, design)) for note in row.notes]
     if row.max_kpa is None:
         return PressureView("", "", "", "\n".join(notes))
     light = "" if stale else row.light
-    word = light_word(row.light) if light else ""
-    told = [*_figures(row), *notes, comfort().says(row.max_kpa).told(language())]
+    word = rating_text(row.light) if light else ""
+    told = [*_figures(row), *notes, pressure_limits().description(row.max_kpa).told(language())]
     return PressureView(number(row.max_kpa), light, word, "\n".join(told), stale)
 
 
-def pressed_view(view: LineView, listed: PressList | None) -> LineView:
+def line_pressure_view(view: LineView, listed: PressureList | None) -> LineView:
     """Return the row of a line with what it presses with, if that is known; of a pair the larger one."""
     known = () if listed is None else listed.rows
     rows = [row for row in known if row.line in view.names and row.max_kpa is not None]
     if not rows:
         return view
     most = max(rows, key=lambda row: row.max_kpa or 0.0)
-    words = f"{number(most.max_kpa or 0.0)} kPa · {light_word(most.light)}"
+    words = f"{number(most.max_kpa or 0.0)} kPa · {rating_text(most.light)}"
     return replace(view, pressed=words, tone=TONES[most.light])
 
 
-def _unmeant(row: PressRow) -> list[str]:
+def _unmeant(row: PressureRow) -> list[str]:
     """Return that the limits were set for other bands, of a line of which that holds."""
     return [say(note) for note in row.notes if note == NOT_FOR_STRAPS]
 
 
-def _figures(row: PressRow) -> list[str]:
+def _figures(row: PressureRow) -> list[str]:
     assert row.max_kpa is not None
     assert row.mean_kpa is not None
     most = tr("Largest {kpa}").format(kpa=kpa_words(row.max_kpa))
@@ -103,7 +103,7 @@ def side_words(where: str) -> str:
     }[where]
 
 
-def place_words(row: PressRow) -> str:
+def place_words(row: PressureRow) -> str:
     """Return where a line presses most, in words."""
     height = length(row.height_mm or 0.0, 0)
     words = tr("{side}, {length} above the lowest point of the scan")
@@ -115,11 +115,11 @@ def unknown_pressure() -> str:
     return joined((say(UNKNOWN_PRESSURE.message), say(UNKNOWN_PRESSURE.action)))
 
 
-def pressure_summary(listed: PressList | None, design: Design, doubt: str = "") -> PressureSummary:
+def pressure_summary(listed: PressureList | None, design: Design, doubt: str = "") -> PressureSummary:
     """Return what all bands press with together; None is not known yet, or no result as ``doubt`` says."""
     if listed is None:
         return _nothing(doubt or tr("Worked out as soon as the run rests."))
-    most = listed.hardest
+    most = listed.highest
     if most is None or most.max_kpa is None:
         return _nothing(tr("No worn line presses whose tension is known."))
     colours = line_colours([row.line for row in listed.rows], design)
@@ -133,16 +133,16 @@ def pressure_summary(listed: PressList | None, design: Design, doubt: str = "") 
     return PressureSummary(
         kpa_words(most.max_kpa),
         most.light,
-        light_word(most.light),
+        rating_text(most.light),
         place,
         f"{place_words(most)}\n{look}",
-        joined((comfort().says(most.max_kpa).told(language()), *_unmeant(most))),
+        joined((pressure_limits().description(most.max_kpa).told(language()), *_unmeant(most))),
         total_words(listed),
         marks,
     )
 
 
-def total_words(listed: PressList) -> str:
+def total_words(listed: PressureList) -> str:
     """Return the total force of all bands on the skin in words: of those whose tension is known."""
     if listed.force_n is None:
         return tr("Total force on the skin unknown")
@@ -161,7 +161,7 @@ TONES = {"green": "ok", "amber": "warn", "red": "bad"}
 
 
 @dataclass(frozen=True)
-class LightLimits:
+class RatingLimits:
     """From which pressures [kPa] the light is amber and red, what the lights are called, and how sure it is.
 
     ``source`` is the first of the ``sources``, short; those and what is ``left_out`` are sentences.

@@ -7,7 +7,7 @@ from importlib import resources
 from pathlib import Path
 
 from core.document.design import Design, ScanSource
-from core.document.lines import WornLine
+from core.document.lines import ActiveLine
 from core.garment.elastic_library import find_elastic
 
 SAMPLES = {"mannequin": "Mannequin", "person": "Person"}
@@ -34,7 +34,7 @@ def sample_design(name: str = "mannequin") -> Design:
     """Return a design on a sample body that is already worth looking at."""
     # How the samples stand is known: not to search for it shows the first body sooner.
     scan = ScanSource(str(sample_path(name)), unit="mm", up="+z", front="-y")
-    return Design(scan, lines=(WornLine("mid-bust", FIRST_RATIO),))
+    return Design(scan, lines=(ActiveLine("mid-bust", FIRST_RATIO),))
 
 
 def lifted_sample(name: str = FIRST_SAMPLE) -> Design:

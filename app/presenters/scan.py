@@ -9,7 +9,7 @@ from app.i18n.lengths import length
 from core.document.design import ScanSource
 from core.geometry.mesh import Points
 from core.landmarks.types import Landmarks
-from core.landmarks.warnings import edit_doubts
+from core.landmarks.warnings import edit_warnings
 from core.scan.body import Body
 from core.scan.edits import ScanEdits
 from core.scan.orientation.lean_angles import lean_angles
@@ -35,7 +35,7 @@ def scan_view(
         source.name,
         pose.unit,
         pose.reason,
-        pose.sure,
+        pose.is_certain,
         pose.up,
         pose.front,
         len(body.mesh.faces),
@@ -63,13 +63,13 @@ def _place(centre: Points) -> tuple[float, float, float]:
 
 def _notes(body: Body) -> tuple[str, ...]:
     """Return what else is to be known of a body: its edits, and on what copy of its skin it is measured."""
-    return (*map(say, edit_doubts(body)), *_copy_notes(body))
+    return (*map(say, edit_warnings(body)), *_copy_notes(body))
 
 
 def _copy_notes(body: Body) -> tuple[str, ...]:
-    if body.calm is body.mesh:
+    if body.smoothed is body.mesh:
         return ()
-    if len(body.calm.faces) != len(body.mesh.faces):
+    if len(body.smoothed.faces) != len(body.mesh.faces):
         return (tr("It is so fine that a thinned copy is measured."),)
     return (tr("It is noisy, by {noise}: a smoothed copy is measured.").format(noise=length(body.noise)),)
 

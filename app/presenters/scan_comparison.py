@@ -10,7 +10,7 @@ import numpy as np
 from app.i18n.catalog import joined, listed, number, tr
 from app.i18n.lengths import length, length_number
 from app.presenters.lines import told_title
-from core.analysis.calibration.api import CalibrationResult, Difference, Figures, Worn
+from core.analysis.calibration.api import CalibrationResult, FittingScan, Residuals, ResidualSummary
 from core.analysis.calibration.parameters import (
     FIRM_CHEST,
     LENGTH,
@@ -20,38 +20,39 @@ from core.analysis.calibration.parameters import (
     TISSUE,
 )
 from core.analysis.calibration.registration import MET
-from core.document.calibration_record import WELL, Calibration, FoundNumber
+from core.document.calibration_record import WELL, Calibration, FittedParameter
 from core.document.design import Design
 from core.geometry.mesh import Floats
 
 
-def aligned_words(worn: Worn) -> str:
+def aligned_words(worn: FittingScan) -> str:
     """Return how well a worn scan lies on the first, in a sentence or two."""
     laid = worn.alignment
     met = tr(
         "{share} % of the skin that no line moves lies within {near} of it, {length} off as a rule."
     ).format(near=length(MET, 0), share=number(100.0 * laid.met, 0), length=length(laid.rms))
     sure = tr("Sure to ±{turn}° and ±{length}.").format(
-        turn=number(2.0 * float(laid.turns.max()), 2), length=length(2.0 * float(laid.shifts.max()))
+        turn=number(2.0 * float(laid.rotation_deviations.max()), 2),
+        length=length(2.0 * float(laid.translation_deviations.max())),
     )
     return joined([met, sure])
 
 
-def figure_rows(difference: Difference) -> tuple[FigureRow, ...]:
+def residual_rows(difference: Residuals) -> tuple[ResidualRow, ...]:
     """Return predicted less real in rows: all, her left, her right."""
     named = {"left": tr("Left"), "right": tr("Right")}
-    rows = [(tr("Moving skin"), difference.all_of_it)]
+    rows = [(tr("Moving skin"), difference.total)]
     rows += [(named[side], figures) for side, figures in difference.sides.items()]
-    return tuple(FigureRow(title, *_figures(figures)) for title, figures in rows)
+    return tuple(ResidualRow(title, *_figures(figures)) for title, figures in rows)
 
 
-def _figures(figures: Figures) -> tuple[str, str, str]:
+def _figures(figures: ResidualSummary) -> tuple[str, str, str]:
     if not np.isfinite(figures.rms):
         return "–", "–", "–"
     return length_number(figures.mean, 1, True), length_number(figures.rms), length_number(figures.most)
 
 
-def map_values(difference: Difference | None, count: int) -> Floats:
+def map_values(difference: Residuals | None, count: int) -> Floats:
     """Return predicted less real at ``count`` vertices, (count,) [mm]: no number where it is not known."""
     values = np.full(count, np.nan)
     if difference is not None:
@@ -59,7 +60,7 @@ def map_values(difference: Difference | None, count: int) -> Floats:
     return values
 
 
-def bust_words(difference: Difference) -> str:
+def bust_words(difference: Residuals) -> str:
     """Return how far the predicted bust points lie from the real ones, in a sentence."""
     if not difference.bust_points:
         return tr("The bust points do not show surely on the worn scan.")
@@ -86,38 +87,38 @@ def _way(mm: float, more: str, less: str, sure: float = 0.0) -> str:
     return (less if round(mm, 1) < 0.0 else more).format(length=length(abs(mm)), sure=length(sure))
 
 
-def told_words(difference: Difference) -> str:
+def summary_text(difference: Residuals) -> str:
     """Return what is said under the figures: the bust points, and how much is compared at all."""
     return joined([bust_words(difference), shown_words(difference)])
 
 
-def shown_words(difference: Difference) -> str:
+def shown_words(difference: Residuals) -> str:
     """Return how much of the moving skin the worn scan shows, where that is not nearly all."""
-    share = difference.all_of_it.seen
+    share = difference.total.seen
     said = tr("The worn scan shows {share} % of the moving skin.").format(share=number(100.0 * share, 0))
     return "" if share > 0.9 else said
 
 
-def number_rows(found: CalibrationResult, design: Design) -> tuple[NumberRow, ...]:
+def parameter_rows(found: CalibrationResult, design: Design) -> tuple[ParameterRow, ...]:
     """Return the numbers that were found, in rows."""
     return tuple(
-        NumberRow(
-            number_title(each.name, design),
+        ParameterRow(
+            parameter_title(each.name, design),
             value_words(each, each.before),
             value_words(each, each.after),
             f"±{value_words(each, each.plus_minus)}",
-            each.told,
+            each.is_well_determined,
         )
         for each in found.calibration.numbers
         if not each.kept
     )
 
 
-def surely_words(found: CalibrationResult, design: Design) -> str:
+def determination_text(found: CalibrationResult, design: Design) -> str:
     """Return which of the numbers that were found are told well, and which are not."""
     sought = [each for each in found.calibration.numbers if not each.kept]
     well, weak = (
-        listed([number_title(each.name, design) for each in sought if each.told is told])
+        listed([parameter_title(each.name, design) for each in sought if each.is_well_determined is told])
         for told in (True, False)
     )
     percent = number(100.0 * WELL, 0)
@@ -127,15 +128,15 @@ def surely_words(found: CalibrationResult, design: Design) -> str:
     return joined([first, tr("Told weakly, as ± says: {numbers}.").format(numbers=weak)])
 
 
-def kept_words(found: CalibrationResult, design: Design) -> str:
+def fixed_parameters_text(found: CalibrationResult, design: Design) -> str:
     """Return which numbers stay as they are, since the scans do not tell them."""
-    names = [number_title(each.name, design) for each in found.calibration.numbers if each.kept]
+    names = [parameter_title(each.name, design) for each in found.calibration.numbers if each.kept]
     return tr("As they were, since these scans do not tell them: {numbers}.").format(
         numbers=listed(names)
     ) if names else ""  # fmt: skip
 
 
-def number_title(name: str, design: Design) -> str:
+def parameter_title(name: str, design: Design) -> str:
     """Return what a number is called."""
     kind, _, line = name.partition(" of ")
     if kind == STIFFNESS and line:
@@ -150,7 +151,7 @@ def number_title(name: str, design: Design) -> str:
     }.get(name, name)
 
 
-def value_words(of: FoundNumber, value: float) -> str:
+def value_words(of: FittedParameter, value: float) -> str:
     """Return one value of a number, with its unit where it has one."""
     if of.name == TISSUE:
         return f"{number(value, 0)} N/m"
@@ -159,21 +160,23 @@ def value_words(of: FoundNumber, value: float) -> str:
     return number(value, 3 if of.name == FIRM_CHEST else 1)
 
 
-def better_words(found: CalibrationResult, design: Design) -> str:
+def improvement_text(found: CalibrationResult, design: Design) -> str:
     """Return by how much the prediction comes nearer to the worn scan, or why that counts for nothing."""
     if found.at_end:
-        names = listed([number_title(name, design) for name in found.at_end])
+        names = listed([parameter_title(name, design) for name in found.at_end])
         return tr(
             "Not found: {numbers} went to the end of what may be. Is this the scan with the garment on, and "
             "are these its lines?"
         ).format(numbers=names)
-    before, after = (length(each.all_of_it.rms) for each in (found.before, found.after))
-    if not found.helped:
+    before, after = (length(each.total.rms) for each in (found.before, found.after))
+    if not found.is_improved:
         return tr("No number moved by more than its ±: it stays at {before}.").format(before=before)
     nearer = tr("Predicted less real: {before} → {after}.").format(before=before, after=after)
     left = tr("Most of it remains: posture, breath or cloth may have made these numbers.")
     weak = tr("None of these numbers is told well: take them as a hint.")
-    return joined([nearer, left if found.explains_little else "", weak if found.weak else ""])
+    return joined(
+        [nearer, left if found.has_large_residual else "", weak if found.is_poorly_determined else ""]
+    )
 
 
 def record_words(record: Calibration | None) -> str:
@@ -185,14 +188,14 @@ def record_words(record: Calibration | None) -> str:
     )
 
 
-def door_words(record: Calibration | None, worn: Worn | None) -> str:
+def navigation_text(record: Calibration | None, worn: FittingScan | None) -> str:
     """Return what stands on the door: what was calibrated, what is compared, or what is behind it."""
     if worn is not None:
         return worn.name
     return record_words(record) or tr("Predicted less real, from a scan with the garment on")
 
 
-def notes_of(worn: Worn | None, pending: bool) -> Iterator[str]:
+def notes_of(worn: FittingScan | None, pending: bool) -> Iterator[str]:
     """Yield what the legend of the map says instead of its own line."""
     if worn is None:
         yield tr("Compare with a worn scan first: File menu.")
@@ -201,7 +204,7 @@ def notes_of(worn: Worn | None, pending: bool) -> Iterator[str]:
 
 
 @dataclass(frozen=True)
-class FigureRow:
+class ResidualRow:
     """Predicted less real of some skin, as it is written: mean, root of the mean square, 95 % [mm]."""
 
     title: str
@@ -211,7 +214,7 @@ class FigureRow:
 
 
 @dataclass(frozen=True)
-class NumberRow:
+class ParameterRow:
     """A number that was found, as it is written: before, after, its ±; and whether it is ``told`` well."""
 
     title: str

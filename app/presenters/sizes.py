@@ -9,7 +9,7 @@ from html import escape
 from app.i18n.catalog import colon, joined, language, listed, say, tr
 from app.i18n.lengths import length
 from core.measurements.letter_sizes import letter_sizes
-from core.measurements.sizes import GIRTHS_OF_SIZES, Neighbour, SizeAnswer, nearby, sizes
+from core.measurements.sizes import GIRTHS_OF_SIZES, Neighbour, SizeAnswer, neighbours_of, sizes
 from core.measurements.table import Measures
 from core.measurements.uncertain_value import BEFORE, Spread
 
@@ -35,7 +35,7 @@ def within_words(answer: SizeAnswer, spread: Spread | None) -> str:
     known = [off for off in offs if off is not None]
     if len(known) < len(GIRTHS_OF_SIZES) or not answer.inside:
         return ""
-    others = nearby(answer, *known)
+    others = neighbours_of(answer, *known)
     if not others:
         return tr("No other size lies within the ±.")
     return tr("Within the ± also: {sizes}").format(sizes=listed(others))

@@ -9,11 +9,11 @@ import numpy as np
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length, length_number, length_unit
 from app.presenters.assessment import AssessmentView
-from app.presenters.bust_shift import bust_move, sides_words, step_words, ups
-from core.garment.pressure_list import PressList
-from core.mechanics.mesh_quality import Condition
+from app.presenters.bust_shift import bust_shift, mean_lifts, sides_words, step_words
+from core.garment.pressure_list import PressureList
+from core.mechanics.mesh_quality import MeshQuality
 from core.pipeline.live_solver import Frame
-from core.pipeline.warnings import kept_volume
+from core.pipeline.warnings import controlled_volume
 
 TONES = {
     "settled": ("ok", "check-circle"),
@@ -67,7 +67,7 @@ _STEADY = 5e-4  # a swing that changes by less a turn stays as large as it is [1
 
 
 @dataclass(frozen=True)
-class StripVerdict:
+class ConvergenceView:
     """What the strip shows: ``level`` and ``headline`` of the overall verdict, and the ``state`` of the run.
 
     ``effort`` says what the ``pace`` took.
@@ -83,28 +83,28 @@ class StripVerdict:
     settling: bool
 
 
-def state_of(frame: Frame) -> str:
+def display_state(frame: Frame) -> str:
     """Return the word for a frame: its verdict's, but skin that strains beyond what is calm is told too."""
-    return frame.verdict.told
+    return frame.verdict.display_state
 
 
 def is_result(frame: Frame) -> bool:
     """Return whether the figures of a frame can be worked with, or will be when it has settled."""
-    return frame.verdict.sound
+    return frame.verdict.is_valid
 
 
-def strip_verdict(
+def convergence_view(
     frame: Frame,
     overall: AssessmentView,
     girths: tuple[float, float] | None = None,
-    pressed: PressList | None = None,
-) -> StripVerdict:
+    pressed: PressureList | None = None,
+) -> ConvergenceView:
     """Return how a frame stands under its ``overall`` verdict, with the values that matter then.
 
     ``girths`` at the bust points before and after [mm], and contact pressures, as far as they are known.
     """
-    state, seconds = state_of(frame), tr("{seconds} s").format(seconds=number(frame.seconds))
-    return StripVerdict(
+    state, seconds = display_state(frame), tr("{seconds} s").format(seconds=number(frame.seconds))
+    return ConvergenceView(
         overall.level,
         overall.headline,
         state,
@@ -116,38 +116,38 @@ def strip_verdict(
     )
 
 
-def doubt_of(frame: Frame) -> str:
+def invalid_reason(frame: Frame) -> str:
     """Return why the figures of a frame are no result, or nothing."""
     if is_result(frame):
         return ""
-    state = state_title(state_of(frame))
+    state = state_title(display_state(frame))
     return tr("{state}: these figures are no result to sew for.").format(state=state)
 
 
-def swing_mm(frame: Frame) -> tuple[float, float]:
+def oscillation_mm(frame: Frame) -> tuple[float, float]:
     """Return the middle of the height that the bust points swing about, and half of how far [mm]."""
     rows = frame.tracks.get(frame.stages.design.volume, ())[-_WATCHED:]
     marks = [row.marks for row in rows if row.marks is not None]
-    heights = np.array([(each.nipple_left_z, each.nipple_right_z) for each in marks]).reshape(-1, 2)
-    up = ups(frame.stages.rest_marks, *heights.T)
+    heights = np.array([(each.bust_point_left_z, each.bust_point_right_z) for each in marks]).reshape(-1, 2)
+    up = mean_lifts(frame.stages.rest_marks, *heights.T)
     if not len(up):
         return 0.0, 0.0
     return 0.5 * float(up.max() + up.min()), 0.5 * float(np.ptp(up))
 
 
-def plain_sentence(frame: Frame) -> str:
+def explanation(frame: Frame) -> str:
     """Return what it means that a run swings or runs away, or that a shape is no body; else nothing."""
     return {
         "vibrating": tr("The calculation does not come to rest: the bust point swings by ±{swing}."),
         "diverging": tr("The calculation runs away: the body is shown as it was before."),
         "folded": tr("The skin folds over: this is no body any more."),
         "overstrained": tr("Skin pressed or stretched by over 30 %: no shape to sew for."),
-    }.get(frame.verdict.state, "").format(swing=length(swing_mm(frame)[1]))
+    }.get(frame.verdict.state, "").format(swing=length(oscillation_mm(frame)[1]))
 
 
 def _effort(frame: Frame) -> str:
     """Return how many rounds it took, or steps to the exact answer."""
-    exact, turns = frame.stages.design.volume == "exact", frame.verdict.turns
+    exact, turns = frame.stages.design.volume == "exact", frame.verdict.iterations
     if exact and turns == 1:
         return tr("Worked out in one Newton step")
     text = (
@@ -159,25 +159,25 @@ def _effort(frame: Frame) -> str:
 
 
 def _figures(
-    frame: Frame, girths: tuple[float, float] | None, pressed: PressList | None
+    frame: Frame, girths: tuple[float, float] | None, pressed: PressureList | None
 ) -> list[tuple[str, str]]:
-    verdict, state = frame.verdict, state_of(frame)
+    verdict, state = frame.verdict, display_state(frame)
     if state == "diverging":
         return []  # the figures would be those of the body shown, as it was before
     if state == "vibrating":
         return _swing_figures(frame)
-    error, ml = kept_volume(frame)
+    error, ml = controlled_volume(frame)
     kept = (tr("Volume error"), f"{number(error, 2, signed=True)} % · {number(ml, 1, signed=True)} ml")
     if verdict.condition and state == "folded":
-        return [kept, (tr("Turned skin"), f"{number(verdict.condition.largest_turn, 0)}°")]
+        return [kept, (tr("Turned skin"), f"{number(verdict.condition.largest_rotation, 0)}°")]
     if verdict.condition and state == "overstrained":
         return [kept, (tr("Skin"), _strain(verdict.condition))]
-    move = bust_move(frame)
+    move = bust_shift(frame)
     told = [(tr("Bust point"), step_words(move.mean))]
     if girths is not None:
         change = f"{length_number(girths[0])} → {length(girths[1])}"
         told.append((tr("Bust girth"), change))
-    hardest = None if pressed is None else pressed.hardest
+    hardest = None if pressed is None else pressed.highest
     if hardest is not None and hardest.max_kpa is not None:
         told.append((tr("Highest pressure"), f"{number(hardest.max_kpa)} kPa"))
     elif move.differs:
@@ -186,7 +186,7 @@ def _figures(
 
 
 def _swing_figures(frame: Frame) -> list[tuple[str, str]]:
-    verdict, (middle, swing) = frame.verdict, swing_mm(frame)
+    verdict, (middle, swing) = frame.verdict, oscillation_mm(frame)
     growth = verdict.growth - 1.0
     grows = tr("grows") if growth > _STEADY else tr("fades") if growth < -_STEADY else tr("stays as large")
     percent = f"{number(100.0 * verdict.error, 2)} ± {number(100.0 * verdict.amplitude, 2)} %"
@@ -197,7 +197,7 @@ def _swing_figures(frame: Frame) -> list[tuple[str, str]]:
     ]
 
 
-def _strain(condition: Condition) -> str:
+def _strain(condition: MeshQuality) -> str:
     """Return how far the skin is pressed together and stretched at the worst places."""
     return _percents(100.0 * (condition.shortest - 1.0), 100.0 * (condition.longest - 1.0))
 
@@ -208,7 +208,7 @@ def _percents(pressed: float, stretched: float) -> str:
     )
 
 
-def solver_fault_words(error: Exception) -> tuple[str, str]:
+def solver_error_text(error: Exception) -> tuple[str, str]:
     """Return what failed while a shape was computed, and what to do."""
     if isinstance(error, MemoryError):
         return (
@@ -221,7 +221,7 @@ def solver_fault_words(error: Exception) -> tuple[str, str]:
     )
 
 
-def fault_words(error: Exception) -> tuple[str, str]:
+def error_text(error: Exception) -> tuple[str, str]:
     """Return what failed in any other work, and what to do."""
     if isinstance(error, MemoryError):
         return tr("There is not enough memory for this."), tr("Close other programs, then try again.")
@@ -233,7 +233,7 @@ def not_computed() -> str:
     return tr("Not computed: the view shows the last computed shape.")
 
 
-def out_of_date(verdict: StripVerdict) -> StripVerdict:
+def out_of_date(verdict: ConvergenceView) -> ConvergenceView:
     """Return the verdict on a frame that is not that of the present design, marked as such."""
     title = state_title("stale")
     return replace(verdict, level="stale", headline=title, state="stale", hint=not_computed(), settling=False)

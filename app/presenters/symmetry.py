@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING
 from app.i18n.catalog import joined, listed, number, say, tr
 from app.i18n.lengths import length, length_number, length_unit, shown_digits, shown_unit, shown_value
 from app.presenters.lines import row_title
-from app.presenters.measurements import length_off, plus_minus
-from app.presenters.target_shape import figure_title, is_met, is_signed, reasons_words
+from app.presenters.measurements import length_uncertainty, plus_minus
+from app.presenters.target_shape import is_met, is_signed, reasons_words, target_title
 from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER, LIFT, OUT, Goal, section_of
-from core.analysis.symmetry.compare import BeforeAfter, Evenness, EvenRow, even_rows
-from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, partable
+from core.analysis.symmetry.compare import BeforeAfter, Evenness, SymmetryRow, symmetry_rows
+from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, splittable_lines
 from core.control_mesh.template import read_template
 from core.document.design import Design
-from core.landmarks.warnings import edit_doubts
+from core.landmarks.warnings import edit_warnings
 from core.measurements.uncertain_value import AFTER, Spread
 from core.pipeline.build import Stages
 
 if TYPE_CHECKING:
-    from core.analysis.inverse_design.solve import Reply
+    from core.analysis.inverse_design.solve import InverseResult
 
 _SEEN = 0.05  # what differs less reads the same [mm]
 
@@ -33,20 +33,20 @@ _SURE = {"higher": "asymmetry_height", "further_out": "asymmetry_forward"}
 """The measures whose ± is that of a figure."""
 
 
-def even_summary(
+def symmetry_view(
     told: BeforeAfter, stages: Stages, doubt: str = "", spread: Spread | None = None
-) -> EvenSummary:
+) -> SymmetryView:
     """Return what the card says of a body; with a ``doubt`` there is nothing to be told after.
 
     ``spread`` tells how far figures may be off, if all of that is known.
     """
     now = told.before if doubt else told.after
-    rows = {row.key: row for row in even_rows(told.before, told.after)}
+    rows = {row.key: row for row in symmetry_rows(told.before, told.after)}
     hint, possible = _hint(stages, now) if not doubt else (doubt, False)
     offs = _offs(spread)
     said = _sentence(now, {}, tr("Bust points before: {how}.")) if doubt else _sentence(now, offs)
-    return EvenSummary(
-        joined((*map(say, edit_doubts(stages.body)), said)),
+    return SymmetryView(
+        joined((*map(say, edit_warnings(stages.body)), said)),
         tuple(_view(rows[key], bool(doubt), offs.get(key)) for key in _titles()),
         (*map(say, told.notes), *_rests_on()),
         hint,
@@ -69,7 +69,7 @@ def _offs(spread: Spread | None) -> dict[str, float]:
 
 
 def _sentence(now: Evenness, offs: Mapping[str, float], words: str = "") -> str:
-    if now.furthest < ENOUGH:
+    if now.largest_difference < ENOUGH:
         return tr("Both bust points lie alike within {length}.").format(length=length(ENOUGH))
     parts, within = [], True
     for key, value, left, right in (
@@ -81,7 +81,7 @@ def _sentence(now: Evenness, offs: Mapping[str, float], words: str = "") -> str:
             size = (
                 length(abs(value))
                 if off is None
-                else f"{length_number(abs(value))} {length_off(off)} {length_unit()}"
+                else f"{length_number(abs(value))} {length_uncertainty(off)} {length_unit()}"
             )
             parts.append((left if value > 0.0 else right).format(length=size))
             within &= off is not None and abs(value) <= off
@@ -89,25 +89,25 @@ def _sentence(now: Evenness, offs: Mapping[str, float], words: str = "") -> str:
     return joined((said, tr("Within the error they lie alike."))) if within else said
 
 
-def _view(row: EvenRow, doubtful: bool, off: float | None) -> EvenView:
+def _view(row: SymmetryRow, doubtful: bool, off: float | None) -> SymmetryRowView:
     title, tip = _titles()[row.key]
     after = None if doubtful else row.after
     within = off is not None and after is not None and abs(after) <= off
     shares = tuple(
         None if not row.sided or value is None else value / _FULL[row.unit] for value in (row.before, after)
     )
-    return EvenView(
+    return SymmetryRowView(
         f"{title} [{shown_unit(row.unit)}]",
         _written(row, row.before),
         _written(row, after),
         joined((tip, tr("Within the error both are alike."))) if within else tip,
         (shares[0], shares[1]),
-        "" if off is None else (length_off(off) if row.unit == "mm" else plus_minus(off)),
+        "" if off is None else (length_uncertainty(off) if row.unit == "mm" else plus_minus(off)),
         within,
     )
 
 
-def _written(row: EvenRow, value: float | None) -> str:
+def _written(row: SymmetryRow, value: float | None) -> str:
     """Return a figure with the side that is more, as it stands in the table."""
     digits = shown_digits(0 if row.unit == "ml" else 1, row.unit)
     if value is None:
@@ -148,41 +148,41 @@ def _rests_on() -> tuple[str, ...]:
 
 def _hint(stages: Stages, now: Evenness) -> tuple[str, bool]:
     """Return what is done before lengths are looked for, or why they are not; and whether they can be."""
-    if now.furthest < ENOUGH:
+    if now.largest_difference < ENOUGH:
         return "", False
     if moves_one_side(stages):
         return "", True
     design = stages.design
-    names = partable(design, read_template(design.template))
+    names = splittable_lines(design, read_template(design.template))
     if not names:
         return tr(
             "To make it even, wear a line that moves one side, or one across both that is unlocked."
         ), False
     return tr("Make even begins by setting left and right apart: {lines}.").format(
-        lines=listed(parted_titles(design, names))
+        lines=listed(split_titles(design, names))
     ), True
 
 
-def parted_titles(design: Design, names: tuple[str, ...]) -> list[str]:
+def split_titles(design: Design, names: tuple[str, ...]) -> list[str]:
     """Return what lines that are parted are called, a pair once."""
     return list(dict.fromkeys(row_title(name, design) for name in names))
 
 
-def left_as_it_is(gained: float, lost: float) -> tuple[str, str]:
+def not_balanced_reason(gained: float, lost: float) -> tuple[str, str]:
     """Return why a design is not made even, and what could be done; both in mm, see ``Evened``."""
     said = tr("These lines cannot make it more even: {gained} nearer would move both sides by {lost}.")
     hint = tr("Other lines may do more: a strap lifts one side alone.")
     return said.format(gained=length(max(gained, 0.0)), lost=length(lost)), hint
 
 
-def asks_to_be_even(goals: Sequence[Goal]) -> bool:
+def has_balance_targets(goals: Sequence[Goal]) -> bool:
     """Tell whether left and right are asked to be alike, and no profile besides."""
     names = [goal.name for goal in goals]
     return bool({HIGHER, FURTHER_OUT} & set(names)) and not any(map(section_of, names))
 
 
-def evened_words(
-    reply: Reply, goals: Sequence[Goal], now: Mapping[str, float], then: Mapping[str, float]
+def balance_result_texts(
+    reply: InverseResult, goals: Sequence[Goal], now: Mapping[str, float], then: Mapping[str, float]
 ) -> tuple[str, str, str]:
     """Return in short lines what an answer brings nearer; then what that costs, and why it is no nearer.
 
@@ -212,13 +212,13 @@ def _by_turns(design: Design) -> str:
     ).format(length=length(1.0, 0))
 
 
-def _outcome(reply: Reply, met: bool) -> str:
+def _outcome(reply: InverseResult, met: bool) -> str:
     if met:
         return tr("Reached.")
     return tr("Not reachable. Nearest:") if reply.agreed else tr("Nearest so far:")
 
 
-def _why(reply: Reply) -> str:
+def _why(reply: InverseResult) -> str:
     if not reply.agreed:
         return tr("Lengths, elastics and pressures did not come to agree.")
     return tr("Because {reasons}.").format(reasons=reasons_words(reply))
@@ -233,7 +233,7 @@ def _way(name: str, before: float, after: float, said: str) -> str:
     if name not in titles:
         signed = is_signed(name)
         values = {"before": length_number(before, 1, signed), "after": length(after, 1, signed)}
-        return said.format(figure=figure_title(name), **values)
+        return said.format(figure=target_title(name), **values)
     one, other = (titles[name][each < 0.0] for each in (before, after))
     values = {"before": length_number(abs(before)), "after": length(abs(after))}
     if min(abs(before), abs(after)) < _SEEN:  # even has no side
@@ -245,7 +245,7 @@ def _way(name: str, before: float, after: float, said: str) -> str:
 
 
 @dataclass(frozen=True)
-class EvenView:
+class SymmetryRowView:
     """One figure: its title, the ``before`` and ``after`` as they are written, and what is told of it.
 
     ``shares`` say how far the bar goes before and after, -1 to 1: positive towards the left; None where
@@ -263,14 +263,14 @@ class EvenView:
 
 
 @dataclass(frozen=True)
-class EvenSummary:
+class SymmetryView:
     """What the card says: a sentence, figures, ``notes`` on them, and what making it even begins with.
 
     ``hint`` says what is done first, or why nothing can be; ``possible`` whether anything can.
     """
 
     says: str
-    views: tuple[EvenView, ...]
+    views: tuple[SymmetryRowView, ...]
     notes: tuple[str, ...]
     hint: str
     possible: bool

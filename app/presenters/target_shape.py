@@ -17,7 +17,7 @@ from core.analysis.inverse_design.quantities import (
     LIFT,
     OUT,
     Goal,
-    profiles_off,
+    profile_deviations,
     section_of,
 )
 from core.document.design import Design
@@ -25,7 +25,7 @@ from core.geometry.mesh import Floats
 
 if TYPE_CHECKING:
     from core.analysis.inverse_design.conflicts import Conflict
-    from core.analysis.inverse_design.solve import Reply
+    from core.analysis.inverse_design.solve import InverseResult
 
 
 _MET = 0.05  # [mm]
@@ -37,7 +37,7 @@ SAME = 5e-4
 """Ratios that are this near to each other read the same [1]."""
 
 
-def figure_title(name: str) -> str:
+def target_title(name: str) -> str:
     """Return what a figure that can be asked for is called in the window."""
     titles = {
         "lift": tr("Bust point up"),
@@ -71,21 +71,24 @@ def is_signed(name: str) -> bool:
     return name != GIRTH and not section_of(name)
 
 
-def figure_words(name: str, value: float) -> str:
+def target_text(name: str, value: float) -> str:
     """Return a figure with its value: "Bust point up +12.0 mm"."""
     return tr("{figure} {value}").format(
-        figure=figure_title(name), value=length(value, 1, signed=is_signed(name))
+        figure=target_title(name), value=length(value, 1, signed=is_signed(name))
     )
 
 
-def wishes_words(goals: Sequence[Goal]) -> str:
+def targets_text(goals: Sequence[Goal]) -> str:
     """Return in a few words what is asked for."""
-    single = [figure_words(goal.name, goal.value) for goal in goals if not section_of(goal.name)]
-    return listed((*single, *dict.fromkeys(figure_title(g.name) for g in goals if section_of(g.name))))
+    single = [target_text(goal.name, goal.value) for goal in goals if not section_of(goal.name)]
+    return listed((*single, *dict.fromkeys(target_title(g.name) for g in goals if section_of(g.name))))
 
 
-def answer_words(
-    reply: Reply, goals: Sequence[Goal], limit: float | None = None, now: Mapping[str, float] | None = None
+def result_text(
+    reply: InverseResult,
+    goals: Sequence[Goal],
+    limit: float | None = None,
+    now: Mapping[str, float] | None = None,
 ) -> str:
     """Return in a sentence whether it can be reached, else what is nearest and why.
 
@@ -99,11 +102,11 @@ def answer_words(
     if reply.reachable:
         return tr("Reached.")
     if is_met(reply, goals):
-        most = max(float(np.abs(off).max()) for off in profiles_off(goals, reply.reached).values())
+        most = max(float(np.abs(off).max()) for off in profile_deviations(goals, reply.reached).values())
         return tr("Reached within {length}.").format(length=length(most))
     if is_near(reply, goals):
         return _near_words(reply, goals, now or {})
-    nearest = nearest_words(reply, goals, now or {})
+    nearest = closest_result_text(reply, goals, now or {})
     if not reply.agreed:
         said = tr("Nearest so far: {nearest}. Lengths, elastics and pressures did not come to agree.")
         return said.format(nearest=nearest)
@@ -111,9 +114,9 @@ def answer_words(
     return said.format(nearest=nearest, reasons=reasons_words(reply))
 
 
-def _near_words(reply: Reply, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
+def _near_words(reply: InverseResult, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
     """Return how nearly profiles are met, and what they were off if that was hardly more."""
-    offs = profiles_off(goals, reply.reached)
+    offs = profile_deviations(goals, reply.reached)
     section = max(offs, key=lambda each: float(np.abs(offs[each]).mean()))
     before = _off_before(goals, now, section)
     if before is None or float(np.abs(offs[section]).mean()) <= _MUCH * before:
@@ -130,38 +133,38 @@ def _off_before(goals: Sequence[Goal], now: Mapping[str, float], section: str) -
     return float(np.mean(before)) if before else None
 
 
-def _come(reply: Reply, goals: Sequence[Goal]) -> Iterable[str]:
+def _come(reply: InverseResult, goals: Sequence[Goal]) -> Iterable[str]:
     """Yield what figures come to that were to stay."""
     for goal in goals:
         if abs(reply.reached[goal.name] - goal.value) > _MET:
             yield _from_to(goal.name, goal.value, reply.reached[goal.name])
         else:
-            yield figure_words(goal.name, reply.reached[goal.name])
+            yield target_text(goal.name, reply.reached[goal.name])
 
 
-def nearest_words(reply: Reply, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
+def closest_result_text(reply: InverseResult, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
     """Return what targets that are missed come to, and how far profiles are off."""
     return listed(_nearest(reply, goals, now))
 
 
-def _nearest(reply: Reply, goals: Sequence[Goal], now: Mapping[str, float]) -> Iterable[str]:
+def _nearest(reply: InverseResult, goals: Sequence[Goal], now: Mapping[str, float]) -> Iterable[str]:
     missed = [goal for goal in goals if not section_of(goal.name)]
     missed = [goal for goal in missed if abs(reply.reached[goal.name] - goal.value) > _MET] or missed
     for goal in missed:
-        yield figure_words(goal.name, reply.reached[goal.name])
-    profiles = profiles_off(goals, reply.reached)
+        yield target_text(goal.name, reply.reached[goal.name])
+    profiles = profile_deviations(goals, reply.reached)
     for section, off in profiles.items():
         said = tr("a profile off by {mean} on average ({most} at most)")
         if len(profiles) > 1:
             said = tr("{profile}: off by {mean} on average ({most} at most)")
-        words = said.format(profile=figure_title(section), **_mean_and_most(off))
+        words = said.format(profile=target_title(section), **_mean_and_most(off))
         before = _off_before(goals, now, section)
         if before is not None:
             words += tr(", {before} before").format(before=length(before))
         yield words
 
 
-def beside_words(goals: Sequence[Goal], now: Mapping[str, float], then: Mapping[str, float]) -> str:
+def bust_movement_text(goals: Sequence[Goal], now: Mapping[str, float], then: Mapping[str, float]) -> str:
     """Return how the bust points move with a profile where they are free; empty where they stay.
 
     ``now`` and ``then`` [mm] are figures before and after.
@@ -178,27 +181,27 @@ def _from_to(name: str, before: float, after: float) -> str:
     """Return a figure with what it was and what it comes to: "Bust point up +0.2 → +0.4 mm"."""
     said, signed = tr("{figure} {before} → {after}"), is_signed(name)
     values = {"before": length_number(before, 1, signed=signed), "after": length(after, 1, signed=signed)}
-    return said.format(figure=figure_title(name), **values)
+    return said.format(figure=target_title(name), **values)
 
 
-def off_words(goals: Sequence[Goal], reached: Mapping[str, float], section: str) -> str:
+def deviation_text(goals: Sequence[Goal], reached: Mapping[str, float], section: str) -> str:
     """Return how far what is ``reached`` is off the profile of a section: mean and largest distance."""
-    off = profiles_off(goals, reached).get(section)
+    off = profile_deviations(goals, reached).get(section)
     if off is None:
         return ""
     return tr("off by {mean}, at most {most}").format(**_mean_and_most(off))
 
 
-def is_met(reply: Reply, goals: Sequence[Goal]) -> bool:
+def is_met(reply: InverseResult, goals: Sequence[Goal]) -> bool:
     """Tell whether an answer is what was asked for, a profile within what a tailor can tell."""
     near = {goal.name: abs(reply.reached[goal.name] - goal.value) for goal in goals}
     within = all(off <= (_LIKE if section_of(name) else _MET) for name, off in near.items())
-    return reply.reachable or (reply.agreed and not reply.pressing and within)
+    return reply.reachable or (reply.agreed and not reply.at_pressure_limit and within)
 
 
-def is_near(reply: Reply, goals: Sequence[Goal]) -> bool:
+def is_near(reply: InverseResult, goals: Sequence[Goal]) -> bool:
     """Tell whether all but profiles is met, and these as nearly as a hand draws them."""
-    offs = [np.abs(off) for off in profiles_off(goals, reply.reached).values()]
+    offs = [np.abs(off) for off in profile_deviations(goals, reply.reached).values()]
     single = [goal for goal in goals if not section_of(goal.name)]
     met = all(abs(reply.reached[goal.name] - goal.value) <= _MET for goal in single)
     near = all(off.mean() < _NEAR and off.max() < _NEAREST for off in offs)
@@ -209,16 +212,16 @@ def _mean_and_most(off: Floats) -> dict[str, str]:
     return {"mean": length(float(np.abs(off).mean())), "most": length(float(np.abs(off).max()))}
 
 
-def reasons_words(reply: Reply) -> str:
+def reasons_words(reply: InverseResult) -> str:
     """Return why an answer is not what was asked for, as part of a sentence."""
     return tr(", and ").join(reasons(reply))
 
 
-def reasons(reply: Reply) -> list[str]:
+def reasons(reply: InverseResult) -> list[str]:
     """Return why an answer is not what was asked for, as parts of a sentence."""
-    long = [name for name in reply.at_end if reply.may_not_be_longer(name)]
-    short = [name for name in reply.at_end if name not in long]
-    slack = [name for name in reply.slack if name not in reply.at_end]
+    long = [name for name in reply.at_limit if reply.may_not_be_longer(name)]
+    short = [name for name in reply.at_limit if name not in long]
+    slack = [name for name in reply.slack if name not in reply.at_limit]
     kpa = number(reply.limit)
     causes = [
         said.format(lines=_titles(names, reply.design), kpa=kpa)
@@ -226,7 +229,7 @@ def reasons(reply: Reply) -> list[str]:
             (short, tr("{lines} may not be shorter")),
             (long, tr("{lines} may not be longer: a longer line would have to push")),
             (slack, tr("{lines} would have to push, which no band can")),
-            (reply.pressing, tr("{lines} may not press more than {kpa} kPa")),
+            (reply.at_pressure_limit, tr("{lines} may not press more than {kpa} kPa")),
         )
         if names
     ]
@@ -235,10 +238,10 @@ def reasons(reply: Reply) -> list[str]:
     return causes or [tr("these lines do not move the body that way")]
 
 
-def change_words(before: Design, reply: Reply) -> list[str]:
+def change_words(before: Design, reply: InverseResult) -> list[str]:
     """Return how lengths would change, row by row, what elastics press with, and if others were not asked."""
     after, said = reply.design, []
-    for title, name in _rows(sorted(after.worn()), after):
+    for title, name in _rows(sorted(after.active_lines()), after):
         one, other = before.ratio(name), after.ratio(name)
         if abs(one - other) >= SAME:
             words = tr("{line} {before} → {after} %") + " ({change})"
@@ -249,33 +252,33 @@ def change_words(before: Design, reply: Reply) -> list[str]:
     if reply.pressure:
         most = max(reply.pressure.values())
         said.append(tr("presses with {kpa} kPa at most").format(kpa=number(most)))
-    if reply.unseen and reply.pressure:
-        lines = _titles(reply.unseen, after)
+    if reply.unchecked and reply.pressure:
+        lines = _titles(reply.unchecked, after)
         said.append(tr("pressure of {lines} not looked at: see Garment").format(lines=lines))
-    elif reply.unseen:
+    elif reply.unchecked:
         said.append(tr("pressure not looked at: see Garment"))
     return said
 
 
-def kept_words(design: Design, kept: Collection[str]) -> str:
+def locked_lines_text(design: Design, kept: Collection[str]) -> str:
     """Return which worn lines stay because they are locked, if any do."""
-    lines = _titles([name for name in sorted(design.worn()) if name in kept], design)
+    lines = _titles([name for name in sorted(design.active_lines()) if name in kept], design)
     return tr("Locked, so kept: {lines}.").format(lines=lines) if lines else ""
 
 
-def missing_words(design: Design, moving: Collection[str]) -> str:
+def missing_input_text(design: Design, moving: Collection[str]) -> str:
     """Return what has to be done before anything can be asked, if there is something; see ``free_lines``."""
-    lines = design.worn() & set(moving)
+    lines = design.active_lines() & set(moving)
     if not lines:
         return tr("Wear the lines that may change first: choose a preset, or shorten a line.")
-    if all(design.traits_of(name).locked for name in lines):
+    if all(design.line_settings(name).locked for name in lines):
         return tr("All worn lines are locked. Unlock one that may change.")
     return ""
 
 
 def step_words(goals: Sequence[Goal], limit: float | None = None) -> str:
     """Return what the step of undo is called; a ``limit`` [kPa] was asked for besides, or alone."""
-    wishes = [wishes_words(goals)] if goals else []
+    wishes = [targets_text(goals)] if goals else []
     if limit is not None:
         wishes.append(tr("{kpa} kPa at most").format(kpa=number(limit)))
     return tr("Asked for") + colon() + listed(wishes)
@@ -324,7 +327,7 @@ def conflict_words(conflicts: Iterable[Conflict]) -> tuple[str, ...]:
 
 
 def _sentence(conflict: Conflict) -> str:
-    name, alone = figure_title(conflict.name), _value(conflict.name, conflict.alone)
+    name, alone = target_title(conflict.name), _value(conflict.name, conflict.alone)
     if not conflict.against:
         return tr("{target}: {value} is the nearest even as the only target.").format(
             target=name, value=alone
@@ -334,7 +337,7 @@ def _sentence(conflict: Conflict) -> str:
         "{kept} ({price} {unit} per {unit})."
     )
     lost, kept = (_value(conflict.against, value) for value in (conflict.lost, conflict.kept))
-    other, price = figure_title(conflict.against), number(conflict.price, 2)
+    other, price = target_title(conflict.against), number(conflict.price, 2)
     values = {"value": alone, "lost": lost, "kept": kept, "price": price, "unit": length_unit()}
     return words.format(target=name, other=other, **values)
 
@@ -344,18 +347,18 @@ def _value(name: str, value: float) -> str:
     return tr("{length} off").format(length=size) if section_of(name) else size
 
 
-def unlimited_words(free: Reply, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
+def unlimited_words(free: InverseResult, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
     """Return what targets come to without a limit of pressure, and what lines press with then."""
     most = number(max(free.pressure.values(), default=0.0))
     if is_met(free, goals):
         return tr("All targets are met without the pressure limit, with {kpa} kPa.").format(kpa=most)
     words = tr("Nearest without the pressure limit: {figures}, with {kpa} kPa.")
-    return words.format(figures=nearest_words(free, goals, now), kpa=most)
+    return words.format(figures=closest_result_text(free, goals, now), kpa=most)
 
 
-def switched_words(before: Design, after: Design) -> str:
+def activated_text(before: Design, after: Design) -> str:
     """Return which lines an answer switches on, if it does."""
-    lines = _titles(sorted(after.worn() - before.worn()), after)
+    lines = _titles(sorted(after.active_lines() - before.active_lines()), after)
     return tr("Switched on: {lines}.").format(lines=lines) if lines else ""
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from app.i18n.catalog import joined, language, listed, number, say, tr
 from app.i18n.lengths import length, shown_unit
-from app.presenters.measurements import MeasureView, length_off, plus_minus
+from app.presenters.measurements import MeasureView, length_uncertainty, plus_minus
 from core.analysis.uncertainty.input_uncertainty import origins
 from core.export.report_data import NOT_MODELLED
 from core.garment.pressure import LEFT_OUT
@@ -35,12 +35,12 @@ def source_sentences() -> tuple[str, ...]:
     return tuple(words.told(language()) for words in origins().values())
 
 
-def left_out_sentences() -> tuple[str, ...]:
+def limitation_sentences() -> tuple[str, ...]:
     """Return what no figure takes into account; the sheet says the same."""
     return tuple(say(each) for each in (*NOT_MODELLED, *LEFT_OUT))
 
 
-def spread_views(views: Iterable[MeasureView], spread: Spread | None, faint: bool) -> list[MeasureView]:
+def with_uncertainty(views: Iterable[MeasureView], spread: Spread | None, faint: bool) -> list[MeasureView]:
     """Return measures with their ±; ``faint`` are those of a former shape."""
     if spread is None:
         return list(views)
@@ -77,7 +77,7 @@ def _shares(
     heads = (tr("Before"), tr("After"), tr("Change"))
     lines = []
     for key, off, head in zip(keys, offs, heads, strict=True):
-        doubt = spread.doubts.get(key) if key else None
+        doubt = spread.by_output.get(key) if key else None
         if doubt is None or off is None:
             continue
         parts = [
@@ -85,19 +85,19 @@ def _shares(
             for source, share in doubt.shares.items()
             if share >= LEAST
         ]
-        told = length_off(off) if unit == "mm" else plus_minus(off)
+        told = length_uncertainty(off) if unit == "mm" else plus_minus(off)
         said = tr("{head}: {off} {unit}").format(head=head, off=told, unit=shown_unit(unit))
         lines.append(f"{said} ({listed(parts)})" if parts else said)
     return tuple(lines)
 
 
-def spread_view(spread: Spread | None, waiting: str, faint: bool) -> SpreadView:
+def uncertainty_view(spread: Spread | None, waiting: str, faint: bool) -> UncertaintyView:
     """Return what stands below the measures; ``waiting`` says why there is no ± yet."""
     if spread is None:
-        return SpreadView(waiting, short=tr("± is not there yet: why") if waiting else "")
+        return UncertaintyView(waiting, short=tr("± is not there yet: why") if waiting else "")
     meaning = tr("± is twice the standard deviation: 95 % of all cases, if errors are normal.")
     told = tr("± of a former shape: what it means") if faint else tr("± holds 95 % of cases: what it means")
-    return SpreadView(
+    return UncertaintyView(
         joined([meaning, _without_off(), *map(say, spread.cautions)]), _contact(spread), faint, told
     )
 
@@ -116,7 +116,7 @@ def _contact(spread: Spread) -> str:
 
 
 @dataclass(frozen=True)
-class SpreadView:
+class UncertaintyView:
     """What stands in the card: what ± means, or why there is none yet; what the other skin ``contact`` makes.
 
     ``faint`` words are of a former shape. ``short`` stands at the head of the measures and leads here.

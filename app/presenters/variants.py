@@ -8,19 +8,19 @@ from dataclasses import dataclass
 from app.i18n.catalog import number, say, tr
 from app.i18n.lengths import length_number, shown_unit
 from app.presenters.assessment import AssessmentView
-from app.presenters.bust_shift import bust_move, bust_sentence
+from app.presenters.bust_shift import bust_sentence, bust_shift
 from app.presenters.lines import line_colours, line_title, row_title
 from app.presenters.status import is_result
 from core.document.design import Design
 from core.garment.cut_list import CutRow, cut_list
-from core.garment.pressure_list import PressList
+from core.garment.pressure_list import PressureList
 from core.pipeline.live_solver import Frame
-from core.pipeline.warnings import kept_volume
+from core.pipeline.warnings import controlled_volume
 
 Variants = Sequence[tuple[str, Design, Frame | None]]
 """Variants by name, with the frame of those that are solved."""
 
-Pressed = Callable[[Frame], PressList | None]
+Pressed = Callable[[Frame], PressureList | None]
 """What the lines of a frame press with, if that is known."""
 
 _TOLD = 2  # lengths that differ which have room over a body
@@ -61,7 +61,7 @@ def variant_titles(variants: Variants, judged: Judged) -> list[str]:
         "\n".join(
             (
                 _head(name, frame, judged),
-                *([bust_sentence(bust_move(frame))] if frame is not None and is_result(frame) else []),
+                *([bust_sentence(bust_shift(frame))] if frame is not None and is_result(frame) else []),
                 *(f"{row.label} {row.figures[0].written(place)}" for row in differing[:_TOLD]),
             )
         )
@@ -74,7 +74,7 @@ def _head(name: str, frame: Frame | None, judged: Judged) -> str:
     return title if frame is None else f"{title}   {judged(frame).headline}"
 
 
-def _lengths(variants: Variants) -> list[FigureRow]:
+def _lengths(variants: Variants) -> list[VariantRow]:
     """Return a row for each line, or linked pair, whose length is set.
 
     Of one that is made of an elastic in any variant it is what is reached on the body: what is set for an
@@ -84,12 +84,12 @@ def _lengths(variants: Variants) -> list[FigureRow]:
     heads: dict[str, str] = {}
     for (_, design, _), rest in zip(variants, rests, strict=True):
         for name in rest:
-            if name == min(design.linked(name)):
+            if name == min(design.linked_pair(name)):
                 heads.setdefault(name, row_title(name, design))
-            elif name in heads or len(design.linked(name)) == 1:
+            elif name in heads or len(design.linked_pair(name)) == 1:
                 heads[name] = line_title(name, design)
     rows = []
-    elastic = {name for _, design, _ in variants for name in design.worn_elastics()}
+    elastic = {name for _, design, _ in variants for name in design.active_elastics()}
     for name, title in heads.items():
         if name in elastic:
             rows.append(_reached(name, tr("{line}, on the body").format(line=title), variants))
@@ -101,12 +101,14 @@ def _lengths(variants: Variants) -> list[FigureRow]:
         ]
         percent = tuple(None if ratio is None else 100.0 * ratio for ratio in ratios)
         rows.append(
-            FigureRow(title, (Figure("%", 1, False, percent), Figure("mm", 1, False, tuple(lengths))))
+            VariantRow(
+                title, (VariantValues("%", 1, False, percent), VariantValues("mm", 1, False, tuple(lengths)))
+            )
         )
     return rows
 
 
-def _reached(name: str, title: str, variants: Variants) -> FigureRow:
+def _reached(name: str, title: str, variants: Variants) -> VariantRow:
     """Return how long a line is on the body, if its variant is solved."""
     lengths = tuple(None if frame is None else frame.lengths.get(name) for _, _, frame in variants)
     rests = (_rests(frame).get(name) for _, _, frame in variants)
@@ -114,10 +116,10 @@ def _reached(name: str, title: str, variants: Variants) -> FigureRow:
         100.0 * length / rest if length and rest else None
         for length, rest in zip(lengths, rests, strict=True)
     )
-    return FigureRow(title, (Figure("%", 1, False, percent), Figure("mm", 1, False, lengths)))
+    return VariantRow(title, (VariantValues("%", 1, False, percent), VariantValues("mm", 1, False, lengths)))
 
 
-def _pieces(variants: Variants, pressed: Pressed) -> list[FigureRow]:
+def _pieces(variants: Variants, pressed: Pressed) -> list[VariantRow]:
     """Return a row for each line that is made of an elastic: to cut, of what, and what it presses with."""
     frames = [frame if frame is not None and is_result(frame) else None for _, _, frame in variants]
     cuts = [
@@ -125,18 +127,20 @@ def _pieces(variants: Variants, pressed: Pressed) -> list[FigureRow]:
         for frame in frames
     ]
     lists = [
-        pressed(frame) if frame is not None and frame.stages.design.worn_elastics() else None
+        pressed(frame) if frame is not None and frame.stages.design.active_elastics() else None
         for frame in frames
     ]
     press = [{} if each is None else {row.line: row.max_kpa for row in each.rows} for each in lists]
-    made = {name for _, design, _ in variants for name in design.worn_elastics()}
+    made = {name for _, design, _ in variants for name in design.active_elastics()}
     return [
-        FigureRow(
+        VariantRow(
             _piece_title(name, design, [each[name] for each in cuts if name in each]),
             (
-                Figure("mm", 0, False, tuple(each[name].cut_mm if name in each else None for each in cuts)),
-                Told(tuple(say(design.traits_of(name).elastic) for _, design, _ in variants)),
-                Figure("kPa", 1, False, tuple(each.get(name) for each in press)),
+                VariantValues(
+                    "mm", 0, False, tuple(each[name].cut_mm if name in each else None for each in cuts)
+                ),
+                VariantTexts(tuple(say(design.line_settings(name).elastic) for _, design, _ in variants)),
+                VariantValues("kPa", 1, False, tuple(each.get(name) for each in press)),
             ),
         )
         for name, design in _named(variants).items()
@@ -170,35 +174,35 @@ def _rests(frame: Frame | None) -> dict[str, float]:
 
 def _ratio(design: Design, name: str, rest: dict[str, float]) -> float | None:
     """Return what a line is set to; one that is not there, or not known to be, has no length."""
-    return design.ratio(name) if name in rest or name in design.worn() else None
+    return design.ratio(name) if name in rest or name in design.active_lines() else None
 
 
-def _results(variants: Variants) -> list[FigureRow]:
+def _results(variants: Variants) -> list[VariantRow]:
     """Return the rows of what came of it; a run that vibrates or a shape that is no body has none."""
     frames = [frame if frame is not None and is_result(frame) else None for _, _, frame in variants]
 
-    def row(label: str, *told: tuple[str, int, Callable[[Frame], float]]) -> FigureRow:
-        return FigureRow(
+    def row(label: str, *told: tuple[str, int, Callable[[Frame], float]]) -> VariantRow:
+        return VariantRow(
             label,
             tuple(
-                Figure(unit, digits, True, tuple(None if f is None else read(f) for f in frames))
+                VariantValues(unit, digits, True, tuple(None if f is None else read(f) for f in frames))
                 for unit, digits, read in told
             ),
         )
 
     return [
-        row(tr("Bust point, up"), ("mm", 1, lambda frame: bust_move(frame).mean.up)),
-        row(tr("Bust point, forward"), ("mm", 1, lambda frame: bust_move(frame).mean.forward)),
+        row(tr("Bust point, up"), ("mm", 1, lambda frame: bust_shift(frame).mean.up)),
+        row(tr("Bust point, forward"), ("mm", 1, lambda frame: bust_shift(frame).mean.forward)),
         row(
             tr("Volume error"),
-            ("%", 2, lambda frame: kept_volume(frame)[0]),
-            ("ml", 1, lambda frame: kept_volume(frame)[1]),
+            ("%", 2, lambda frame: controlled_volume(frame)[0]),
+            ("ml", 1, lambda frame: controlled_volume(frame)[1]),
         ),
     ]
 
 
 @dataclass(frozen=True)
-class Figure:
+class VariantValues:
     """One figure of each variant in ``unit``, None where it is not known; a change is ``signed``."""
 
     unit: str
@@ -227,7 +231,7 @@ class Figure:
 
 
 @dataclass(frozen=True)
-class Told:
+class VariantTexts:
     """Words for each variant, empty where there are none: they have no unit and differ by nothing."""
 
     values: tuple[str, ...]
@@ -247,11 +251,11 @@ class Told:
 
 
 @dataclass(frozen=True)
-class FigureRow:
+class VariantRow:
     """What the figures are of: the first of them counts, a second says it in another unit."""
 
     label: str
-    figures: tuple[Figure | Told, ...]
+    figures: tuple[VariantValues | VariantTexts, ...]
 
 
 @dataclass(frozen=True)
@@ -265,4 +269,4 @@ class VariantsView:
     shown: int
     levels: tuple[str, ...]
     verdicts: tuple[str, ...]
-    rows: tuple[FigureRow, ...]
+    rows: tuple[VariantRow, ...]

@@ -8,7 +8,7 @@ import numpy as np
 
 
 @dataclass(frozen=True)
-class Look:
+class Appearance:
     """Colours and strengths of the 3D view in one theme; they belong to no widget."""
 
     centre: str
@@ -24,8 +24,8 @@ class Look:
     wire: str
 
 
-LOOKS: dict[bool, Look] = {
-    False: Look(
+APPEARANCES: dict[bool, Appearance] = {
+    False: Appearance(
         centre="#FBFAF9",
         edge="#E3E0DC",
         clay="#EDD8C9",
@@ -38,7 +38,7 @@ LOOKS: dict[bool, Look] = {
         ghost="#AEBBD0",
         wire="#3F4650",
     ),
-    True: Look(
+    True: Appearance(
         centre="#2E3036",
         edge="#16171A",
         clay="#E2CBBC",

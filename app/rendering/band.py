@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from core.document.design import Design
 from core.geometry.mesh import Floats, Points
-from core.pipeline.line_routes import NO_BACK, Route
+from core.pipeline.line_routes import NO_BACK, LineRoute
 
 Rise = Callable[[Floats], Points]
 """Returns how far a band is off the skin, (rows, 3) [mm], at places along its line, (rows,) 0 to 1."""
@@ -24,7 +24,7 @@ OFF_WIDTH = 4.0
 
 def band_width(name: str, design: Design | None = None) -> float:
     """Return the width of a line's band as it is drawn [mm]."""
-    own, whole = design.traits_of(name).width if design else None, name.rpartition(" ")[0]
+    own, whole = design.line_settings(name).width if design else None, name.rpartition(" ")[0]
     return BAND_WIDTHS.get(name, BAND_WIDTHS.get(whole, OWN_WIDTH)) if own is None else own
 
 
@@ -45,6 +45,6 @@ class Band:
     drawn: bool = False
 
     @property
-    def route(self) -> Route:
+    def route(self) -> LineRoute:
         """Where it runs."""
-        return Route(self.path, self.back, self.drawn)
+        return LineRoute(self.path, self.back, self.drawn)

@@ -11,8 +11,8 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from app.rendering.actors import smooth_actor
 from app.rendering.appearance import rgb
 from app.rendering.band import Band, Rise
-from app.rendering.picking import Sight
-from app.rendering.ribbon_mesh import Ribbon, Surface, rimmed
+from app.rendering.picking import RayPicker
+from app.rendering.ribbon_mesh import Ribbon, RibbonSurface, rimmed
 from core.deformation.incremental_normals import moving_faces
 from core.geometry.mesh import Flags, Floats, Points, unit
 
@@ -43,7 +43,7 @@ class RibbonActor:
         )
         whole = pv.PolyData.from_regular_faces(mesh.vertices, mesh.faces) if dashed else self.data
         whole.SetPoints(self.data.GetPoints())
-        self.sight = Sight(whole)
+        self.sight = RayPicker(whole)
         # Plain views of what is drawn: pyvista looks its own up by name each time.
         self._places = vtk_to_numpy(self.data.GetPoints().GetData())
         self._normals = vtk_to_numpy(self.data.GetPointData().GetNormals())
@@ -80,7 +80,7 @@ class RibbonActor:
         self._places[rows], self._normals[rows] = places, self._moving.normals(places)
         self.data.GetPoints().Modified()
         self.data.GetPointData().GetNormals().Modified()
-        self.sight.forget()
+        self.sight.clear()
 
     def raise_to(self, off: Rise | None) -> bool:
         """Hold the ribbon off the skin from its next move on; returns whether that is another way than now.
@@ -112,14 +112,14 @@ class Bands:
         self._ribbons: dict[str, RibbonActor] = {}
         self._casings: dict[str, RibbonActor] = {}
         self._rises: dict[str, Rise] = {}
-        self._surface: Surface | None = None
+        self._surface: RibbonSurface | None = None
         self._displacement: Points = np.zeros((0, 3))
         self._visible = True
         self._faded = False
         self.selected = ""
         self.hovered = ""
 
-    def show(self, bands: Iterable[Band], surface: Surface) -> None:
+    def show(self, bands: Iterable[Band], surface: RibbonSurface) -> None:
         """Replace all ribbons by ``bands``, laid on the body at rest; the old selection stays if it can."""
         self.clear()
         self._surface = surface

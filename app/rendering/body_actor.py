@@ -8,11 +8,11 @@ import numpy as np
 import pyvista as pv
 from scipy import sparse
 
-from app.rendering.appearance import Look
-from app.rendering.body_part_actor import DIFFUSE, SkinPart
+from app.rendering.appearance import Appearance
+from app.rendering.body_part_actor import DIFFUSE, BodyPartActor
 from app.rendering.camera import View
-from app.rendering.render_mesh import skin_of
-from app.rendering.render_mesh_parts import CELL, NONE, Piece, Singles, pieces_of
+from app.rendering.render_mesh import render_mesh
+from app.rendering.render_mesh_parts import CELL, NONE, MeshPart, Singles, mesh_parts
 from app.rendering.vertex_colors import Colours, clay_colours, map_colours, scan_colours
 from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points, area_vectors, incidence, unit
 
@@ -34,7 +34,7 @@ class BodyActor:
         self,
         plotter: pv.BasePlotter,
         mesh: Mesh,
-        look: Look,
+        look: Appearance,
         moving: Indices = NONE,
         scanned: Colours | None = None,
     ) -> None:
@@ -42,7 +42,7 @@ class BodyActor:
         self.points = np.array(mesh.vertices)
         self._shift, self._nowhere = np.zeros(mesh.vertices.shape), np.zeros(mesh.vertices.shape)
         self._plotter = plotter
-        self._skin = skin_of(mesh)
+        self._skin = render_mesh(mesh)
         self._look = look
         self._occlusion = np.ones(len(mesh.vertices))
         self._map: Floats | None = None
@@ -56,13 +56,13 @@ class BodyActor:
         self._moves[moving] = True
         self._carried = NONE
         self._roughly = False
-        self._still: SkinPart | None = None
-        self._moving: SkinPart | None = None
-        self._rough: SkinPart | None = None
+        self._still: BodyPartActor | None = None
+        self._moving: BodyPartActor | None = None
+        self._rough: BodyPartActor | None = None
         self._mix(slice(None))
         self._part(moving)
 
-    def set_look(self, look: Look) -> None:
+    def set_appearance(self, look: Appearance) -> None:
         """Repaint for one theme."""
         self._look = look
         self._light()
@@ -71,13 +71,13 @@ class BodyActor:
     def set_occlusion(self, occlusion: Floats) -> None:
         """Darken folds: openness to the sky of each body vertex, shape (n,) [1]."""
         self._occlusion = np.asarray(occlusion)
-        self.set_look(self._look)
+        self.set_appearance(self._look)
 
     def set_scanned(self, shown: bool) -> None:
         """Show the colours of the scan, where it has any, or the material."""
         if self._scanned is not None and shown != self._is_scanned:
             self._is_scanned = shown
-            self.set_look(self._look)
+            self.set_appearance(self._look)
 
     def set_visible(self, visible: bool) -> None:
         """Show or hide it."""
@@ -162,7 +162,7 @@ class BodyActor:
         return min(met, key=lambda place: float(np.linalg.norm(place - start)), default=None)
 
     @property
-    def _parts(self) -> tuple[SkinPart, ...]:
+    def _parts(self) -> tuple[BodyPartActor, ...]:
         return tuple(part for part in (self._still, self._moving, self._rough) if part is not None)
 
     def _put_back(self, indices: Indices) -> None:
@@ -175,8 +175,8 @@ class BodyActor:
         """Part the skin anew into faces that stand still and faces that move, all of them at rest."""
         for part in self._parts:
             part.remove()
-        pieces = pieces_of(self._skin, moving)
-        self._still = self._drawn(pieces.still, "body")
+        pieces = mesh_parts(self._skin, moving)
+        self._still = self._drawn(pieces.static, "body")
         self._moving = self._drawn(pieces.moving, "body that moves")
         self._rough = self._drawn(pieces.rough, "rough body")
         for part in self._parts:
@@ -184,9 +184,9 @@ class BodyActor:
         self.set_visible(self._visible)
         self._light()
 
-    def _drawn(self, piece: Piece | None, name: str) -> SkinPart | None:
+    def _drawn(self, piece: MeshPart | None, name: str) -> BodyPartActor | None:
         inside_seen = bool(self.rest.boundary_loops)
-        return None if piece is None else SkinPart(self._plotter, piece, name, inside_seen)
+        return None if piece is None else BodyPartActor(self._plotter, piece, name, inside_seen)
 
     def _light(self) -> None:
         """Light a map and a scan more evenly than clay, so that colours can be told in the shade too."""
@@ -230,7 +230,7 @@ class BodyActor:
         self._moving.move(shown[source], normals[rows])
 
 
-class Ghost:
+class GhostActor:
     """The body at rest, seen only where it reaches out beyond the moved one.
 
     It is drawn opaque and enlarged about the eye, so that its picture is the same but lies behind the body.

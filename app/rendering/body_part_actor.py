@@ -5,8 +5,8 @@ from __future__ import annotations
 import pyvista as pv
 
 from app.rendering.actors import smooth_actor
-from app.rendering.picking import Sight
-from app.rendering.render_mesh_parts import Piece, Singles
+from app.rendering.picking import RayPicker
+from app.rendering.render_mesh_parts import MeshPart, Singles
 from app.rendering.vertex_colors import Colours
 from core.geometry.mesh import Indices, Points
 
@@ -19,10 +19,10 @@ DIFFUSE = 0.86
 """How much of the lamps' light the skin throws back."""
 
 
-class SkinPart:
+class BodyPartActor:
     """A piece of a skin: ``rows`` of the skin, shape (r,)."""
 
-    def __init__(self, plotter: pv.BasePlotter, piece: Piece, name: str, inside_seen: bool) -> None:
+    def __init__(self, plotter: pv.BasePlotter, piece: MeshPart, name: str, inside_seen: bool) -> None:
         self._plotter = plotter
         self._held, self.rows = piece.held, piece.rows
         self._data, self.actor = smooth_actor(
@@ -41,7 +41,7 @@ class SkinPart:
         self.actor.GetShaderProperty().AddFragmentShaderReplacement(
             "//VTK::Color::Impl", True, _DIM_INSIDE, False
         )
-        self.sight = Sight(self._data)
+        self.sight = RayPicker(self._data)
 
     def has(self, rows: Indices | slice) -> bool:
         """Tell whether one of some vertices of the skin, shape (k,), belongs to it."""
@@ -53,7 +53,7 @@ class SkinPart:
         self._data.point_data["Normals"][:] = normals
         self._data.GetPoints().Modified()
         self._data.GetPointData().GetNormals().Modified()
-        self.sight.forget()
+        self.sight.clear()
 
     def paint(self, colours: Colours) -> None:
         """Take its colours out of those of the whole skin, shape (n, 3)."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pyvista as pv
 
-from app.rendering.appearance import Look
-from app.rendering.ribbon_mesh import Surface
+from app.rendering.appearance import Appearance
+from app.rendering.ribbon_mesh import RibbonSurface
 from core.geometry.mesh import Flags, Floats, Mesh, Points
 
 LIFT = 1.3
@@ -22,12 +22,12 @@ class ControlActor:
     """The control mesh on one plotter: shown once, then moved in place."""
 
     def __init__(
-        self, plotter: pv.BasePlotter, control: Mesh, fixed: Flags, surface: Surface, ratio: float
+        self, plotter: pv.BasePlotter, control: Mesh, fixed: Flags, surface: RibbonSurface, ratio: float
     ) -> None:
         self._plotter = plotter
         self._edges = control.edges
         samples = self._straight(control.vertices).reshape(-1, 3)
-        laid, up = surface.lay(samples)
+        laid, up = surface.project(samples)
         self._lift = laid + LIFT * up - samples
         self._lines = pv.PolyData(samples.astype(np.float32), lines=self._chains())
         options = {"lighting": False, "copy_mesh": False, "reset_camera": False, "render": False}
@@ -45,10 +45,10 @@ class ControlActor:
                 data = pv.PolyData.from_regular_faces(points, faces.reshape(-1, 3))
                 name = f"control points {'fixed' if kind else 'free'}"
                 self._dots[kind] = (nodes, shape, data, plotter.add_mesh(data, name=name, **options))
-        self._node_lift = LIFT * surface.lay(control.vertices)[1]
+        self._node_lift = LIFT * surface.project(control.vertices)[1]
         self.move(control.vertices)
 
-    def set_look(self, look: Look) -> None:
+    def set_appearance(self, look: Appearance) -> None:
         """Repaint for one theme."""
         self._wire.prop.color = look.wire
         for kind, (_, _, _, actor) in self._dots.items():

@@ -15,7 +15,7 @@ _BYTES = 3  # VTK_UNSIGNED_CHAR
 _DEPTH_BITS = 32
 
 
-class StillPicture:
+class StaticLayerCache:
     """Draws one plotter's scene; what stands still is kept, with its depth, until something of it changes.
 
     Without a graphics card the picture of a body costs several times that of the part which moves. The result
@@ -44,7 +44,7 @@ class StillPicture:
             self._state = None
         self._eye = self._eye_now()
 
-    def forget(self) -> None:
+    def clear(self) -> None:
         """Give back what is kept."""
         self._kept = self._state = self._eye = None
 
@@ -73,7 +73,7 @@ class StillPicture:
             )
             # OpenGL copies depth only between formats that are the same.
             if not made or _depth_of(self._kept) != _depth_of(window.GetRenderFramebuffer()):
-                self.forget()
+                self.clear()
                 self._able = False  # to try it at every picture would draw each one twice
                 return False
         self._copy(window.GetRenderFramebuffer(), self._kept)

@@ -6,7 +6,7 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkRenderingCore import vtkViewport
 
-from app.rendering.appearance import LOOKS, Look, rgb
+from app.rendering.appearance import APPEARANCES, Appearance, rgb
 
 _LAMPS = (
     ((-0.55, 0.75, 1.0), "#FFF6EC"),  # key
@@ -23,7 +23,7 @@ FLOOR_DROP = 6.0
 """How far the floor lies under the body [mm]."""
 
 
-class Stage:
+class LightsAndFloor:
     """Background, five lamps that travel with the camera, and the floor, on one plotter."""
 
     def __init__(self, plotter: pv.BasePlotter) -> None:
@@ -39,7 +39,7 @@ class Stage:
         self._quad = pv.Plane(i_size=FLOOR_SIZE[0], j_size=FLOOR_SIZE[1], i_resolution=1, j_resolution=1)
         self.floor = plotter.add_mesh(
             self._quad,
-            texture=_shadow(LOOKS[False]),
+            texture=_shadow(APPEARANCES[False]),
             lighting=False,
             culling="back",
             name="floor",
@@ -49,7 +49,7 @@ class Stage:
         self.floor.SetPickable(False)
         self.floor.SetVisibility(False)
 
-    def set_look(self, look: Look) -> None:
+    def set_appearance(self, look: Appearance) -> None:
         """Repaint background, lamps and floor for one theme."""
         for lamp, strength in zip(self._lamps, look.lights, strict=True):
             lamp.intensity = strength
@@ -59,7 +59,7 @@ class Stage:
         )
         self.floor.SetTexture(_shadow(look))
 
-    def stand(self, x: float, y: float, z: float) -> None:
+    def place_floor(self, x: float, y: float, z: float) -> None:
         """Lay the floor under a body whose lowest point is at height ``z``, centred at (x, y) [mm]."""
         self.floor.SetPosition(x, y, z - FLOOR_DROP)
         self.floor.SetVisibility(True)
@@ -69,7 +69,7 @@ class Stage:
         self.floor.SetVisibility(shown)
 
 
-def _shadow(look: Look) -> pv.Texture:
+def _shadow(look: Appearance) -> pv.Texture:
     """Return a soft round shadow that has faded out before the rim of the quad."""
     axis = np.linspace(-1.0, 1.0, 128)
     radius = np.hypot(*np.meshgrid(axis, axis))

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from app.rendering.appearance import LOOKS, Look
+from app.rendering.appearance import APPEARANCES, Appearance
 
 CLAY, PLASTER, GRAPHITE = MATERIALS = ("clay", "plaster", "graphite")
-"""The materials; clay is the one of ``LOOKS``."""
+"""The materials; clay is the one of ``APPEARANCES``."""
 
 _COLOURS: dict[tuple[str, bool], dict[str, Any]] = {
     (PLASTER, False): {"clay": "#EEEBE6", "deep": "#8E8A84", "plaster": "#BFBAB3"},
@@ -18,6 +18,6 @@ _COLOURS: dict[tuple[str, bool], dict[str, Any]] = {
 }
 
 
-def look_of(dark: bool, material: str) -> Look:
+def appearance_of(dark: bool, material: str) -> Appearance:
     """Return the look of one theme with one of ``MATERIALS``; raises KeyError for another word."""
-    return LOOKS[dark] if material == CLAY else replace(LOOKS[dark], **_COLOURS[material, dark])
+    return APPEARANCES[dark] if material == CLAY else replace(APPEARANCES[dark], **_COLOURS[material, dark])

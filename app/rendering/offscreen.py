@@ -18,14 +18,14 @@ from PIL import Image
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
-from app.rendering.appearance import LOOKS, rgb
+from app.rendering.appearance import APPEARANCES, rgb
 from app.rendering.band import Band
 from app.rendering.camera import LENS
 from app.rendering.display import off_screen
 from app.rendering.material import CLAY
 from app.rendering.scene import Scene
 from core.errors import UserError
-from core.files.atomic_write import whole_file
+from core.files.atomic_write import atomic_path
 from core.geometry.mesh import Floats, Points
 from core.pipeline.build import Stages
 from core.progress import Pieces, Progress, quiet
@@ -40,10 +40,10 @@ LONGEST = 960
 """Width and height that is drawn at once [px]: a tenth of a second without a graphics card."""
 
 
-class Studio:
+class OffscreenRenderer:
     """A body with its bands before an off-screen camera; close it in the thread that made it.
 
-    ``scene`` is free to be looked at from anywhere; its background is not drawn, see ``on_ground``.
+    ``scene`` is free to be looked at from anywhere; its background is not drawn, see ``with_background``.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class Studio:
             plotter.ren_win.SetMultiSamples(0)
             self.scene = Scene(plotter, dark)
             self.scene.set_material(material)
-            plotter.set_background(LOOKS[dark].centre)
+            plotter.set_background(APPEARANCES[dark].centre)
             plotter.renderer.SetGradientBackground(False)  # it would begin anew in each piece
             plotter.renderer.SetBackgroundAlpha(0.0)
         except BaseException:
@@ -86,7 +86,7 @@ class Studio:
         scene.move_body(stages.moving.vertices, *stages.shape(control_points))
         yield 1.0
 
-    def __enter__(self) -> Studio:
+    def __enter__(self) -> OffscreenRenderer:
         return self
 
     def __exit__(
@@ -94,15 +94,15 @@ class Studio:
     ) -> None:
         self._plotter.close()
 
-    def stand_back(self, size: tuple[int, int], side: str) -> None:
+    def frame_bust(self, size: tuple[int, int], side: str) -> None:
         """Look from the side called ``side`` in ``app.rendering.camera.VIEWS`` at shoulders to waist."""
         self.scene.set_view(side)
-        self.scene.look_from(self.scene.framing_bust(size[0] / size[1]))
+        self.scene.set_camera(self.scene.framing_bust(size[0] / size[1]))
 
-    def shot(self, size: tuple[int, int]) -> Pieces[Picture]:
+    def render(self, size: tuple[int, int]) -> Pieces[Picture]:
         """Return a picture of ``size`` [px] on one pale or dark colour.
 
-        ``on_ground`` and ``on_nothing`` take that colour away where the picture is not solid.
+        ``with_background`` and ``with_transparency`` take that colour away where the picture is not solid.
         """
         columns, rows = (-(-FINER * side // LONGEST) for side in size)
         # Whole pixels of the picture in each piece: it may grow by a few pixels, which are cut off.
@@ -118,7 +118,7 @@ class Studio:
     def _piece(self, column: int, row: int, columns: int, rows: int, size: tuple[int, int]) -> Picture:
         plotter, camera = self._plotter, self._plotter.camera
         plotter.window_size = list(size)
-        self.scene.look_from(self.scene.view)
+        self.scene.set_camera(self.scene.view)
         half = np.tan(np.radians(LENS / 2.0)) / rows
         camera.SetViewAngle(float(np.degrees(2.0 * np.arctan(half))))
         camera.SetParallelScale(camera.GetParallelScale() / rows)
@@ -132,15 +132,15 @@ class Studio:
 def write_picture(
     path: str | os.PathLike[str], picture: Picture, dark: bool, clear: bool, progress: Progress = quiet
 ) -> None:
-    """Write what ``Studio.shot`` has drawn as PNG, on its ground or on ``clear`` nothing.
+    """Write what ``OffscreenRenderer.render`` has drawn as PNG, on its ground or on ``clear`` nothing.
 
     Raises UserError for another ending or a place that cannot be written to; Cancelled leaves no file.
     """
     target = Path(path)
     picture_kind(target)
     progress("writing", 0.1)
-    image = Image.fromarray(on_nothing(picture, dark) if clear else on_ground(picture, dark))
-    with whole_file(target) as partial:
+    image = Image.fromarray(with_transparency(picture, dark) if clear else with_background(picture, dark))
+    with atomic_path(target) as partial:
         progress("writing", 0.3)
         image.save(partial, "PNG", optimize=False)
         progress("writing", 1.0)
@@ -154,9 +154,9 @@ def picture_kind(path: str | os.PathLike[str]) -> str:
     return kind
 
 
-def on_ground(picture: Picture, dark: bool) -> Picture:
+def with_background(picture: Picture, dark: bool) -> Picture:
     """Return a picture on the background of the views, shape (h, w, 3): bright in the middle."""
-    (height, width), look = picture.shape[:2], LOOKS[dark]
+    (height, width), look = picture.shape[:2], APPEARANCES[dark]
     y, x = np.ogrid[-1.0 : 1.0 : height * 1j, -1.0 : 1.0 : width * 1j]
     away = (np.hypot(width * x, height * y) / np.hypot(width, height)).astype(np.float32)
     clear = away * (1.0 - picture[..., 3] / np.float32(255.0))
@@ -165,10 +165,10 @@ def on_ground(picture: Picture, dark: bool) -> Picture:
     return np.asarray(np.clip(shown + 0.5, 0.0, 255.0), dtype=np.uint8)
 
 
-def on_nothing(picture: Picture, dark: bool) -> Picture:
+def with_transparency(picture: Picture, dark: bool) -> Picture:
     """Return a picture as files hold it, shape (h, w, 4): its own colours, whatever is seen through."""
     solid = picture[..., 3:] / np.float32(255.0)
-    own = picture[..., :3] - (1.0 - solid) * rgb(LOOKS[dark].centre).astype(np.float32)
+    own = picture[..., :3] - (1.0 - solid) * rgb(APPEARANCES[dark].centre).astype(np.float32)
     colours = np.clip(own / np.maximum(solid, 1.0 / 255.0) + 0.5, 0.0, 255.0)
     return np.concatenate([colours.astype(np.uint8), picture[..., 3:]], axis=2)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.rendering.thumbnail import Picture, portrait
+from app.rendering.thumbnail import Picture, render_thumbnail
 from core.geometry.mesh import Floats, unit
 from core.progress import Progress, quiet
 from core.scan.body import Body
@@ -24,16 +24,16 @@ ON_AXIS = np.cos(np.radians(1.5))
 
 
 @dataclass(frozen=True, eq=False)
-class Way:
-    """``up`` and ``front`` as a scan is told them, the nearest axes, the ``turn`` (3, 3) from the body."""
+class OrientationOption:
+    """``up`` and ``front`` as a scan is told them, the nearest axes, the ``rotation`` (3, 3) from the body."""
 
     up: str
     front: str
     axes: tuple[str, str]
-    turn: Floats
+    rotation: Floats
 
 
-def ways(pose: Pose) -> list[Way]:
+def orientation_options(pose: Pose) -> list[OrientationOption]:
     """Return how a body may stand, the likeliest first: what its shape allows, then turns about up."""
     now = unit(pose.file_to_mm[:3, :3])
     about = [np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]) for c, s in ((0, 1), (0, -1), (-1, 0))]
@@ -48,14 +48,14 @@ def ways(pose: Pose) -> list[Way]:
     return [_way(turn, turn @ now.T) for turn in found[:MOST]]
 
 
-def pictures(
+def option_thumbnails(
     body: Body, size: tuple[int, int], clay: tuple[int, int, int], progress: Progress = quiet
-) -> list[tuple[Way, Picture]]:
-    """Return each way with a picture of the body as it would stand; see ``portrait``. Raises Cancelled."""
-    painted: list[tuple[Way, Picture]] = []
-    for way in ways(body.pose):
+) -> list[tuple[OrientationOption, Picture]]:
+    """Return each way with a picture of the body as it would stand; see ``render_thumbnail``. Raises Cancelled."""
+    painted: list[tuple[OrientationOption, Picture]] = []
+    for way in orientation_options(body.pose):
         progress("painting", len(painted) / MOST)
-        painted.append((way, portrait(body.calm, way.turn, size, clay)))
+        painted.append((way, render_thumbnail(body.smoothed, way.rotation, size, clay)))
     return painted
 
 
@@ -65,9 +65,9 @@ def _alike(turn: Floats, old: Floats) -> bool:
     return near or all(nearest_axis(turn[k]) == nearest_axis(old[k]) for k in (1, 2))
 
 
-def _way(file_to_body: Floats, turn: Floats) -> Way:
+def _way(file_to_body: Floats, turn: Floats) -> OrientationOption:
     up, front = file_to_body[2], -file_to_body[1]
-    return Way(_told(up), _told(front), (nearest_axis(up), nearest_axis(front)), turn)
+    return OrientationOption(_told(up), _told(front), (nearest_axis(up), nearest_axis(front)), turn)
 
 
 def _told(direction: Floats) -> str:

@@ -10,14 +10,14 @@ from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 from core.geometry.mesh import Floats
 
 
-class Sight:
+class RayPicker:
     """Where a straight sight first meets drawn triangles; looks them up anew after they moved."""
 
     def __init__(self, data: pv.PolyData) -> None:
         self._data = data
         self._locator: vtkStaticCellLocator | None = None
 
-    def forget(self) -> None:
+    def clear(self) -> None:
         """Say that the triangles have moved."""
         self._locator = None
 

@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 from app.rendering.band import OFF_WIDTH, band_width
-from app.rendering.render_mesh import PREPARING, skin_of
-from app.rendering.render_mesh_parts import NONE, pieces_of
-from app.rendering.ribbon_mesh import Surface
-from core.pipeline.build import Stages, StuckError
+from app.rendering.render_mesh import PREPARING, render_mesh
+from app.rendering.render_mesh_parts import NONE, mesh_parts
+from app.rendering.ribbon_mesh import RibbonSurface
+from core.pipeline.build import IncompleteBuildError, Stages
 from core.progress import Progress, quiet
 
 
-def make_ready(built: Stages | StuckError, progress: Progress = quiet) -> None:
+def prepare_scene(built: Stages | IncompleteBuildError, progress: Progress = quiet) -> None:
     """Work out all that takes long before a body can be shown, with the bands on it. Raises Cancelled."""
     mesh, stages = built.body.mesh, built if isinstance(built, Stages) else None
-    skin = skin_of(mesh, lambda what, share: progress(what, 0.7 * share))
+    skin = render_mesh(mesh, lambda what, share: progress(what, 0.7 * share))
     progress(PREPARING, 0.7)
     _ = built.body.holes  # kept with the body: they are listed beside it
-    pieces_of(skin, NONE if stages is None else stages.moving.vertices)
+    mesh_parts(skin, NONE if stages is None else stages.moving.vertices)
     if stages is None:
         return
-    surface = Surface(mesh)
+    surface = RibbonSurface(mesh)
     for done, line in enumerate(stages.model.lines):
         progress(PREPARING, 0.9 + 0.1 * done / len(stages.model.lines))
         for width in (band_width(line.name, stages.design), OFF_WIDTH):

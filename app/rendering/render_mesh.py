@@ -24,7 +24,7 @@ PLATE_AREA = 1500.0
 
 
 @dataclass(frozen=True, eq=False)
-class Skin:
+class RenderMesh:
     """A mesh whose vertices at the rims of plates are doubled, so that the rim looks crisp.
 
     ``mesh`` has the body's own n vertices first and the doubles after them; ``source`` is the body vertex of
@@ -51,7 +51,7 @@ class Skin:
         return box_of(self.mesh.vertices)
 
 
-def split_plates(mesh: Mesh, progress: Progress = quiet) -> Skin:
+def split_plates(mesh: Mesh, progress: Progress = quiet) -> RenderMesh:
     """Return ``mesh`` with the rims of its cut plates doubled. Raises Cancelled."""
     plate_face = plate_faces(mesh, progress)
     count = len(mesh.vertices)
@@ -64,7 +64,7 @@ def split_plates(mesh: Mesh, progress: Progress = quiet) -> Skin:
     faces = np.where(plate_face[:, None], double[mesh.faces], mesh.faces)
     source = np.concatenate([np.arange(count), rim])
     plate = np.concatenate([on_plate & ~on_skin, np.ones(len(rim), dtype=bool)])
-    return Skin(Mesh(mesh.vertices[source], faces), source, plate)
+    return RenderMesh(Mesh(mesh.vertices[source], faces), source, plate)
 
 
 def plate_faces(mesh: Mesh, progress: Progress = quiet) -> Flags:
@@ -88,10 +88,10 @@ def plate_faces(mesh: Mesh, progress: Progress = quiet) -> Flags:
     return np.asarray(((area > PLATE_AREA) & straight)[label])
 
 
-_KNOWN: WeakKeyDictionary[Mesh, Skin] = WeakKeyDictionary()
+_KNOWN: WeakKeyDictionary[Mesh, RenderMesh] = WeakKeyDictionary()
 
 
-def skin_of(mesh: Mesh, progress: Progress = quiet) -> Skin:
+def render_mesh(mesh: Mesh, progress: Progress = quiet) -> RenderMesh:
     """Return the skin of ``mesh``, worked out once, with all that takes long to work out before it is drawn.
 
     Runs in any thread: of a large scan it takes seconds, and the window's thread has none. Raises Cancelled.

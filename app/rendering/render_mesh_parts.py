@@ -9,7 +9,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 import numpy.typing as npt
 
-from app.rendering.render_mesh import Skin
+from app.rendering.render_mesh import RenderMesh
 from core.geometry.mesh import Faces, Flags, Indices
 
 Singles = npt.NDArray[np.float32]
@@ -25,7 +25,7 @@ CELL = 2.5
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class MeshPart:
     """Some faces of a skin, with only their own vertices: ``rows`` of the skin, shape (r,).
 
     ``places`` [mm] and unit ``normals``, both (r, 3), are those at rest; ``faces`` (m, 3) count the rows.
@@ -39,21 +39,21 @@ class Piece:
     held: Flags
 
 
-class Pieces(NamedTuple):
+class MeshParts(NamedTuple):
     """A skin in the faces that stand still and those of which a vertex moves, None where there are none.
 
     ``rough`` stands for the still ones if they are many: far fewer faces, which end where those do.
     """
 
-    still: Piece | None
-    moving: Piece | None
-    rough: Piece | None
+    static: MeshPart | None
+    moving: MeshPart | None
+    rough: MeshPart | None
 
 
-_KNOWN: WeakKeyDictionary[Skin, tuple[Indices, Pieces]] = WeakKeyDictionary()
+_KNOWN: WeakKeyDictionary[RenderMesh, tuple[Indices, MeshParts]] = WeakKeyDictionary()
 
 
-def pieces_of(skin: Skin, moving: Indices) -> Pieces:
+def mesh_parts(skin: RenderMesh, moving: Indices) -> MeshParts:
     """Return the pieces of a skin of which some vertices of the body move, shape (k,).
 
     They are kept until others are asked for. Runs in any thread.
@@ -64,7 +64,7 @@ def pieces_of(skin: Skin, moving: Indices) -> Pieces:
     return known[1]
 
 
-def _parted(skin: Skin, moving: Indices) -> Pieces:
+def _parted(skin: RenderMesh, moving: Indices) -> MeshParts:
     moves = np.zeros(int(skin.source.max(initial=-1)) + 1, dtype=bool)
     moves[moving] = True
     move = np.asarray(moves[skin.source][skin.mesh.faces].any(axis=1))
@@ -73,10 +73,10 @@ def _parted(skin: Skin, moving: Indices) -> Pieces:
     if still is not None and len(still.faces) > LARGE:
         rim = np.zeros(len(still.rows), dtype=bool) if drawn is None else drawn.held[still.rows]
         rough = _roughened(still, skin.plate[still.rows], rim)
-    return Pieces(still, drawn, rough)
+    return MeshParts(still, drawn, rough)
 
 
-def _piece_of(skin: Skin, chosen: Flags) -> Piece | None:
+def _piece_of(skin: RenderMesh, chosen: Flags) -> MeshPart | None:
     if not chosen.any():
         return None
     corners = skin.mesh.faces[chosen]
@@ -84,10 +84,10 @@ def _piece_of(skin: Skin, chosen: Flags) -> Piece | None:
     held[corners] = True
     rows = np.flatnonzero(held)
     places = skin.mesh.vertices[rows].astype(np.float32)
-    return Piece(rows, places, skin.normals[rows], (np.cumsum(held) - 1)[corners], held)
+    return MeshPart(rows, places, skin.normals[rows], (np.cumsum(held) - 1)[corners], held)
 
 
-def _roughened(piece: Piece, plate: Flags, rim: Flags) -> Piece:
+def _roughened(piece: MeshPart, plate: Flags, rim: Flags) -> MeshPart:
     """Return a piece with the mean of vertices that share a cell and a side; those of the ``rim`` stay."""
     x, y, z = ((piece.places - piece.places.min(axis=0)) / CELL).astype(np.int64).T
     side = 2 * np.argmax(np.abs(piece.normals), axis=1)
@@ -102,4 +102,4 @@ def _roughened(piece: Piece, plate: Flags, rim: Flags) -> Piece:
     )
     faces = member[piece.faces]
     faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
-    return Piece(piece.rows[one], places, normals, faces, piece.held)
+    return MeshPart(piece.rows[one], places, normals, faces, piece.held)

@@ -12,12 +12,12 @@ from scipy import sparse
 from scipy.ndimage import maximum_filter
 from scipy.spatial import cKDTree
 
-from app.rendering.render_mesh import Skin, skin_of
+from app.rendering.render_mesh import RenderMesh, render_mesh
 from core.garment.curve_smoothing import CentreLine, centre_line, smooth
-from core.garment.curve_smoothing import Surface as SkinSurface
+from core.garment.curve_smoothing import LocalPlanes as SkinSurface
 from core.geometry.mesh import Faces, Floats, Indices, Mesh, Points, unit
 from core.geometry.plane_sections import arc_length, interpolate
-from core.pipeline.line_routes import Route
+from core.pipeline.line_routes import LineRoute
 
 CASING = 7.0
 """How much wider the white casing of the selected ribbon is [mm]."""
@@ -97,22 +97,22 @@ class Ribbon:
         return replace(self, mesh=self.mesh.moved(self.mesh.vertices + rise), rise=rise)
 
 
-_LAID: WeakKeyDictionary[Skin, dict[object, Ribbon]] = WeakKeyDictionary()
+_LAID: WeakKeyDictionary[RenderMesh, dict[object, Ribbon]] = WeakKeyDictionary()
 
 
-class Surface(SkinSurface):
+class RibbonSurface(SkinSurface):
     """Smooth local planes of a body, on which paths are laid, and what stands up there."""
 
     def __init__(self, mesh: Mesh) -> None:
-        super().__init__(mesh, skin_of(mesh).tree)
-        self._laid = _LAID.setdefault(skin_of(mesh), {})
+        super().__init__(mesh, render_mesh(mesh).tree)
+        self._laid = _LAID.setdefault(render_mesh(mesh), {})
 
-    def ribbon(self, route: Route, width: float, cased: bool = False) -> Ribbon:
+    def ribbon(self, route: LineRoute, width: float, cased: bool = False) -> Ribbon:
         """Return what ``build_ribbon`` gives, or ``build_casing`` if it is ``cased``; at once if laid."""
         laid = self._laid.get(_key(route, width, cased))
         return laid or (build_casing if cased else build_ribbon)(route, self, width)
 
-    def lay_ready(self, route: Route, width: float) -> None:
+    def lay_ready(self, route: LineRoute, width: float) -> None:
         """Lay ribbon and casing and keep them for all surfaces of the mesh; runs in any thread."""
         for cased in (False, True):
             self._laid[_key(route, width, cased)] = self.ribbon(route, width, cased)
@@ -137,31 +137,31 @@ def _across(width: float) -> Floats:
     return np.concatenate([[-1.0, -1.0], top, [1.0, 1.0]])
 
 
-def _key(route: Route, width: float, cased: bool) -> object:
+def _key(route: LineRoute, width: float, cased: bool) -> object:
     return route.path.tobytes(), width, route.back.tobytes(), route.drawn, cased
 
 
-def _middle(route: Route, surface: Surface, width: float) -> CentreLine:
+def _middle(route: LineRoute, surface: RibbonSurface, width: float) -> CentreLine:
     return centre_line(route.path, surface, route.back, width, drawn=route.drawn)
 
 
-def build_ribbon(route: Route, surface: Surface, width: float) -> Ribbon:
+def build_ribbon(route: LineRoute, surface: RibbonSurface, width: float) -> Ribbon:
     """Return the ribbon ``width`` [mm] wide along a ``route``, see ``centre_line``."""
     return _puffed(_middle(route, surface, width), surface, width, sink=0.0)
 
 
-def build_casing(route: Route, surface: Surface, width: float) -> Ribbon:
+def build_casing(route: LineRoute, surface: RibbonSurface, width: float) -> Ribbon:
     """Return the ribbon that looks out all round the one ``width`` [mm] wide along a ``route``."""
     line = _middle(route, surface, width)
     if not line.closed:
         beyond = 0.5 * CASING * unit(line.points[[0, -1]] - line.points[[1, -2]])
         ends = line.points[[0, -1]] + beyond
-        laid = surface.lay(np.concatenate([ends[:1], line.points, ends[1:]]))
+        laid = surface.project(np.concatenate([ends[:1], line.points, ends[1:]]))
         line = CentreLine(*laid, np.pad(line.lift, 1, "edge"), np.pad(line.part, 1, "edge"), False)
     return _puffed(line, surface, width + CASING, sink=0.9)
 
 
-def _puffed(line: CentreLine, surface: Surface, width: float, sink: float) -> Ribbon:
+def _puffed(line: CentreLine, surface: RibbonSurface, width: float, sink: float) -> Ribbon:
     """Return the ribbon about a centre line, pressed ``sink`` [mm] towards the skin; open ends are round."""
     count = len(line.points)
     at, narrow = np.arange(count) / count, np.ones(count)
@@ -173,7 +173,7 @@ def _puffed(line: CentreLine, surface: Surface, width: float, sink: float) -> Ri
     across = _across(width)
     reach = 0.5 * width * narrow[:, None, None] * across[:, None]
     flat = points[:, None] + reach * side[:, None]
-    laid, up = (each.reshape(flat.shape) for each in surface.lay(flat.reshape(-1, 3)))
+    laid, up = (each.reshape(flat.shape) for each in surface.project(flat.reshape(-1, 3)))
     puff = np.tile(rimmed(_PUFF, len(across)), (len(points), 1))
     puff[narrow < _TIP] = _PUFF[0]
     lift = _LEAST + _MORE * puff - sink
@@ -183,7 +183,7 @@ def _puffed(line: CentreLine, surface: Surface, width: float, sink: float) -> Ri
     lifted = line.lift[:, None] * line.normals
     raised += lifted[:, None]
     vertices, faces = raised.reshape(-1, 3), _grid_faces(len(points), len(across), closed)
-    follow = surface.follow(vertices)
+    follow = surface.displacement_weights(vertices)
     flush = np.zeros_like(vertices)
     return Ribbon(Mesh(vertices, faces), follow, line.part, at, lifted, up.reshape(-1, 3), flush)
 

@@ -8,18 +8,18 @@ from dataclasses import replace
 import numpy as np
 import pyvista as pv
 
-from app.rendering.appearance import Look
+from app.rendering.appearance import Appearance
 from app.rendering.band import Band
 from app.rendering.band_actors import Bands
-from app.rendering.body_actor import BodyActor, Ghost
+from app.rendering.body_actor import BodyActor, GhostActor
 from app.rendering.camera import View, aim
 from app.rendering.control_mesh_actor import ControlActor
 from app.rendering.curve_actors import MeasureTrace, Trace
 from app.rendering.framing import NOBODY, depth_range, framing_bust
-from app.rendering.lights_and_floor import Stage
-from app.rendering.material import CLAY, look_of
+from app.rendering.lights_and_floor import LightsAndFloor
+from app.rendering.material import CLAY, appearance_of
 from app.rendering.render_mesh_parts import NONE
-from app.rendering.ribbon_mesh import Surface
+from app.rendering.ribbon_mesh import RibbonSurface
 from app.rendering.section_actor import SectionSheet
 from app.rendering.vertex_colors import Colours
 from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points
@@ -39,12 +39,12 @@ class Scene:
         self.plotter = plotter
         self.body: BodyActor | None = None
         self._pixel_ratio = pixel_ratio
-        self._stage = Stage(plotter)
+        self._stage = LightsAndFloor(plotter)
         self.bands = Bands(plotter)
         self._trace, self.measure = Trace(plotter), MeasureTrace(plotter)
         self.section = SectionSheet(plotter, pixel_ratio)
-        self._surface: Surface | None = None
-        self._ghost: Ghost | None = None
+        self._surface: RibbonSurface | None = None
+        self._ghost: GhostActor | None = None
         self._control: ControlActor | None = None
         self._control_points: tuple[Points, Points] | None = None
         self._visible = dict.fromkeys(PARTS, True) | {"control": False, "ghost": False, "colours": False}
@@ -52,7 +52,7 @@ class Scene:
         self._material = CLAY
         self._view = View()
         self.set_dark(dark)
-        self.look_from(self._view)
+        self.set_camera(self._view)
 
     # -- what is shown
 
@@ -62,13 +62,13 @@ class Scene:
         self._trace.show()
         self._drop_control()
         self.body = BodyActor(self.plotter, mesh, self._look, moving, scanned)
-        self._surface = Surface(mesh)
+        self._surface = RibbonSurface(mesh)
         low, high = self._box().T
-        self._stage.stand(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), low[2])
+        self._stage.place_floor(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), low[2])
         self._before, self._ghost = False, None
         self.plotter.remove_actor("ghost", reset_camera=False, render=False)
         self._apply_visible()
-        self.look_from(self._view)
+        self.set_camera(self._view)
 
     def set_occlusion(self, occlusion: Floats) -> None:
         """Darken the folds of the body by ``bake_occlusion``'s result, shape (n,) [1]."""
@@ -78,7 +78,7 @@ class Scene:
         """Show the control mesh on the body; ``fixed`` control points, shape (n,), are small and dark."""
         self._drop_control()
         self._control = ControlActor(self.plotter, control, fixed, self._laying_ground(), self._pixel_ratio)
-        self._control.set_look(self._look)
+        self._control.set_appearance(self._look)
         self._control_points = (control.vertices, control.vertices)
         self._apply_visible()
 
@@ -89,7 +89,7 @@ class Scene:
 
     def show_trace(self, points: Points) -> None:
         """Draw a curve of the body at rest, shape (k, 3) [mm], where it is on the shown one; or no curve."""
-        self._trace.show(self.carried(points) if len(points) else points)
+        self._trace.show(self.carried_points(points) if len(points) else points)
 
     def mark_bands(self, selected: str = "", hovered: str = "") -> None:
         """Put a white casing round the selected line and a faint one round the one under the pointer.
@@ -132,7 +132,7 @@ class Scene:
         self._visible[what] = visible
         self._apply_visible()
 
-    def still(self) -> list[pv.Actor]:
+    def static_actors(self) -> list[pv.Actor]:
         """Return what stays where it is while the body moves."""
         ghost = () if self._ghost is None else (self._ghost.actor,)
         return [self._stage.floor, *ghost, *(() if self.body is None else self.body.still)]
@@ -152,13 +152,13 @@ class Scene:
         """Repaint everything for the light or the dark theme."""
         self._dark = dark
         look = self._look
-        self._stage.set_look(look)
+        self._stage.set_appearance(look)
         for each in (self._trace, self.measure, self.section):
             each.set_dark(dark)
         if self.body is not None:
-            self.body.set_look(look)
+            self.body.set_appearance(look)
         if self._control is not None:
-            self._control.set_look(look)
+            self._control.set_appearance(look)
         if self._ghost is not None:
             self._ghost.actor.prop.color = look.ghost
 
@@ -173,15 +173,15 @@ class Scene:
         self.set_dark(self._dark)
 
     @property
-    def _look(self) -> Look:
-        return look_of(self._dark, self._material)
+    def _look(self) -> Appearance:
+        return appearance_of(self._dark, self._material)
 
     @property
     def view(self) -> View:
         """Where the scene is seen from."""
         return self._view
 
-    def look_from(self, view: View) -> None:
+    def set_camera(self, view: View) -> None:
         """See the scene from ``view``."""
         self._view = view
         aim(self.plotter.camera, view)
@@ -191,19 +191,19 @@ class Scene:
 
     def set_view(self, name: str) -> None:
         """See the scene from the side called ``name`` in ``app.rendering.camera.VIEWS``."""
-        self.look_from(self._view.named(name))
+        self.set_camera(self._view.named(name))
 
     def set_parallel(self, parallel: bool) -> None:
         """Switch between parallel and perspective projection."""
-        self.look_from(replace(self._view, parallel=parallel))
+        self.set_camera(replace(self._view, parallel=parallel))
 
     def frame_all(self) -> None:
         """Step back until the whole body is in the picture."""
-        self.look_from(self.framing_all(self._aspect()))
+        self.set_camera(self.framing_all(self._aspect()))
 
     def frame_bust(self) -> None:
         """Step closer, so that shoulders to waist fill the picture."""
-        self.look_from(self.framing_bust(self._aspect()))
+        self.set_camera(self.framing_bust(self._aspect()))
 
     def framing_all(self, aspect: float) -> View:
         """Return the view from the same side that shows the whole body; ``aspect`` is width by height."""
@@ -227,15 +227,15 @@ class Scene:
         nearer = point - clearance * sight / np.linalg.norm(sight)
         return self.hit_body(self._view.eye, nearer) is not None
 
-    def carried(self, points: Points) -> Points:
+    def carried_points(self, points: Points) -> Points:
         """Return where places on the body at rest, shape (k, 3) [mm], are on the shown one."""
-        return np.asarray(points + self._laying_ground().follow(points) @ self._displacement())
+        return np.asarray(points + self._laying_ground().displacement_weights(points) @ self._displacement())
 
     def at_rest(self, points: Points) -> Points:
         """Return where places on the shown body, shape (k, 3) [mm], are on the body at rest."""
         rest = points
         for _ in range(4):  # each round leaves a small part of the last one's error
-            rest = rest + points - self.carried(rest)
+            rest = rest + points - self.carried_points(rest)
         return rest
 
     def band_at(self, x: float, y: float, width: float, height: float) -> str:
@@ -261,7 +261,7 @@ class Scene:
             raise RuntimeError("show_body comes first")
         return self.body
 
-    def _laying_ground(self) -> Surface:
+    def _laying_ground(self) -> RibbonSurface:
         if self._surface is None:
             raise RuntimeError("show_body comes first")
         return self._surface
@@ -283,7 +283,7 @@ class Scene:
             self.body.set_scanned(self._visible["colours"])
             self._stage.show_floor(self._visible["floor"])
             if self._visible["ghost"] and self._ghost is None:
-                self._ghost = Ghost(self.plotter, self.body.rest)
+                self._ghost = GhostActor(self.plotter, self.body.rest)
                 self._ghost.actor.prop.color = self._look.ghost
                 self._ghost.look_from(self._view)
         if self._ghost is not None:

@@ -20,7 +20,7 @@ INK = "#2459CF"
 _NEARER = 0.99  # how far from the eye the sketch is drawn, so that no band covers it
 
 
-class Sketch:
+class SketchActor:
     """Draws on one plotter; what is given replaces what was there."""
 
     def __init__(self, plotter: pv.BasePlotter) -> None:

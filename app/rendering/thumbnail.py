@@ -19,7 +19,7 @@ LIGHT = np.array([-0.35, -0.80, 0.49])
 """Where the light comes from, in the canonical frame [1]."""
 
 
-def portrait(mesh: Mesh, turn: Floats, size: tuple[int, int], clay: tuple[int, int, int]) -> Picture:
+def render_thumbnail(mesh: Mesh, turn: Floats, size: tuple[int, int], clay: tuple[int, int, int]) -> Picture:
     """Return a body turned by ``turn``, shape (3, 3), seen from -y with z up: RGBA, shape (h, w, 4).
 
     ``size`` is width and height [px], ``clay`` the colour of the skin in full light. Nothing is where no body

@@ -13,9 +13,9 @@ from typing import IO
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from app.rendering.offscreen import Picture, Studio, on_ground
+from app.rendering.offscreen import OffscreenRenderer, Picture, with_background
 from core.errors import UserError
-from core.files.atomic_write import whole_file
+from core.files.atomic_write import atomic_path
 from core.progress import Pieces, Progress, part_of, quiet
 
 FORMATS = ("gif", "webp", "png")
@@ -32,7 +32,7 @@ _FONT = {True: "NotoSansJP-Regular.otf", False: "Inter-Regular.ttf"}  # by wheth
 class Turntable:
     """How the body turns: once round in ``frames`` pictures and ``seconds``, ``size`` in pixels.
 
-    ``beside`` shows it before on the left and after on the right, with ``labels`` below. Raises UserError for
+    ``side_by_side`` shows it before on the left and after on the right, with ``labels`` below. Raises UserError for
     what cannot be.
     """
 
@@ -40,7 +40,7 @@ class Turntable:
     size: tuple[int, int] = (640, 720)
     seconds: float = 6.0
     dark: bool = False
-    beside: bool = False
+    side_by_side: bool = False
     labels: tuple[str, str] = ("before", "after")
 
     def __post_init__(self) -> None:
@@ -66,23 +66,23 @@ def turntable_kind(path: str | os.PathLike[str]) -> str:
     return kind
 
 
-def turn_round(studio: Studio, turntable: Turntable) -> Pieces[list[Picture]]:
+def render_turntable(studio: OffscreenRenderer, turntable: Turntable) -> Pieces[list[Picture]]:
     """Return the pictures of one turn, from the front towards the subject's left.
 
     Where before and after stand beside each other, all of before come first.
     """
     scene, (width, height) = studio.scene, turntable.size
-    parts = 1 + turntable.beside
+    parts = 1 + turntable.side_by_side
     each, shots = 1.0 / (parts * turntable.frames), list[Picture]()
     size = width // parts, height
-    studio.stand_back(size, "front")
+    studio.frame_bust(size, "front")
     start = scene.view.orbit(0.0, 4.0)
     for before in (True, False)[-parts:]:
         scene.before(before)
         scene.set_visible("bands", not before)
         for k in range(turntable.frames):
-            scene.look_from(start.orbit(360.0 * k / turntable.frames, 0.0))
-            shots.append((yield from part_of(studio.shot(size), each * len(shots), each)))
+            scene.set_camera(start.orbit(360.0 * k / turntable.frames, 0.0))
+            shots.append((yield from part_of(studio.render(size), each * len(shots), each)))
     return shots
 
 
@@ -92,7 +92,7 @@ def write_turntable(
     turntable: Turntable,
     progress: Progress = quiet,
 ) -> list[Path]:
-    """Write what ``turn_round`` has drawn, and return the files.
+    """Write what ``render_turntable`` has drawn, and return the files.
 
     Raises UserError for another ending or a place that cannot be written to; Cancelled leaves no file.
     """
@@ -101,7 +101,7 @@ def write_turntable(
         raise UserError(f"There is no folder {targets[0].parent}.", "Make it, or choose another one.")
     pictures = _composed(shots, turntable, progress)
     with ExitStack() as stack:
-        partials = [stack.enter_context(whole_file(each)) for each in targets]
+        partials = [stack.enter_context(atomic_path(each)) for each in targets]
         groups = [[each] for each in pictures] if kind == "png" else [pictures]
         for k, (partial, group) in enumerate(zip(partials, groups, strict=True)):
             progress("writing", _COMPOSED + (1.0 - _COMPOSED) * k / len(groups))
@@ -125,7 +125,7 @@ def _composed(shots: Sequence[Picture], turntable: Turntable, progress: Progress
     pictures = []
     for k in range(turntable.frames):
         progress("writing", _COMPOSED * k / turntable.frames)
-        parts = [on_ground(shot, turntable.dark) for shot in shots[k :: turntable.frames]]
+        parts = [with_background(shot, turntable.dark) for shot in shots[k :: turntable.frames]]
         pictures.append(
             _labelled(np.concatenate(parts, axis=1), turntable)
             if len(parts) > 1

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from app.rendering.appearance import Look, rgb
+from app.rendering.appearance import Appearance, rgb
 from core.geometry.mesh import Flags, Floats
 from core.geometry.plane_sections import interpolate
 
@@ -38,7 +38,7 @@ class Ramp:
         return colours
 
 
-def clay_colours(occlusion: Floats, plate: Flags, look: Look) -> Colours:
+def clay_colours(occlusion: Floats, plate: Flags, look: Appearance) -> Colours:
     """Return the colour of each vertex, (n, 3) uint8: clay in the open, deep in folds, plaster plates."""
     open_sky = np.clip((occlusion - 0.36) / 0.50, 0.0, 1.0)
     deep, clay = rgb(look.deep), rgb(look.clay)
@@ -57,7 +57,7 @@ def scan_colours(clay: Colours, scanned: Colours, occlusion: Floats) -> Colours:
     return clay
 
 
-def map_colours(colours: Floats, occlusion: Floats, plate: Flags, look: Look) -> Colours:
+def map_colours(colours: Floats, occlusion: Floats, plate: Flags, look: Appearance) -> Colours:
     """Return the colours of a map, (n, 3) 0..255, a little darker in folds; plates stay plaster."""
     shaded = colours * (1.0 - FOLDS + FOLDS * np.clip(occlusion, 0.0, 1.0))[:, None]
     shaded[plate] = rgb(look.plaster)

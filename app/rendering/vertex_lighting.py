@@ -31,7 +31,7 @@ _AT_PIXEL = (
 """VTK's own sum over the lamps (its //VTK::Light::Impl for directional light), at another place."""
 
 
-class QuickLight:
+class VertexLighting:
     """Switches the light of all that is smooth on one plotter; the stage's lamps must be on.
 
     What has no normals at its vertices stays as it is.

@@ -11,12 +11,12 @@ from app.i18n.catalog import number, tr
 from app.i18n.lengths import length, length_number, length_unit, shown_value
 from app.presenters.plots import digits_of, round_ticks
 from app.rendering.palette import LIGHT
-from app.report.document import Handout
+from app.report.document import ReportDocument
 from app.report.header import WIDE
 from app.report.layout import Block
-from app.report.painter import Paper, elided, text_width, wrapped
+from app.report.painter import PagePainter, elide, text_width, wrap
 from app.report.tables import heading
-from core.export.report_data import SectionCurves, Sheet, Turns
+from core.export.report_data import IterationCurve, Report, SectionCurves
 from core.geometry.mesh import Floats
 
 LOWEST, HIGHEST = 52.0, 116.0
@@ -30,16 +30,16 @@ _GRID = {"mm": _METRIC, "cm": _METRIC, "in": tuple(25.4 * each for each in (0.25
 _NARROWEST = 7.0  # mm on paper between two lines of a grid
 
 
-def curve_block(handout: Handout, height: float) -> Block:
+def curve_block(handout: ReportDocument, height: float) -> Block:
     """Return the side of the body, and beside it its level at the bust over the plots of the run."""
-    sheet = handout.sheet
+    sheet = handout.report
     side, bust = sheet.sections
     title = heading(tr("Before and after"), WIDE)
     top, right = title.height, _SIDE + _GAP
     half = (0.5 if _plotted(sheet) else 0.85) * (height - top)
     wide = 0.5 * (WIDE - right - _GAP)
     where = tr("Side, through the left bust point"), tr("Level of the bust points, from above, front below")
-    names = [elided(each, "caption", room) for each, room in zip(where, (_SIDE, WIDE - right), strict=True)]
+    names = [elide(each, "caption", room) for each, room in zip(where, (_SIDE, WIDE - right), strict=True)]
     marks = _bust_points(sheet)
     parts = [
         (0.0, top, _section(side, marks, names[0], _SIDE, height - top)),
@@ -48,7 +48,7 @@ def curve_block(handout: Handout, height: float) -> Block:
     ]
     legend = _legend()
 
-    def paint(paper: Paper, x: float, y: float) -> None:
+    def paint(paper: PagePainter, x: float, y: float) -> None:
         title.paint(paper, x, y)
         legend.paint(paper, x, y)
         for left, down, part in parts:
@@ -61,7 +61,7 @@ def _legend() -> Block:
     """Return the names of both curves, at the right of the title."""
     names = (tr("before"), LIGHT.text_caption, 0.3, True), (tr("after"), LIGHT.accent, 0.5, False)
 
-    def paint(paper: Paper, x: float, y: float) -> None:
+    def paint(paper: PagePainter, x: float, y: float) -> None:
         right = x + WIDE
         for name, ink, weight, dashed in reversed(names):
             paper.text(right, y + 3.6, name, "caption", align="right")
@@ -72,10 +72,10 @@ def _legend() -> Block:
     return Block(0.0, paint)
 
 
-def _bust_points(sheet: Sheet) -> list[tuple[float, float]]:
+def _bust_points(sheet: Report) -> list[tuple[float, float]]:
     """Return the bust point on the side before and after [mm], if the shape is one."""
     side = sheet.sections[0]
-    return [side.bust_point, side.bust_point_after] if sheet.sound else []
+    return [side.bust_point, side.bust_point_after] if sheet.is_valid else []
 
 
 def _section(
@@ -87,10 +87,10 @@ def _section(
     scale = float((room / (box[1] - box[0])).min())
     centre, step = box.mean(axis=0), next(each for each in _GRID[length_unit()] if each * scale >= _NARROWEST)
     low, high = centre - zero + np.array([[-0.5], [0.5]]) * room / scale
-    said = elided(tr("grid {length}, 0 at the bust point").format(length=length(step, 0)), "caption", width)
+    said = elide(tr("grid {length}, 0 at the bust point").format(length=length(step, 0)), "caption", width)
     bands = [_band(curve, off) for curve, off in zip(cut.after, cut.off_mm, strict=False) if len(curve) > 2]
 
-    def paint(paper: Paper, x: float, y: float) -> None:
+    def paint(paper: PagePainter, x: float, y: float) -> None:
         paper.text(x, y + 2.6, title, "caption")
         left, top = x + _AXIS, y + 4.0
 
@@ -117,7 +117,7 @@ def _section(
 
 
 def _paint_grid(
-    paper: Paper, corner: tuple[float, float], room: Floats, ends: tuple[Floats, Floats], step: float
+    paper: PagePainter, corner: tuple[float, float], room: Floats, ends: tuple[Floats, Floats], step: float
 ) -> None:
     """Draw a grid of ``step`` [mm] of the body on ``room`` (2,) [mm] of the paper, between ``ends``."""
     (left, top), (low, high) = corner, ends
@@ -147,7 +147,7 @@ def _rounds(low: float, high: float, step: float) -> list[float]:
 
 
 def _plots(
-    sheet: Sheet, left: float, top: float, width: float, height: float
+    sheet: Report, left: float, top: float, width: float, height: float
 ) -> list[tuple[float, float, Block]]:
     """Return the plots of the run with where they stand, or why there are none."""
     turns, said = sheet.turns, tr("No turns to plot: the exact answer was worked out at once.")
@@ -157,7 +157,7 @@ def _plots(
         return [(left, top, _sentence(said, 2.0 * width + _GAP))]
     error, up = tr("Volume error, %"), tr("Bust points, {unit} up").format(unit=length_unit())
     heights = [shown_value(each) for each in turns.up_mm]
-    if not sheet.sound:
+    if not sheet.is_valid:
         return [(left, top, _plot(turns, turns.error_percent, error, 2.0 * width + _GAP, height))]
     return [
         (left, top, _plot(turns, turns.error_percent, error, width, height)),
@@ -165,18 +165,18 @@ def _plots(
     ]
 
 
-def _plotted(sheet: Sheet) -> bool:
+def _plotted(sheet: Report) -> bool:
     return len(sheet.turns.turn) > 1 and bool(sheet.cuts.rows)
 
 
 def _sentence(said: str, width: float) -> Block:
-    lines = wrapped(said, "small", width)
+    lines = wrap(said, "small", width)
     return Block(8.0, lambda paper, x, y: paper.lines(x, y + 1.0, lines, "small"))
 
 
-def _plot(turns: Turns, values: Sequence[float], title: str, width: float, height: float) -> Block:
+def _plot(turns: IterationCurve, values: Sequence[float], title: str, width: float, height: float) -> Block:
     """Return a figure over the turns of the run."""
-    said, last = elided(title, "caption", width), tr("turn {turn}").format(turn=number(turns.turn[-1], 0))
+    said, last = elide(title, "caption", width), tr("turn {turn}").format(turn=number(turns.turn[-1], 0))
     x_of, seen = np.array(turns.turn, dtype=np.float64), np.array(values, dtype=np.float64)
     low, high = float(seen.min()), float(seen.max())
     if high - low < 1e-3:
@@ -185,7 +185,7 @@ def _plot(turns: Turns, values: Sequence[float], title: str, width: float, heigh
     digits = digits_of(ticks)
     room = height - 4.0 - _FOOT
 
-    def paint(paper: Paper, x: float, y: float) -> None:
+    def paint(paper: PagePainter, x: float, y: float) -> None:
         paper.text(x, y + 2.6, said, "caption")
         left, top = x + _AXIS, y + 4.0
 

@@ -8,13 +8,13 @@ from math import inf, sqrt
 
 from app.i18n.catalog import joined, listed, number, say, tr
 from app.i18n.lengths import length_number, length_unit, width, width_number
-from app.presenters.measurements import length_off
-from app.presenters.pressure import light_word
-from app.report.text import NOTHING, figure, piece_title
-from core.export.report_data import Sheet
+from app.presenters.measurements import length_uncertainty
+from app.presenters.pressure import rating_text
+from app.report.text import NOTHING, piece_title, value_text
+from core.export.report_data import Report
 from core.garment.cut_list import FRONT_ONLY, SLACK, UNCHOSEN, CutRow
-from core.garment.pressure import LIES_SLACK
-from core.garment.pressure_list import PressRow
+from core.garment.pressure import SLACK_NOTE
+from core.garment.pressure_list import PressureRow
 from core.measurements.uncertain_value import CUT, MAX_KPA, TENSION
 
 VAGUE, MOST_VAGUE = 2.0, 10.0
@@ -22,7 +22,7 @@ VAGUE, MOST_VAGUE = 2.0, 10.0
 
 
 @dataclass(frozen=True)
-class CutView:
+class CutRowText:
     """A row of the cut list, as it is printed.
 
     ``to_cut`` is False for a line of which no piece can be cut; ``remark`` states why, or what to mind. The
@@ -32,26 +32,26 @@ class CutView:
     line: str
     title: str
     elastic: str
-    figures: tuple[str, ...]
-    light: str
+    values: tuple[str, ...]
+    rating: str
     word: str
     to_cut: bool
     remark: str = ""
     front_only: bool = False
 
 
-def cut_views(sheet: Sheet, order: Sequence[str]) -> list[CutView]:
+def cut_views(sheet: Report, order: Sequence[str]) -> list[CutRowText]:
     """Return the rows of the cut list in the ``order`` of the lines.
 
     Of a shape that is no result no figure is told: nobody is to cut by it.
     """
     views = [_cut_view(*each) for each in _rows(sheet, order)]
-    return views if sheet.sound else [_without_figures(view) for view in views]
+    return views if sheet.is_valid else [_without_figures(view) for view in views]
 
 
-def line_notes(sheet: Sheet, order: Sequence[str]) -> list[tuple[str, list[str]]]:
+def line_notes(sheet: Report, order: Sequence[str]) -> list[tuple[str, list[str]]]:
     """Return what is to be known of each line by its title; what holds for all stands first, without one."""
-    if not sheet.sound:
+    if not sheet.is_valid:
         return []
     noted = [
         (piece_title(cut.line, cut.title), _notes(cut, press, sheet)) for cut, press in _rows(sheet, order)
@@ -61,10 +61,10 @@ def line_notes(sheet: Sheet, order: Sequence[str]) -> list[tuple[str, list[str]]
     return [(title, notes) for title, notes in (("", shared), *own) if notes]
 
 
-def vague_forces(sheet: Sheet) -> str:
+def force_range_warning(sheet: Report) -> str:
     """Return that tension and pressure cannot be worked by, if their range is too wide for that."""
     worst = max((_factor(*each) for each in _forces(sheet)), default=1.0)
-    if not sheet.sound or worst < VAGUE:
+    if not sheet.is_valid or worst < VAGUE:
         return ""
     if worst > MOST_VAGUE:
         return tr("Tension and pressure are known by order of magnitude only: measure them on a sample.")
@@ -72,23 +72,23 @@ def vague_forces(sheet: Sheet) -> str:
     return said.format(factor=number(worst, 0))
 
 
-def _rows(sheet: Sheet, order: Sequence[str]) -> list[tuple[CutRow, PressRow]]:
+def _rows(sheet: Report, order: Sequence[str]) -> list[tuple[CutRow, PressureRow]]:
     """Return the rows of cut list and pressures, in the ``order`` of the lines."""
     rows = zip(sheet.cuts.rows, sheet.pressures, strict=True)
     return sorted(rows, key=lambda row: _place(row[0].line, order))
 
 
-def _notes(cut: CutRow, press: PressRow, sheet: Sheet) -> list[str]:
-    remarked = (SLACK, UNCHOSEN, LIES_SLACK, FRONT_ONLY)  # beside the cut list already
+def _notes(cut: CutRow, press: PressureRow, sheet: Report) -> list[str]:
+    remarked = (SLACK, UNCHOSEN, SLACK_NOTE, FRONT_ONLY)  # beside the cut list already
     notes = (note for note in (*cut.notes, *press.notes) if note not in remarked)
     return list(dict.fromkeys((*map(say, notes), *_within_words(cut, press, sheet))))
 
 
-def _within_words(cut: CutRow, press: PressRow, sheet: Sheet) -> Iterator[str]:
+def _within_words(cut: CutRow, press: PressureRow, sheet: Report) -> Iterator[str]:
     """Yield where the figures of a piece lie in 95 % of cases, if somebody can work by that."""
     parts, off = [], sheet.off.get(f"{CUT}:{cut.line}")
     if off is not None and cut.cut_mm is not None:
-        parts.append(tr("cut {off} {unit}").format(off=length_off(off), unit=length_unit()))
+        parts.append(tr("cut {off} {unit}").format(off=length_uncertainty(off), unit=length_unit()))
     words = tr("tension {low} to {high} N"), tr("largest pressure {low} to {high} kPa")
     for said, ends in zip(words, _force_ends(cut, press, sheet), strict=True):
         if ends is not None and _factor(*ends) < VAGUE:
@@ -98,7 +98,7 @@ def _within_words(cut: CutRow, press: PressRow, sheet: Sheet) -> Iterator[str]:
         yield tr("In 95 % of cases: {figures}.").format(figures=listed(parts))
 
 
-def _forces(sheet: Sheet) -> Iterator[tuple[float, float]]:
+def _forces(sheet: Report) -> Iterator[tuple[float, float]]:
     """Yield the ranges of all tensions and pressures."""
     for cut, press in zip(sheet.cuts.rows, sheet.pressures, strict=True):
         if not cut.slack:
@@ -106,7 +106,7 @@ def _forces(sheet: Sheet) -> Iterator[tuple[float, float]]:
 
 
 def _force_ends(
-    cut: CutRow, press: PressRow, sheet: Sheet
+    cut: CutRow, press: PressureRow, sheet: Report
 ) -> tuple[tuple[float, float] | None, tuple[float, float] | None]:
     """Return the ranges of the tension [N] and of the largest pressure [kPa] of a line."""
     tension = _ends(sheet, f"{TENSION}:{cut.line}", cut.tension_n)
@@ -118,7 +118,7 @@ def _factor(low: float, high: float) -> float:
     return sqrt(high / low) if low > 0.0 else inf if high > 0.0 else 1.0
 
 
-def _ends(sheet: Sheet, key: str, value: float | None) -> tuple[float, float] | None:
+def _ends(sheet: Report, key: str, value: float | None) -> tuple[float, float] | None:
     """Return between what a force or pressure may lie, None where that is not known."""
     off, factor = sheet.off.get(key), sheet.off_factor.get(key)
     if value is not None and factor is not None:
@@ -126,7 +126,7 @@ def _ends(sheet: Sheet, key: str, value: float | None) -> tuple[float, float] | 
     return None if value is None or off is None else (max(value - off, 0.0), value + off)
 
 
-def cut_pieces(sheet: Sheet, order: Sequence[str]) -> list[tuple[str, str, str]]:
+def cut_pieces(sheet: Report, order: Sequence[str]) -> list[tuple[str, str, str]]:
     """Return line, title and shown length of whole pieces to be cut, in the ``order`` of the lines."""
     return [
         (row.line, piece_title(row.line, row.title), length_number(row.cut_mm, 0))
@@ -135,21 +135,21 @@ def cut_pieces(sheet: Sheet, order: Sequence[str]) -> list[tuple[str, str, str]]
     ]
 
 
-def _cut_view(cut: CutRow, press: PressRow) -> CutView:
+def _cut_view(cut: CutRow, press: PressureRow) -> CutRowText:
     stretch = None if cut.elongation is None else 100.0 * cut.elongation
     figures = (
         NOTHING if cut.width_mm is None else width_number(cut.width_mm),
         _length(cut.cut_mm),
         _length(cut.allowance_mm),
-        figure(stretch, 0),
+        value_text(stretch, 0),
         _length(cut.reached_whole_mm),
         _length(cut.height_mm, signed=True),
-        figure(cut.tension_n, 1),
-        figure(press.max_kpa, 1),
+        value_text(cut.tension_n, 1),
+        value_text(press.max_kpa, 1),
     )
-    word = light_word(press.light) if press.light else ""
+    word = rating_text(press.light) if press.light else ""
     title, to_cut = piece_title(cut.line, cut.title), cut.cut_mm is not None
-    return CutView(
+    return CutRowText(
         *(cut.line, title, _elastic(cut), figures, press.light, word),
         to_cut,
         _remark(cut),
@@ -180,11 +180,11 @@ def _elastic(cut: CutRow) -> str:
     return say(cut.elastic).removesuffix(f" {width(cut.width_mm or 0.0)}") if cut.elastic else NOTHING
 
 
-def _without_figures(view: CutView) -> CutView:
-    first, *others = view.figures
+def _without_figures(view: CutRowText) -> CutRowText:
+    first, *others = view.values
     remark = tr("No figure: the shape is no result.")
     nothing = (first, *(NOTHING for _ in others))
-    return replace(view, figures=nothing, light="", word="", to_cut=False, remark=remark)
+    return replace(view, values=nothing, rating="", word="", to_cut=False, remark=remark)
 
 
 def _place(line: str, order: Sequence[str]) -> int:

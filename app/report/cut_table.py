@@ -5,14 +5,14 @@ from __future__ import annotations
 from app.i18n.catalog import tr
 from app.i18n.lengths import length_unit
 from app.rendering.palette import LIGHT
-from app.report.cut_rows import CutView, cut_views
-from app.report.document import Handout
+from app.report.cut_rows import CutRowText, cut_views
+from app.report.document import ReportDocument
 from app.report.header import WIDE
 from app.report.layout import Block
-from app.report.painter import Paper, elided, fitting, line_height, text_width, wrapped
+from app.report.painter import PagePainter, elide, fitting_font, line_height, text_width, wrap
 from app.report.symbols import paint_chip, paint_light
 from app.report.tables import heading, paragraph
-from app.report.text import light_legend
+from app.report.text import pressure_legend
 
 _ROW, _REMARK = 5.6, 4.0
 _EDGES = (71.0, 84.5, 95.0, 109.5, 124.0, 139.0, 153.0, 162.0)  # right ends of the figures
@@ -20,13 +20,13 @@ _CUT, _STRETCH = 1, 3  # places of the length to cut, and of the last figure tha
 _ELASTIC, _LIGHT, _WORD = 35.0, 165.0, 168.0
 
 
-def cut_blocks(handout: Handout) -> list[Block]:
+def cut_blocks(handout: ReportDocument) -> list[Block]:
     """Return the cut list with what each band presses with, or what is missing for it."""
     title = heading(tr("To cut"), WIDE)
-    if not handout.sheet.cuts.rows:
+    if not handout.report.cuts.rows:
         said = tr("No line is worn: set a line shorter, and it stands here with its length and pressure.")
         return [title, paragraph(said, "body", WIDE)]
-    views = cut_views(handout.sheet, list(handout.colours))
+    views = cut_views(handout.report, list(handout.colours))
     rows = (_cut_row(view, handout.colours.get(view.line, "")) for view in views)
     return [title, _cut_head(), *rows, _legend()]
 
@@ -45,10 +45,10 @@ def _cut_head() -> Block:
     named = (
         (0.0, tr("Line")),
         (_ELASTIC, tr("Elastic")),
-        (_LIGHT - 1.2, elided(tr("pressure"), "caption", WIDE - _LIGHT + 1.2)),
+        (_LIGHT - 1.2, elide(tr("pressure"), "caption", WIDE - _LIGHT + 1.2)),
     )
 
-    def paint(paper: Paper, x: float, y: float) -> None:
+    def paint(paper: PagePainter, x: float, y: float) -> None:
         for left, title in named:
             paper.text(x + left, y + 2.8, title, "caption")
         for edge, title in zip(_EDGES, titles, strict=True):
@@ -58,29 +58,29 @@ def _cut_head() -> Block:
     return Block(4.2, paint, keep=True)
 
 
-def _cut_row(view: CutView, colour: str) -> Block:
-    lines = wrapped(view.title, "strong", _ELASTIC - 6.5)  # a name is never cut: it tells the side
+def _cut_row(view: CutRowText, colour: str) -> Block:
+    lines = wrap(view.title, "strong", _ELASTIC - 6.5)  # a name is never cut: it tells the side
     high = _ROW + (len(lines) - 1) * line_height("strong")
-    remark = elided(view.remark, "small", WIDE - 6.0)
+    remark = elide(view.remark, "small", WIDE - 6.0)
     room = _EDGES[0] - _ELASTIC - 8.0
-    kind = fitting(view.elastic, room)
-    elastic = elided(view.elastic, kind, room)
-    word = elided(view.word, "body", WIDE - _WORD)
-    refused = elided(tr("NOT TO CUT"), "strong", _EDGES[_STRETCH] - _EDGES[0] - 3.0)
+    kind = fitting_font(view.elastic, room)
+    elastic = elide(view.elastic, kind, room)
+    word = elide(view.word, "body", WIDE - _WORD)
+    refused = elide(tr("NOT TO CUT"), "strong", _EDGES[_STRETCH] - _EDGES[0] - 3.0)
 
-    def paint(paper: Paper, x: float, y: float) -> None:
+    def paint(paper: PagePainter, x: float, y: float) -> None:
         base, middle = y + 3.75, y + 2.8
         paint_chip(paper, x, middle, colour or LIGHT.control)
         paper.lines(x + 4.6, base - 0.74 * line_height("strong"), lines, "strong")
         paper.text(x + _ELASTIC, base, elastic, kind, ink=LIGHT.text)
-        for place, (edge, figure) in enumerate(zip(_EDGES, view.figures, strict=True)):
+        for place, (edge, figure) in enumerate(zip(_EDGES, view.values, strict=True)):
             if view.to_cut or not _CUT <= place <= _STRETCH:
                 strong = place == _CUT and not view.front_only
                 paper.text(x + edge, base, figure, "figure strong" if strong else "figure", align="right")
         if not view.to_cut:
             paper.text(x + _EDGES[_STRETCH], base, refused, "strong", align="right", ink=LIGHT.bad)
-        if view.light:
-            paint_light(paper, x + _LIGHT, middle, view.light)
+        if view.rating:
+            paint_light(paper, x + _LIGHT, middle, view.rating)
             paper.text(x + _WORD, base, word, "body")
         paper.text(x + 4.6, y + high + 2.2, remark, "small")
         paper.rule(x, y + high + (_REMARK if remark else 0.0), WIDE)
@@ -90,10 +90,10 @@ def _cut_row(view: CutView, colour: str) -> Block:
 
 def _legend() -> Block:
     """Return what the lights say, on one line."""
-    said = light_legend()
+    said = pressure_legend()
     before = tr("Tension and pressure are estimates. Largest pressure:")
 
-    def paint(paper: Paper, x: float, y: float) -> None:
+    def paint(paper: PagePainter, x: float, y: float) -> None:
         paper.text(x, y + 2.6, before, "small")
         x += text_width(before, "small") + 3.5
         for light, words in said:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from PySide6.QtGui import QImage
 
-from core.export.report_data import Sheet
+from core.export.report_data import Report
 
 SHOTS = ("front before", "front after", "side before", "side after")
 """The pictures of a sheet, in the order in which they stand."""
@@ -17,9 +17,9 @@ SHOT_SIZES = {"front": (54.0, 60.0), "side": (37.0, 60.0)}
 
 
 @dataclass(frozen=True, eq=False)
-class Handout:
+class ReportDocument:
     """A sheet, its ``pictures`` by their names in ``SHOTS``, or none, and the ``colours`` of its lines."""
 
-    sheet: Sheet
+    report: Report
     pictures: Mapping[str, QImage] = field(default_factory=dict)
     colours: Mapping[str, str] = field(default_factory=dict)

@@ -6,15 +6,15 @@ from app.i18n.catalog import joined, number, say, tr
 from app.i18n.lengths import length_number, length_unit
 from app.presenters.assessment import IDLE, AssessmentView
 from app.presenters.bust_shift import forward_words
-from app.presenters.measurements import length_off
+from app.presenters.measurements import length_uncertainty
 from app.rendering.palette import LIGHT
 from app.report.cut_rows import cut_pieces
-from app.report.document import SHOT_SIZES, SHOTS, Handout
+from app.report.document import SHOT_SIZES, SHOTS, ReportDocument
 from app.report.layout import Block
-from app.report.painter import A4, MARGIN, Paper, elided, line_height, text_width, wrapped
+from app.report.painter import A4, MARGIN, PagePainter, elide, line_height, text_width, wrap
 from app.report.symbols import paint_chip, paint_level
-from app.report.text import REASONS, overall, project_words, size_words, system_word
-from core.export.report_data import Sheet
+from app.report.text import REASONS, assessment_text, project_words, size_words, system_word
+from core.export.report_data import Report
 from core.garment.assessment import BAD, CAUTION, GOOD, PENDING
 from core.measurements.uncertain_value import LIFT, OUT
 
@@ -33,22 +33,22 @@ _TONES = {
 }
 
 
-def head_blocks(handout: Handout, share: float = 1.0) -> list[Block]:
+def head_blocks(handout: ReportDocument, share: float = 1.0) -> list[Block]:
     """Return the head: title, overall verdict, the great figures, the pictures.
 
     Those have a ``share`` of their usual height.
     """
-    sheet = handout.sheet
-    return [_title(sheet), _verdict(overall(sheet)), _hero(handout), _pictures(handout, share)]
+    sheet = handout.report
+    return [_title(sheet), _verdict(assessment_text(sheet)), _hero(handout), _pictures(handout, share)]
 
 
-def _title(sheet: Sheet) -> Block:
+def _title(sheet: Report) -> Block:
     heading, title = sheet.heading, tr("Fitting sheet")
-    customer = elided(heading.customer or project_words(sheet), "name", 100.0)
+    customer = elide(heading.customer or project_words(sheet), "name", 100.0)
     gap = text_width(customer, "name") + 3.0
-    project = elided(project_words(sheet), "quiet", WIDE - gap) if heading.customer else ""
+    project = elide(project_words(sheet), "quiet", WIDE - gap) if heading.customer else ""
 
-    def paint(paper: Paper, x: float, y: float) -> None:
+    def paint(paper: PagePainter, x: float, y: float) -> None:
         paper.text(x, y + 5.2, title, "title")
         paper.text(x + WIDE, y + 5.2, heading.date, "quiet", align="right")
         paper.text(x, y + 12.0, customer, "name")
@@ -60,13 +60,13 @@ def _title(sheet: Sheet) -> Block:
 def _verdict(view: AssessmentView) -> Block:
     """Return the headline of the sheet: the overall verdict, and the worst of its reasons with what to do."""
     ink, fill = _TONES[view.level]
-    reasons = [wrapped(joined(each), "body", WIDE - 12.0) for each in view.reasons[:REASONS]]
+    reasons = [wrap(joined(each), "body", WIDE - 12.0) for each in view.reasons[:REASONS]]
     lines = [line for reason in reasons for line in reason]
     if more := len(view.reasons) - len(reasons):
         lines.append(tr("{count} more: see the appendix.").format(count=more))
     height = 7.6 + len(lines) * line_height("body") + (1.4 if lines else 0.0)
 
-    def paint(paper: Paper, x: float, y: float) -> None:
+    def paint(paper: PagePainter, x: float, y: float) -> None:
         paper.box(x, y, WIDE, height, fill, 1.2)
         paint_level(paper, x + 5.0, y + 3.9, view.level)
         paper.text(x + 9.5, y + 5.2, view.headline, "name", ink=ink)
@@ -75,11 +75,11 @@ def _verdict(view: AssessmentView) -> Block:
     return Block(height + 3.0, paint)
 
 
-def _hero(handout: Handout) -> Block:
+def _hero(handout: ReportDocument) -> Block:
     """Return the row of great figures between two rules."""
-    parts = _size(handout.sheet), _cuts(handout), _lift(handout.sheet), _volume(handout.sheet)
+    parts = _size(handout.report), _cuts(handout), _lift(handout.report), _volume(handout.report)
 
-    def paint(paper: Paper, x: float, y: float) -> None:
+    def paint(paper: PagePainter, x: float, y: float) -> None:
         paper.rule(x, y, WIDE, ink=LIGHT.outline)
         for part in parts:
             part.paint(paper, x, y)
@@ -95,9 +95,9 @@ def _great(
 ) -> Block:
     """Return one figure with what it is over it and what belongs to it below, first how far it may be off."""
     kind = "hero" if text_width(figure, "hero") + text_width(unit, "name") + 1.2 <= width else "large"
-    lines, end = wrapped(below, "caption", width)[: 2 if off else 3], text_width(figure, kind) + 1.2
+    lines, end = wrap(below, "caption", width)[: 2 if off else 3], text_width(figure, kind) + 1.2
 
-    def paint(paper: Paper, x: float, y: float) -> None:
+    def paint(paper: PagePainter, x: float, y: float) -> None:
         paper.text(x + left, y + 4.6, caption, "caption")
         paper.text(x + left, y + 12.8, figure, kind)
         paper.text(x + left + end, y + 12.8, unit, "name")
@@ -107,7 +107,7 @@ def _great(
     return Block(_HERO, paint)
 
 
-def _size(sheet: Sheet) -> Block:
+def _size(sheet: Report) -> Block:
     chosen = sheet.sizes[0] if sheet.sizes else {"band": None, "cup": None}
     below = size_words(sheet) if sheet.sizes else say(sheet.no_size)
     nothing = "\N{EN DASH}"
@@ -115,41 +115,41 @@ def _size(sheet: Sheet) -> Block:
     band = _great(_CELLS[0], _CELLS[2] - 6.0, tr("Band") + system, chosen["band"] or nothing, below)
     cup = _great(_CELLS[1], 20.0, tr("Cup"), chosen["cup"] or nothing, "")
 
-    def paint(paper: Paper, x: float, y: float) -> None:
+    def paint(paper: PagePainter, x: float, y: float) -> None:
         band.paint(paper, x, y)
         cup.paint(paper, x, y)
 
     return Block(_HERO, paint)
 
 
-def _cuts(handout: Handout) -> Block:
+def _cuts(handout: ReportDocument) -> Block:
     """Return the lengths to cut: one as large as the size, up to three below each other."""
-    pieces, left = cut_pieces(handout.sheet, list(handout.colours)), _CELLS[2]
-    room, caption = _CELLS[3] - left - 6.0, _cut_caption(handout.sheet)
-    if not handout.sheet.sound:
+    pieces, left = cut_pieces(handout.report, list(handout.colours)), _CELLS[2]
+    room, caption = _CELLS[3] - left - 6.0, _cut_caption(handout.report)
+    if not handout.report.is_valid:
         return _sentence(left, room, caption, tr("No figure: the shape is no result."))
     if len(pieces) == 1:
         line, title, length = pieces[0]
         one = _great(left, room, caption, length, "", length_unit())
-        colour, name = handout.colours.get(line, _USUAL), elided(title, "strong", room - 5.0)
+        colour, name = handout.colours.get(line, _USUAL), elide(title, "strong", room - 5.0)
 
-        def paint_one(paper: Paper, x: float, y: float) -> None:
+        def paint_one(paper: PagePainter, x: float, y: float) -> None:
             one.paint(paper, x, y)
             paint_chip(paper, x + left, y + 17.3, colour)
             paper.text(x + left + 4.6, y + 18.2, name, "strong")
 
         return Block(_HERO, paint_one)
     if not pieces:
-        return _sentence(left, room, caption, _no_cut(handout.sheet))
+        return _sentence(left, room, caption, _no_cut(handout.report))
     rows = [
-        (handout.colours.get(line, _USUAL), elided(title, "strong", room - 31.0), length)
+        (handout.colours.get(line, _USUAL), elide(title, "strong", room - 31.0), length)
         for line, title, length in pieces[:_LARGE]
     ]
     more, end = len(pieces) - len(rows), max(text_width(length, "large") for *_, length in rows)
     if more:
-        caption = elided(tr("{what}; {count} more below").format(what=caption, count=more), "caption", room)
+        caption = elide(tr("{what}; {count} more below").format(what=caption, count=more), "caption", room)
 
-    def paint(paper: Paper, x: float, y: float) -> None:
+    def paint(paper: PagePainter, x: float, y: float) -> None:
         paper.text(x + left, y + 4.6, caption, "caption")
         for place, (colour, title, length) in enumerate(rows):
             base = y + 10.6 + 5.9 * place
@@ -161,7 +161,7 @@ def _cuts(handout: Handout) -> Block:
     return Block(_HERO, paint)
 
 
-def _no_cut(sheet: Sheet) -> str:
+def _no_cut(sheet: Report) -> str:
     """Return why there is no length to cut."""
     if not sheet.cuts.rows:
         return tr("No line is worn: there is nothing to cut.")
@@ -170,44 +170,44 @@ def _no_cut(sheet: Sheet) -> str:
     return tr("No elastic is chosen yet: choose one for each line to get its length to cut.")
 
 
-def _cut_caption(sheet: Sheet) -> str:
+def _cut_caption(sheet: Report) -> str:
     guessed = any(row.cut_mm is not None and row.estimate for row in sheet.cuts.rows)
     return tr("Length to cut, an estimate") if guessed else tr("Length to cut")
 
 
 def _sentence(left: float, room: float, caption: str, said: str) -> Block:
-    lines = wrapped(said, "body", room)[:4]
+    lines = wrap(said, "body", room)[:4]
 
-    def paint(paper: Paper, x: float, y: float) -> None:
+    def paint(paper: PagePainter, x: float, y: float) -> None:
         paper.text(x + left, y + 4.6, caption, "caption")
         paper.lines(x + left, y + 6.8, lines, "body")
 
     return Block(_HERO, paint)
 
 
-def _lift(sheet: Sheet) -> Block:
+def _lift(sheet: Report) -> Block:
     left, room, caption = _CELLS[3], _CELLS[4] - _CELLS[3] - 6.0, tr("Lift of the bust points")
     if sheet.lift is None:
         return _sentence(left, room, caption, tr("No figure: the shape is no result."))
     off, below = sheet.off.get(LIFT), forward_words(sheet.lift.forward, sheet.off.get(OUT))
     figure = length_number(sheet.lift.up, signed=True)
-    told = "" if off is None else f"{length_off(off)} {length_unit()}"
+    told = "" if off is None else f"{length_uncertainty(off)} {length_unit()}"
     return _great(left, room, caption, figure, below, length_unit(), told)
 
 
-def _volume(sheet: Sheet) -> Block:
+def _volume(sheet: Report) -> Block:
     kept, left, caption = sheet.volume, _CELLS[4], tr("Change of volume")
-    if not sheet.sound:
+    if not sheet.is_valid:
         return _sentence(left, WIDE - left, caption, tr("No figure: the shape is no result."))
     of = tr("of {ml} ml in the model").format(ml=number(kept.rest_ml, 0))
     figure = number(kept.error_ml, 1, signed=True)
     return _great(left, WIDE - left, caption, figure, of, "ml")
 
 
-def _pictures(handout: Handout, share: float) -> Block:
+def _pictures(handout: ReportDocument, share: float) -> Block:
     """Return front and side, before and after, or a sentence where they could not be drawn."""
     if not all(name in handout.pictures for name in SHOTS):
-        lines = wrapped(
+        lines = wrap(
             tr("The pictures of the body could not be drawn here: the curves show what changes."),
             "small",
             WIDE,
@@ -218,7 +218,7 @@ def _pictures(handout: Handout, share: float) -> Block:
     sizes = {name: SHOT_SIZES[name.partition(" ")[0]] for name in SHOTS}
     tall = share * max(height for _, height in sizes.values())
 
-    def paint(paper: Paper, x: float, y: float) -> None:
+    def paint(paper: PagePainter, x: float, y: float) -> None:
         for name, (wide, high) in sizes.items():
             paper.picture(x, y, wide, share * high, handout.pictures[name])
             paper.text(x + 0.5 * wide, y + tall + 3.6, titles[name], "caption", align="middle")

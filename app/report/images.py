@@ -9,10 +9,10 @@ from PySide6.QtGui import QColor, QImage, QPainter
 
 from app.presenters.lines import bands
 from app.rendering.camera import View
-from app.rendering.offscreen import Picture, Studio, on_nothing
+from app.rendering.offscreen import OffscreenRenderer, Picture, with_transparency
 from app.report.document import SHOT_SIZES, SHOTS
 from core.geometry.mesh import Floats
-from core.pipeline.warnings import Shown
+from core.pipeline.warnings import ShownState
 from core.progress import Pieces, part_of
 
 DOTS = 300.0 / 25.4
@@ -21,14 +21,14 @@ DOTS = 300.0 / 25.4
 _SIDES = {"front": "front", "side": "left"}
 
 
-def shots(shown: Shown, occlusion: Floats) -> Pieces[dict[str, QImage]]:
+def render_images(shown: ShownState, occlusion: Floats) -> Pieces[dict[str, QImage]]:
     """Return the pictures by their names in ``SHOTS``, and give the share done after each piece.
 
     ``occlusion``, (n,) [1], is that of ``bake_occlusion``. Raises whatever VTK does where it cannot draw.
     """
     stages = shown.stages
-    unworn = {line.name for line in stages.model.lines} - stages.design.worn()
-    with Studio(stages, shown.control_points, bands(stages, unworn), occlusion) as studio:
+    unworn = {line.name for line in stages.model.lines} - stages.design.active_lines()
+    with OffscreenRenderer(stages, shown.control_points, bands(stages, unworn), occlusion) as studio:
         yield from part_of(studio.set_up(), 0.0, 0.0)
         scene, sizes = studio.scene, {side: _pixels(SHOT_SIZES[side]) for side in _SIDES}
         scene.set_visible("floor", False)
@@ -38,13 +38,13 @@ def shots(shown: Shown, occlusion: Floats) -> Pieces[dict[str, QImage]]:
             side, _, when = name.partition(" ")
             scene.before(when == "before")
             scene.set_visible("bands", when == "after")
-            scene.look_from(views[side])
-            drawing = studio.shot(sizes[side])
+            scene.set_camera(views[side])
+            drawing = studio.render(sizes[side])
             try:
                 while True:
                     yield (place + next(drawing)) / len(SHOTS)
             except StopIteration as ended:
-                found[name] = _on_white(on_nothing(ended.value, False))
+                found[name] = _on_white(with_transparency(ended.value, False))
         return found
 
 
@@ -52,11 +52,11 @@ def _pixels(size: tuple[float, float]) -> tuple[int, int]:
     return round(DOTS * size[0]), round(DOTS * size[1])
 
 
-def _views(studio: Studio, sizes: Mapping[str, tuple[int, int]]) -> dict[str, View]:
+def _views(studio: OffscreenRenderer, sizes: Mapping[str, tuple[int, int]]) -> dict[str, View]:
     """Return where each side is seen from: all from as far away, so that heights compare."""
     views = {}
     for side, name in _SIDES.items():
-        studio.stand_back(sizes[side], name)
+        studio.frame_bust(sizes[side], name)
         views[side] = studio.scene.view
     farthest = max(view.distance for view in views.values())
     return {side: replace(view, distance=farthest) for side, view in views.items()}

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
-from app.report.painter import Paper
+from app.report.painter import PagePainter
 
-Paint = Callable[[Paper, float, float], object]
+Paint = Callable[[PagePainter, float, float], object]
 """Paints a block; it hears the left and the top of the place it is given [mm]."""
 
 
@@ -35,7 +35,7 @@ class Column:
 
 
 @dataclass(frozen=True, eq=False)
-class Placed:
+class PlacedBlock:
     """A block in its place [mm]."""
 
     page: int
@@ -44,13 +44,13 @@ class Placed:
     block: Block
 
 
-def flow(blocks: Iterable[Block], columns: Iterator[Column]) -> tuple[list[Placed], Column]:
+def place_blocks(blocks: Iterable[Block], columns: Iterator[Column]) -> tuple[list[PlacedBlock], Column]:
     """Return blocks in their places, and what is left of the last column.
 
     A block that no column has room for stands at the head of one all the same.
     """
     column = next(columns)
-    placed: list[Placed] = []
+    placed: list[PlacedBlock] = []
     y, head = column.top, True
     for group in _groups(blocks):
         needed = sum(block.height + block.gap for block in group) - (group[0].gap if head else 0.0)
@@ -59,7 +59,7 @@ def flow(blocks: Iterable[Block], columns: Iterator[Column]) -> tuple[list[Place
             y, head = column.top, True
         for block in group:
             y += 0.0 if head else block.gap
-            placed.append(Placed(column.page, column.x, y, block))
+            placed.append(PlacedBlock(column.page, column.x, y, block))
             y, head = y + block.height, False
     return placed, Column(column.page, column.x, y, column.bottom)
 

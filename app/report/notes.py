@@ -7,19 +7,19 @@ from typing import Any
 
 from app.i18n.catalog import colon, joined, language, listed, say, tr
 from app.presenters.uncertainty import source_words
-from app.report.text import REASONS, known, overall, system_word
-from core.export.report_data import Sheet
-from core.garment.pressure_limits import comfort
+from app.report.text import REASONS, assessment_text, is_known, system_word
+from core.export.report_data import Report
+from core.garment.pressure_limits import pressure_limits
 from core.measurements.sizes import built_in
 
 
-def cut_notes(sheet: Sheet) -> list[str]:
+def cut_notes(sheet: Report) -> list[str]:
     """Return what holds for all of the cut list."""
     height = tr("Height: the middle of the front over (+) or under (−) the bust points, as worn.")
     return [height, *(_with_elastics(note, sheet) for note in sheet.cuts.notes)]
 
 
-def note_groups(sheet: Sheet) -> Iterator[tuple[str, list[str]]]:
+def note_groups(sheet: Report) -> Iterator[tuple[str, list[str]]]:
     """Give what is to be known of the figures beside the cut list: what to look at, what is left out."""
     if beyond := _beyond_the_head(sheet):
         yield tr("To look at"), beyond
@@ -32,14 +32,14 @@ def note_groups(sheet: Sheet) -> Iterator[tuple[str, list[str]]]:
     yield tr("Not modelled"), [say(each) for each in sheet.left_out]
 
 
-def _beyond_the_head(sheet: Sheet) -> list[str]:
+def _beyond_the_head(sheet: Report) -> list[str]:
     """Return the reasons of the verdict that have no room at the head, and what else is to be looked at."""
     told = {each.message for each in sheet.assessment.findings}
-    reasons = [joined(each) for each in overall(sheet).reasons[REASONS:]]
+    reasons = [joined(each) for each in assessment_text(sheet).reasons[REASONS:]]
     return [*reasons, *(say(each) for each in sheet.warnings if each not in told)]
 
 
-def size_rule(sheet: Sheet) -> str:
+def size_rule(sheet: Report) -> str:
     """Return how the size in the chosen system was found, and its sister sizes."""
     if not sheet.sizes:
         return say(sheet.no_size)
@@ -50,7 +50,7 @@ def size_rule(sheet: Sheet) -> str:
     return joined([f"{system_word(chosen)}{colon()}{rule}", more])
 
 
-def size_cautions(sheet: Sheet) -> str:
+def size_cautions(sheet: Report) -> str:
     """Return where others find another size, in the words of the tables, or nothing."""
     told: dict[str, list[str]] = {}
     for each in sheet.sizes:
@@ -61,9 +61,9 @@ def size_cautions(sheet: Sheet) -> str:
     return tr("* Others find another size. {words}").format(words=words) if words else ""
 
 
-def _meaning(sheet: Sheet) -> list[str]:
+def _meaning(sheet: Report) -> list[str]:
     """Return what ± means, if it stands on the sheet."""
-    if not (sheet.off and sheet.sound):
+    if not (sheet.off and sheet.is_valid):
         return []
     sources = listed([source_words(each) for each in sheet.off_sources])
     means = tr("± is twice the standard deviation: 95 % of all cases, if errors are normal.")
@@ -73,17 +73,17 @@ def _meaning(sheet: Sheet) -> list[str]:
 
 def _limits() -> list[str]:
     """Return how sure the limits of the lights are, and between whose figures they stand."""
-    limits = comfort()
+    limits = pressure_limits()
     sources = ("、" if language() == "ja" else "; ").join(each.named(language()) for each in limits.sources)
     return [limits.doubts[0].told(language()), tr("Sources: {names}.").format(names=sources)]
 
 
-def _unsure(sheet: Sheet) -> list[str]:
-    notes = (row["note"] for row in sheet.measures if row["estimate"] and known(row) and row["note"])
+def _unsure(sheet: Report) -> list[str]:
+    notes = (row["note"] for row in sheet.measures if row["estimate"] and is_known(row) and row["note"])
     return [say(note) for note in dict.fromkeys(notes)]
 
 
-def _with_elastics(sentence: str, sheet: Sheet) -> str:
+def _with_elastics(sentence: str, sheet: Report) -> str:
     """Return what the core says of elastics, whose names are words of their own."""
     names = {row.elastic for row in sheet.cuts.rows if row.elastic}
     for name in sorted(names, key=len, reverse=True):

@@ -10,13 +10,13 @@ from PySide6.QtGui import QPainter
 from app.i18n.catalog import speaking, tr
 from app.rendering.palette import LIGHT
 from app.report.curves import LOWEST, curve_block
-from app.report.cut_rows import vague_forces
+from app.report.cut_rows import force_range_warning
 from app.report.cut_table import cut_blocks
-from app.report.document import Handout
+from app.report.document import ReportDocument
 from app.report.header import WIDE, head_blocks
-from app.report.layout import Block, Column, Placed, flow
+from app.report.layout import Block, Column, PlacedBlock, place_blocks
 from app.report.notes import cut_notes
-from app.report.painter import A4, MARGIN, Paper, elided, text_width
+from app.report.painter import A4, MARGIN, PagePainter, elide, text_width
 from app.report.tables import (
     HALF,
     bullet,
@@ -41,24 +41,24 @@ _CURVES = (100.0, 84.0, 70.0, 60.0, 50.0, 42.0)  # heights of the curves at the 
 class Pages:
     """Blocks in their places on ``count`` pages; ``foot`` stands at the foot of each."""
 
-    placed: tuple[Placed, ...]
+    placed: tuple[PlacedBlock, ...]
     count: int
     foot: str
 
     def paint(self, painter: QPainter, page: int) -> None:
         """Paint a page, counted from 0; ``painter`` has ``paper.UNITS`` to a millimetre."""
-        paper = Paper(painter)
+        paper = PagePainter(painter)
         for each in self.placed:
             if each.page == page:
                 each.block.paint(paper, each.x, each.y)
         base, number = A4[1] - MARGIN, f"{page + 1} / {self.count}"
-        foot = elided(self.foot, "caption", WIDE - text_width(number, "caption") - 6.0)
+        foot = elide(self.foot, "caption", WIDE - text_width(number, "caption") - 6.0)
         paper.rule(MARGIN, base - 3.6, WIDE, ink=LIGHT.line)
         paper.text(MARGIN, base, foot, "caption")
         paper.text(MARGIN + WIDE, base, number, "caption", align="right")
 
 
-def pages_of(handout: Handout, language: str) -> Pages:
+def pages_of(handout: ReportDocument, language: str) -> Pages:
     """Return the pages of a sheet in a language of ``app.i18n.catalog.LANGUAGES``.
 
     The first page is for the sample room: verdict, pictures, what to cut, key measures. All else is appendix.
@@ -66,41 +66,41 @@ def pages_of(handout: Handout, language: str) -> Pages:
     with speaking(language):
         placed = _first(handout)
         placed += _appendix(handout, max(each.page for each in placed) + 1)
-        return Pages(tuple(placed), max(each.page for each in placed) + 1, foot_words(handout.sheet))
+        return Pages(tuple(placed), max(each.page for each in placed) + 1, foot_words(handout.report))
 
 
-def _first(handout: Handout) -> list[Placed]:
+def _first(handout: ReportDocument) -> list[PlacedBlock]:
     """Return what the sample room needs; where the cut list is long, pictures give way to it."""
-    cuts, measures, notes = cut_blocks(handout), list(key_blocks(handout.sheet)), _cutting(handout)
+    cuts, measures, notes = cut_blocks(handout), list(key_blocks(handout.report)), _cutting(handout)
     for share in _SMALLER:
-        placed, left = flow([*head_blocks(handout, share), *cuts], _whole(0))
+        placed, left = place_blocks([*head_blocks(handout, share), *cuts], _whole(0))
         below = [
             each
             for x, blocks in ((MARGIN, measures), (MARGIN + WIDE - HALF, notes))
-            for each in flow(blocks, _halves_at(left, x))[0]
+            for each in place_blocks(blocks, _halves_at(left, x))[0]
         ]
         if all(each.page == 0 for each in below):
             break
     return placed + below
 
 
-def _appendix(handout: Handout, page: int) -> list[Placed]:
+def _appendix(handout: ReportDocument, page: int) -> list[PlacedBlock]:
     """Return curves, notes and all other measures; where these are many, curves give way to them."""
-    sheet, title = handout.sheet, heading(tr("Appendix"), WIDE)
+    sheet, title = handout.report, heading(tr("Appendix"), WIDE)
     words: list[Block] = [*line_note_blocks(handout), *measure_blocks(sheet), *note_blocks(sheet)]
     top = MARGIN + title.height + 2.0
     for height in _CURVES:
-        below = flow(words, _halves(page, top + height + _GAP))[0]
+        below = place_blocks(words, _halves(page, top + height + _GAP))[0]
         if all(each.page == page for each in below):
             break
-    curves = Placed(page, MARGIN, top, curve_block(handout, height))
-    return [Placed(page, MARGIN, MARGIN, title), curves, *below]
+    curves = PlacedBlock(page, MARGIN, top, curve_block(handout, height))
+    return [PlacedBlock(page, MARGIN, MARGIN, title), curves, *below]
 
 
-def _cutting(handout: Handout) -> list[Block]:
+def _cutting(handout: ReportDocument) -> list[Block]:
     """Return what has to be known to cut by the list, and how far its forces are known."""
-    sheet = handout.sheet
-    notes = [vague_forces(sheet), *cut_notes(sheet)] if sheet.cuts.rows else []
+    sheet = handout.report
+    notes = [force_range_warning(sheet), *cut_notes(sheet)] if sheet.cuts.rows else []
     return [heading(tr("For cutting"), HALF), *map(bullet, filter(None, notes))] if notes else []
 
 

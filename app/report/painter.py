@@ -86,18 +86,18 @@ def text_width(text: str, kind: str) -> float:
     return _metrics(kind).horizontalAdvance(text) / UNITS
 
 
-def elided(text: str, kind: str, width: float) -> str:
+def elide(text: str, kind: str, width: float) -> str:
     """Return a text that ends in dots where it would be wider [mm]."""
     plain = " ".join(text.split())
     return _metrics(kind).elidedText(plain, Qt.TextElideMode.ElideRight, width * UNITS)
 
 
-def fitting(text: str, width: float) -> str:
+def fitting_font(text: str, width: float) -> str:
     """Return the kind of type in which a name fits a cell, or is the least cut off [mm]."""
     return "body" if text_width(text, "body") <= width else "small"
 
 
-def wrapped(text: str, kind: str, width: float) -> list[str]:
+def wrap(text: str, kind: str, width: float) -> list[str]:
     """Return the lines of a text in a column of a ``width`` [mm]; the last is never a letter or two."""
     lines = _broken(text, kind, width)
     for share in _NARROWER:
@@ -128,7 +128,7 @@ def line_height(kind: str) -> float:
     return 1.4 * TYPES[kind][0] * _POINT
 
 
-class Paper:
+class PagePainter:
     """Paints in millimetres from the top left of a page; ``painter`` has ``UNITS`` to each of them."""
 
     def __init__(self, painter: QPainter) -> None:

@@ -10,7 +10,7 @@ from PySide6.QtGui import QPageLayout, QPageSize, QPainter, QPdfWriter
 from app.report.pages import Pages
 from app.report.painter import UNITS
 from core.errors import ProjectError
-from core.files.atomic_write import whole_file
+from core.files.atomic_write import atomic_path
 
 _DOTS = 1200  # of the writer to an inch
 
@@ -24,7 +24,7 @@ def write_pdf(path: str | Path, pages: Pages, title: str) -> None:
             f"{target} cannot be written: its pages could not be painted.", "Choose another folder."
         )
     # Painted in memory first: of a disk that gets full Qt says nothing, half a sheet would count as written.
-    with whole_file(target) as partial:
+    with atomic_path(target) as partial:
         partial.write_bytes(data.data().data())
 
 

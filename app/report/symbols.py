@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from app.rendering.palette import LIGHT
-from app.report.painter import Paper
+from app.report.painter import PagePainter
 from core.garment.assessment import BAD, CAUTION, GOOD
 
 LIGHTS = {"green": LIGHT.ok, "amber": LIGHT.warn_mark, "red": LIGHT.bad}
 """The colours of the lights; each has a shape of its own."""
 
 
-def paint_light(paper: Paper, x: float, y: float, light: str) -> None:
+def paint_light(paper: PagePainter, x: float, y: float, light: str) -> None:
     """Paint a light about a place [mm]: a ring for green, a triangle for amber, a full square for red."""
     ink = LIGHTS[light]
     if light == "green":
@@ -21,7 +21,7 @@ def paint_light(paper: Paper, x: float, y: float, light: str) -> None:
         paper.box(x - 1.05, y - 1.05, 2.1, 2.1, ink)
 
 
-def paint_level(paper: Paper, x: float, y: float, level: str) -> None:
+def paint_level(paper: PagePainter, x: float, y: float, level: str) -> None:
     """Paint a level of an overall verdict about a place [mm]: a tick, a triangle, a square, or a ring."""
     light = {CAUTION: "amber", BAD: "red"}.get(level)
     if level == GOOD:
@@ -32,7 +32,7 @@ def paint_level(paper: Paper, x: float, y: float, level: str) -> None:
         paper.disc(x, y, 0.95, LIGHT.text_quiet, filled=False)
 
 
-def paint_chip(paper: Paper, x: float, y: float, colour: str) -> None:
+def paint_chip(paper: PagePainter, x: float, y: float, colour: str) -> None:
     """Paint the colour of a line about a height [mm], with an edge where it is pale."""
     paper.box(x, y - 1.1, 3.2, 2.2, LIGHT.control, 0.5)
     paper.box(x + 0.12, y - 0.98, 2.96, 1.96, colour, 0.4)

@@ -9,12 +9,12 @@ from app.i18n.catalog import tr
 from app.i18n.lengths import length_unit
 from app.rendering.palette import LIGHT
 from app.report.cut_rows import line_notes
-from app.report.document import Handout
+from app.report.document import ReportDocument
 from app.report.layout import Block, Paint
 from app.report.notes import note_groups
-from app.report.painter import Paper, elided, fitting, line_height, text_width, wrapped
+from app.report.painter import PagePainter, elide, fitting_font, line_height, text_width, wrap
 from app.report.text import MeasureRow, key_measures, measure_rows
-from core.export.report_data import Sheet
+from core.export.report_data import Report
 
 Edges = tuple[float, float, float]
 """Right ends of the figures of a measure: before, after, change [mm]."""
@@ -31,25 +31,25 @@ _SECOND = 3.2  # so much higher is a row whose title takes two lines
 
 def heading(title: str, width: float, *, gap: float = 5.0) -> Block:
     """Return the title of what follows, which stays with it."""
-    said = elided(title, "heading", width)
+    said = elide(title, "heading", width)
     return Block(5.4, lambda paper, x, y: paper.text(x, y + 3.6, said, "heading"), gap=gap, keep=True)
 
 
-def key_blocks(sheet: Sheet) -> Iterator[Block]:
+def key_blocks(sheet: Report) -> Iterator[Block]:
     """Give the few measures that a garment is made to."""
     groups = measure_rows(replace(sheet, measures=key_measures(sheet)))
     edges = _edges(groups)
     yield heading(tr("Key measures"), HALF)
     yield _measure_head(edges)
     for _, rows in groups:
-        yield from (_measure(row, edges) for row in rows if row.figures)
+        yield from (_measure(row, edges) for row in rows if row.values)
 
 
 def _edges(groups: list[tuple[str, list[MeasureRow]]]) -> Edges:
     return _BESIDE if any(row.off for _, rows in groups for row in rows) else _MEASURED
 
 
-def measure_blocks(sheet: Sheet) -> Iterator[Block]:
+def measure_blocks(sheet: Report) -> Iterator[Block]:
     """Give the table of all other measures before and after, group by group."""
     key = {row["key"] for row in key_measures(sheet)}
     others = tuple(row for row in sheet.measures if row["key"] not in key)
@@ -58,13 +58,13 @@ def measure_blocks(sheet: Sheet) -> Iterator[Block]:
     yield heading(tr("Further measures"), HALF)
     yield _measure_head(edges)
     for group, rows in groups:
-        said = elided(group, "strong", HALF)
+        said = elide(group, "strong", HALF)
         yield Block(5.0, _ruled(said, "strong", HALF, 5.0), gap=1.2, keep=True)
         for row in rows:
-            yield _measure(row, edges) if row.figures else paragraph(row.note, "small", HALF, 0.9)
+            yield _measure(row, edges) if row.values else paragraph(row.note, "small", HALF, 0.9)
 
 
-def note_blocks(sheet: Sheet) -> Iterator[Block]:
+def note_blocks(sheet: Report) -> Iterator[Block]:
     """Give what is to be known of the figures."""
     yield heading(tr("What the figures rest on"), HALF)
     for title, sentences in note_groups(sheet):
@@ -73,9 +73,9 @@ def note_blocks(sheet: Sheet) -> Iterator[Block]:
             yield bullet(sentence)
 
 
-def line_note_blocks(handout: Handout) -> Iterator[Block]:
+def line_note_blocks(handout: ReportDocument) -> Iterator[Block]:
     """Give what is to be known of each line."""
-    notes = line_notes(handout.sheet, list(handout.colours))
+    notes = line_notes(handout.report, list(handout.colours))
     if notes:
         yield heading(tr("Notes on the lines"), HALF)
     for title, sentences in notes:
@@ -85,9 +85,9 @@ def line_note_blocks(handout: Handout) -> Iterator[Block]:
 
 def _measure_head(edges: Edges) -> Block:
     titles = tr("before"), tr("after"), tr("change")
-    unit = elided(tr("{unit}, if not told otherwise").format(unit=length_unit()), "caption", edges[0] - 10.0)
+    unit = elide(tr("{unit}, if not told otherwise").format(unit=length_unit()), "caption", edges[0] - 10.0)
 
-    def paint(paper: Paper, x: float, y: float) -> None:
+    def paint(paper: PagePainter, x: float, y: float) -> None:
         paper.text(x, y + 2.6, unit, "caption")
         for edge, title in zip(edges, titles, strict=True):
             paper.text(x + edge, y + 2.6, title, "caption", align="right")
@@ -98,19 +98,17 @@ def _measure_head(edges: Edges) -> Block:
 def _measure(row: MeasureRow, edges: Edges) -> Block:
     """Return a measure: its figures, behind each how far it may be off; a long title takes two lines."""
     room = edges[0] - 9.5
-    unit = elided(row.unit, "caption", room)
+    unit = elide(row.unit, "caption", room)
     beside = room - (text_width(unit, "caption") + 1.6 if unit else 0.0)
-    kind, lines = fitting(row.title, beside), _in_two(row.title, beside)
+    kind, lines = fitting_font(row.title, beside), _in_two(row.title, beside)
     high = _ROW + _SECOND * (len(lines) - 1)
 
-    def paint(paper: Paper, x: float, y: float) -> None:
+    def paint(paper: PagePainter, x: float, y: float) -> None:
         base = y + 3.2
         for place, line in enumerate(lines):
             paper.text(x, base + place * _SECOND, line, kind, ink=LIGHT.text)
         paper.text(x + text_width(lines[-1], kind) + 1.6, base + (len(lines) - 1) * _SECOND, unit, "caption")
-        for edge, figure, type_ in zip(
-            edges, row.figures, ("before", "figure strong", "figure"), strict=True
-        ):
+        for edge, figure, type_ in zip(edges, row.values, ("before", "figure strong", "figure"), strict=True):
             paper.text(x + edge, base, figure, type_, align="right")
         for edge, off in zip(edges, row.off, strict=False):
             paper.text(x + edge + _OFF, base, off, "axis", align="right")
@@ -126,20 +124,20 @@ def _in_two(title: str, width: float) -> list[str]:
         return [title]
     if name and text_width(name, "small") <= width:
         return [name, f"{bracket}{side}"]
-    first, *others = wrapped(title, "small", width)
-    return [first, elided("".join(others), "small", width)]
+    first, *others = wrap(title, "small", width)
+    return [first, elide("".join(others), "small", width)]
 
 
 def _title(title: str) -> Block:
-    said = elided(title, "small strong", HALF)
+    said = elide(title, "small strong", HALF)
     return Block(3.6, lambda paper, x, y: paper.text(x, y + 2.5, said, "small strong"), gap=1.4, keep=True)
 
 
 def bullet(sentence: str) -> Block:
     """Return a sentence behind a bullet, half as wide as the page."""
-    lines = wrapped(sentence, "small", HALF - 3.0)
+    lines = wrap(sentence, "small", HALF - 3.0)
 
-    def paint(paper: Paper, x: float, y: float) -> None:
+    def paint(paper: PagePainter, x: float, y: float) -> None:
         paper.disc(x + 0.9, y + 0.52 * line_height("small"), 0.22, LIGHT.text_caption)
         paper.lines(x + 3.0, y, lines, "small")
 
@@ -148,12 +146,12 @@ def bullet(sentence: str) -> Block:
 
 def paragraph(text: str, kind: str, width: float, gap: float = 0.0) -> Block:
     """Return a text in a column of a ``width`` [mm], ``gap`` [mm] below what stands over it."""
-    lines = wrapped(text, kind, width)
+    lines = wrap(text, kind, width)
     return Block(len(lines) * line_height(kind), lambda paper, x, y: paper.lines(x, y, lines, kind), gap=gap)
 
 
 def _ruled(text: str, kind: str, width: float, height: float) -> Paint:
-    def paint(paper: Paper, x: float, y: float) -> None:
+    def paint(paper: PagePainter, x: float, y: float) -> None:
         paper.text(x, y + 3.6, text, kind)
         paper.rule(x, y + height, width, ink=LIGHT.outline)
 

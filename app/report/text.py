@@ -10,11 +10,11 @@ from app.i18n.catalog import colon, listed, number, say, tr
 from app.i18n.lengths import shown_digits, shown_value
 from app.presenters.assessment import AssessmentView, assessment_view
 from app.presenters.lines import line_title
-from app.presenters.measurements import length_off, measure_title, plus_minus
-from app.presenters.pressure import light_word
+from app.presenters.measurements import length_uncertainty, measure_title, plus_minus
+from app.presenters.pressure import rating_text
 from core.document.lines import partner_of
-from core.export.report_data import Sheet
-from core.garment.pressure_limits import comfort
+from core.export.report_data import Report
+from core.garment.pressure_limits import pressure_limits
 from core.measurements.custom import OWN
 from core.measurements.definitions import definition_of
 from core.measurements.uncertain_value import AFTER, BEFORE, CHANGE
@@ -25,14 +25,14 @@ NOTHING = "\N{EN DASH}"
 
 @dataclass(frozen=True)
 class MeasureRow:
-    """A row of the measures, as it is printed; one that is missing has no ``figures`` but a ``note``.
+    """A row of the measures, as it is printed; one that is missing has no ``values`` but a ``note``.
 
     ``off`` stands under the figures: how far each may be off.
     """
 
     title: str
     unit: str
-    figures: tuple[str, ...]
+    values: tuple[str, ...]
     note: str = ""
     off: tuple[str, ...] = ()
 
@@ -45,20 +45,20 @@ def piece_title(line: str, title: str) -> str:
     return listed((title, side)) if side else title
 
 
-def project_words(sheet: Sheet) -> str:
+def project_words(sheet: Report) -> str:
     """Return of what the sheet is: the project, and which variant of it."""
     heading = sheet.heading
     variant = tr("Variant {name}").format(name=heading.variant) if heading.variant else ""
     return " · ".join(filter(None, (heading.project, variant)))
 
 
-def overall(sheet: Sheet) -> AssessmentView:
+def assessment_text(sheet: Report) -> AssessmentView:
     """Return the overall verdict on a sheet in words."""
     titles = {row.line: piece_title(row.line, row.title) for row in sheet.cuts.rows}
     return assessment_view(sheet.assessment, titles=titles)
 
 
-def size_words(sheet: Sheet) -> str:
+def size_words(sheet: Report) -> str:
     """Return the size as each system writes it, and which others lie within what girths may be off."""
     within = sheet.sizes[0].get("within_off")
     words = tr("Within the ± also: {sizes}") if within else tr("No other size lies within the ±.")
@@ -66,7 +66,7 @@ def size_words(sheet: Sheet) -> str:
     return "\n".join(filter(None, (said, other_sizes(sheet))))
 
 
-def other_sizes(sheet: Sheet) -> str:
+def other_sizes(sheet: Report) -> str:
     """Return the size as each system writes it, the chosen one first; a star where others find another."""
     said = (
         f"{system_word(each)} {each['size'] or NOTHING}{'*' * bool(each['caution'])}" for each in sheet.sizes
@@ -82,21 +82,21 @@ KEY_MEASURES = ("bust_girth", "underbust_girth", "bust_point_distance", "bust_po
 """What a bra is made to, first of all."""
 
 
-def key_measures(sheet: Sheet) -> tuple[dict[str, Any], ...]:
+def key_measures(sheet: Report) -> tuple[dict[str, Any], ...]:
     """Return the rows of the few measures that a garment is made to."""
     keys = {f"{key}{side}" for key in KEY_MEASURES for side in ("", "_left", "_right")}
-    return tuple(row for row in sheet.measures if row["key"] in keys and known(row))
+    return tuple(row for row in sheet.measures if row["key"] in keys and is_known(row))
 
 
-def measure_rows(sheet: Sheet) -> list[tuple[str, list[MeasureRow]]]:
+def measure_rows(sheet: Report) -> list[tuple[str, list[MeasureRow]]]:
     """Return the measures in groups; those that are missing for one reason stand in one row."""
     rows = [(_group(row["key"]), row) for row in sheet.measures]
     order = list(dict.fromkeys(group for group, _ in rows))
     found = []
     for group in order:
         those = [row for name, row in rows if name == group]
-        shown = [_measure_row(row, sheet) for row in those if known(row)]
-        missing = [row for row in those if not known(row)]
+        shown = [_measure_row(row, sheet) for row in those if is_known(row)]
+        missing = [row for row in those if not is_known(row)]
         for note, same in groupby(missing, key=lambda row: row["note"]):
             title = listed([measure_title(row) for row in same])
             shown.append(MeasureRow(title, "", (), f"{title}{colon()}{say(note)}"))
@@ -104,41 +104,43 @@ def measure_rows(sheet: Sheet) -> list[tuple[str, list[MeasureRow]]]:
     return found
 
 
-def light_legend() -> list[tuple[str, str]]:
+def pressure_legend() -> list[tuple[str, str]]:
     """Return each light with what it says of the largest pressure."""
-    limits = comfort()
+    limits = pressure_limits()
     amber, red = number(limits.amber_kpa, 0), number(limits.red_kpa, 0)
     told = {
         "green": tr("below {kpa} kPa").format(kpa=amber),
         "amber": tr("from {kpa} kPa").format(kpa=amber),
         "red": tr("from {kpa} kPa").format(kpa=red),
     }
-    return [(light, f"{light_word(light)}{colon()}{words}") for light, words in told.items()]
+    return [(light, f"{rating_text(light)}{colon()}{words}") for light, words in told.items()]
 
 
-def foot_words(sheet: Sheet) -> str:
+def foot_words(sheet: Report) -> str:
     """Return what was at work, for the foot of each page."""
     mesh = tr("control mesh {count}").format(count=sheet.model["template"])
     return " · ".join((f"Busk {sheet.versions['busk']}", mesh, sheet.scan))
 
 
-def _measure_row(row: dict[str, Any], sheet: Sheet) -> MeasureRow:
+def _measure_row(row: dict[str, Any], sheet: Report) -> MeasureRow:
     digits = 0 if row["unit"] == "ml" else 1
     figures = (
-        figure(row["before"], digits, row["unit"]),
-        figure(row["after"], digits, row["unit"]),
+        value_text(row["before"], digits, row["unit"]),
+        value_text(row["after"], digits, row["unit"]),
         _change(row, digits),
     )
-    figures = figures if sheet.sound else (figures[0], NOTHING, NOTHING)
-    offs = [sheet.off.get(f"{kind}:{row['key']}") for kind in (BEFORE, AFTER, CHANGE)] if sheet.sound else []
-    off_words = length_off if row["unit"] == "mm" else plus_minus
+    figures = figures if sheet.is_valid else (figures[0], NOTHING, NOTHING)
+    offs = (
+        [sheet.off.get(f"{kind}:{row['key']}") for kind in (BEFORE, AFTER, CHANGE)] if sheet.is_valid else []
+    )
+    off_words = length_uncertainty if row["unit"] == "mm" else plus_minus
     told = tuple("" if off is None else off_words(off) for off in offs)
     told = told if any(told) else ()
     unit = row["unit"].replace("2", "\N{SUPERSCRIPT TWO}")
     unit = "" if unit == "mm" else unit
     if row["estimate"]:
         alone = row["plus_minus"] >= 0.5 and not told  # else it is in what stands below
-        off = f" ± {figure(row['plus_minus'], digits, row['unit'])}" if alone else ""
+        off = f" ± {value_text(row['plus_minus'], digits, row['unit'])}" if alone else ""
         unit = f"{unit} {tr('est.')}{off}".strip()
     return MeasureRow(measure_title(row), unit, figures, off=told)
 
@@ -157,7 +159,7 @@ def _group(key: str) -> str:
     return tr("Your own") if key.startswith(OWN) else say(definition_of(key)[0].group)
 
 
-def known(row: dict[str, Any]) -> bool:
+def is_known(row: dict[str, Any]) -> bool:
     """Return whether a measure was found, before or after."""
     return row["before"] is not None or row["after"] is not None
 
@@ -168,7 +170,7 @@ def system_word(size: dict[str, Any]) -> str:
     return key.upper() if len(key) == 2 else str(size["system"])
 
 
-def figure(value: float | None, digits: int, unit: str = "") -> str:
+def value_text(value: float | None, digits: int, unit: str = "") -> str:
     """Return a figure in ``unit`` as it is printed, or NOTHING; millimetres in the unit in use."""
     if value is None:
         return NOTHING

@@ -17,7 +17,7 @@ from app.rendering.palette import LIGHT
 from app.research.accuracy import DOUBTED, TRUSTED, Case
 from app.research.figure_style import print_style
 from core.errors import UserError
-from core.files.atomic_write import whole_file
+from core.files.atomic_write import atomic_path
 from core.geometry.mesh import Faces, Floats, Points
 from core.scan.readers.registry import read_triangles, scan_bytes
 
@@ -47,7 +47,7 @@ def save_sheets(cases: Sequence[Case], folder: Path, out: Path) -> list[Path]:
     written = []
     for number, page in enumerate(pages, start=1):
         name = out / f"accuracy-{number}.png"
-        with print_style(), whole_file(name) as partial:
+        with print_style(), atomic_path(name) as partial:
             _page(page, folder).savefig(partial, format="png", dpi=DOTS, metadata={"Software": "Busk"})
         written.append(name)
     return written

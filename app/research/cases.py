@@ -10,12 +10,12 @@ import numpy as np
 
 from app.presenters.samples import sample_design
 from app.rendering.ambient_occlusion import bake_occlusion
-from core.document.lines import WornLine
+from core.document.lines import ActiveLine
 from core.geometry.mesh import Floats, Points
 from core.mechanics.exact_solution import newton, solve_exact
 from core.mechanics.iteration import Record, iterate
-from core.pipeline.build import Stages, build, targets_of
-from core.pipeline.solve import Solution, run
+from core.pipeline.build import Stages, build, line_targets
+from core.pipeline.solve import Solution, solve
 
 LINE = "mid-bust"
 """The paper's line, "between full bust and under bust"."""
@@ -77,8 +77,8 @@ class Study:
         def make() -> Solution:
             stages = self.stages(body, **choices)
             names = [line.name for line in stages.design.own_lines] or [LINE]
-            lines = tuple(WornLine(name, ratio) for name in names)
-            return run(build(replace(stages.design, lines=lines, volume=control), stages), turns)
+            lines = tuple(ActiveLine(name, ratio) for name in names)
+            return solve(build(replace(stages.design, lines=lines, volume=control), stages), turns)
 
         return self._once(("solved", body, ratio, control, turns, *sorted(choices.items())), make)
 
@@ -106,7 +106,7 @@ class Study:
         Both have shape (turns + 1,) and begin at rest; ``goal`` are displacements of the free points.
         """
         stages = self.stages(body)
-        targets = targets_of(replace(stages.design.with_line(LINE, ratio), volume=control), stages)
+        targets = line_targets(replace(stages.design.with_line(LINE, ratio), volume=control), stages)
         away, error = [float(np.linalg.norm(goal, axis=1).max())], [0.0]
         for state, measured in iterate(stages.model, lambda: targets, turns=turns):
             away.append(float(np.linalg.norm(state.moved - goal, axis=1).max()))
@@ -116,7 +116,7 @@ class Study:
     def newton_way(self, body: str, ratio: float, goal: Points) -> tuple[Floats, Floats]:
         """Return what ``way_to`` does, over the Newton steps of the exact answer."""
         stages = self.stages(body, volume_of="both")
-        ratios = targets_of(stages.design.with_line(LINE, ratio), stages).ratios
+        ratios = line_targets(stages.design.with_line(LINE, ratio), stages).ratios
         states = [balance.state.moved for balance in newton(stages.model, ratios)]
         volumes = [stages.model.volume.volume(stages.model.tensegric.expand(moved)) for moved in states]
         away = np.array([np.linalg.norm(moved - goal, axis=1).max() for moved in states])
@@ -125,7 +125,7 @@ class Study:
 
 def reached_length(stages: Stages, ratio: float) -> float:
     """Return the length of the paper's line in the exact answer over its rest length [1]."""
-    ratios = targets_of(stages.design.with_line(LINE, ratio), stages).ratios
+    ratios = line_targets(stages.design.with_line(LINE, ratio), stages).ratios
     points = stages.model.tensegric.expand(solve_exact(stages.model, ratios).state.moved)
     line = next(line for line in stages.model.lines if line.name == LINE)
     return line.length(points) / line.rest_length
@@ -148,14 +148,18 @@ def moved(solution: Solution) -> tuple[float, float, float]:
     rest, now = solution.rest.marks, solution.last.marks
     assert rest is not None
     assert now is not None
-    bust = 0.5 * (now.nipple_left_z + now.nipple_right_z - rest.nipple_left_z - rest.nipple_right_z)
+    bust = 0.5 * (
+        now.bust_point_left_z + now.bust_point_right_z - rest.bust_point_left_z - rest.bust_point_right_z
+    )
     return bust, now.apex_z - rest.apex_z, now.apex_protrusion - rest.apex_protrusion
 
 
 def bust_heights(records: list[Record]) -> Floats:
     """Return the mean height of both bust points and that of the apex, shape (n, 2) [mm]."""
     marks = [record.marks for record in records]
-    return np.array([(0.5 * (m.nipple_left_z + m.nipple_right_z), m.apex_z) for m in marks if m is not None])
+    return np.array(
+        [(0.5 * (m.bust_point_left_z + m.bust_point_right_z), m.apex_z) for m in marks if m is not None]
+    )
 
 
 def signed(value: float) -> str:

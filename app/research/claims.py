@@ -281,7 +281,7 @@ def _first_error(study: Study) -> Claim:
 
 def _speed(study: Study) -> Claim:
     turns = {
-        (body, control): study.solved(body, MODEST, control).last.turn
+        (body, control): study.solved(body, MODEST, control).last.iteration
         for body in BODIES.values()
         for control in CONTROLS.values()
     }

@@ -10,14 +10,14 @@ import numpy as np
 
 from core.control_mesh.fit import ControlMesh
 from core.geometry.mesh import Floats, Points
-from core.mechanics.convergence import SETTLED_STEP, Verdict, judge
+from core.mechanics.convergence import CONVERGED_STEP, Convergence, assess_convergence
 from core.mechanics.exact_solution import solve_exact
 from core.mechanics.gain_limit import gain_limit
-from core.mechanics.iteration import Record, Targets, iterate
+from core.mechanics.iteration import LineTargets, Record, iterate
 from core.mechanics.model import ConstrainedModel, constrained_model
-from core.mechanics.newton import Balance
-from core.mechanics.options import Mechanics
-from core.mechanics.solver_comparison import judge_balance, shape_of
+from core.mechanics.newton import Equilibrium
+from core.mechanics.options import ModelOptions
+from core.mechanics.solver_comparison import assess_equilibrium, shape_of
 from core.pipeline.build import GAIN_SHARE
 
 TURNS = 300
@@ -45,7 +45,7 @@ class Subject:
     name: str
     control: ControlMesh
     line: str
-    mechanics: Mechanics
+    mechanics: ModelOptions
 
 
 @dataclass(frozen=True)
@@ -98,15 +98,15 @@ def _trial(
     ratios: tuple[float, ...],
     control: str,
     limit: float,
-    exact: Balance,
+    exact: Equilibrium,
 ) -> Trial:
     at = next(index for index, line in enumerate(model.lines) if line.name == subject.line)
     gain = GAINS.get(control) or GAIN_SHARE * limit
-    targets = Targets(ratios, control.partition(" ")[0], gain)
+    targets = LineTargets(ratios, control.partition(" ")[0], gain)
     records, moved, rest_at, verdict = _outcome(model, targets, exact)
     errors = np.array([abs(record.error) for record in records] or [abs(verdict.error)])
     late = np.array([record.error for record in records[-RIPPLE_TURNS:]] or [0.0])
-    shape = shape_of(model).condition(model.tensegric.expand(exact.state.moved))
+    shape = shape_of(model).quality(model.tensegric.expand(exact.state.moved))
     choices = subject.mechanics
     return Trial(
         subject.name,
@@ -117,7 +117,7 @@ def _trial(
         control,
         gain if control in GAINS else 0.0,
         verdict.motion,
-        verdict.turns,
+        verdict.iterations,
         model.lines[at].length(model.tensegric.expand(moved)) / model.lines[at].rest_length,
         float(errors[-1]),
         float(np.ptp(late)),
@@ -133,20 +133,20 @@ def _trial(
 
 
 def _outcome(
-    model: ConstrainedModel, targets: Targets, exact: Balance
-) -> tuple[list[Record], Points, int | None, Verdict]:
+    model: ConstrainedModel, targets: LineTargets, exact: Equilibrium
+) -> tuple[list[Record], Points, int | None, Convergence]:
     """Return the records of a control, where it ends, when nothing moves any more, and what is said of it.
 
     The exact answer has no records: its steps are Newton's.
     """
     if targets.control == "exact":
-        rest_at = exact.steps if exact.found else None
-        return [], exact.state.moved, rest_at, judge_balance(model, exact)
+        rest_at = exact.steps if exact.is_converged else None
+        return [], exact.state.moved, rest_at, assess_equilibrium(model, exact)
     records, moved, rest_at = _run(model, targets)
-    return records, moved, rest_at, judge(records)
+    return records, moved, rest_at, assess_convergence(records)
 
 
-def _run(model: ConstrainedModel, targets: Targets) -> tuple[list[Record], Points, int | None]:
+def _run(model: ConstrainedModel, targets: LineTargets) -> tuple[list[Record], Points, int | None]:
     """Return the records of TURNS turns, where they end, and the turn at which nothing moves any more.
 
     An adaptive run is followed beyond its records until that turn.
@@ -155,9 +155,9 @@ def _run(model: ConstrainedModel, targets: Targets) -> tuple[list[Record], Point
     made = list(islice(run, TURNS))
     quiet, rest_at = 0, None
     for _, record in chain(made, run):
-        quiet = quiet + 1 if record.step < SETTLED_STEP else 0
+        quiet = quiet + 1 if record.step < CONVERGED_STEP else 0
         if quiet == _QUIET_TURNS:
-            rest_at = record.turn
+            rest_at = record.iteration
             break
     return [record for _, record in made], made[-1][0].moved, rest_at
 

@@ -10,7 +10,7 @@ from app.research.fig_1_3_5 import AZIMUTH, ELEVATION
 from app.research.figure_scene import body_picture, view_of
 from app.research.figure_style import COLOURS, Figure, sheet, show, trimmed
 from app.research.parameter_study import routes
-from core.document.lines import OwnLine
+from core.document.lines import CustomLine
 
 RATIOS = (0.97, 0.6)
 
@@ -77,7 +77,7 @@ def _name_axes(axes: np.ndarray) -> None:
         line[0].autoscale(axis="y")
 
 
-def _show_slings(study: Study, body: str, plot: Axes, title: str) -> tuple[OwnLine, ...]:
+def _show_slings(study: Study, body: str, plot: Axes, title: str) -> tuple[CustomLine, ...]:
     """Show a body with its slings, and return them."""
     stages = study.stages(body)
     paths = routes(stages.control)["slings"]
@@ -85,4 +85,4 @@ def _show_slings(study: Study, body: str, plot: Axes, title: str) -> tuple[OwnLi
     view = view_of(stages.control.mesh, AZIMUTH, ELEVATION, margin=1.5)
     picture = body_picture(stages.body.mesh, study.occlusion(body), view, paths=points)
     show(plot, trimmed([picture])[0], title)
-    return tuple(OwnLine(name, path) for name, path in sorted(paths.items()))
+    return tuple(CustomLine(name, path) for name, path in sorted(paths.items()))

@@ -15,7 +15,7 @@ from app.research.fig_1_3_5 import line_points
 from app.research.figure_scene import Image, body_picture
 from app.research.figure_style import COLOURS, Figure, sheet, show, trimmed
 from core.geometry.mesh import Floats, Mesh, Points
-from core.geometry.plane_sections import arc_length, chains, cut, resample
+from core.geometry.plane_sections import arc_length, cut, join_segments, resample
 from core.pipeline.build import Stages
 from core.pipeline.solve import Solution
 
@@ -89,7 +89,7 @@ def profile(body: Mesh, at: Floats) -> Points:
 
     Shape (k, 2) [mm], from top to bottom.
     """
-    curves = [points for points, _ in chains(cut(body, (at[0], 0.0, 0.0), (1.0, 0.0, 0.0)))]
+    curves = [points for points, _ in join_segments(cut(body, (at[0], 0.0, 0.0), (1.0, 0.0, 0.0)))]
     outline = max(curves, key=lambda points: float(np.ptp(points[:, 2])))[:, 1:]
     top, bottom = int(outline[:, 1].argmax()), int(outline[:, 1].argmin())
     first, last = min(top, bottom), max(top, bottom)

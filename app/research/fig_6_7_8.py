@@ -119,7 +119,9 @@ def figure_8(study: Study) -> Figure:
         rows += _way_rows(body, "exact", away, error)
         axes[0, column].set_title(f"({letter}) {body}, line at {100 * ratio:.0f} %")
         axes[1, column].set_xlabel("iteration or Newton step")
-        said.append(f"{body}, exact: {exact.last.turn} Newton steps, {abs(100 * exact.last.error):.1g} %")
+        said.append(
+            f"{body}, exact: {exact.last.iteration} Newton steps, {abs(100 * exact.last.error):.1g} %"
+        )
     axes[0, 0].set_ylabel("maximum distance to the\nexact solution [mm]")
     axes[1, 0].set_ylabel("volume error [%]")
     axes[0, 0].legend(loc="upper right", bbox_to_anchor=(1.0, 0.77))

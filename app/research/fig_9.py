@@ -11,8 +11,8 @@ from app.rendering.palette import LIGHT
 from app.research.cases import BODIES, LINE, TEMPLATE, Study
 from app.research.figure_style import Figure, sheet
 from core.geometry.mesh import Floats
-from core.mechanics.iteration import Targets, iterate
-from core.pipeline.build import GAIN_SHARE, targets_of
+from core.mechanics.iteration import LineTargets, iterate
+from core.pipeline.build import GAIN_SHARE, line_targets
 
 RATIOS = np.round(np.arange(0.51, 1.12, 0.06), 3)  # not 1: at rest there is no error to flip
 GAINS = np.round(np.arange(1.10, 1.71, 0.04), 3)
@@ -70,8 +70,8 @@ def figure_9(study: Study) -> Figure:
 def _swing(study: Study, body: str, ratio: float, control: str, gain: float) -> float:
     """Return the largest flip of the volume error from turn to turn at the end of a run [%]."""
     stages = study.stages(body)
-    asked = targets_of(replace(stages.design.with_line(LINE, float(ratio)), volume=control), stages)
-    targets: Targets = replace(asked, gain=float(gain))
+    asked = line_targets(replace(stages.design.with_line(LINE, float(ratio)), volume=control), stages)
+    targets: LineTargets = replace(asked, gain=float(gain))
     errors: Floats = np.array(
         [measured.error for _, measured in iterate(stages.model, lambda: targets, turns=TURNS)]
     )

@@ -8,11 +8,11 @@ import numpy as np
 import numpy.typing as npt
 import pyvista as pv
 
-from app.rendering.appearance import LOOKS
+from app.rendering.appearance import APPEARANCES
 from app.rendering.band import Band
 from app.rendering.camera import View
 from app.rendering.display import off_screen
-from app.rendering.lights_and_floor import Stage
+from app.rendering.lights_and_floor import LightsAndFloor
 from app.rendering.palette import LINE_COLORS
 from app.rendering.scene import Scene
 from core.geometry.mesh import Flags, Floats, Mesh, Points
@@ -57,7 +57,7 @@ def body_picture(
         scene.show_bands(Band(name, path, LINE_COLOUR, 7.0) for name, path in (paths or {}).items())
         if moved is not None:
             scene.move_body(np.arange(len(moved)), moved)
-        scene.look_from(view)
+        scene.set_camera(view)
 
     return _shot(draw)
 
@@ -66,8 +66,8 @@ def control_picture(mesh: Mesh, view: View, *, fixed: Flags, paths: Iterable[Poi
     """Return a picture of a control mesh: flat triangles, its points (fixed ones dark), lines (k, 3) [mm]."""
 
     def draw(plotter: pv.Plotter) -> None:
-        stage = Stage(plotter)
-        stage.set_look(LOOKS[False])
+        stage = LightsAndFloor(plotter)
+        stage.set_appearance(APPEARANCES[False])
         data = pv.PolyData.from_regular_faces(mesh.vertices, mesh.faces)
         plotter.add_mesh(
             data, color="#D9D4CC", show_edges=True, edge_color="#57534E", line_width=1.6, ambient=0.12
@@ -88,7 +88,7 @@ def line_picture(mesh: Mesh, view: View, paths: Iterable[Points]) -> Image:
     """Return a picture of lines alone, each (k, 3) [mm], within the faint shape of a control mesh."""
 
     def draw(plotter: pv.Plotter) -> None:
-        Stage(plotter).set_look(LOOKS[False])
+        LightsAndFloor(plotter).set_appearance(APPEARANCES[False])
         data = pv.PolyData.from_regular_faces(mesh.vertices, mesh.faces)
         plotter.add_mesh(data, color="#C9C5BF", style="wireframe", line_width=1.2, lighting=False)
         for path in paths:

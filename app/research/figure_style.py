@@ -19,7 +19,7 @@ from matplotlib.figure import Figure as Sheet
 from matplotlib.font_manager import fontManager
 
 from app.rendering.palette import LIGHT, LINE_COLORS
-from core.files.atomic_write import whole_file
+from core.files.atomic_write import atomic_path
 
 COLOURS = {
     "conventional": LIGHT.warn_mark,
@@ -84,13 +84,13 @@ class Figure:
     def save(self, folder: Path) -> None:
         """Write ``name``.png and ``name``.csv to ``folder``. Raises UserError if that cannot be done."""
         write_table(folder / f"{self.name}.csv", self.columns, self.rows)
-        with whole_file(folder / f"{self.name}.png") as partial:
+        with atomic_path(folder / f"{self.name}.png") as partial:
             self.sheet.savefig(partial, format="png", dpi=DOTS, metadata={"Software": "Busk"})
 
 
 def write_table(path: Path, columns: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
     """Write a CSV file whose headings name their units. Raises UserError if that cannot be done."""
-    with whole_file(path) as partial, open(partial, "w", newline="", encoding="utf-8") as file:
+    with atomic_path(path) as partial, open(partial, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(columns)
         writer.writerows([_plain(value) for value in row] for row in rows)

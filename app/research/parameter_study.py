@@ -16,11 +16,11 @@ import numpy as np
 from core.control_mesh.fit import ControlMesh
 from core.geometry.mesh import Floats
 from core.geometry.mirror_plane import mirror
-from core.mechanics.convergence import judge
+from core.mechanics.convergence import assess_convergence
 from core.mechanics.gain_limit import gain_limit
-from core.mechanics.iteration import Record, Targets, Watch, iterate
+from core.mechanics.iteration import LineTargets, Record, Watch, iterate
 from core.mechanics.model import ConstrainedModel, constrained_model
-from core.mechanics.options import CONTACTS, LAWS, Mechanics
+from core.mechanics.options import CONTACTS, LAWS, ModelOptions
 from core.pipeline.build import GAIN_SHARE, Stages
 
 TEMPLATES = ("120", "168")
@@ -86,10 +86,10 @@ def search(
     return found
 
 
-def mechanics_of(laws: Iterable[str]) -> Iterator[Mechanics]:
+def mechanics_of(laws: Iterable[str]) -> Iterator[ModelOptions]:
     """Yield the mechanics of member laws with every contact, with and without the firm chest."""
     for law, contact, firm in product(laws, CONTACTS, FIRM):
-        yield Mechanics(member_law=law, line_contact=contact, firm_chest=firm)
+        yield ModelOptions(member_law=law, line_contact=contact, firm_chest=firm)
 
 
 def routes(control: ControlMesh) -> dict[str, dict[str, tuple[int, ...]]]:
@@ -126,12 +126,12 @@ def routes(control: ControlMesh) -> dict[str, dict[str, tuple[int, ...]]]:
 
 
 def _cases(
-    stages: Stages, paths: Mapping[str, tuple[int, ...]], mechanics: Mechanics, names: tuple[str, str, str]
+    stages: Stages, paths: Mapping[str, tuple[int, ...]], mechanics: ModelOptions, names: tuple[str, str, str]
 ) -> Iterator[Finding]:
     model = constrained_model(replace(stages.control, paths=paths), mechanics=mechanics)
     gain = GAIN_SHARE * gain_limit(model)
     for ratio in RATIOS:
-        targets = Targets((ratio,) * len(model.lines), "conventional", gain)
+        targets = LineTargets((ratio,) * len(model.lines), "conventional", gain)
         conventional, before = _run(model, targets, stages.watch)
         adaptive, records = _run(model, replace(targets, control="adaptive"), stages.watch)
         rest = _ends(stages.watch, [stages.control.mesh.vertices])
@@ -144,8 +144,8 @@ def _cases(
             mechanics.line_contact,
             mechanics.firm_chest,
             100.0 * ratio,
-            judge(before).motion,
-            judge(records).motion,
+            assess_convergence(before).motion,
+            assess_convergence(records).motion,
             float(adaptive[0] - conventional[0]),
             float(adaptive[1] - conventional[1]),
             float(adaptive[2] - conventional[2]),
@@ -156,7 +156,7 @@ def _cases(
         )
 
 
-def _run(model: ConstrainedModel, targets: Targets, watch: Watch) -> tuple[Floats, list[Record]]:
+def _run(model: ConstrainedModel, targets: LineTargets, watch: Watch) -> tuple[Floats, list[Record]]:
     """Return what ``_ends`` measures over the last turns, and all records."""
     states, records = zip(*iterate(model, lambda: targets, turns=TURNS), strict=True)
     places = [model.tensegric.expand(state.moved) for state in states[-LAST_TURNS:]]
@@ -166,7 +166,9 @@ def _run(model: ConstrainedModel, targets: Targets, watch: Watch) -> tuple[Float
 def _ends(watch: Watch, places: list[Floats]) -> Floats:
     """Return mean height of the bust points, height and protrusion of the apex, shape (3,) [mm]."""
     marks = [watch(points) for points in places]
-    heights = [(0.5 * (m.nipple_left_z + m.nipple_right_z), m.apex_z, m.apex_protrusion) for m in marks]
+    heights = [
+        (0.5 * (m.bust_point_left_z + m.bust_point_right_z), m.apex_z, m.apex_protrusion) for m in marks
+    ]
     return np.asarray(np.mean(heights, axis=0))
 
 

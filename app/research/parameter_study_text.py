@@ -9,7 +9,7 @@ import numpy as np
 
 from app.research.cases import BODIES, LINE, TEMPLATE, Study
 from app.research.parameter_study import FIRST_TURNS, RATIOS, TEMPLATES, Finding, mirrored_mean
-from core.mechanics.iteration import Targets, iterate
+from core.mechanics.iteration import LineTargets, iterate
 from core.mechanics.model import ConstrainedModel, constrained_model
 
 COLUMNS = tuple(field.name for field in fields(Finding))
@@ -155,5 +155,5 @@ def _twin(study: Study) -> str:
 
 
 def _first_error(model: ConstrainedModel, ratios: tuple[float, ...]) -> float:
-    run = iterate(model, lambda: Targets(ratios), turns=FIRST_TURNS)
+    run = iterate(model, lambda: LineTargets(ratios), turns=FIRST_TURNS)
     return max(abs(measured.error) for _, measured in run)

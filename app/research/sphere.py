@@ -12,7 +12,7 @@ from core.control_mesh.fit import ControlMesh
 from core.deformation.tffd import Binding, bind, deform
 from core.geometry.mesh import Mesh, Points, frozen
 from core.mechanics.model import ConstrainedModel, constrained_model
-from core.mechanics.options import Mechanics
+from core.mechanics.options import ModelOptions
 
 RINGS, SPOKES = 7, 12
 RADIUS = 100.0
@@ -39,7 +39,9 @@ class SphereModel:
         return self.body.moved(deform(self.binding, self.centred(moved)))
 
 
-def sphere_model(worn: Collection[str] = ("horizontal",), mechanics: Mechanics | None = None) -> SphereModel:
+def sphere_model(
+    worn: Collection[str] = ("horizontal",), mechanics: ModelOptions | None = None
+) -> SphereModel:
     """Build the sphere with a ``horizontal`` and a ``vertical`` line; ``worn`` ones act (paper section 3).
 
     The control mesh has 86 points, all free, and 168 triangles; the body has 20,480. The paper gives neither.

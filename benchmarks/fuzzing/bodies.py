@@ -203,7 +203,7 @@ def run(recipe: Any) -> str:
             if len(skin[1]):
                 skin = CHANGES[name](skin, np.random.default_rng(seed))
     body = body_of("body.ply", file_of(skin), **recipe["told"])
-    placed = _placed(body.calm.vertices, recipe["placed"])
+    placed = _placed(body.smoothed.vertices, recipe["placed"])
     landmarks = find_landmarks(body, placed)
     detection(body, landmarks)
     try:

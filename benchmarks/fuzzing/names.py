@@ -18,13 +18,13 @@ import ezdxf
 
 from app.cli.commands.cut import FORMS, Cut
 from app.cli.solved_design import SolvedDesign, solve_valid
-from app.presenters.export import Manner, Outcome
-from app.presenters.export_preview import make_ready
-from core.document.custom_measures import OwnMeasure
+from app.presenters.export import ExportOptions, ExportSource
+from app.presenters.export_preview import prepare_export
+from core.document.custom_measures import CustomMeasurement
 from core.document.design import Design, ScanSource
 from core.document.document import Document
 from core.document.elastic import Elastic
-from core.document.lines import LineTraits, OwnLine
+from core.document.lines import CustomLine, LineSettings
 from core.document.storage.project_file import open_project, read_scan_file, save_project
 from core.garment.cut_list import cut_list
 from core.pipeline.build import Stages, build
@@ -94,16 +94,16 @@ def run(recipe: Any) -> str:
     design = _design(recipe)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "names.busk"
-        save_project(path, Document.of(design), read_scan_file(design.scan), None)
+        save_project(path, Document.single(design), read_scan_file(design.scan), None)
         opened = open_project(path).design
         assert opened.own_lines == design.own_lines
         assert opened.elastics == design.elastics
         stages = build(design, _stages())
         solution = solve_valid(stages)
         points = solution.control_points
-        outcome = Outcome(stages, points, (), named=("names", design.customer))
+        outcome = ExportSource(stages, points, (), named=("names", design.customer))
         for name in FILES:
-            ready = make_ready(name.partition(".")[0], str(Path(folder) / name), outcome, Manner())
+            ready = prepare_export(name.partition(".")[0], str(Path(folder) / name), outcome, ExportOptions())
             drawn = in_one_go(ready.draw()) if ready.draw else None
             ready.write(Path(folder) / name, drawn, quiet)
             _check(Path(folder) / name)
@@ -114,13 +114,15 @@ def run(recipe: Any) -> str:
 
 
 def _design(recipe: Any) -> Design:
-    line = OwnLine(recipe["line"], (28, 45, 34))
+    line = CustomLine(recipe["line"], (28, 45, 34))
     curve = ((0.0, 0.0), (0.3, 4.0), (0.8, 11.0))
     elastic = Elastic(recipe["elastic"], 12.0, curve, source=recipe["source"])
-    measure = OwnMeasure(recipe["measure"], "straight", ("bust_point_left", "bust_point_right"))
-    design = Design(ScanSource(str(BODY)), customer=recipe["customer"]).with_own_line(line)
-    design = design.with_line(line.name, 0.95).with_own_measure(measure)
-    return design.with_traits(LineTraits(line.name, recipe["title"])).with_elastic(line.name, elastic)
+    measure = CustomMeasurement(recipe["measure"], "straight", ("bust_point_left", "bust_point_right"))
+    design = Design(ScanSource(str(BODY)), customer=recipe["customer"]).with_custom_line(line)
+    design = design.with_line(line.name, 0.95).with_custom_measurement(measure)
+    return design.with_line_settings(LineSettings(line.name, recipe["title"])).with_elastic(
+        line.name, elastic
+    )
 
 
 @cache

@@ -13,12 +13,12 @@ from typing import Any
 
 from damaged_files import damaged_file
 
-from core.document.custom_measures import OwnMeasure
+from core.document.custom_measures import CustomMeasurement
 from core.document.design import Design, ScanSource
 from core.document.document import Document
 from core.document.document_text import DESIGN, VARIANTS, to_texts
 from core.document.elastic import Elastic
-from core.document.lines import LineTraits, OwnLine
+from core.document.lines import CustomLine, LineSettings
 from core.document.storage.project_file import ScanFile, open_project, read_scan_file, save_project
 from core.errors import UserError
 from core.landmarks.manual import PlacedMark
@@ -36,13 +36,15 @@ VALUES = [
 
 
 def _document() -> Document:
-    line = OwnLine("strap left", (28, 45, 34))
+    line = CustomLine("strap left", (28, 45, 34))
     elastic = Elastic("plush 12", 12.0, ((0.0, 0.0), (0.3, 4.0), (0.8, 11.0)))
-    design = Design(ScanSource("/scans/body.ply", MEMBER), customer="Anna").with_own_line(line)
-    design = design.with_traits(LineTraits("mid-bust", "Band", "#e5536b", width=20.0)).with_line(
+    design = Design(ScanSource("/scans/body.ply", MEMBER), customer="Anna").with_custom_line(line)
+    design = design.with_line_settings(LineSettings("mid-bust", "Band", "#e5536b", width=20.0)).with_line(
         "mid-bust", 0.9
     )
-    design = design.with_own_measure(OwnMeasure("rise", "straight", ("bust_point_left", "fold_left")))
+    design = design.with_custom_measurement(
+        CustomMeasurement("rise", "straight", ("bust_point_left", "fold_left"))
+    )
     placed = PlacedMark("bust_point_left", (80.0, -140.0, 1204.0))
     design = design.with_placed(placed.name, placed.position).with_elastic("mid-bust", elastic)
     return Document((("A", design), ("B", design.with_line("mid-bust", 0.95))), "A")

@@ -57,7 +57,7 @@ class Grid:
         """Return the corners of the two triangles of each cell, shape (k, 2, 3)."""
         return np.asarray(self.faces[self._cells[cells[:, 0], cells[:, 1] + self.half]])
 
-    def rises(self, cell: Indices) -> bool:
+    def has_rising_diagonal(self, cell: Indices) -> bool:
         """Tell whether the diagonal of a cell goes from its lowest row and column to its highest."""
         points = np.concatenate(self.triangles(cell[None])[0])
         at = self.row[points] - cell[0] + self.column[points] - cell[1]
@@ -74,7 +74,7 @@ class Grid:
 
 
 @dataclass(frozen=True, eq=False)
-class Embedded:
+class EmbeddedCurve:
     """The vertices of a free line: ``places`` (k, 2), rows and columns, and their ``weights`` (k, n).
 
     ``steps`` [1] is its length in rows or columns, whichever is more in each piece: the number of edges of a
@@ -86,22 +86,22 @@ class Embedded:
     steps: float
 
 
-def embed(grid: Grid, places: Sequence[Cell]) -> Embedded:
+def embed(grid: Grid, places: Sequence[Cell]) -> EmbeddedCurve:
     """Return a curve on the control mesh through ``places``, straight over each triangle.
 
     Vertices are added where it crosses an edge of the mesh, so that it stays on the triangles.
     """
     whole = np.array(_crossed(grid, places))
     steps = float(np.abs(np.diff(whole, axis=0)).max(axis=1).sum())
-    corners, weights = weighted(grid, whole)
+    corners, weights = locate_on_grid(grid, whole)
     row = np.repeat(np.arange(len(whole)), 3)
     shape = len(whole), len(grid.row)
     matrix = sparse.csr_array((weights.ravel(), (row, corners.ravel())), shape=shape)
     matrix.eliminate_zeros()
-    return Embedded(whole, matrix, steps)
+    return EmbeddedCurve(whole, matrix, steps)
 
 
-def weighted(grid: Grid, places: Floats) -> tuple[Indices, Floats]:
+def locate_on_grid(grid: Grid, places: Floats) -> tuple[Indices, Floats]:
     """Return the corners of the triangle around each place, and the weights of the place, both (k, 3)."""
     triangles = grid.triangles(grid.cell(places))
     best, weights = triangles[:, 0], np.full((len(places), 3), -np.inf)
@@ -147,6 +147,6 @@ def _of_rows(ends: Floats) -> list[float]:
 def _diagonal(grid: Grid, start: Floats, end: Floats) -> float:
     """Return at which share of a way within a cell it crosses the diagonal of the cell, 1 if it does not."""
     base = grid.cell(0.5 * (start + end)[None])[0]
-    rising = grid.rises(base)
+    rising = grid.has_rising_diagonal(base)
     a, b = (float(x - y if rising else x + y - 1.0) for x, y in (start - base, end - base))
     return a / (a - b) if a * b < 0.0 and min(abs(a), abs(b)) > _NEAR else 1.0

@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from core.control_mesh.embedding import Embedded, Grid
-from core.control_mesh.fitting_frame import Ground, survey_ground
+from core.control_mesh.embedding import EmbeddedCurve, Grid
+from core.control_mesh.fitting_frame import FittingFrame, fit_frame
 from core.control_mesh.fold_rows import Crease, find_creases
-from core.control_mesh.projection import lay_line, lay_outline, lay_rest
+from core.control_mesh.projection import project_border, project_interior, project_line
 from core.control_mesh.quality import FitQuality, measure_fit
-from core.control_mesh.relaxation import eased
+from core.control_mesh.relaxation import relax
 from core.control_mesh.template import Template
-from core.control_mesh.validation import Faults, find_faults
+from core.control_mesh.validation import Faults, find_mesh_faults
 from core.errors import FitError
 from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points
 from core.landmarks.types import Landmarks
@@ -47,7 +47,7 @@ class ControlMesh:
     border: Indices
     warnings: tuple[str, ...]
     quality: FitQuality | None = None
-    embedded: Mapping[str, Embedded] = field(default_factory=dict)
+    embedded: Mapping[str, EmbeddedCurve] = field(default_factory=dict)
 
     @property
     def grid(self) -> Grid:
@@ -77,8 +77,8 @@ def fit_control_mesh(
     low, high = LINE_HEIGHTS
     if not low <= line_height <= high:
         raise FitError(f"The line height {line_height:g} is out of range.", f"Choose {low:g} to {high:g}.")
-    ground = survey_ground(template, body.calm, landmarks)
-    outline, holes = lay_outline(ground, landmarks)
+    ground = fit_frame(template, body.smoothed, landmarks)
+    outline, holes = project_border(ground, landmarks)
     creases, lacking, holed = find_creases(ground, outline, landmarks)
     lost = [*lacking, *holed]
     tries: list[_Try] = []
@@ -131,7 +131,7 @@ class _Try:
 
 
 def _tries(
-    ground: Ground,
+    ground: FittingFrame,
     outline: Points,
     creases: Mapping[int, Crease],
     holed: list[int],
@@ -144,26 +144,26 @@ def _tries(
     """
     template = ground.template
     fold, line, bust = (template.row_of(rule) for rule in ("fold", "line", "bust point"))
-    laid, holes = lay_rest(ground, outline, creases, holed)
-    laid[line], holes[line] = lay_line(ground, laid, creases, 0.5)
+    laid, holes = project_interior(ground, outline, creases, holed)
+    laid[line], holes[line] = project_line(ground, laid, creases, 0.5)
     level, upright = _free_ways(template, creases)
     found = []
-    smoothest = eased(laid, template.faces, ground.skin, level, upright)
+    smoothest = relax(laid, template.faces, ground.skin, level, upright)
     for share in (1.0,) if smoothest is laid else (1.0, 0.75, 0.5, 0.25, 0.0):
         way = smoothest if share == 1.0 else laid + share * (smoothest - laid)
         off = (way != laid).any(axis=2) & (share < 1.0)
-        way[off] = ground.skin.nearest(way[off]) if off.any() else way[off]
+        way[off] = ground.skin.project(way[off]) if off.any() else way[off]
         mesh, half_way = _judged(ground, way)
         faults = half_way
         if line_height != 0.5:
             points = way.copy()
-            points[line], holes[line] = lay_line(ground, laid, creases, line_height)
+            points[line], holes[line] = project_line(ground, laid, creases, line_height)
             shift = way[[fold, bust]] - laid[[fold, bust]]
             along = shift[0] + line_height * (shift[1] - shift[0])
             slid = along.any(axis=1)
-            points[line, slid] = ground.skin.nearest(points[line, slid] + along[slid])
+            points[line, slid] = ground.skin.project(points[line, slid] + along[slid])
             only = (np.arange(len(points)) == line)[:, None]
-            smooth = eased(points, template.faces, ground.skin, level & only, upright & only)
+            smooth = relax(points, template.faces, ground.skin, level & only, upright & only)
             judged = [_judged(ground, smooth), _judged(ground, points)]
             mesh, faults = min(judged, key=lambda one: one[1].weight)
         found.append(_Try(mesh, faults, half_way, holes, lost))
@@ -172,11 +172,11 @@ def _tries(
     return found
 
 
-def _judged(ground: Ground, points: Points) -> tuple[Mesh, Faults]:
+def _judged(ground: FittingFrame, points: Points) -> tuple[Mesh, Faults]:
     """Return the control mesh at ``points``, shape (rows, columns, 3) [mm], and what is at fault with it."""
     template = ground.template
     mesh = Mesh(points.reshape(-1, 3), template.faces)
-    return mesh, find_faults(mesh, ground.skin, template.row == template.row_of("fold"))
+    return mesh, find_mesh_faults(mesh, ground.skin, template.row == template.row_of("fold"))
 
 
 def _free_ways(template: Template, creases: Mapping[int, Crease]) -> tuple[Flags, Flags]:
@@ -228,7 +228,7 @@ def _hole_warning(count: int) -> list[str]:
     ]
 
 
-def _arm_warning(ground: Ground) -> list[str]:
+def _arm_warning(ground: FittingFrame) -> list[str]:
     if ground.torso.armpit >= max(ground.torso.left.bust, ground.torso.right.bust):
         return []
     return ["The arms touch the body below the bust points: the sides of the mesh may lie on an arm."]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.control_mesh.surface_projection import NearSkin
+from core.control_mesh.surface_projection import SurfaceProjector
 from core.control_mesh.template import Template
 from core.control_mesh.torso_frame import Torso, cropped, measure_torso
 from core.errors import FitError
@@ -25,7 +25,7 @@ LEAST = 8.0
 
 
 @dataclass(frozen=True, eq=False)
-class Ground:
+class FittingFrame:
     """The front of a body under a template.
 
     For each column from right to left, shape (c,): ``column`` number, ``azimuth`` [rad], heights of the
@@ -35,7 +35,7 @@ class Ground:
 
     template: Template
     torso: Torso
-    skin: NearSkin
+    skin: SurfaceProjector
     column: Indices
     azimuth: Floats
     below: Floats
@@ -55,7 +55,7 @@ class Ground:
         return self.skin.mesh
 
 
-def survey_ground(template: Template, mesh: Mesh, landmarks: Landmarks) -> Ground:
+def fit_frame(template: Template, mesh: Mesh, landmarks: Landmarks) -> FittingFrame:
     """Find where the rows and columns of ``template`` run on a body. Raises FitError without a torso.
 
     Where the scan ends before the collar would lie, the collar keeps to what there is. Source: ours.
@@ -82,7 +82,9 @@ def survey_ground(template: Template, mesh: Mesh, landmarks: Landmarks) -> Groun
     )
     rows = sum(row.rule == "upper" for row in template.rows) + 2
     edges = _upper_levels(torso, front, across, edge, value["above"], bust, rows)
-    return Ground(template, torso, NearSkin(front), column, azimuth, below, bust, *edges, across)
+    return FittingFrame(
+        template, torso, SurfaceProjector(front), column, azimuth, below, bust, *edges, across
+    )
 
 
 def _azimuth(template: Template, torso: Torso, number: int) -> float:

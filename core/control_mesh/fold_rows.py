@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.control_mesh.fitting_frame import Ground
+from core.control_mesh.fitting_frame import FittingFrame
 from core.control_mesh.radial_profiles import Profile, find_fold, profile
 from core.geometry.mesh import Points
 from core.landmarks.types import Landmarks
@@ -31,7 +31,7 @@ class Crease:
 
 
 def find_creases(
-    ground: Ground, outline: Points, landmarks: Landmarks
+    ground: FittingFrame, outline: Points, landmarks: Landmarks
 ) -> tuple[dict[int, Crease], list[int], list[int]]:
     """Return the folds by column number, found on the profiles of the body, and the columns that lack one.
 
@@ -62,7 +62,7 @@ def find_creases(
     return creases, lacking, holed
 
 
-def _crease(ground: Ground, place: int, down: Profile) -> Crease | None:
+def _crease(ground: FittingFrame, place: int, down: Profile) -> Crease | None:
     """Return the fold on the profile of a column, None if no hollow lies where a fold may be."""
     column = ground.template.columns[abs(ground.column[place])]
     fold = find_fold(down, column.fold == "crease")

@@ -12,13 +12,13 @@ ALONG_ROWS = 0.3
 """Rows bend round the body, columns hardly do: how a row goes on counts so much against a column [1]."""
 
 
-def rebuilt(points: Points, middle: float) -> Points:
+def interpolate_missing(points: Points, middle: float) -> Points:
     """Fill all NaN in points of shape (rows, columns, 3) [mm]; ``middle`` [mm] is x of the axis of the torso.
 
     Up to two columns side by side lie straight between their neighbours; wider holes take the shape of the
     other side, moved to fit what is round the hole; what neither side has goes on as it bends. Source: ours.
     """
-    filled = straight(points)
+    filled = interpolate_in_row(points)
     mirrored = mirror(filled[:, ::-1], middle)
     both = ~np.isnan(filled[..., 0]) & ~np.isnan(mirrored[..., 0])
     lent = np.isnan(filled[..., 0]) & ~np.isnan(mirrored[..., 0])
@@ -32,7 +32,7 @@ def rebuilt(points: Points, middle: float) -> Points:
     return filled
 
 
-def straight(points: Points) -> Points:
+def interpolate_in_row(points: Points) -> Points:
     """Fill places without skin straight from their neighbours in the row, shape (rows, columns, 3) [mm].
 
     NaN stays in the outermost columns, and where more than two columns side by side are missing.

@@ -28,13 +28,13 @@ _NEAR = 60.0  # edges that lie further from the curve than this are not tried at
 class Snapped:
     """A path of control points, a closed one without its end, and how far the curve is off it [mm].
 
-    ``pulls`` is False where no point of it can move: then the line can only be measured.
+    ``is_movable`` is False where no point of it can move: then the line can only be measured.
     """
 
     path: tuple[int, ...]
     closed: bool
-    off: float
-    pulls: bool
+    deviation: float
+    is_movable: bool
 
 
 def snap(control: ControlMesh, curve: Points, closed: bool = False, *, pulling: bool = False) -> Snapped:
@@ -46,7 +46,7 @@ def snap(control: ControlMesh, curve: Points, closed: bool = False, *, pulling: 
     """
     if closed:
         curve = np.concatenate([curve, curve[:1]])
-    points, edges = control.mesh.vertices, both_ways(control.mesh.faces)
+    points, edges = control.mesh.vertices, directed_edges(control.mesh.faces)
     if pulling:
         edges = edges[~control.fixed[edges].all(axis=1)]
     samples = resampled(curve)
@@ -59,11 +59,11 @@ def snap(control: ControlMesh, curve: Points, closed: bool = False, *, pulling: 
         raise LineError(
             "The line is too short for the control mesh.", "Draw it on to the next control points."
         )
-    off = off_by(samples, points[[*path, *path[:1]] if closed else list(path)])
+    off = max_deviation(samples, points[[*path, *path[:1]] if closed else list(path)])
     return Snapped(path, closed, off, not control.fixed[list(path)].all())
 
 
-def both_ways(faces: Indices) -> Indices:
+def directed_edges(faces: Indices) -> Indices:
     """Return the edges of triangles, shape (e, 2), each in both directions."""
     one_way = half_edges(faces)
     return np.unique(np.concatenate([one_way, one_way[:, ::-1]]), axis=0)
@@ -78,7 +78,7 @@ def resampled(curve: Points) -> Points:
     return interpolate(at, along, curve)
 
 
-def off_by(samples: Points, corners: Points) -> float:
+def max_deviation(samples: Points, corners: Points) -> float:
     """Return how far points, shape (k, 3), are at most from the polyline through ``corners`` (c, 3) [mm]."""
     start, span = corners[:-1], np.diff(corners, axis=0)
     to = samples[:, None] - start

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.control_mesh.surface_projection import NearSkin
+from core.control_mesh.surface_projection import SurfaceProjector
 from core.control_mesh.validation import (
     SAME_WAY,
     agreement,
@@ -76,7 +76,9 @@ class FitQuality:
         return tuple(found)
 
 
-def measure_fit(mesh: Mesh, skin: NearSkin, fold: Flags, bust_off: float, fold_off: float) -> FitQuality:
+def measure_fit(
+    mesh: Mesh, skin: SurfaceProjector, fold: Flags, bust_off: float, fold_off: float
+) -> FitQuality:
     """Measure a control mesh on the ``skin`` of its body; ``fold`` (n,) marks the points of the fold row."""
     away, weight = deviations(mesh, skin)
     edges, _, bend = bends(mesh)
@@ -95,7 +97,7 @@ def measure_fit(mesh: Mesh, skin: NearSkin, fold: Flags, bust_off: float, fold_o
     )
 
 
-def deviations(mesh: Mesh, skin: NearSkin) -> tuple[Floats, Floats]:
+def deviations(mesh: Mesh, skin: SurfaceProjector) -> tuple[Floats, Floats]:
     """Return how far vertices of the skin behind ``mesh`` lie from it, (k,) [mm], and their areas [mm^2].
 
     Skin whose nearest place is on the border of the mesh lies beside it, skin that faces the other way or is

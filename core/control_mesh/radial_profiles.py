@@ -10,10 +10,10 @@ from core.geometry.mesh import Floats, Mesh, Points, unit
 from core.geometry.plane_sections import (
     Section,
     arc_length,
-    chains,
     cut,
     downward,
     hull_corners,
+    join_segments,
     resample,
 )
 
@@ -27,12 +27,12 @@ BEND = 5
 """The turning of a profile is taken between chords of so many steps on both sides."""
 
 
-def heading(azimuth: float) -> Points:
+def azimuth_direction(azimuth: float) -> Points:
     """Return the level unit vector at ``azimuth`` [rad]: 0 is forward (-y), positive the subject's left."""
     return np.array([np.sin(azimuth), -np.cos(azimuth), 0.0])
 
 
-def exits(mesh: Mesh, origins: Points, directions: Points) -> list[Floats]:
+def ray_exits(mesh: Mesh, origins: Points, directions: Points) -> list[Floats]:
     """Return where level rays leave the body: for each the distances [mm] from its origin, ascending.
 
     ``origins`` have shape (k, 3) [mm], ``directions`` (k, 3) [1] are level. A ray leaves through triangles
@@ -96,7 +96,7 @@ def profile(front: Mesh, axis: Points, start: Points, bottom: float) -> Profile 
     near = (
         ((middle - axis) @ along > 0.0) & (middle[:, 2] > bottom - 20.0) & (middle[:, 2] < start[2] + ABOVE)
     )
-    pieces = chains(Section(section.segments[near], section.edge_ids[near]))
+    pieces = join_segments(Section(section.segments[near], section.edge_ids[near]))
     if not pieces:
         return None
     away = [((curve - start) ** 2).sum(axis=1) for curve, _ in pieces]

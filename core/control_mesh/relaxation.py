@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.control_mesh.surface_projection import NearSkin
+from core.control_mesh.surface_projection import SurfaceProjector
 from core.control_mesh.validation import corner_angles
 from core.geometry.mesh import Flags, Indices, Mesh, Points, unit
 
@@ -24,7 +24,7 @@ LOST = 6.0
 """A point further than this from the skin bridges a hole [mm]: it stays where it was moved to."""
 
 
-def eased(points: Points, faces: Indices, skin: NearSkin, level: Flags, upright: Flags) -> Points:
+def relax(points: Points, faces: Indices, skin: SurfaceProjector, level: Flags, upright: Flags) -> Points:
     """Return ``points``, shape (rows, columns, 3) [mm], moved along the skin so that small angles grow.
 
     Points ``level`` may slide along their row, points ``upright`` along their column, both of shape
@@ -42,7 +42,7 @@ def eased(points: Points, faces: Indices, skin: NearSkin, level: Flags, upright:
         if not len(moved):
             break
         places = flat[moved] + move[moved]
-        on_skin = skin.nearest(places)
+        on_skin = skin.project(places)
         lost = np.linalg.norm(on_skin - places, axis=1) > LOST
         flat = flat.copy()
         flat[moved] = np.where(lost[:, None], places, on_skin)

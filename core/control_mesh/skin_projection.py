@@ -25,7 +25,7 @@ _INSIDE = -1e-6  # barycentric coordinates down to this are those of a place wit
 
 
 @dataclass(frozen=True, eq=False)
-class MeshPlaces:
+class MeshPositions:
     """Places on a control mesh: ``cells`` (k, 2) by row and column, and how ``far`` they are out of it, (k,).
 
     ``far`` [1] is 0 within the mesh; beyond its border, in parts of a triangle.
@@ -40,7 +40,7 @@ class MeshPlaces:
         return np.asarray(self.far < 1e-3)
 
 
-def mesh_places(mesh: Mesh, grid: Grid, points: Points) -> MeshPlaces:
+def locate_on_mesh(mesh: Mesh, grid: Grid, points: Points) -> MeshPositions:
     """Return where places of the skin, shape (k, 3) [mm], are on a control ``mesh`` at rest.
 
     Of several triangles whose normals lead there, the nearest is taken.
@@ -59,7 +59,7 @@ def mesh_places(mesh: Mesh, grid: Grid, points: Points) -> MeshPlaces:
     far = np.maximum(-weights.min(axis=1), 0.0)
     weights = np.clip(weights, 0.0, None)
     weights /= np.maximum(weights.sum(axis=1, keepdims=True), 1e-12)
-    return MeshPlaces(grid.places(corners, weights), far)
+    return MeshPositions(grid.places(corners, weights), far)
 
 
 def _along_normals(mesh: Mesh, triangles: Indices, points: Points, start: Floats) -> Floats:
@@ -83,7 +83,7 @@ def _along_normals(mesh: Mesh, triangles: Indices, points: Points, start: Floats
     return found
 
 
-def skin_places(skin: Mesh, mesh: Mesh, weights: sparse.csr_array) -> Points:
+def points_on_skin(skin: Mesh, mesh: Mesh, weights: sparse.csr_array) -> Points:
     """Return the places of the ``skin``, (k, 3), over those of a ``mesh`` with ``weights`` (k, n)."""
     places, normals = weights @ mesh.vertices, weights @ mesh.vertex_normals
     size = np.linalg.norm(normals, axis=1, keepdims=True)

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.errors import LineError
-from core.geometry.geodesic import shortest_way
+from core.geometry.geodesic import shortest_path
 from core.geometry.mesh import Mesh, Points, frozen
-from core.geometry.plane_sections import arc_length, chains, cut, resample
+from core.geometry.plane_sections import arc_length, cut, join_segments, resample
 
 NO_TAIL = np.empty((0, 3))
 
@@ -39,7 +39,7 @@ class Tail:
     problem: str = ""
 
 
-def tail_of(skin: Mesh, end: Points, band: Points) -> Tail:
+def strap_tail(skin: Mesh, end: Points, band: Points) -> Tail:
     """Return the tail of a strap from its upper ``end`` (3,) to a ``band`` (k, 3) round the back, both [mm].
 
     On a scan without a shoulder the tail has no length.
@@ -47,7 +47,7 @@ def tail_of(skin: Mesh, end: Points, band: Points) -> Tail:
     try:
         top = shoulder_above(skin, end)
         sewn = band[np.argmin(np.abs(band[:, 0] - top[0]) + 1e6 * (band[:, 1] < end[1]))]
-        ways = [shortest_way(skin, end, top), shortest_way(skin, top, sewn)]
+        ways = [shortest_path(skin, end, top), shortest_path(skin, top, sewn)]
     except LineError as problem:
         return Tail(0.0, NO_TAIL, problem=problem.message)
     lengths = [float(arc_length(way)[-1]) for way in ways]
@@ -74,7 +74,7 @@ def shoulder_above(skin: Mesh, end: Points) -> Points:
 
 def _outline(skin: Mesh, end: Points) -> tuple[Points, bool]:
     """Return the curve in which a plane from front to back cuts the skin at ``end``, and if it is closed."""
-    curves = chains(cut(skin, end, (1.0, 0.0, 0.0)))
+    curves = join_segments(cut(skin, end, (1.0, 0.0, 0.0)))
     if not curves:
         raise LineError("There is no skin at the upper end of the strap.", "Draw it anew.")
     return min(curves, key=lambda curve: float(np.linalg.norm(curve[0] - end, axis=1).min()))

@@ -16,7 +16,7 @@ CANDIDATES = 24
 
 
 @dataclass(frozen=True, eq=False)
-class NearSkin:
+class SurfaceProjector:
     """Part of a body's skin; what it takes to look places up on it is prepared once."""
 
     mesh: Mesh
@@ -34,10 +34,10 @@ class NearSkin:
         """The area of the triangles round each vertex, shape (n,) [mm^2]."""
         return np.asarray(incidence(self.mesh.faces, len(self.mesh.vertices)) @ self.mesh.face_areas)
 
-    def facing(self, places: Points) -> Points:
+    def normals_at(self, places: Points) -> Points:
         """Return the normals of the nearest vertices of the skin, as ``places``, shape (..., 3) [1]."""
         return np.asarray(self.mesh.vertex_normals[self._vertices.query(places)[1]])
 
-    def nearest(self, places: Points) -> Points:
+    def project(self, places: Points) -> Points:
         """Return the nearest places of the skin, as ``places``, shape (k, 3) [mm]."""
         return nearest_faces(self.mesh, places, self._centres, CANDIDATES)[1]

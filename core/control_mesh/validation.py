@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.control_mesh.surface_projection import NearSkin
+from core.control_mesh.surface_projection import SurfaceProjector
 from core.geometry.mesh import Flags, Floats, Indices, Mesh, frozen, unit
 
 SMALLEST_ANGLE = 8.0
@@ -74,11 +74,11 @@ def sides(mesh: Mesh) -> tuple[Indices, Indices]:
     return edges, np.asarray(number.reshape(-1, 3), dtype=np.int64)
 
 
-def agreement(mesh: Mesh, skin: Mesh | NearSkin) -> Floats:
+def agreement(mesh: Mesh, skin: Mesh | SurfaceProjector) -> Floats:
     """Return the cosine between a triangle's normal and the mean one of the skin there, shape (m,) [1]."""
-    near = skin if isinstance(skin, NearSkin) else NearSkin(skin)
+    near = skin if isinstance(skin, SurfaceProjector) else SurfaceProjector(skin)
     places = np.einsum("sc,mcj->msj", SAMPLES, mesh.vertices[mesh.faces])
-    outward = unit(near.facing(places).sum(axis=1))
+    outward = unit(near.normals_at(places).sum(axis=1))
     return np.asarray((outward * mesh.face_normals).sum(axis=1))
 
 
@@ -116,7 +116,7 @@ class Faults:
         return int(self.folded.sum()), int(self.any.sum())
 
 
-def find_faults(mesh: Mesh, skin: NearSkin, fold: Flags) -> Faults:
+def find_mesh_faults(mesh: Mesh, skin: SurfaceProjector, fold: Flags) -> Faults:
     """Judge the triangles of a fit; only at the points ``fold`` (n,) of the fold row two may meet sharply."""
     same_way = agreement(mesh, skin)
     folded = crossing_faces(mesh) | (same_way <= BACKWARD)

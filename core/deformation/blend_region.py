@@ -28,7 +28,7 @@ COVERED = 0.9
 
 
 @dataclass(frozen=True, eq=False)
-class Patch:
+class BlendRegion:
     """How far each vertex of the body follows the control mesh.
 
     ``fade`` has shape (N,): 0 outside the patch .. 1 well inside. ``rule`` is "flood" when the border could
@@ -44,7 +44,7 @@ class _FenceError(Exception):
     """The border of the patch cannot be drawn on the surface."""
 
 
-def patch_fade(body: Mesh, control: ControlMesh, fade: float = 25.0) -> Patch:
+def blend_weights(body: Mesh, control: ControlMesh, fade: float = 25.0) -> BlendRegion:
     """Find the patch of ``body`` under ``control``, with a soft border ``fade`` wide [mm] (ours).
 
     Shortest edge paths between the border control points fence it in, a flood from the bust points fills it,
@@ -52,9 +52,9 @@ def patch_fade(body: Mesh, control: ControlMesh, fade: float = 25.0) -> Patch:
     or the flood escapes, the fade follows from the nearest place on the control mesh instead.
     """
     try:
-        return Patch(frozen(_flooded(body, control, fade)), "flood")
+        return BlendRegion(frozen(_flooded(body, control, fade)), "flood")
     except _FenceError as gap:
-        return Patch(frozen(_by_distance(body, control, fade)), "distance", str(gap))
+        return BlendRegion(frozen(_by_distance(body, control, fade)), "distance", str(gap))
 
 
 def smooth_step(t: Floats) -> Floats:

@@ -14,7 +14,7 @@ from scipy import sparse
 from scipy.spatial.distance import cdist
 
 from core.geometry import kernels
-from core.geometry.closest_point import Frames, centroids, corner_reach, neighbourhoods, usable
+from core.geometry.closest_point import Frames, centroids, corner_reach, is_usable, neighbourhoods
 from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points, frozen
 
 Weights = Literal["paper", "smooth"]
@@ -40,14 +40,14 @@ class Operator:
     starts: Indices
     columns: Indices
 
-    def added(self, change: Floats, rest: Points) -> Points:
+    def apply(self, change: Floats, rest: Points) -> Points:
         """Return ``rest``, shape (r, 3) [mm], plus the operator times ``change``, (columns, 3).
 
         The rows of the operator are the first rows of ``rest``; those after them stay.
         """
         return kernels.blend(self.weights, self.starts, self.columns, change, rest)
 
-    def pulled(self, slopes: Points) -> Points:
+    def apply_transposed(self, slopes: Points) -> Points:
         """Return slopes by the operator's columns of what has ``slopes`` (r, 3) by its rows, (columns, 3)."""
         weights, found = self.weights, np.zeros((int(self.columns.max(initial=-1)) + 1, 3))
         for (r, c, w), (s, d, x) in pairwise(self.starts.tolist()):
@@ -114,14 +114,14 @@ class Binding:
             spans *= np.sqrt(length / np.where(rest > 0.0, rest, 1.0))
         return np.concatenate([control_points[self.points], spans.T])
 
-    def pulled(self, control_points: Points, slopes: Points) -> Points:
+    def gradient(self, control_points: Points, slopes: Points) -> Points:
         """Return slopes by the control points of what has ``slopes`` (k, 3) by the places of ``moving``.
 
         Both at ``control_points`` (n, 3) [mm]; the result has their shape. Those that are fixed have none.
         """
-        return self.by_points(control_points, self.operator.pulled(slopes))
+        return self.gradient_by_points(control_points, self.operator.apply_transposed(slopes))
 
-    def by_points(self, control_points: Points, slopes: Points) -> Points:
+    def gradient_by_points(self, control_points: Points, slopes: Points) -> Points:
         """Return slopes by the control points, (n, 3), of what has ``slopes`` (c, 3) by the first columns.
 
         Of several figures at once, (k, c, 3), they are (k, n, 3).
@@ -139,7 +139,7 @@ class Binding:
             np.add.at(found, corner, np.moveaxis(share, -2, 0))
         return np.asarray(np.moveaxis(found, 0, -2))
 
-    def pushed(self, control_points: Points, moved: Points) -> Floats:
+    def directional_derivative(self, control_points: Points, moved: Points) -> Floats:
         """Return how fast ``change`` changes at ``control_points`` as they move by ``moved``, both (n, 3)."""
         v0, v1, v2 = control_points[self._corners]
         w0, w1, w2 = moved[self._corners]
@@ -266,11 +266,11 @@ def _gauss(distance2: Floats, sigma: float) -> Floats:
 
 
 def _sigma(control: Mesh) -> float:
-    sizes = np.sqrt(control.face_areas[usable(control)])
+    sizes = np.sqrt(control.face_areas[is_usable(control)])
     return GAUSS_WIDTH * float(np.median(sizes)) if len(sizes) else 0.0
 
 
-def uncollared(control: Mesh, fixed: Flags) -> Indices:
+def movable_border_triangles(control: Mesh, fixed: Flags) -> Indices:
     """Return the triangles of the outermost ring of ``control`` that can move, shape (t,); best none (ours).
 
     ``fixed`` (n,) tells the control points that stay. The body at the border follows the last triangles far
@@ -285,7 +285,7 @@ def uncollared(control: Mesh, fixed: Flags) -> Indices:
 
 def deform_moving(binding: Binding, control_points: Points) -> Points:
     """Return the places of ``binding.moving`` for ``control_points``, shapes (k, 3) and (n, 3) [mm]."""
-    return binding.operator.added(binding.change(control_points), binding.rest_moving)
+    return binding.operator.apply(binding.change(control_points), binding.rest_moving)
 
 
 def deform(binding: Binding, control_points: Points) -> Points:

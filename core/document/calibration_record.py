@@ -19,7 +19,7 @@ WELL = 0.05
 
 
 @dataclass(frozen=True)
-class FoundNumber:
+class FittedParameter:
     """One number that was found: ``name`` as ``parameters`` says it, ``after`` with its ±.
 
     Both in the unit of the setting. ``kept`` tells that the scans could not tell it, so it stayed.
@@ -32,7 +32,7 @@ class FoundNumber:
     kept: bool = False
 
     @property
-    def told(self) -> bool:
+    def is_well_determined(self) -> bool:
         """Whether the scans tell it well: its ± is ``WELL`` of it or less."""
         return not self.kept and self.plus_minus <= WELL * abs(self.after)
 
@@ -48,7 +48,7 @@ class Calibration:
     worn: str
     rms_before: float
     rms_after: float
-    numbers: tuple[FoundNumber, ...] = ()
+    numbers: tuple[FittedParameter, ...] = ()
     thickness: float = 0.0
 
     def __post_init__(self) -> None:

@@ -28,7 +28,7 @@ FURTHEST = 3000.0
 
 
 @dataclass(frozen=True)
-class OwnMeasure:
+class CustomMeasurement:
     """A measure of the designer's own.
 
     ``kind`` is one of ``KINDS``. The first two go between the two landmarks in ``marks``; a girth lies
@@ -82,9 +82,9 @@ def check_customer(name: str) -> None:
         )
 
 
-def put_measure(
-    those: tuple[OwnMeasure, ...], measure: OwnMeasure, former: str = ""
-) -> tuple[OwnMeasure, ...]:
+def with_measurement(
+    those: tuple[CustomMeasurement, ...], measure: CustomMeasurement, former: str = ""
+) -> tuple[CustomMeasurement, ...]:
     """Return ``those`` with one more, in the place of the ``former`` one or of one of the same name."""
     former = former or measure.name
     if former in {each.name for each in those}:
@@ -101,16 +101,16 @@ HELP = (
 """What a user has to know to write a measure."""
 
 
-def own_measure(text: str) -> OwnMeasure:
+def parse_measurement(text: str) -> CustomMeasurement:
     """Read ``NAME=KIND:PLACES``, see ``HELP``. Raises UserError."""
     told = re.fullmatch(r"([^=]+)=\s*(\w+)\s*:(.*)", text.replace("\N{MINUS SIGN}", "-"))
     if told is None:
         raise UserError(f"'{text}' is no measure.", "Write NAME=KIND:PLACES, see 'busk measure --help'.")
     name, kind, places = (part.strip() for part in told.groups())
     if kind != "girth":
-        return OwnMeasure(name, kind, tuple(place.strip() for place in places.split(",")))
+        return CustomMeasurement(name, kind, tuple(place.strip() for place in places.split(",")))
     level = re.fullmatch(r"([a-z_]*)\s*([+-]?\s*\d+(?:\.\d+)?)?", places)
     if level is None or not places:
         raise UserError(f"The girth {name} has no level.", "Name one landmark, or a height in mm, or both.")
     marks = (level[1],) if level[1] else ()
-    return OwnMeasure(name, kind, marks, float((level[2] or "0").replace(" ", "")))
+    return CustomMeasurement(name, kind, marks, float((level[2] or "0").replace(" ", "")))

@@ -8,7 +8,7 @@ from functools import reduce
 from typing import Any
 
 from core.document.calibration_record import Calibration
-from core.document.custom_measures import WORN_TIGHT, OwnMeasure, check_customer, put_measure
+from core.document.custom_measures import WORN_TIGHT, CustomMeasurement, check_customer, with_measurement
 from core.document.document_limits import (
     MOST_ELASTICS,
     MOST_LINES,
@@ -18,13 +18,13 @@ from core.document.document_limits import (
     check_counts,
 )
 from core.document.elastic import TISSUE_LIMITS, TISSUE_STIFFNESS, Elastic, check_elastics
-from core.document.lines import LineTraits, OwnLine, WornLine, partner_of
+from core.document.lines import ActiveLine, CustomLine, LineSettings, partner_of
 from core.document.printable_name import repeated
 from core.document.validation import check_flags, check_numbers, check_words
 from core.errors import LandmarkError, LineError, UserError
 from core.landmarks.manual import PlacedMark
 from core.mechanics.constraint_lines import RATIO_LIMITS
-from core.mechanics.options import CHOICES, DEFAULT_LINE_STIFFNESS, RANGES, Mechanics
+from core.mechanics.options import CHOICES, DEFAULT_LINE_STIFFNESS, RANGES, ModelOptions
 from core.mechanics.volume import CONTROLS
 from core.scan.source import ScanSource
 
@@ -55,7 +55,7 @@ class Design:
     scan: ScanSource
     template: str = "168"
     line_height: float = 0.5
-    lines: tuple[WornLine, ...] = ()
+    lines: tuple[ActiveLine, ...] = ()
     volume: str = "adaptive"
     gain: float | None = None
     line_stiffness: float = DEFAULT_LINE_STIFFNESS
@@ -69,10 +69,10 @@ class Design:
     line_hold: str = "spring"
     firm_chest: float = 0.0
     volume_of: str = "each"
-    own_lines: tuple[OwnLine, ...] = ()
-    traits: tuple[LineTraits, ...] = ()
+    own_lines: tuple[CustomLine, ...] = ()
+    traits: tuple[LineSettings, ...] = ()
     placed: tuple[PlacedMark, ...] = ()
-    own_measures: tuple[OwnMeasure, ...] = ()
+    own_measures: tuple[CustomMeasurement, ...] = ()
     elastics: tuple[Elastic, ...] = ()
     tissue_stiffness: float = TISSUE_STIFFNESS
     customer: str = ""
@@ -104,7 +104,7 @@ class Design:
         check_counts(
             (
                 *((len(lines), MOST_LINES, "lines") for lines in (self.lines, self.own_lines, self.traits)),
-                (sum(map(OwnLine.count, self.own_lines)), MOST_POINTS, "points of own lines"),
+                (sum(map(CustomLine.count, self.own_lines)), MOST_POINTS, "points of own lines"),
                 (len(self.own_measures), MOST_MEASURES, "own measures"),
                 (len(self.elastics), MOST_ELASTICS, "elastics"),
                 (sum(len(each.curve) for each in self.elastics), MOST_ROWS, "rows in tables of elastics"),
@@ -132,28 +132,28 @@ class Design:
         )
 
     @property
-    def mechanics(self) -> Mechanics:
+    def model_options(self) -> ModelOptions:
         """The choices of the model among the settings."""
-        return Mechanics(**{field.name: getattr(self, field.name) for field in fields(Mechanics)})
+        return ModelOptions(**{field.name: getattr(self, field.name) for field in fields(ModelOptions)})
 
     def ratio(self, name: str) -> float:
         """Return the ratio of a line, 1 if it is not worn."""
         return next((line.ratio for line in self.lines if line.name == name), 1.0)
 
-    def worn(self) -> frozenset[str]:
+    def active_lines(self) -> frozenset[str]:
         """Return the names of the lines that are worn."""
         return frozenset(line.name for line in self.lines)
 
-    def own_stiffness(self) -> dict[str, float]:
+    def line_stiffnesses(self) -> dict[str, float]:
         """Return the stiffness [1] of each worn line that has its own."""
-        own = {each.name: each.stiffness for each in self.traits if each.name in self.worn()}
+        own = {each.name: each.stiffness for each in self.traits if each.name in self.active_lines()}
         return {name: stiffness for name, stiffness in own.items() if stiffness is not None}
 
-    def worn_elastics(self) -> dict[str, Elastic]:
+    def active_elastics(self) -> dict[str, Elastic]:
         """Return the elastic of each worn line that has one."""
         elastics = {elastic.name: elastic for elastic in self.elastics}
         made = {each.name: each.elastic for each in self.traits if each.elastic}
-        return {name: elastics[elastic] for name, elastic in made.items() if name in self.worn()}
+        return {name: elastics[elastic] for name, elastic in made.items() if name in self.active_lines()}
 
     def with_elastic(self, name: str, elastic: Elastic | None) -> Design:
         """Return the design with a line made of an elastic, and as wide; of none in particular if None.
@@ -161,16 +161,17 @@ class Design:
         Lines that share an elastic of this name share its curve.
         """
         if elastic is None:
-            return self.with_traits(replace(self.traits_of(name), elastic="", width=None))
+            return self.with_line_settings(replace(self.line_settings(name), elastic="", width=None))
         others = tuple(each for each in self.elastics if each.name != elastic.name)
         design = replace(self, elastics=tuple(sorted((*others, elastic), key=lambda each: each.name)))
-        traits = replace(self.traits_of(name), elastic=elastic.name, width=elastic.width_mm)
-        return design.with_traits(traits)
+        traits = replace(self.line_settings(name), elastic=elastic.name, width=elastic.width_mm)
+        return design.with_line_settings(traits)
 
-    def acts_as(self, other: Design) -> bool:
+    def is_equivalent(self, other: Design) -> bool:
         """Tell whether another design is solved alike: customer, measures, names, calibration do not act."""
         mine, others = (
-            reduce(Design.with_traits, map(LineTraits.acting, each.traits), each) for each in (self, other)
+            reduce(Design.with_line_settings, map(LineSettings.mechanical, each.traits), each)
+            for each in (self, other)
         )
         said: dict[str, Any] = {"own_measures": (), "customer": "", "worn_tight_mm": 0.0, "calibration": None}
         return replace(mine, **said) == replace(others, **said)
@@ -187,7 +188,7 @@ class Design:
             )
         return replace(self, template=template)
 
-    def with_own_line(self, line: OwnLine) -> Design:
+    def with_custom_line(self, line: CustomLine) -> Design:
         """Return the design with an own line, in the place of one of the same name if there is one."""
         if line.name in {each.name for each in self.own_lines}:
             self._check_unlocked(line.name)
@@ -195,29 +196,29 @@ class Design:
             return replace(self, own_lines=own)
         return replace(self, own_lines=(*self.own_lines, line))
 
-    def without_own_line(self, name: str) -> Design:
+    def without_custom_line(self, name: str) -> Design:
         """Return the design without an own line and what was decided of it. Raises LineError if locked."""
         self._check_unlocked(name)
         own = tuple(each for each in self.own_lines if each.name != name)
         worn = tuple(line for line in self.lines if line.name != name)
-        return replace(self.with_traits(LineTraits(name)), lines=worn, own_lines=own)
+        return replace(self.with_line_settings(LineSettings(name)), lines=worn, own_lines=own)
 
-    def traits_of(self, name: str) -> LineTraits:
+    def line_settings(self, name: str) -> LineSettings:
         """Return how a line is treated."""
-        return next((traits for traits in self.traits if traits.name == name), LineTraits(name))
+        return next((traits for traits in self.traits if traits.name == name), LineSettings(name))
 
-    def with_traits(self, traits: LineTraits) -> Design:
+    def with_line_settings(self, traits: LineSettings) -> Design:
         """Return the design with a line treated in another way."""
         others = [each for each in self.traits if each.name != traits.name]
-        kept = others if traits == LineTraits(traits.name) else [*others, traits]
+        kept = others if traits == LineSettings(traits.name) else [*others, traits]
         used = {each.elastic for each in kept}
         elastics = tuple(each for each in self.elastics if each.name in used)
         return replace(self, traits=tuple(sorted(kept, key=lambda each: each.name)), elastics=elastics)
 
-    def linked(self, name: str) -> tuple[str, ...]:
+    def linked_pair(self, name: str) -> tuple[str, ...]:
         """Return the own line ``name`` and its partner of the other side, if they share length and lock."""
         partner = partner_of(name)
-        sides = [self.traits_of(each) for each in (name, partner)]
+        sides = [self.line_settings(each) for each in (name, partner)]
         both = partner in {line.name for line in self.own_lines} and all(side.linked for side in sides)
         alike = sides[0].locked == sides[1].locked and self.ratio(name) == self.ratio(partner)
         return (name, partner) if both and alike else (name,)
@@ -228,12 +229,12 @@ class Design:
         Raises LineError if the partner is locked at another length.
         """
         names = (name, partner_of(name))
-        locked = any(self.traits_of(each).locked for each in names)
+        locked = any(self.line_settings(each).locked for each in names)
         after = self
         if self.ratio(names[0]) != self.ratio(names[1]):
-            after = self.with_line(names[1], self.ratio(name) if name in self.worn() else None)
-        traits = [replace(self.traits_of(each), linked=True, locked=locked) for each in names]
-        return reduce(Design.with_traits, traits, after)
+            after = self.with_line(names[1], self.ratio(name) if name in self.active_lines() else None)
+        traits = [replace(self.line_settings(each), linked=True, locked=locked) for each in names]
+        return reduce(Design.with_line_settings, traits, after)
 
     def with_placed(self, name: str, position: tuple[float, float, float] | None) -> Design:
         """Return the design with a landmark placed in the scan file's frame, or found again (None)."""
@@ -241,34 +242,34 @@ class Design:
         placed = others if position is None else (*others, PlacedMark(name, position))
         return replace(self, placed=tuple(sorted(placed, key=lambda mark: mark.name)))
 
-    def with_own_measure(self, measure: OwnMeasure, former: str = "") -> Design:
+    def with_custom_measurement(self, measure: CustomMeasurement, former: str = "") -> Design:
         """Return the design with an own measure, in the place of the ``former`` one or one of its name.
 
         Raises UserError if another one than the former has the name already.
         """
-        return replace(self, own_measures=put_measure(self.own_measures, measure, former))
+        return replace(self, own_measures=with_measurement(self.own_measures, measure, former))
 
-    def without_own_measure(self, name: str) -> Design:
+    def without_custom_measurement(self, name: str) -> Design:
         """Return the design without an own measure."""
         return replace(self, own_measures=tuple(each for each in self.own_measures if each.name != name))
 
     def with_line(self, name: str, ratio: float | None) -> Design:
         """Return the design with a line at ``ratio``, or off (None). Raises LineError if it is locked."""
-        if ratio != (self.ratio(name) if name in self.worn() else None):
+        if ratio != (self.ratio(name) if name in self.active_lines() else None):
             self._check_unlocked(name)
         others = [line for line in self.lines if line.name != name]
-        worn = [*others, WornLine(name, ratio)] if ratio is not None else others
+        worn = [*others, ActiveLine(name, ratio)] if ratio is not None else others
         return replace(self, lines=tuple(sorted(worn, key=lambda line: line.name)))
 
     def with_linked(self, name: str, ratio: float | None) -> Design:
         """Return the design with a line and its linked partner at ``ratio``. Raises LineError if locked."""
-        return reduce(lambda design, each: design.with_line(each, ratio), self.linked(name), self)
+        return reduce(lambda design, each: design.with_line(each, ratio), self.linked_pair(name), self)
 
-    def at_rest(self) -> Design:
+    def with_lines_reset(self) -> Design:
         """Return the design with every line taken off that is not locked."""
-        kept = tuple(line for line in self.lines if self.traits_of(line.name).locked)
+        kept = tuple(line for line in self.lines if self.line_settings(line.name).locked)
         return replace(self, lines=kept)
 
     def _check_unlocked(self, name: str) -> None:
-        if self.traits_of(name).locked:
+        if self.line_settings(name).locked:
             raise LineError(f"The line {name} is locked.", "Unlock it first.")

@@ -31,7 +31,7 @@ class Document:
             raise UserError("The variants of this document do not fit together.", "Open a backup.")
 
     @classmethod
-    def of(cls, design: Design) -> Document:
+    def single(cls, design: Design) -> Document:
         """Return a document of one variant."""
         return cls(((VARIANTS[0], design),))
 
@@ -57,7 +57,7 @@ class Document:
             self, designs=tuple((name, _on_same_body(each, design)) for name, each in designs.items())
         )
 
-    def showing(self, name: str) -> Document:
+    def with_shown(self, name: str) -> Document:
         """Return the document with another variant shown; a new one begins as the shown one is."""
         designs = {name: self.design} | self.variants
         return Document(tuple(sorted(designs.items())), name)

@@ -18,7 +18,7 @@ DESIGN, VARIANTS = "design.json", "variants.json"
 def to_texts(document: Document) -> dict[str, str]:
     """Return what is written of a document, by name."""
     others = {name: to_values(each) for name, each in document.designs if name != document.shown}
-    if document == Document.of(document.design):
+    if document == Document.single(document.design):
         return {DESIGN: to_json(document.design)}
     # An older program would drop the variants at its next save: it must not read this.
     variants = {"shown": document.shown, "others": others}
@@ -31,7 +31,7 @@ def from_texts(texts: Mapping[str, str]) -> Document:
     """Read a document; there must be at least its design. Raises ProjectError if it is none."""
     design = from_json(texts[DESIGN])
     if VARIANTS not in texts:
-        return Document.of(design)
+        return Document.single(design)
     try:
         check_values(texts[VARIANTS])
         told = parsed(texts[VARIANTS])

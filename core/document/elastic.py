@@ -84,19 +84,19 @@ class Elastic:
                     f"The table of {self.name} goes back after {100.0 * before:g} % and {weaker:g} N.",
                     "Elongation and force must both rise from row to row: leave out the way back.",
                 )
-        if self.reach > FURTHEST or self.strength > STRONGEST:
+        if self.max_elongation > FURTHEST or self.max_force > STRONGEST:
             raise LineError(
-                f"The table of {self.name} ends at {100.0 * self.reach:g} % and {self.strength:g} N.",
+                f"The table of {self.name} ends at {100.0 * self.max_elongation:g} % and {self.max_force:g} N.",
                 f"Look at its units: no elastic goes beyond {100.0 * FURTHEST:g} % or {STRONGEST:g} N.",
             )
 
     @property
-    def reach(self) -> float:
+    def max_elongation(self) -> float:
         """The elongation at which the curve ends [1]."""
         return self.curve[-1][0]
 
     @property
-    def strength(self) -> float:
+    def max_force(self) -> float:
         """The force at which the curve ends [N]."""
         return self.curve[-1][1]
 
@@ -108,7 +108,7 @@ class Elastic:
         """Return force over elongation, EA of the Hooke line that works at the same point [N].
 
         A slack elastic has that of its first piece; beyond its end the curve goes on as it ends, for those
-        who look at ``reach`` themselves.
+        who look at ``max_elongation`` themselves.
         """
         first, rise = self.curve[1]
         if elongation <= first:
@@ -126,13 +126,15 @@ class Elastic:
         pieces = list(pairwise(self.curve))
         return next((piece for piece in pieces if ends(piece[1])), pieces[-1])
 
-    def overstretched(self, elongation: float, line: str, ratio: float | None = None) -> OverstretchedError:
+    def overstretch_error(
+        self, elongation: float, line: str, ratio: float | None = None
+    ) -> OverstretchedError:
         """Return what to say of a line, at a ``ratio`` if set, that stretches it beyond its curve."""
         return OverstretchedError(self, elongation, line, ratio)
 
-    def overpulled(self, force: float, line: str) -> ElasticError:
+    def overload_error(self, force: float, line: str) -> ElasticError:
         """Return what to say when a line would pull the elastic with more than its curve knows."""
-        needed, end = _beyond(force, self.strength, 1), f"{self.strength:g}"
+        needed, end = _beyond(force, self.max_force, 1), f"{self.max_force:g}"
         return ElasticError(
             f"{self.name} would be pulled with {needed} N as {line}; its table ends at {end} N.",
             "Let the line be longer, or take a stronger or wider elastic.",
@@ -156,10 +158,13 @@ class OverstretchedError(ElasticError):
     """
 
     def __init__(self, elastic: Elastic, elongation: float, line: str, ratio: float | None) -> None:
-        needed, end = _beyond(100.0 * elongation, 100.0 * elastic.reach, 0), f"{100.0 * elastic.reach:g}"
+        needed, end = (
+            _beyond(100.0 * elongation, 100.0 * elastic.max_elongation, 0),
+            f"{100.0 * elastic.max_elongation:g}",
+        )
         hint = "Let the line be longer, or take an elastic that stretches further."
         if ratio is not None:
-            least = math.ceil(100.0 * MARGIN * ratio * (1.0 + elongation) / (1.0 + elastic.reach))
+            least = math.ceil(100.0 * MARGIN * ratio * (1.0 + elongation) / (1.0 + elastic.max_elongation))
             hint = f"Set {line} to {least:.0f} % or longer, or choose an elastic that stretches further."
         super().__init__(
             f"{elastic.name} would be stretched by {needed} % as {line}; its table ends at {end} %.",

@@ -9,8 +9,8 @@ import numpy as np
 
 from core.control_mesh.embedding import Cell, embed
 from core.control_mesh.fit import ControlMesh
-from core.control_mesh.path_snapping import STEP, off_by
-from core.control_mesh.skin_projection import mesh_places, skin_places
+from core.control_mesh.path_snapping import STEP, max_deviation
+from core.control_mesh.skin_projection import locate_on_mesh, points_on_skin
 from core.document.line_notation import DECIMALS
 from core.errors import LineError
 from core.geometry.mesh import Floats, Mesh, Points
@@ -29,15 +29,15 @@ _KEPT = 0.5  # a line this near to the curve that was drawn keeps it [mm]
 class FreeCurve:
     """A free line through ``places``, a closed one without its end, and how far the curve is off it [mm].
 
-    ``shown`` (k, 3) [mm] is its course on the skin. ``pulls`` is False where none of it can move: then it can
+    ``shown`` (k, 3) [mm] is its course on the skin. ``is_movable`` is False where none of it can move: then it can
     only be measured. ``cut`` tells that some of the curve left the control mesh and was left out.
     """
 
     places: tuple[Cell, ...]
     closed: bool
     shown: Points
-    off: float
-    pulls: bool
+    deviation: float
+    is_movable: bool
     cut: bool
 
 
@@ -51,7 +51,7 @@ def free_curve(skin: Mesh, control: ControlMesh, pieces: Sequence[Points], close
         raise LineError("The line has no length.", "Draw it from one place of the body to another.")
     for step in _STEPS:
         found = _curve(skin, control, pieces, closed, step)
-        if found.off < _KEPT:
+        if found.deviation < _KEPT:
             break
     return found
 
@@ -60,7 +60,7 @@ def _curve(
     skin: Mesh, control: ControlMesh, pieces: Sequence[Points], closed: bool, step: float
 ) -> FreeCurve:
     curve = np.concatenate([pieces[0][:1], *(resample(piece, step)[1:] for piece in pieces)])
-    on_mesh = mesh_places(control.mesh, control.grid, curve)
+    on_mesh = locate_on_mesh(control.mesh, control.grid, curve)
     kept = np.flatnonzero(on_mesh.inside)
     if len(kept) < 2 or (closed and len(kept) < len(curve)):
         raise LineError(
@@ -75,10 +75,10 @@ def _curve(
         raise LineError("The line has no length.", "Draw it from one place of the body to another.")
     places: tuple[Cell, ...] = tuple((float(row), float(column)) for row, column in cells)
     embedded = embed(control.grid, places + places[:1] * closed)
-    shown = skin_places(skin, control.mesh, embedded.weights)
+    shown = points_on_skin(skin, control.mesh, embedded.weights)
     free = np.flatnonzero(~control.fixed)
     pulls = bool(abs(embedded.weights[:, free]).sum(axis=1).max() > HANGS)
-    off = off_by(resample(curve[inner], 1.0), shown)
+    off = max_deviation(resample(curve[inner], 1.0), shown)
     return FreeCurve(places, closed, shown, off, pulls, len(kept) < len(curve))
 
 

@@ -10,10 +10,10 @@ from types import MappingProxyType
 
 import numpy as np
 
-from core.control_mesh.embedding import Cell, Embedded, embed
+from core.control_mesh.embedding import Cell, EmbeddedCurve, embed
 from core.control_mesh.fit import ControlMesh
 from core.control_mesh.template import Template
-from core.document.lines import OwnLine
+from core.document.lines import CustomLine
 from core.errors import LineError
 from core.geometry.mesh import Flags
 
@@ -36,7 +36,7 @@ _ASK = "Write NAME=r2c-3,r3c0,r2c3 or NAME=28,45,34, with ,closed at the end for
 _ENDINGS = ("closed", "shoulder")
 
 
-def own_line(text: str, template: Template) -> OwnLine:
+def parse_line(text: str, template: Template) -> CustomLine:
     """Read ``NAME=POINT,POINT,...`` and what follows on a template (ours). Raises LineError, see ``HELP``."""
     name, equals, path = text.replace("\N{MINUS SIGN}", "-").partition("=")
     name, words = name.strip().lower(), path.lower().replace(" ", "").split(",")
@@ -48,19 +48,19 @@ def own_line(text: str, template: Template) -> OwnLine:
     closed, shoulder = (ending in endings for ending in _ENDINGS)
     if any(_between(word) for word in words):
         places = tuple(place for word in words for place in _places(word, template))
-        return OwnLine(name, (), closed, places, shoulder)
+        return CustomLine(name, (), closed, places, shoulder)
     points = [point for word in words for point in _walk(word, template)]
-    return OwnLine(name, tuple(points), closed, over_shoulder=shoulder)
+    return CustomLine(name, tuple(points), closed, over_shoulder=shoulder)
 
 
-def place_of(point: int, template: Template) -> str:
+def format_point(point: int, template: Template) -> str:
     """Return how a control point is written: r2c-3."""
     return f"r{template.row[point]}c{template.column[point]}"
 
 
-def text_of(line: OwnLine, template: Template) -> str:
+def format_path(line: CustomLine, template: Template) -> str:
     """Return how the course of a line is written, without its name: r2c-3,r2.35c-1.8,closed."""
-    words = [place_of(point, template) for point in line.points]
+    words = [format_point(point, template) for point in line.points]
     words += [f"r{_plain(row)}c{_plain(column)}" for row, column in line.places]
     return ",".join([*words, *_ENDINGS[:1] * line.closed, *_ENDINGS[1:] * line.over_shoulder])
 
@@ -74,19 +74,19 @@ def mirrored(points: Sequence[int], template: Template) -> tuple[int, ...]:
     return tuple(template.point(int(template.row[point]), -int(template.column[point])) for point in points)
 
 
-def mirror_image(line: OwnLine, template: Template, name: str) -> OwnLine:
+def mirror_image(line: CustomLine, template: Template, name: str) -> CustomLine:
     """Return a line with its mirror image on the other side, as ``name``."""
     points, places = mirrored(line.points, template), tuple((row, -column) for row, column in line.places)
     return replace(line, name=name, points=points, places=places)
 
 
-def cells_of(line: OwnLine, template: Template) -> tuple[Cell, ...]:
+def path_cells(line: CustomLine, template: Template) -> tuple[Cell, ...]:
     """Return the course of a line by row and column; a closed line ends with where it begins."""
     path = tuple((float(template.row[point]), float(template.column[point])) for point in line.path)
-    return line.course or path
+    return line.grid_path or path
 
 
-def with_own_lines(control: ControlMesh, own: tuple[OwnLine, ...]) -> ControlMesh:
+def with_custom_lines(control: ControlMesh, own: tuple[CustomLine, ...]) -> ControlMesh:
     """Return the control mesh with ``own`` lines beside those of the template.
 
     Raises LineError if a line cannot be laid.
@@ -107,7 +107,7 @@ def with_own_lines(control: ControlMesh, own: tuple[OwnLine, ...]) -> ControlMes
                 f"{control.grid.half}.",
             )
         if line.free:
-            embedded[line.name] = _led_over(control, embed(control.grid, line.course), line)
+            embedded[line.name] = _led_over(control, embed(control.grid, line.grid_path), line)
         else:
             paths[line.name] = _strap(control, line.path) if line.over_shoulder else line.path
     return replace(control, paths=MappingProxyType(paths), embedded=MappingProxyType(embedded))
@@ -119,11 +119,11 @@ def _strap(control: ControlMesh, path: tuple[int, ...]) -> tuple[int, ...]:
     return upward[: _held_from(control.fixed[list(upward)])]
 
 
-def _led_over(control: ControlMesh, curve: Embedded, line: OwnLine) -> Embedded:
+def _led_over(control: ControlMesh, curve: EmbeddedCurve, line: CustomLine) -> EmbeddedCurve:
     """Return the vertices of a free line; those of a strap go up to where the body is fixed."""
     if not line.over_shoulder:
         return curve
-    upward = line.course if curve.places[0, 0] <= curve.places[-1, 0] else line.course[::-1]
+    upward = line.grid_path if curve.places[0, 0] <= curve.places[-1, 0] else line.grid_path[::-1]
     curve = embed(control.grid, upward)
     end = _held_from(curve.weights @ control.fixed > 1.0 - 1e-9)
     return embed(control.grid, [(float(row), float(column)) for row, column in curve.places[:end]])
@@ -195,7 +195,7 @@ def _nowhere(word: str, template: Template) -> LineError:
     )
 
 
-def ready_made(template: Template) -> dict[str, tuple[OwnLine, ...]]:
+def ready_made_lines(template: Template) -> dict[str, tuple[CustomLine, ...]]:
     """Return lines that garments have, a pair of each, by kind (ours): they go where the template has rows.
 
     "straps" rise through the bust points and go over the shoulder, "slings" hang round each breast from the
@@ -218,7 +218,7 @@ def ready_made(template: Template) -> dict[str, tuple[OwnLine, ...]]:
     sides = (("left", 1), ("right", -1))
     return {
         f"{kind}s": tuple(
-            OwnLine(
+            CustomLine(
                 f"{kind} {word}",
                 _numbers(cells, sign, template),
                 kind == "ring",

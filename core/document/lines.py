@@ -20,7 +20,7 @@ WIDTHS = (2.0, 100.0)
 
 
 @dataclass(frozen=True)
-class WornLine:
+class ActiveLine:
     """A line that is worn, and its natural length as ratio of its length at rest [1] (paper section 3).
 
     Raises LineError for a name that no line has.
@@ -34,7 +34,7 @@ class WornLine:
 
 
 @dataclass(frozen=True)
-class OwnLine:
+class CustomLine:
     """A line of the designer's own; "closed" goes round.
 
     It runs through control points of the template, by number, or is a free line through ``places`` between
@@ -82,13 +82,13 @@ class OwnLine:
         return self.points + self.points[:1] if self.closed else self.points
 
     @property
-    def course(self) -> tuple[Cell, ...]:
+    def grid_path(self) -> tuple[Cell, ...]:
         """The places of a free line in order; a closed line ends with the one that it begins with."""
         return self.places + self.places[:1] if self.closed else self.places
 
 
 @dataclass(frozen=True)
-class LineTraits:
+class LineSettings:
     """How the designer treats a line, whether it is worn or not.
 
     ``title`` and ``colour`` ("#rrggbb") are empty where the usual ones stand. A ``locked`` line keeps its
@@ -128,7 +128,7 @@ class LineTraits:
                 f"It goes from {WIDTHS[0]:g} to {WIDTHS[1]:g}.",
             )
 
-    def acting(self) -> LineTraits:
+    def mechanical(self) -> LineSettings:
         """Return what of it acts on the model: a name, a colour, a lock and a link do not."""
         return replace(self, title="", colour="", locked=False, linked=True)
 

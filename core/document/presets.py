@@ -14,8 +14,8 @@ import platformdirs
 
 from core.control_mesh.template import Template, read_template
 from core.document.design import Design, ScanSource
-from core.document.line_notation import own_line, ready_made, text_of
-from core.document.lines import LONGEST_TITLE, LineTraits, OwnLine
+from core.document.line_notation import format_path, parse_line, ready_made_lines
+from core.document.lines import LONGEST_TITLE, CustomLine, LineSettings
 from core.document.printable_name import is_blank, is_printable
 from core.document.storage.project_file import safe_name
 from core.errors import LineError, UserError
@@ -33,8 +33,8 @@ _LONGEST = 1000  # letters of what it leaves out
 class PresetLine:
     """A line of a preset: one of the template, a ready-made pair ("straps"), or one through ``places``.
 
-    ``places`` are written as for ``own_line``. ``length`` [1] is where it starts, None leaves it off;
-    ``width`` [mm], ``stiffness`` [1], ``title``, ``colour`` and ``linked`` as in ``LineTraits``.
+    ``places`` are written as for ``parse_line``. ``length`` [1] is where it starts, None leaves it off;
+    ``width`` [mm], ``stiffness`` [1], ``title``, ``colour`` and ``linked`` as in ``LineSettings``.
     """
 
     line: str
@@ -67,12 +67,12 @@ class Preset:
                 f"Use up to {LONGEST_TITLE} letters.",
             )
 
-    def laid(self, template: Template) -> Iterator[tuple[PresetLine, tuple[OwnLine, ...]]]:
+    def lines_on_template(self, template: Template) -> Iterator[tuple[PresetLine, tuple[CustomLine, ...]]]:
         """Yield each line with the own lines that it is, none for one of the template. Raises LineError."""
-        pairs = ready_made(template)
+        pairs = ready_made_lines(template)
         for line in self.lines:
             if line.places:
-                yield line, (own_line(f"{line.line}={line.places}", template),)
+                yield line, (parse_line(f"{line.line}={line.places}", template),)
             elif line.line in pairs:
                 yield line, pairs[line.line]
             elif line.line in template.lines:
@@ -130,20 +130,20 @@ def built_in() -> tuple[Preset, ...]:
     return tuple(preset_of(each.read_text(encoding="utf-8")) for each in files)
 
 
-def own_folder() -> Path:
+def user_folder() -> Path:
     """Return where a designer's own presets lie."""
     return Path(platformdirs.user_data_path("Busk", appauthor=False)) / "presets"
 
 
-def own_file(title: str) -> Path:
+def user_file(title: str) -> Path:
     """Return where an own preset of that title lies, or would lie."""
-    return own_folder() / f"{safe_name(title)}.json"
+    return user_folder() / f"{safe_name(title)}.json"
 
 
-def own_presets() -> tuple[list[Preset], list[LineError]]:
+def user_presets() -> tuple[list[Preset], list[LineError]]:
     """Return the designer's own presets, and why some of them cannot be read."""
     presets, problems = [], []
-    for path in sorted(own_folder().glob("*.json")):
+    for path in sorted(user_folder().glob("*.json")):
         try:
             presets.append(read_preset(path))
         except LineError as problem:
@@ -153,7 +153,7 @@ def own_presets() -> tuple[list[Preset], list[LineError]]:
 
 def save_preset(preset: Preset) -> Path:
     """Write a preset into the designer's own folder, over one of the same name. Raises ProjectError."""
-    path = own_file(preset.title)
+    path = user_file(preset.title)
     private_folder(path.parent)
     text = json.dumps({"format": FORMAT, **asdict(preset)}, indent=1, ensure_ascii=False)
     write_text(path, text, private=True)
@@ -164,22 +164,22 @@ def preset_from(design: Design, title: str) -> Preset:
     """Return the lines of a design as a preset: those that are worn, and all own ones."""
     template = read_template(design.template)
     own = {line.name: line for line in design.own_lines}
-    if design.worn_elastics():
+    if design.active_elastics():
         raise LineError(
             "The lengths of elastics belong to one body: they cannot be kept as a preset.",
             "Make the lines of no elastic first; then their lengths are those of the shape.",
         )
-    names = sorted(design.worn() - own.keys()) + list(own)
+    names = sorted(design.active_lines() - own.keys()) + list(own)
     lines = tuple(_as_preset(name, design, own.get(name), template) for name in names)
     if not lines:
         raise LineError("There are no lines to keep as a preset.", "Set a line shorter or add one first.")
     return Preset(title, lines, template=design.template if own else "")
 
 
-def _as_preset(name: str, design: Design, line: OwnLine | None, template: Template) -> PresetLine:
-    traits = design.traits_of(name)
-    places = "" if line is None else text_of(line, template)
-    length = design.ratio(name) if name in design.worn() else None
+def _as_preset(name: str, design: Design, line: CustomLine | None, template: Template) -> PresetLine:
+    traits = design.line_settings(name)
+    places = "" if line is None else format_path(line, template)
+    length = design.ratio(name) if name in design.active_lines() else None
     dress = (traits.width, traits.title, traits.colour, traits.stiffness, traits.linked)
     return PresetLine(name, places, length, *dress)
 
@@ -196,36 +196,36 @@ def with_preset(design: Design, preset: Preset) -> Design:
             f"The preset {preset.title} belongs to the control mesh of {preset.template} polygons.",
             "Choose that control mesh first.",
         )
-    after = design.at_rest()
-    for line, own in preset.laid(read_template(design.template)):
+    after = design.with_lines_reset()
+    for line, own in preset.lines_on_template(read_template(design.template)):
         names = [each.name for each in own] or [line.line]
         present = {each.name: each for each in after.own_lines}
         for each in own:
             if each.name not in present or (line.places and each != present[each.name]):
-                after = after.with_own_line(each)
+                after = after.with_custom_line(each)
         for name in names:
-            if after.traits_of(name).locked:
+            if after.line_settings(name).locked:
                 continue
-            usual = after.traits_of(name)
-            after = after.with_line(name, line.length).with_traits(_dressed(usual, line))
+            usual = after.line_settings(name)
+            after = after.with_line(name, line.length).with_line_settings(_dressed(usual, line))
     return after
 
 
-def is_worn(design: Design, preset: Preset) -> bool:
+def is_active(design: Design, preset: Preset) -> bool:
     """Return whether a design wears the lines of a preset and no others, whatever their lengths are now."""
     courses = {line.name: line for line in design.own_lines}
     wanted: set[str] = set()
-    for line, own in preset.laid(read_template(design.template)):
+    for line, own in preset.lines_on_template(read_template(design.template)):
         there = [courses.get(each.name) for each in own]
         # Ready-made lines may have been led elsewhere: they are the same lines.
         if None in there or (line.places and there != list(own)):
             return False
         if line.length is not None:
             wanted.update([each.name for each in own] or [line.line])
-    return bool(wanted) and design.worn() == wanted
+    return bool(wanted) and design.active_lines() == wanted
 
 
-def _dressed(traits: LineTraits, line: PresetLine) -> LineTraits:
+def _dressed(traits: LineSettings, line: PresetLine) -> LineSettings:
     usual = replace(traits, elastic="", width=None) if traits.elastic else traits
     return replace(
         usual,

@@ -9,13 +9,13 @@ from core.control_mesh.embedding import embed
 from core.control_mesh.template import Template
 from core.document.design import Design
 from core.document.line_notation import DECIMALS
-from core.document.lines import OwnLine
+from core.document.lines import CustomLine
 from core.errors import LineError
 
 _HALVES = ("{name} left", "{name} right")
 
 
-def halves(name: str, path: Sequence[int], template: Template) -> tuple[OwnLine, OwnLine]:
+def halves(name: str, path: Sequence[int], template: Template) -> tuple[CustomLine, CustomLine]:
     """Return the left and the right half of the line ``name`` whose control points are ``path``, in order.
 
     Both begin at the front centre. Raises LineError if it does not cross the front centre just once, at a
@@ -32,10 +32,10 @@ def halves(name: str, path: Sequence[int], template: Template) -> tuple[OwnLine,
         raise _crosses_not(name)
     inward, outward = tuple(path[at::-1]), tuple(path[at:])
     left, right = (outward, inward) if after[0] > 0 else (inward, outward)
-    return OwnLine(_HALVES[0].format(name=name), left), OwnLine(_HALVES[1].format(name=name), right)
+    return CustomLine(_HALVES[0].format(name=name), left), CustomLine(_HALVES[1].format(name=name), right)
 
 
-def free_halves(line: OwnLine) -> tuple[OwnLine, OwnLine]:
+def free_halves(line: CustomLine) -> tuple[CustomLine, CustomLine]:
     """Return the left and the right half of a free line; see ``halves``."""
     if line.closed:
         raise LineError(f"The line {line.name} goes round and has no two halves.", "Draw two lines instead.")
@@ -52,7 +52,7 @@ def free_halves(line: OwnLine) -> tuple[OwnLine, OwnLine]:
     inward, outward = (middle, *before[::-1]), (middle, *after)
     left, right = (outward, inward) if side > 0.0 else (inward, outward)
     pair = zip(_HALVES, (left, right), strict=True)
-    first, second = (OwnLine(half.format(name=line.name), places=places) for half, places in pair)
+    first, second = (CustomLine(half.format(name=line.name), places=places) for half, places in pair)
     return first, second
 
 
@@ -78,7 +78,7 @@ def can_split(design: Design, template: Template, name: str) -> bool:
 
 def is_split(design: Design, name: str) -> bool:
     """Tell whether a line is off while its halves, of which one at least is worn, lie in its place."""
-    pair, worn = {half.format(name=name) for half in _HALVES}, design.worn()
+    pair, worn = {half.format(name=name) for half in _HALVES}, design.active_lines()
     return name not in worn and pair <= {line.name for line in design.own_lines} and bool(pair & worn)
 
 
@@ -94,24 +94,24 @@ def split(design: Design, template: Template, name: str, *, linked: bool = False
     for half in pair:
         if half.name in there and there[half.name] != half:
             raise LineError(f"There is another line {half.name}.", "Rename or remove that one first.")
-    worn, ratio, traits = name in design.worn(), design.ratio(name), design.traits_of(name)
+    worn, ratio, traits = name in design.active_lines(), design.ratio(name), design.line_settings(name)
     after = design
     for half in pair:
-        after = after.with_own_line(half) if half.name not in there else after
+        after = after.with_custom_line(half) if half.name not in there else after
         treated = replace(traits, name=half.name, linked=linked, locked=False)
-        after = after.with_traits(treated)
+        after = after.with_line_settings(treated)
         if worn:
             after = after.with_line(half.name, ratio)
     if name in there:
-        return after.without_own_line(name)
+        return after.without_custom_line(name)
     return after.with_line(name, None)
 
 
-def _halves_of(design: Design, template: Template, name: str) -> tuple[OwnLine, OwnLine]:
+def _halves_of(design: Design, template: Template, name: str) -> tuple[CustomLine, CustomLine]:
     """Return both halves of a line of the design. Raises LineError if there are none, or nothing moves."""
     own = {line.name: line for line in design.own_lines}
     if name in own and own[name].free:
-        touched = embed(template.grid, own[name].course).weights.nonzero()[1].tolist()
+        touched = embed(template.grid, own[name].grid_path).weights.nonzero()[1].tolist()
     elif name in own:
         touched = list(own[name].path)
     elif name in template.paths:

@@ -9,7 +9,7 @@ import numpy as np
 
 from core.deformation.tffd import deform
 from core.errors import LineError
-from core.garment.curve_smoothing import USUAL_WIDTH, CentreLine, Surface, centre_line
+from core.garment.curve_smoothing import USUAL_WIDTH, CentreLine, LocalPlanes, centre_line
 from core.garment.cut_list import CutRow, cut_list
 from core.geometry.mesh import Floats, Points
 from core.geometry.plane_sections import arc_length
@@ -30,7 +30,7 @@ NOT_TO_CUT = "NOT TO CUT"
 
 
 @dataclass(frozen=True, eq=False)
-class WornCurve:
+class LineCurve:
     """A worn line on the body: ``front`` from the subject's right to the left, ``back`` on round the back.
 
     Shapes (k, 3) [mm]. Without a back, (0, 3), the line is its front part; a closed one ends where it begins.
@@ -69,21 +69,21 @@ class Strip:
     to_cut: bool = True
 
 
-def worn_curves(
+def line_curves(
     stages: Stages, control_points: Points, titles: Mapping[str, str], widths: Mapping[str, float]
-) -> tuple[WornCurve, ...]:
+) -> tuple[LineCurve, ...]:
     """Return the worn lines on the body as ``control_points``, (n, 3) [mm], shape it, in the model's order.
 
     ``titles`` and ``widths`` [mm] by name; a wide band lies straighter. Raises LineError if none is worn.
     """
     mesh = stages.body.mesh
-    surface, moves = Surface(mesh), deform(stages.binding, control_points) - mesh.vertices
+    surface, moves = LocalPlanes(mesh), deform(stages.binding, control_points) - mesh.vertices
     curves = []
     for line in _worn(stages):
         route, width = stages.routes[line.name], widths.get(line.name, USUAL_WIDTH)
         laid = centre_line(route.path, surface, route.back, width, drawn=route.drawn)
-        places = laid.points + surface.follow(laid.points) @ moves
-        curves.append(WornCurve(line.name, titles.get(line.name, line.name), *_halves(places, laid)))
+        places = laid.points + surface.displacement_weights(laid.points) @ moves
+        curves.append(LineCurve(line.name, titles.get(line.name, line.name), *_halves(places, laid)))
     return tuple(curves)
 
 
@@ -129,7 +129,7 @@ def _cut(worn: Strip, row: CutRow) -> Strip:
 
 
 def _worn(stages: Stages) -> Sequence[Line]:
-    worn = [line for line in stages.model.lines if line.name in stages.design.worn()]
+    worn = [line for line in stages.model.lines if line.name in stages.design.active_lines()]
     if not worn:
         raise LineError("No line is worn.", "Set the length of a line first.")
     return worn

@@ -12,10 +12,10 @@ from xml.etree import ElementTree as Xml
 
 from core.document.printable_name import printable
 from core.errors import UserError
-from core.export.band_geometry import NOT_TO_CUT, Strip, WornCurve
+from core.export.band_geometry import NOT_TO_CUT, LineCurve, Strip
 from core.export.dxf import new_dxf
-from core.export.units_and_axes import Space
-from core.files.atomic_write import whole_file
+from core.export.units_and_axes import FileSpace
+from core.files.atomic_write import atomic_path
 from core.geometry.mesh import Points
 
 Say = Callable[[str], str]
@@ -33,14 +33,14 @@ _LAYER = re.compile(r'[<>/\\":;?*|=`,\x00-\x1f]')
 _INK = ("#111111", "#777777")  # of what is cut, and of what is only told
 
 
-def write_curves(path: str | os.PathLike[str], curves: Sequence[WornCurve], space: Space) -> None:
+def write_curves(path: str | os.PathLike[str], curves: Sequence[LineCurve], space: FileSpace) -> None:
     """Write worn lines in space: DXF with 3D polylines on a layer for each part, or OBJ with lines.
 
     Raises UserError for another ending, or a place that cannot be written to.
     """
     target, kind = Path(path), drawing_kind(path, CURVE_FORMATS)
     parts = [(curve.name, part, space.places(each)) for curve in curves for part, each in curve.parts.items()]
-    with whole_file(target) as partial:
+    with atomic_path(target) as partial:
         if kind == "obj":
             partial.write_text("\n".join(_obj_lines(parts, space)) + "\n", encoding="utf-8")
         else:
@@ -61,7 +61,7 @@ def write_strips(
     place that cannot be written to.
     """
     target, kind, heading = Path(path), drawing_kind(path, STRIP_FORMATS), printable(heading)
-    with whole_file(target) as partial:
+    with atomic_path(target) as partial:
         if kind == "svg":
             drawing = Xml.ElementTree(_svg(strips, heading, say))
             Xml.indent(drawing)
@@ -78,13 +78,13 @@ def drawing_kind(path: str | os.PathLike[str], formats: Sequence[str]) -> str:
     return kind
 
 
-def told(strip: Strip) -> str:
+def strip_label(strip: Strip) -> str:
     """Return what stands beside a strip."""
     size = f"{strip.title}: {strip.length:.1f} mm long, {strip.width:g} mm wide"
     return f"{size}; {strip.note}" if strip.note else size
 
 
-def _obj_lines(parts: Iterable[tuple[str, str, Points]], space: Space) -> Iterable[str]:
+def _obj_lines(parts: Iterable[tuple[str, str, Points]], space: FileSpace) -> Iterable[str]:
     yield f"# lines of a garment, {space.unit}, {space.axes}"
     count = 0
     for name, part, places in parts:
@@ -95,7 +95,7 @@ def _obj_lines(parts: Iterable[tuple[str, str, Points]], space: Space) -> Iterab
 
 
 def _svg(strips: Sequence[Strip], heading: str, say: Say) -> Xml.Element:
-    words = [_wide(text) for text in (heading, *(say(told(strip)) for strip in strips))]
+    words = [_wide(text) for text in (heading, *(say(strip_label(strip)) for strip in strips))]
     ends = [
         strip.length + (0.75 * _wide(say(strip.marks[-1][1])) if strip.marks else 0.0) for strip in strips
     ]
@@ -116,8 +116,8 @@ def _svg(strips: Sequence[Strip], heading: str, say: Say) -> Xml.Element:
     _svg_text(page, _MARGIN + SCALE_BAR + 3.0, _MARGIN + 7.0, f"{SCALE_BAR:g} mm")
     for strip, name, top in zip(strips, _layers([s.name for s in strips]), tops, strict=False):
         group = Xml.SubElement(page, "g", {"id": f"strip {name}".replace(" ", "-")})
-        Xml.SubElement(group, "title").text = say(told(strip))
-        _svg_text(group, _MARGIN, top - 2.5, say(told(strip)))
+        Xml.SubElement(group, "title").text = say(strip_label(strip))
+        _svg_text(group, _MARGIN, top - 2.5, say(strip_label(strip)))
         box = {"x": _MARGIN, "y": top, "width": strip.length, "height": strip.width}
         dashed = {} if strip.to_cut else {"stroke-dasharray": "3 2"}
         Xml.SubElement(group, "rect", {key: f"{value:.4f}" for key, value in box.items()} | dashed)
@@ -167,7 +167,7 @@ def _strips_dxf(strips: Sequence[Strip], heading: str, say: Say) -> Any:
         corners = [(0.0, y), (strip.length, y), (strip.length, y + strip.width), (0.0, y + strip.width)]
         space.add_lwpolyline(corners, close=True, dxfattribs=on)
         space.add_text(
-            say(told(strip)), height=_LETTER, dxfattribs=on | {"insert": (0.0, y + strip.width + 2.0)}
+            say(strip_label(strip)), height=_LETTER, dxfattribs=on | {"insert": (0.0, y + strip.width + 2.0)}
         )
         for at in _across(strip):
             size = _across_size(strip)

@@ -33,7 +33,7 @@ _NOBODY = {"birth-date": "1800-01-01", "gender": "unknown", "email": ""}  # what
 
 
 @dataclass(frozen=True)
-class MeasuresSheet:
+class MeasurementTable:
     """What a file of measures tells: values, the unit of lengths in it, titles by key, and a note."""
 
     values: Values
@@ -52,17 +52,17 @@ class MeasuresSheet:
         return {key: self.in_unit(key)[0] for key, (_, unit) in self.values.items() if unit == "mm"}
 
 
-def write_measures(path: str | os.PathLike[str], sheet: MeasuresSheet) -> None:
+def write_measurements(path: str | os.PathLike[str], sheet: MeasurementTable) -> None:
     """Write measures as CSV, JSON, .smis or .vit by the name's ending; the last two hold lengths alone.
 
     Raises UserError for another ending, a unit that the file cannot have, or a place that cannot be written.
     """
     target, sheet = Path(path), replace(sheet, note=printable(sheet.note))
-    text = MEASURE_FORMATS[measures_kind(path, sheet.unit)](sheet)
+    text = MEASURE_FORMATS[measurement_file_kind(path, sheet.unit)](sheet)
     write_text(target, text)
 
 
-def measures_kind(path: str | os.PathLike[str], unit: str) -> str:
+def measurement_file_kind(path: str | os.PathLike[str], unit: str) -> str:
     """Return the kind of measures file that a name ends in. Raises UserError if it or the unit cannot be."""
     kind = Path(path).suffix.lower().lstrip(".")
     units = _XML_UNITS if kind in _XML_VERSIONS else UNITS
@@ -103,7 +103,7 @@ def _known() -> dict[str, list[str]]:
     return {name: told["of"] for name, told in json.loads(text)["names"].items()}
 
 
-def _as_csv(sheet: MeasuresSheet) -> str:
+def _as_csv(sheet: MeasurementTable) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\r\n")
     writer.writerow(["measure", "title", "value", "unit"])
@@ -113,7 +113,7 @@ def _as_csv(sheet: MeasuresSheet) -> str:
     return text.getvalue()
 
 
-def _as_json(sheet: MeasuresSheet) -> str:
+def _as_json(sheet: MeasurementTable) -> str:
     measures = {}
     for key in sheet.values:
         value, unit = sheet.in_unit(key)
@@ -121,7 +121,7 @@ def _as_json(sheet: MeasuresSheet) -> str:
     return json.dumps({"note": sheet.note, "measures": measures}, indent=1, ensure_ascii=False) + "\n"
 
 
-def _as_xml(sheet: MeasuresSheet, kind: str) -> str:
+def _as_xml(sheet: MeasurementTable, kind: str) -> str:
     """Return a file of SeamlyMe or Valentina: the two differ in root, version and the customer's name."""
     root = Xml.Element(kind)
     named = {"family-name": "", "given-name": ""} if kind == "smis" else {"customer": ""}
@@ -145,7 +145,7 @@ def _as_xml(sheet: MeasuresSheet, kind: str) -> str:
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{Xml.tostring(root, encoding="unicode")}\n'
 
 
-MEASURE_FORMATS: dict[str, Callable[[MeasuresSheet], str]] = {
+MEASURE_FORMATS: dict[str, Callable[[MeasurementTable], str]] = {
     "csv": _as_csv,
     "json": _as_json,
     "smis": lambda sheet: _as_xml(sheet, "smis"),

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from core.control_mesh.fit import ControlMesh
 from core.errors import UserError
-from core.export.units_and_axes import Space, space_of
-from core.files.atomic_write import whole_file
+from core.export.units_and_axes import FileSpace, space_of
+from core.files.atomic_write import atomic_path
 from core.geometry.mesh import Mesh, Points
 from core.geometry.planar_curves import Curve, Plane
 from core.progress import Progress, quiet
@@ -21,7 +21,7 @@ _CLAY = (216, 175, 149, 255)  # what #EDD8C9 is as glTF counts light, from black
 
 
 def write_mesh(
-    path: str | os.PathLike[str], mesh: Mesh, progress: Progress = quiet, space: Space | None = None
+    path: str | os.PathLike[str], mesh: Mesh, progress: Progress = quiet, space: FileSpace | None = None
 ) -> None:
     """Write ``mesh`` [mm] as PLY, OBJ, STL or GLB by the suffix, in a ``space`` or the default of the format.
 
@@ -44,7 +44,7 @@ def write_mesh(
         options = {"include_normals": True}
     data = shape.export(file_type=kind, **options)
     progress("writing", 0.8)
-    with whole_file(target) as partial:
+    with atomic_path(target) as partial:
         partial.write_bytes(data.encode() if isinstance(data, str) else data)
         progress("writing", 1.0)
 
@@ -65,7 +65,7 @@ def write_control_points(
     They are those at rest, or ``points``, shape (n, 3). Raises UserError if the place cannot be written to.
     """
     target, places = Path(path), control.mesh.vertices if points is None else points
-    with whole_file(target) as partial, open(partial, "w", newline="", encoding="utf-8") as file:
+    with atomic_path(target) as partial, open(partial, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(["number", "row", "column", "x_mm", "y_mm", "z_mm", "free"])
         for number, (place, fixed) in enumerate(zip(places, control.fixed, strict=True)):
@@ -80,7 +80,7 @@ def write_profile(path: str | os.PathLike[str], plane: Plane, bodies: Mapping[st
     Raises UserError if the place cannot be written to.
     """
     target = Path(path)
-    with whole_file(target) as partial, open(partial, "w", newline="", encoding="utf-8") as file:
+    with atomic_path(target) as partial, open(partial, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(["body", "curve", "x_mm", "y_mm", "z_mm"])
         for body, curves in bodies.items():

@@ -11,22 +11,22 @@ import numpy as np
 
 from core import __version__
 from core.deformation.tffd import deform
-from core.garment.assessment import Assessment, assessment_of
+from core.garment.assessment import Assessment, assess_with
 from core.garment.cut_list import CutList, cut_list
 from core.garment.pressure import LEFT_OUT
-from core.garment.pressure_list import PressRow, press_list
-from core.garment.tension import ran_away
+from core.garment.pressure_list import PressureRow, pressure_list
+from core.garment.tension import divergence_error
 from core.geometry.mesh import Floats, Mesh, Points
 from core.geometry.planar_curves import AXES, Curve, Plane, Slicer, nearest
-from core.landmarks.warnings import doubts
+from core.landmarks.warnings import collect_warnings
 from core.measurements.definitions import DEFINITIONS
-from core.measurements.sizes import GIRTHS_OF_SIZES, sizes, sizes_text, with_nearby
+from core.measurements.sizes import GIRTHS_OF_SIZES, sizes, sizes_text, with_neighbours
 from core.measurements.table import Measures, before_after, measure_rows
 from core.measurements.uncertain_value import BEFORE, SOURCES, Spread
 from core.mechanics.convergence import SOUND
-from core.mechanics.iteration import Marks, Record
+from core.mechanics.iteration import Observables, Record
 from core.pipeline.build import Stages
-from core.pipeline.warnings import Shown, kept_volume, shape_warnings, still_lines, warnings
+from core.pipeline.warnings import ShownState, controlled_volume, immovable_lines, shape_warnings, warnings
 from core.progress import Progress, quiet
 
 AROUND = 12.0
@@ -105,7 +105,7 @@ class SectionCurves:
 
 
 @dataclass(frozen=True)
-class Turns:
+class IterationCurve:
     """What is plotted of a run, turn by turn: volume error and how far the bust points are up [mm]."""
 
     control: str
@@ -115,7 +115,7 @@ class Turns:
 
 
 @dataclass(frozen=True)
-class Sheet:
+class Report:
     """Everything of a report; sentences are those of the core, in English.
 
     ``state`` is the word of the verdict ("strained" where skin strains though all has settled); ``lift`` is
@@ -124,7 +124,7 @@ class Sheet:
     ``pressures`` follow the cut list row by row, ``limits`` are those of their lights; ``doubts`` say what
     should be looked at before landmarks are trusted; ``assessment`` is the overall verdict. ``off`` is how
     far figures may be off, by the keys of ``uncertain_value``, in their units: nothing where that
-    was not worked out; see ``with_spread``. ``off_factor`` tells of others how many times smaller or larger
+    was not worked out; see ``with_uncertainty``. ``off_factor`` tells of others how many times smaller or larger
     they may be [1], ``off_notes`` where all of this says less than it seems to, ``off_sources`` what any of
     it comes from. ``strain`` is that of the verdict.
     """
@@ -139,10 +139,10 @@ class Sheet:
     sizes: tuple[dict[str, Any], ...]
     no_size: str
     cuts: CutList
-    pressures: tuple[PressRow, ...]
+    pressures: tuple[PressureRow, ...]
     limits: Mapping[str, Any]
     sections: tuple[SectionCurves, ...]
-    turns: Turns
+    turns: IterationCurve
     doubts: tuple[str, ...]
     warnings: tuple[str, ...]
     left_out: tuple[str, ...]
@@ -159,7 +159,7 @@ class Sheet:
     strain: Pair | None = None
 
     @property
-    def sound(self) -> bool:
+    def is_valid(self) -> bool:
         """Whether its figures can be worked with."""
         return self.state in SOUND
 
@@ -169,26 +169,28 @@ class Sheet:
         return {**asdict(self), **told, "assessment": self.assessment.as_data()}
 
 
-def sheet_of(shown: Shown, records: Sequence[Record], heading: Heading, progress: Progress = quiet) -> Sheet:
+def make_report(
+    shown: ShownState, records: Sequence[Record], heading: Heading, progress: Progress = quiet
+) -> Report:
     """Return the sheet of a body as it is ``shown``; ``records`` are those of its turns.
 
     Raises Cancelled, and LineError if the turns ran away: they leave no body.
     """
     stages, points, verdict = shown.stages, shown.control_points, shown.verdict
     if verdict.motion == "diverging":
-        raise ran_away()
+        raise divergence_error()
     progress("measuring", 0.1)
     before, after = before_after(stages, points)
     found, why = _sizes(before, heading)
     progress("pressing", 0.8)
-    cuts, pressed = cut_list(stages, points), press_list(stages, points)
-    percent, error_ml = kept_volume(shown)
-    return Sheet(
+    cuts, pressed = cut_list(stages, points), pressure_list(stages, points)
+    percent, error_ml = controlled_volume(shown)
+    return Report(
         heading=heading,
         scan=stages.design.scan.name,
-        state=verdict.told,
+        state=verdict.display_state,
         settled=verdict.state == "settled",
-        lift=_lift(stages.rest_marks, stages.watch(points)) if verdict.sound else None,
+        lift=_lift(stages.rest_marks, stages.watch(points)) if verdict.is_valid else None,
         volume=VolumeKept(stages.model.volume.rest_volume / 1000.0, error_ml, percent),
         measures=tuple(measure_rows(before, after)),
         sizes=found,
@@ -198,29 +200,29 @@ def sheet_of(shown: Shown, records: Sequence[Record], heading: Heading, progress
         limits=pressed.as_data()["limits"],
         sections=_sections(stages, points),
         turns=_turns(stages, records),
-        doubts=tuple(doubts(stages.body, stages.landmarks)),
-        warnings=(*shape_warnings(shown), *still_lines(stages), *warnings(stages)),
+        doubts=tuple(collect_warnings(stages.body, stages.landmarks)),
+        warnings=(*shape_warnings(shown), *immovable_lines(stages), *warnings(stages)),
         left_out=(*NOT_MODELLED, *LEFT_OUT),
         model=_model(stages),
         strain=verdict.strain,
-        assessment=assessment_of(shown, cuts, pressed),
+        assessment=assess_with(shown, cuts, pressed),
         versions={"busk": __version__, "python": platform.python_version(), "numpy": np.__version__},
     )
 
 
-def with_spread(sheet: Sheet, stages: Stages, control_points: Points, spread: Spread) -> Sheet:
+def with_uncertainty(sheet: Report, stages: Stages, control_points: Points, spread: Spread) -> Report:
     """Return a sheet of ``control_points``, shape (n, 3) [mm], with how far its figures may be off."""
     rest, places = stages.body.mesh, deform(stages.binding, control_points)
     sections = []
     for cut in sheet.sections:
         slicer = Slicer(rest, Plane(cut.axis, cut.after_at_mm))
-        offs = slicer.along(places, spread.sds * spread.skin)
+        offs = slicer.interpolate(places, spread.sds * spread.skin)
         rounded = tuple(tuple(np.round(each, 3).tolist()) for each in offs)
         sections.append(replace(cut, off_mm=rounded, off_before_mm=spread.sds * spread.rest))
-    off = {key: off for key in spread.doubts if (off := spread.plus_minus(key)) is not None}
-    factors = {key: factor for key in spread.doubts if (factor := spread.factor(key)) is not None}
-    told = with_nearby(sheet.sizes, *(off.get(f"{BEFORE}:{key}") for key in GIRTHS_OF_SIZES))
-    within = {name for doubt in spread.doubts.values() for name in doubt.by_source}
+    off = {key: off for key in spread.by_output if (off := spread.plus_minus(key)) is not None}
+    factors = {key: factor for key in spread.by_output if (factor := spread.factor(key)) is not None}
+    told = with_neighbours(sheet.sizes, *(off.get(f"{BEFORE}:{key}") for key in GIRTHS_OF_SIZES))
+    within = {name for doubt in spread.by_output.values() for name in doubt.by_source}
     sheet = replace(sheet, off=off, off_factor=factors, sections=tuple(sections), sizes=told)
     return replace(sheet, off_notes=spread.cautions, off_sources=tuple(s for s in SOURCES if s in within))
 
@@ -235,9 +237,12 @@ def _sizes(before: Measures, heading: Heading) -> tuple[tuple[dict[str, Any], ..
     return tuple(sizes_text(answers[key]) for key in keys), ""
 
 
-def _lift(rest: Marks, now: Marks) -> Lift:
-    up = now.nipple_left_z - rest.nipple_left_z, now.nipple_right_z - rest.nipple_right_z
-    forward = now.nipple_left_out - rest.nipple_left_out, now.nipple_right_out - rest.nipple_right_out
+def _lift(rest: Observables, now: Observables) -> Lift:
+    up = now.bust_point_left_z - rest.bust_point_left_z, now.bust_point_right_z - rest.bust_point_right_z
+    forward = (
+        now.bust_point_left_out - rest.bust_point_left_out,
+        now.bust_point_right_out - rest.bust_point_right_out,
+    )
     return Lift(*up, *forward, 0.5 * sum(up), 0.5 * sum(forward))
 
 
@@ -280,13 +285,13 @@ def _pair(place: Floats) -> Pair:
     return round(float(place[0]), 2), round(float(place[1]), 2)
 
 
-def _turns(stages: Stages, records: Sequence[Record]) -> Turns:
+def _turns(stages: Stages, records: Sequence[Record]) -> IterationCurve:
     """Return the turns of a run; Newton's steps to the exact answer are none."""
     rest, made = stages.rest_marks, () if stages.design.volume == "exact" else records
     rows = [(row, row.marks) for row in made if row.marks is not None]
-    return Turns(
+    return IterationCurve(
         stages.design.volume,
-        tuple(row.turn for row, _ in rows),
+        tuple(row.iteration for row, _ in rows),
         tuple(100.0 * row.error for row, _ in rows),
         tuple(_lift(rest, marks).up for _, marks in rows),
     )

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from core.export.csv_cells import csv_text
-from core.export.report_data import Sheet
+from core.export.report_data import Report
 from core.measurements.uncertain_value import (
     AFTER,
     BEFORE,
@@ -31,17 +31,17 @@ Row = dict[str, Any]
 _OFF = {BEFORE: "before", AFTER: "after", CHANGE: "difference"}
 
 
-def sheet_json(sheet: Sheet) -> str:
+def report_json(sheet: Report) -> str:
     """Return everything of a sheet as JSON, curves and turns too; lengths in mm, sentences in English."""
     return json.dumps(sheet.as_data(), indent=1, ensure_ascii=False)
 
 
-def sheet_csv(sheet: Sheet) -> str:
+def report_csv(sheet: Report) -> str:
     """Return the figures of a sheet as comma-separated values, one a row; curves and turns stay in JSON."""
-    return csv_text(COLUMNS, ([row.get(column) for column in COLUMNS] for row in sheet_rows(sheet)))
+    return csv_text(COLUMNS, ([row.get(column) for column in COLUMNS] for row in report_rows(sheet)))
 
 
-def sheet_rows(sheet: Sheet) -> Iterator[Row]:
+def report_rows(sheet: Report) -> Iterator[Row]:
     """Give the rows of the table by their columns; a column without anything may be left out."""
     heading = sheet.heading
     told = {"customer": heading.customer, "project": heading.project, "variant": heading.variant}
@@ -71,7 +71,7 @@ def sheet_rows(sheet: Sheet) -> Iterator[Row]:
             yield {"section": section, "key": str(number), "note": sentence}
 
 
-def _shape_rows(sheet: Sheet) -> Iterator[Row]:
+def _shape_rows(sheet: Report) -> Iterator[Row]:
     kept = sheet.volume
     volume = {"before": kept.rest_ml, "after": kept.rest_ml + kept.error_ml, "difference": kept.error_ml}
     yield {"section": "shape", "key": "volume", "title": "Volume of the model", "unit": "ml", **volume}
@@ -82,7 +82,7 @@ def _shape_rows(sheet: Sheet) -> Iterator[Row]:
         yield {"section": "shape", **told, "off_difference": sheet.off.get(off)}
 
 
-def _cut_rows(sheet: Sheet) -> Iterator[Row]:
+def _cut_rows(sheet: Report) -> Iterator[Row]:
     for row in sheet.cuts.rows:
         about = " ".join(filter(None, (row.elastic, *row.notes)))
         for key, unit, value, kind in (
@@ -100,7 +100,7 @@ def _cut_rows(sheet: Sheet) -> Iterator[Row]:
         yield {"section": "cut", "key": str(number), "note": note}
 
 
-def _pressure_rows(sheet: Sheet) -> Iterator[Row]:
+def _pressure_rows(sheet: Report) -> Iterator[Row]:
     for row in sheet.pressures:
         note = " ".join(filter(None, (row.light, row.where, *row.notes)))
         for key, unit, value, kind in (
@@ -116,7 +116,7 @@ def _pressure_rows(sheet: Sheet) -> Iterator[Row]:
             yield {"section": "pressure", **told, "after": value, "note": note}
 
 
-def _off(sheet: Sheet, kind: str, line: str) -> Row:
+def _off(sheet: Report, kind: str, line: str) -> Row:
     """Return how far a figure of a line may be off, in its unit or as a factor [1]; None where not known."""
     key = f"{kind}:{line}"
     return {"off_after": sheet.off.get(key), "off_factor": sheet.off_factor.get(key)}

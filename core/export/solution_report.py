@@ -15,13 +15,13 @@ from typing import Any
 from core import __version__
 from core.document.serialization import to_json
 from core.export.mesh import write_control_points, write_mesh
-from core.files.atomic_write import whole_file, write_text
+from core.files.atomic_write import atomic_path, write_text
 from core.mechanics.constraint_lines import Line
-from core.mechanics.iteration import Marks, Record
-from core.mechanics.mesh_quality import Condition
+from core.mechanics.iteration import Observables, Record
+from core.mechanics.mesh_quality import MeshQuality
 from core.pipeline.build import Stages
 from core.pipeline.solve import Solution
-from core.pipeline.warnings import shape_warnings, still_lines, warnings
+from core.pipeline.warnings import immovable_lines, shape_warnings, warnings
 
 _LIBRARIES = ("numpy", "scipy", "trimesh")
 _SETTINGS = ("template", "line_height", "weights", "scaled_normals", "dense_volume", "tissue_stiffness")
@@ -38,19 +38,19 @@ def write_solution(solution: Solution, folder: Path, more: Mapping[str, Any] | N
     write_mesh(folder / "body.ply", solution.body)
     write_mesh(folder / "control.ply", stages.control.mesh.moved(solution.control_points))
     write_control_points(folder / "control.csv", stages.control)
-    write_turns(folder / "turns.csv", solution.records, stages)
+    write_iterations(folder / "turns.csv", solution.records, stages)
     figures = {**(more or {}), **report(solution)}
     write_text(folder / "report.json", json.dumps(figures, indent=1, ensure_ascii=False) + "\n")
     return figures
 
 
-def write_turns(path: str | os.PathLike[str], records: Sequence[Record], stages: Stages) -> None:
+def write_iterations(path: str | os.PathLike[str], records: Sequence[Record], stages: Stages) -> None:
     """Write one CSV row per turn; each heading names its unit, heights what they are counted from."""
     heading = ["turn", "volume_error_percent", "volume_error_ml", *_marks(stages.rest_marks)]
     heading += [*(f"length_{line.name}_mm" for line in stages.model.lines), "step_mm"]
     low = _lowest(stages)
     with (
-        whole_file(Path(path)) as partial,
+        atomic_path(Path(path)) as partial,
         open(partial, "w", newline="", encoding="utf-8") as file,
     ):
         writer = csv.writer(file)
@@ -58,7 +58,7 @@ def write_turns(path: str | os.PathLike[str], records: Sequence[Record], stages:
         for row in records:
             seen = _marks(row.marks, low).values()
             figures = (100.0 * row.error, row.error_ml, *seen, *row.lengths, row.step)
-            writer.writerow([row.turn, *(f"{value:.9g}" for value in figures)])
+            writer.writerow([row.iteration, *(f"{value:.9g}" for value in figures)])
 
 
 def report(solution: Solution) -> dict[str, Any]:
@@ -67,7 +67,7 @@ def report(solution: Solution) -> dict[str, Any]:
     return {
         "state": verdict.state,
         "motion": verdict.motion,
-        "turns": last.turn,
+        "turns": last.iteration,
         "control_points": len(stages.control.row),
         "volume_control": stages.design.volume,
         "volume": _volume_report(solution),
@@ -115,7 +115,7 @@ def _volume_report(solution: Solution) -> dict[str, Any]:
     }
 
 
-def _condition_report(condition: Condition | None) -> dict[str, Any]:
+def _condition_report(condition: MeshQuality | None) -> dict[str, Any]:
     if condition is None:
         return {}
     return {
@@ -123,7 +123,7 @@ def _condition_report(condition: Condition | None) -> dict[str, Any]:
         "inverted": condition.inverted,
         "overstrained": condition.overstrained,
         "strained": condition.strained,
-        "largest_turn_degrees": condition.largest_turn,
+        "largest_turn_degrees": condition.largest_rotation,
         "shortest_edge_percent": 100.0 * condition.shortest,
         "longest_edge_percent": 100.0 * condition.longest,
         "definition": "of the control mesh: the largest angle between a triangle's normal and its normal at "
@@ -156,7 +156,7 @@ def _fit_report(stages: Stages) -> dict[str, Any]:
 def _settings(stages: Stages) -> dict[str, Any]:
     return {
         **{key: getattr(stages.design, key) for key in _SETTINGS},
-        **asdict(stages.design.mechanics),
+        **asdict(stages.design.model_options),
         "gain": stages.gain,
         "gain_limit_at_rest": stages.gain_limit,
     }
@@ -165,7 +165,7 @@ def _settings(stages: Stages) -> dict[str, Any]:
 def notes(stages: Stages) -> list[str]:
     """Return in sentences what a reader of the figures has to know."""
     return [
-        *still_lines(stages),
+        *immovable_lines(stages),
         *warnings(stages),
         *stages.body.repairs,
         "Lengths are those of the front part of a line, side to side; the back does not change.",
@@ -177,7 +177,7 @@ def notes(stages: Stages) -> list[str]:
 def _line_report(line: Line, stages: Stages, reached: float) -> dict[str, Any]:
     ratio = stages.design.ratio(line.name)
     return {
-        "worn": line.name in stages.design.worn(),
+        "worn": line.name in stages.design.active_lines(),
         "rest_mm": line.rest_length,
         "set_mm": ratio * line.rest_length,
         "reached_mm": reached,
@@ -192,13 +192,13 @@ def _lowest(stages: Stages) -> float:
     return float(stages.body.mesh.vertices[:, 2].min())
 
 
-def _marks(marks: Marks | None, low: float = 0.0) -> dict[str, float]:
+def _marks(marks: Observables | None, low: float = 0.0) -> dict[str, float]:
     """Return what is watched on the body [mm], if it was; heights are over ``low``, the lowest point."""
     if marks is None:
         return {}
     return {
-        "bust_point_left_above_lowest_mm": marks.nipple_left_z - low,
-        "bust_point_right_above_lowest_mm": marks.nipple_right_z - low,
+        "bust_point_left_above_lowest_mm": marks.bust_point_left_z - low,
+        "bust_point_right_above_lowest_mm": marks.bust_point_right_z - low,
         "apex_above_lowest_mm": marks.apex_z - low,
         "apex_protrusion_mm": marks.apex_protrusion,
     }

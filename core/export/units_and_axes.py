@@ -24,7 +24,7 @@ AXES: dict[str, tuple[tuple[int, int, int], ...]] = {
 
 
 @dataclass(frozen=True)
-class Space:
+class FileSpace:
     """The unit and the axes of a file. Raises UserError for words that are neither."""
 
     unit: str = "mm"
@@ -48,10 +48,10 @@ class Space:
         return np.array(AXES[self.axes], dtype=np.float64)
 
 
-def space_of(kind: str, unit: str | None = None, axes: str | None = None) -> Space:
+def space_of(kind: str, unit: str | None = None, axes: str | None = None) -> FileSpace:
     """Return the space of a file of some kind, "ply", "glb" ..; what is not told is as usual for that kind.
 
     glTF 2.0 asks for metres, y up and z to the front. Raises UserError for unknown words.
     """
     usual = ("m", "y-up") if kind == "glb" else ("mm", "z-up")
-    return Space(unit or usual[0], axes or usual[1])
+    return FileSpace(unit or usual[0], axes or usual[1])

@@ -41,7 +41,7 @@ _AT_WORK: set[str] = set()
 
 
 @contextmanager
-def whole_file(target: Path, private: bool = False) -> Iterator[Path]:
+def atomic_path(target: Path, private: bool = False) -> Iterator[Path]:
     """Give a name beside ``target`` to write to; it takes the target's place only when all went well.
 
     Of a symbolic link the file that it names is written. A file that is there keeps its access rights; a new
@@ -51,7 +51,7 @@ def whole_file(target: Path, private: bool = False) -> Iterator[Path]:
     place = os.path.normcase(os.path.realpath(target))
     with _LOCK:
         if place in _AT_WORK:
-            raise still_written(target.absolute())
+            raise still_writing_error(target.absolute())
         _AT_WORK.add(place)
     try:
         yield from _whole_file(target, private)
@@ -62,13 +62,13 @@ def whole_file(target: Path, private: bool = False) -> Iterator[Path]:
 
 def write_text(target: Path, text: str, encoding: str = "utf-8", private: bool = False) -> None:
     """Write a text as a whole file; of the name of some file it may hold letters that no text has, which are
-    replaced. Raises ProjectError, see ``whole_file``.
+    replaced. Raises ProjectError, see ``atomic_path``.
     """
-    with whole_file(target, private) as partial:
+    with atomic_path(target, private) as partial:
         partial.write_bytes(text.encode(encoding, errors="replace"))
 
 
-def still_written(target: Path) -> ProjectError:
+def still_writing_error(target: Path) -> ProjectError:
     """Return what to say when a file is to be written that is on its way already."""
     return ProjectError(f"{target.name} is still being written.", "Wait a moment, or choose another name.")
 
@@ -82,7 +82,7 @@ def private_folder(folder: Path) -> Path:
     return folder
 
 
-def followed(path: Path) -> Path:
+def resolve_links(path: Path) -> Path:
     """Return the file that a path means: at the end of its symbolic links, whether it is there or not."""
     return Path(os.path.realpath(path)) if path.is_symlink() else path.absolute()
 
@@ -104,7 +104,7 @@ def safe_ending(name: str, ending: str) -> str:
 def _whole_file(named: Path, private: bool) -> Iterator[Path]:
     partial = None
     try:
-        target = followed(named)
+        target = resolve_links(named)
         former = _former(target)
         remove_abandoned(target.parent, target.name)
         partial = _new_partial(target, PRIVATE_FILE if private or former else _USUAL)

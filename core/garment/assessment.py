@@ -11,12 +11,12 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from core.garment.cut_list import CutList, CutRow, cut_list
-from core.garment.pressure_limits import AMBER, GREEN, comfort
-from core.garment.pressure_list import PressList, PressRow, press_list
-from core.landmarks.warnings import doubts
-from core.mechanics.convergence import Verdict
+from core.garment.pressure_limits import AMBER, GREEN, pressure_limits
+from core.garment.pressure_list import PressureList, PressureRow, pressure_list
+from core.landmarks.warnings import collect_warnings
+from core.mechanics.convergence import Convergence
 from core.pipeline.build import Stages
-from core.pipeline.warnings import Shown, warnings
+from core.pipeline.warnings import ShownState, warnings
 
 GOOD, PENDING, CAUTION, BAD = LEVELS = ("good", "pending", "caution", "bad")
 """Levels from the best to the worst; one that is still being computed is better than none that is known."""
@@ -80,18 +80,18 @@ class Assessment:
         return {"level": self.level, "findings": [asdict(each) for each in self.findings]}
 
 
-def assessed(shown: Shown) -> Assessment:
+def assess(shown: ShownState) -> Assessment:
     """Return the assessment of a run that has ended; cut list and pressures are computed for it."""
-    if not shown.verdict.sound:
-        return assessment_of(shown, None, None)
+    if not shown.verdict.is_valid:
+        return assess_with(shown, None, None)
     stages, points = shown.stages, shown.control_points
-    return assessment_of(shown, cut_list(stages, points), press_list(stages, points))
+    return assess_with(shown, cut_list(stages, points), pressure_list(stages, points))
 
 
-def assessment_of(
-    shown: Shown,
+def assess_with(
+    shown: ShownState,
     cuts: CutList | None,
-    pressed: PressList | None,
+    pressed: PressureList | None,
     *,
     running: bool = False,
     failed: bool = False,
@@ -101,17 +101,17 @@ def assessment_of(
     While it is ``running`` it may still converge; ``failed``: computing its pressures did, and they stay
     unknown. A run without a valid shape has neither.
     """
-    stages, verdict, active = shown.stages, shown.verdict, bool(shown.stages.design.worn())
+    stages, verdict, active = shown.stages, shown.verdict, bool(shown.stages.design.active_lines())
     found = [*_run(shown, running), *_foundations(stages)]
-    if verdict.sound:
+    if verdict.is_valid:
         found += [*_bands(cuts), *([UNKNOWN_PRESSURE] if failed else _pressures(pressed))]
     ranked = sorted(found, key=lambda each: (-LEVELS.index(each.level), TOPICS.index(each.topic)))
-    awaited = active and verdict.sound and pressed is None and not failed
+    awaited = active and verdict.is_valid and pressed is None and not failed
     pending = "convergence" if running else "pressure" if awaited else ""
     return Assessment(tuple(ranked), pending, active)
 
 
-def _run(shown: Shown, running: bool) -> Iterator[Finding]:
+def _run(shown: ShownState, running: bool) -> Iterator[Finding]:
     """Yield what is wrong with the run and its shape."""
     verdict = shown.verdict
     if verdict.motion == "diverging":
@@ -128,7 +128,7 @@ def _run(shown: Shown, running: bool) -> Iterator[Finding]:
         yield from _shape(verdict)
 
 
-def _shape(verdict: Verdict) -> Iterator[Finding]:
+def _shape(verdict: Convergence) -> Iterator[Finding]:
     condition, action = verdict.condition, "Diagnose the design."
     if condition is None:
         return
@@ -165,14 +165,14 @@ def _slack(row: CutRow) -> Finding:
     return Finding("band", level, message, "Shorten it, or take it off.", (row.line,))
 
 
-def _pressures(pressed: PressList | None) -> Iterator[Finding]:
+def _pressures(pressed: PressureList | None) -> Iterator[Finding]:
     """Yield lines that press more than the green light allows, the hardest first, and those not known."""
     rows = [row for row in pressed.rows if row.light != GREEN] if pressed is not None else []
     for row in sorted(rows, key=lambda row: -(row.max_kpa or 0.0)):
         yield _pressure(row)
 
 
-def _pressure(row: PressRow) -> Finding:
+def _pressure(row: PressureRow) -> Finding:
     if row.max_kpa is None:
         message = f"{row.title} has an unknown contact pressure."
         return Finding("pressure", CAUTION, message, " ".join(row.notes), (row.line,))
@@ -181,7 +181,7 @@ def _pressure(row: PressRow) -> Finding:
     if row.light == AMBER:
         action = "Try it on: sit and breathe in with it."
         return Finding("pressure", CAUTION, message, action, (row.line,), kpa)
-    unwearable = kpa >= comfort().beyond[-1][0]
+    unwearable = kpa >= pressure_limits().beyond[-1][0]
     action = "Set it longer, wider or softer."
     much = "It cannot be worn: set it much longer, wider or softer."
     return Finding("pressure", BAD, message, much if unwearable else action, (row.line,), kpa)
@@ -189,7 +189,7 @@ def _pressure(row: PressRow) -> Finding:
 
 def _foundations(stages: Stages) -> Iterator[Finding]:
     """Yield what is doubtful about the scan, its landmarks and the control mesh."""
-    for sentence in doubts(stages.body, stages.landmarks):
+    for sentence in collect_warnings(stages.body, stages.landmarks):
         yield Finding("landmarks", CAUTION, sentence)
     yield from _fit(stages)
     for sentence in warnings(stages):

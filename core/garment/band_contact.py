@@ -31,7 +31,7 @@ class Bridge:
         return self.end - self.begin
 
 
-def taut(points: Points, normals: Points, closed: bool) -> tuple[Floats, Flags]:
+def pull_taut(points: Points, normals: Points, closed: bool) -> tuple[Floats, Flags]:
     """Pull a band taut over places of a skin and its outward normals, both (k, 3).
 
     Returns by how much it turns towards the skin at each place [rad], the force on it over the tension, and
@@ -53,7 +53,7 @@ def taut(points: Points, normals: Points, closed: bool) -> tuple[Floats, Flags]:
     return turns, touched
 
 
-def straight(points: Points, normals: Points, touched: Flags, closed: bool) -> tuple[Points, Floats]:
+def bridge_between(points: Points, normals: Points, touched: Flags, closed: bool) -> tuple[Points, Floats]:
     """Return where a band is that goes straight from one ``touched`` (k,) place to the next, and how far off.
 
     Places (k, 3) and distances from the skin (k,) [mm], both along the band and its normals alone.

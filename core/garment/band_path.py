@@ -10,11 +10,11 @@ import numpy as np
 from scipy import sparse
 from scipy.ndimage import gaussian_filter1d
 
-from core.garment.curve_smoothing import USUAL_WIDTH, CentreLine, Surface, centre_line
+from core.garment.curve_smoothing import USUAL_WIDTH, CentreLine, LocalPlanes, centre_line
 from core.garment.tension import LineTension
 from core.geometry.mesh import Flags, Floats, Mesh, Points, unit
 from core.pipeline.build import Stages
-from core.pipeline.line_routes import NO_BACK, Route
+from core.pipeline.line_routes import NO_BACK, LineRoute
 
 _KEPT = 64
 """Bands that are kept as they lie on one body at rest."""
@@ -23,7 +23,7 @@ _LAID: WeakKeyDictionary[Mesh, dict[tuple[bytes, float, bytes], _Laid]] = WeakKe
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class BandPath:
     """The middle of a band on the skin, every few mm, evenly.
 
     ``points`` (k, 3) [mm], ``normals`` (k, 3) of the skin, outward; ``tension`` (k,) [N] of the band;
@@ -42,7 +42,7 @@ class Course:
         following = np.roll(self.points, -1, axis=0) if self.closed else self.points[1:]
         return float(np.linalg.norm(following - self.points[: len(following)], axis=1).mean())
 
-    def smoothed(self, over: float) -> Course:
+    def smoothed(self, over: float) -> BandPath:
         """Return the course without what is shorter than about ``over`` [mm]; the length stays in ``step``.
 
         Beyond an open end it is thought to go on as in a mirror, so that it keeps its bend.
@@ -54,7 +54,7 @@ class Course:
             rows = np.concatenate([_beyond(rows[::-1], more, sigma)[::-1], rows, _beyond(rows, more, sigma)])
         rows = gaussian_filter1d(rows, sigma, axis=0, mode="wrap" if self.closed else "nearest")
         rows = rows[more : len(rows) - more]
-        return Course(rows[:, :3], unit(rows[:, 3:]), self.tension, self.front, self.closed)
+        return BandPath(rows[:, :3], unit(rows[:, 3:]), self.tension, self.front, self.closed)
 
 
 def _beyond(rows: Floats, more: int, sigma: float) -> Floats:
@@ -76,23 +76,28 @@ class _Laid:
     line: CentreLine
     follow: sparse.csr_array
 
-    def course(self, tension: LineTension, shift: Points, normals: Points) -> Course:
+    def course(self, tension: LineTension, shift: Points, normals: Points) -> BandPath:
         """Return it on a body whose vertices went by ``shift`` and have ``normals`` now, both (n, 3)."""
         line, part = self.line, self.line.part
         newtons = np.where(part >= 0, tension.segments[part.clip(0)], tension.mean)
-        return Course(
+        return BandPath(
             line.points + self.follow @ shift, unit(self.follow @ normals), newtons, part >= 0, line.closed
         )
 
 
-def _lay(route: Route, surface: Surface, width: float) -> _Laid:
+def _lay(route: LineRoute, surface: LocalPlanes, width: float) -> _Laid:
     line = centre_line(route.path, surface, route.back, width, drawn=route.drawn)
-    return _Laid(line, surface.follow(line.points))
+    return _Laid(line, surface.displacement_weights(line.points))
 
 
-def course_of(
-    path: Points, tension: LineTension, surface: Surface, moved: Points, width: float, back: Points = NO_BACK
-) -> Course:
+def band_path(
+    path: Points,
+    tension: LineTension,
+    surface: LocalPlanes,
+    moved: Points,
+    width: float,
+    back: Points = NO_BACK,
+) -> BandPath:
     """Return how a band ``width`` [mm] wide along ``path`` and round its ``back`` lies on a reshaped body.
 
     Both have shape (k, 3) [mm] on the body at rest, which is ``surface``; ``moved`` (n, 3) are its vertices
@@ -100,12 +105,12 @@ def course_of(
     """
     mesh = surface.mesh
     shift, normals = moved - mesh.vertices, mesh.moved(moved).vertex_normals
-    return _lay(Route(path, back), surface, width).course(tension, shift, normals)
+    return _lay(LineRoute(path, back), surface, width).course(tension, shift, normals)
 
 
-def courses(
+def band_paths(
     stages: Stages, control_points: Points, tensions: Mapping[str, LineTension]
-) -> Iterator[tuple[str, Course, float]]:
+) -> Iterator[tuple[str, BandPath, float]]:
     """Yield the lines of ``tensions`` on the body as ``control_points``, (n, 3) [mm], shape it.
 
     Each comes as name, course and width [mm].
@@ -116,16 +121,16 @@ def courses(
     shift[moving.vertices] = places - moving.rest
     for line in stages.model.lines:
         if line.name in tensions:
-            width = stages.design.traits_of(line.name).width or USUAL_WIDTH
+            width = stages.design.line_settings(line.name).width or USUAL_WIDTH
             laid = _known(mesh, stages.routes[line.name], width)
             yield line.name, laid.course(tensions[line.name], shift, normals), width
 
 
-def _known(mesh: Mesh, route: Route, width: float) -> _Laid:
+def _known(mesh: Mesh, route: LineRoute, width: float) -> _Laid:
     """Return how a band lies on the body at rest: as it does whatever the body is shaped to."""
     known, key = _LAID.setdefault(mesh, {}), (route.path.tobytes(), width, route.back.tobytes())
     if key not in known:
         while len(known) >= _KEPT:
             known.pop(next(iter(known)), None)
-        known[key] = _lay(route, Surface(mesh), width)
+        known[key] = _lay(route, LocalPlanes(mesh), width)
     return known[key]

@@ -23,14 +23,14 @@ _BETWEEN = 0.25  # how far from the middle between front and back a shoulder rea
 
 
 @dataclass(frozen=True)
-class Whereabouts:
+class BodyLocation:
     """``side`` is one of ``SIDES`` or ``SHOULDERS``; ``height_mm`` is that above the lowest point."""
 
     side: str
     height_mm: float
 
 
-def whereabouts(body: Mesh, middle: float, place: Floats, normal: Floats) -> Whereabouts:
+def body_location(body: Mesh, middle: float, place: Floats, normal: Floats) -> BodyLocation:
     """Return where a place on a body with the skin's ``normal``, both (3,) [mm], is.
 
     Left is where x is larger than ``middle`` [mm].
@@ -44,4 +44,4 @@ def whereabouts(body: Mesh, middle: float, place: Floats, normal: Floats) -> Whe
     else:
         turn = np.arctan2(aside, ahead) / (2.0 * np.pi)
         side = SIDES[round(float(turn) * len(SIDES)) % len(SIDES)]
-    return Whereabouts(side, float(place[2] - z.min()))
+    return BodyLocation(side, float(place[2] - z.min()))

@@ -24,7 +24,7 @@ _PULLS = 12  # how often it is pulled straighter at most
 _TOUCH = 1.5  # a taut band that stands off the skin by less than this lies on it [mm]
 
 
-class Surface:
+class LocalPlanes:
     """Smooth local planes of a body, on which paths are laid; a ``tree`` that is there finds its vertices."""
 
     def __init__(self, mesh: Mesh, tree: cKDTree | None = None) -> None:
@@ -37,7 +37,7 @@ class Surface:
         weight = (1.0 - (distance / distance[:, -1:]) ** 2)[:, :count] ** 2 + 1e-9
         return index[:, :count], weight / weight.sum(axis=1, keepdims=True)
 
-    def lay(self, points: Points) -> tuple[Points, Points]:
+    def project(self, points: Points) -> tuple[Points, Points]:
         """Return ``points`` moved onto the skin and the normals there, both (k, 3)."""
         for _ in range(2):
             index, weight = self.near(points)
@@ -46,7 +46,7 @@ class Surface:
             points = points - np.einsum("kx,kx->k", points - centre, normal)[:, None] * normal
         return points, normal
 
-    def follow(self, points: Points) -> sparse.csr_array:
+    def displacement_weights(self, points: Points) -> sparse.csr_array:
         """Return the matrix that averages vertex displacements at ``points``, shape (k, n)."""
         index, weight = self.near(points)
         start = np.arange(0, index.size + 1, index.shape[1])
@@ -71,7 +71,7 @@ class CentreLine:
 
 
 def centre_line(
-    path: Points, surface: Surface, back: Points = NO_BACK, width: float = 0.0, *, drawn: bool = False
+    path: Points, surface: LocalPlanes, back: Points = NO_BACK, width: float = 0.0, *, drawn: bool = False
 ) -> CentreLine:
     """Return a smooth curve every ``STEP`` along ``path`` and, if it is given, round the ``back`` of it.
 
@@ -90,10 +90,10 @@ def centre_line(
     at = np.linspace(0.0, s[-1], max(2, round(s[-1]) + 1))
     taut = interpolate(at, s, whole)
     if drawn:
-        points, normals = surface.lay(evenly(taut, closed))
+        points, normals = surface.project(evenly(taut, closed))
     else:
         spline = CubicSpline(s, whole, bc_type="periodic" if closed else "not-a-knot")
-        laid, _ = surface.lay(evenly(spline(at), closed))
+        laid, _ = surface.project(evenly(spline(at), closed))
         points, normals = _pulled(laid, surface, closed, _ASIDE * width)
     normals = unit(smooth(normals, 4, closed))
     nearest = np.asarray(cKDTree(taut).query(points)[1])
@@ -105,11 +105,11 @@ def centre_line(
     return CentreLine(points, normals, lift, part, closed)
 
 
-def _pulled(start: Points, surface: Surface, closed: bool, aside: float) -> tuple[Points, Points]:
+def _pulled(start: Points, surface: LocalPlanes, closed: bool, aside: float) -> tuple[Points, Points]:
     """Return a curve on the skin, pulled straight within ``aside`` [mm] of where it was, and normals."""
-    best = surface.lay(evenly(smooth(start, 4, closed), closed, around=closed))
+    best = surface.project(evenly(smooth(start, 4, closed), closed, around=closed))
     for _ in range(_PULLS):
-        pulled = surface.lay(evenly(smooth(best[0], 32, closed), closed, around=closed))
+        pulled = surface.project(evenly(smooth(best[0], 32, closed), closed, around=closed))
         far = np.asarray(cKDTree(pulled[0]).query(start)[0])
         if far.max() > np.hypot(aside, 0.5 * STEP):
             break

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from core.control_mesh.path_snapping import off_by
+from core.control_mesh.path_snapping import max_deviation
 from core.document.elastic import Elastic
 from core.garment.tension import LineTension, line_tensions
 from core.geometry.mesh import Points
@@ -105,7 +105,7 @@ def cut_list(stages: Stages, control_points: Points) -> CutList:
             height_mm=_middle(line.places(control_points)) - bust,
         )
         for line in stages.model.lines
-        if line.name in design.worn()
+        if line.name in design.active_lines()
     )
     unit = newtons_per_unit(stages.model, design.tissue_stiffness)
     return CutList(rows, design.tissue_stiffness, unit, _notes(rows, design.tissue_stiffness))
@@ -119,7 +119,7 @@ def _middle(places: Points) -> float:
 
 def _row(stages: Stages, line: Line, reached: float, tensions: Mapping[str, LineTension]) -> CutRow:
     design = stages.design
-    traits, elastic = design.traits_of(line.name), design.worn_elastics().get(line.name)
+    traits, elastic = design.line_settings(line.name), design.active_elastics().get(line.name)
     row = CutRow(
         line.name,
         traits.title or line.name,
@@ -141,9 +141,9 @@ def _row(stages: Stages, line: Line, reached: float, tensions: Mapping[str, Line
         row = replace(row, front_only=True, notes=(*why, FRONT_ONLY))
     tension = tensions.get(line.name)
     if tension is not None:
-        slack = tension.push > 0.0
+        slack = tension.compression > 0.0
         notes = (*row.notes, *([SLACK] if slack else _uneven(tension)))
-        row = replace(row, tension_n=tension.pull, slack=slack, push_n=tension.push, notes=notes)
+        row = replace(row, tension_n=tension.tension, slack=slack, push_n=tension.compression, notes=notes)
     if elastic is None:
         return _noted(row, UNCHOSEN)
     if design.line_hold == "held":
@@ -162,7 +162,7 @@ def goes_on(stages: Stages, line: Line) -> bool:
     rest, fixed = stages.control.mesh.vertices, line.weights @ stages.control.fixed > 1.0 - 1e-9
     bands = [each.places(rest)[1:-1] for each in stages.model.lines if each.back_length > 0.0]
     ends = line.places(rest)[[0, -1]]
-    sewn = [any(off_by(end[None], band) < SEWN_ON for band in bands) for end in ends]
+    sewn = [any(max_deviation(end[None], band) < SEWN_ON for band in bands) for end in ends]
     return any(held and not sewed for held, sewed in zip(fixed[[0, -1]], sewn, strict=True))
 
 
@@ -177,16 +177,16 @@ def _held(row: CutRow, elastic: Elastic) -> CutRow:
         return _noted(
             row, "It lies on points that do not move, so its tension is not known: let lines spring back."
         )
-    if row.tension_n > elastic.strength:
-        return _refused(row, str(elastic.overpulled(row.tension_n, row.title)))
+    if row.tension_n > elastic.max_force:
+        return _refused(row, str(elastic.overload_error(row.tension_n, row.title)))
     if row.slack:
         return row
     return _stretched(row, elastic, elastic.elongation(row.tension_n), row.tension_n)
 
 
 def _stretched(row: CutRow, elastic: Elastic, elongation: float, tension: float) -> CutRow:
-    if elongation > elastic.reach:
-        return _refused(row, str(elastic.overstretched(elongation, row.title)))
+    if elongation > elastic.max_elongation:
+        return _refused(row, str(elastic.overstretch_error(elongation, row.title)))
     row = replace(
         row,
         elongation=max(elongation, 0.0),
@@ -197,9 +197,9 @@ def _stretched(row: CutRow, elastic: Elastic, elongation: float, tension: float)
     )
     if elongation < 0.0:
         return row if row.slack else _noted(replace(row, slack=True), SLACK)
-    if elongation <= FAR * elastic.reach:
+    if elongation <= FAR * elastic.max_elongation:
         return row
-    end = 100.0 * elastic.reach
+    end = 100.0 * elastic.max_elongation
     note = f"Stretched far, its table ends at {end:g} %: 30 to 50 % are usual, an estimate."
     return _noted(replace(row, far=True), note)
 

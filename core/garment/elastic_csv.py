@@ -77,20 +77,20 @@ def elastic_from_csv(text: str, name: str, width_mm: float | None = None) -> Ela
 
 def _check_units(elastic: Elastic) -> None:
     """Raise LineError where figures are no elastic's in the units that the headings tell."""
-    if elastic.reach < SHORTEST_REACH:
+    if elastic.max_elongation < SHORTEST_REACH:
         raise LineError(
-            f"The table {elastic.name} ends at {100.0 * elastic.reach:g} %: no elastic stretches so little.",
+            f"The table {elastic.name} ends at {100.0 * elastic.max_elongation:g} %: no elastic stretches so little.",
             "If 1 means twice as long, head it 'elongation 1'.",
         )
-    if elastic.strength > MOST_PER_CM * elastic.width_mm / 10.0:
+    if elastic.max_force > MOST_PER_CM * elastic.width_mm / 10.0:
         raise LineError(
-            f"The table {elastic.name} ends at {elastic.strength:g} N: no elastic {elastic.width_mm:g} mm "
+            f"The table {elastic.name} ends at {elastic.max_force:g} N: no elastic {elastic.width_mm:g} mm "
             "wide pulls so hard.",
             "Look at its unit: 'force cN' or 'force gf' may be meant.",
         )
 
 
-def tells_allowance(text: str) -> bool:
+def has_allowance(text: str) -> bool:
     """Return whether a table tells the allowance, or ``ALLOWANCE`` is taken."""
     return "allowance" in _told(text)
 

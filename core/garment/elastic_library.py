@@ -16,7 +16,7 @@ from core.document.storage.project_file import safe_name
 from core.errors import LineError, UserError
 from core.files.atomic_write import private_folder, write_text
 from core.files.regular_file import read_regular
-from core.garment.elastic_csv import ALLOWANCE, LARGEST, TEMPLATE, csv_of, elastic_from_csv, tells_allowance
+from core.garment.elastic_csv import ALLOWANCE, LARGEST, TEMPLATE, csv_of, elastic_from_csv, has_allowance
 
 __all__ = [
     "ALLOWANCE",
@@ -24,12 +24,12 @@ __all__ = [
     "built_in",
     "find_elastic",
     "library",
-    "own_elastics",
-    "own_folder",
     "read_elastic",
     "remove_elastic",
     "save_elastic",
-    "told_allowance",
+    "specified_allowance",
+    "user_elastics",
+    "user_folder",
     "write_elastic",
     "write_template",
 ]
@@ -64,12 +64,12 @@ def kind_of(values: dict[str, Any]) -> tuple[Elastic, ...]:
     )
 
 
-def own_folder() -> Path:
+def user_folder() -> Path:
     """Return where a designer's own elastics lie, as tables."""
     return Path(platformdirs.user_data_path("Busk", appauthor=False)) / "elastics"
 
 
-def own_elastics() -> tuple[list[Elastic], list[LineError]]:
+def user_elastics() -> tuple[list[Elastic], list[LineError]]:
     """Return the designer's own elastics, and why some tables cannot be read."""
     elastics, problems = [], []
     for path in _own_tables():
@@ -82,7 +82,7 @@ def own_elastics() -> tuple[list[Elastic], list[LineError]]:
 
 def library() -> dict[str, Elastic]:
     """Return all elastics by name; one of the designer's own takes the place of one of the same name."""
-    own, _ = own_elastics()
+    own, _ = user_elastics()
     return {elastic.name: elastic for elastic in (*built_in(), *own)}
 
 
@@ -111,9 +111,9 @@ def read_elastic(path: Path, width_mm: float | None = None) -> Elastic:
     return elastic_from_csv(_text_of(path), path.stem, width_mm)
 
 
-def told_allowance(path: Path) -> bool:
+def specified_allowance(path: Path) -> bool:
     """Return whether a table tells the allowance, or ``ALLOWANCE`` is taken. Raises LineError."""
-    return tells_allowance(_text_of(path))
+    return has_allowance(_text_of(path))
 
 
 def _text_of(path: Path) -> str:
@@ -159,7 +159,7 @@ def save_elastic(elastic: Elastic) -> Path:
 
     Raises ProjectError.
     """
-    folder = own_folder()
+    folder = user_folder()
     try:
         private_folder(folder)
     except OSError as problem:
@@ -172,7 +172,7 @@ def save_elastic(elastic: Elastic) -> Path:
 
 
 def _own_tables() -> list[Path]:
-    return sorted(own_folder().glob("*.csv"))
+    return sorted(user_folder().glob("*.csv"))
 
 
 def _holds(path: Path, name: str) -> bool:

@@ -13,7 +13,13 @@ from core.document.design import Design
 from core.document.elastic import Elastic, ElasticError, OverstretchedError
 from core.errors import LineError
 from core.garment.cut_list import CutRow, cut_list
-from core.garment.match_shape import FULL, fitted, reached_points, too_weak, with_ratios
+from core.garment.match_shape import (
+    FULL,
+    match_reached_lengths,
+    reached_points,
+    too_weak_error,
+    with_line_ratios,
+)
 from core.garment.tension import line_tensions
 from core.geometry.mesh import Points
 from core.pipeline.build import Stages, build
@@ -66,7 +72,7 @@ def elastic_option(stages: Stages, names: Sequence[str], elastic: Elastic | None
     points = reached_points(stages)
     lines = {line.name: line for line in stages.model.lines}
     still = [name for name in names if not lines[name].constrains]
-    moving = [name for name in names if name in stages.design.worn() and name not in still]
+    moving = [name for name in names if name in stages.design.active_lines() and name not in still]
     made = _put_on(stages.design, names, elastic, still)
     held = stages.design.line_hold == "held"
     if elastic is not None and (held or mode == KEEP_FIT):
@@ -75,12 +81,12 @@ def elastic_option(stages: Stages, names: Sequence[str], elastic: Elastic | None
             return ElasticOption(elastic, None, refused)
     try:
         if moving and mode == KEEP_FIT and not held:
-            found = fitted(stages, points, dict.fromkeys(moving, elastic))
+            found = match_reached_lengths(stages, points, dict.fromkeys(moving, elastic))
             # Through the door that a locked line keeps shut.
             made = reduce(lambda d, name: d.with_line(name, found.design.ratio(name)), moving, made)
             if found.excess and elastic is not None:
                 name = max(found.excess, key=lambda each: found.excess[each])
-                problem = too_weak(elastic, made.ratio(name), found.excess[name], name)
+                problem = too_weak_error(elastic, made.ratio(name), found.excess[name], name)
                 return ElasticOption(elastic, None, problem, outcome_of(build(made, stages)))
         outcome = outcome_of(build(made, stages))
     except OverstretchedError as problem:
@@ -118,7 +124,7 @@ def strongest(options: Iterable[ElasticOption], names: Collection[str]) -> Elast
 
 
 def _unlike(one: Elastic, other: Elastic) -> float:
-    strength = abs(math.log(one.strength / other.strength))
+    strength = abs(math.log(one.max_force / other.max_force))
     return strength + abs(math.log(one.width_mm / other.width_mm))
 
 
@@ -126,7 +132,7 @@ def _put_on(design: Design, names: Iterable[str], elastic: Elastic | None, still
     """Return the design with lines made of an elastic; with one bands on ``still`` points are active."""
     design = reduce(lambda made, name: made.with_elastic(name, elastic), names, design)
     for name in still:
-        if bool(elastic) != (name in design.worn()):
+        if bool(elastic) != (name in design.active_lines()):
             design = design.with_line(name, 1.0 / (1.0 + FIRST_STRETCH) if elastic else None)
     return design
 
@@ -138,10 +144,10 @@ def _refused(
     tensions = line_tensions(stages, points)
     held = stages.design.line_hold == "held"
     for name in moving:
-        if tensions[name].push:
+        if tensions[name].compression:
             return _slack(stages, name)
-        if held and tensions[name].pull > elastic.strength:
-            return elastic.overpulled(tensions[name].pull, name)
+        if held and tensions[name].tension > elastic.max_force:
+            return elastic.overload_error(tensions[name].tension, name)
     return None
 
 
@@ -155,8 +161,8 @@ def _at_limit(
         except OverstretchedError as problem:
             if problem.line not in names or elastic is None:
                 return None
-            longer = (1.0 + problem.elongation) / (1.0 + FULL * elastic.reach)
-            made = with_ratios(made, {problem.line: made.ratio(problem.line) * longer})
+            longer = (1.0 + problem.elongation) / (1.0 + FULL * elastic.max_elongation)
+            made = with_line_ratios(made, {problem.line: made.ratio(problem.line) * longer})
     return None
 
 
@@ -172,7 +178,11 @@ def _unless_slack(
 def _slack(stages: Stages, name: str) -> ElasticError:
     """Return what to say of a line that is no shorter than the body there, with the length at which it is."""
     line = next(each for each in stages.model.lines if each.name == name)
-    off = reached_points(build(with_ratios(stages.design, {name: 1.0}), stages)) if line.constrains else None
+    off = (
+        reached_points(build(with_line_ratios(stages.design, {name: 1.0}), stages))
+        if line.constrains
+        else None
+    )
     length = line.rest_length if off is None else line.length(off)
     percent = math.floor(100.0 * length / line.rest_length - 0.1)
     return ElasticError(

@@ -15,7 +15,7 @@ from core.geometry.mesh import Floats, Points
 from core.mechanics.constraint_lines import RATIO_LIMITS, Line
 from core.mechanics.force_units import newtons_per_unit
 from core.pipeline.build import Stages, build
-from core.pipeline.exact import NoBalanceError, balance_of
+from core.pipeline.exact import NoEquilibriumError, exact_equilibrium
 
 PRECISION = 1e-5
 """By how much the lengths may differ that are reached before and after, in parts."""
@@ -32,7 +32,7 @@ _LEAST, _MOST = 0.02, 2.0  # how a reached length is thought to follow the natur
 
 
 @dataclass(frozen=True)
-class Fitted:
+class MatchedDesign:
     """A ``design`` whose lines of elastic come as near as they can to the lengths that they shall reach.
 
     ``excess`` are those that stay too long, with by how much [mm].
@@ -44,31 +44,31 @@ class Fitted:
 
 def reached_points(stages: Stages) -> Points:
     """Return the control points of the exact answer, (n, 3) [mm]. Raises LineError if nothing balances."""
-    balance = balance_of(stages)
-    if not balance.found:
-        raise NoBalanceError(stages.design)
+    balance = exact_equilibrium(stages)
+    if not balance.is_converged:
+        raise NoEquilibriumError(stages.design)
     return stages.model.tensegric.expand(balance.state.moved)
 
 
-def as_worn(stages: Stages, control_points: Points, elastics: Mapping[str, Elastic | None]) -> Design:
+def match_lengths(stages: Stages, control_points: Points, elastics: Mapping[str, Elastic | None]) -> Design:
     """Find the unstretched lengths at which lines of ``elastics`` keep their length on the body.
 
     ``control_points`` have the shape (n, 3) [mm]. Raises LineError if an elastic cannot reach a length.
     """
-    found = fitted(stages, control_points, elastics)
+    found = match_reached_lengths(stages, control_points, elastics)
     for name, excess in found.excess.items():
         elastic = elastics[name]
         assert elastic is not None
-        raise too_weak(elastic, found.design.ratio(name), excess, name)
+        raise too_weak_error(elastic, found.design.ratio(name), excess, name)
     return found.design
 
 
-def too_weak(elastic: Elastic, ratio: float, excess: float, line: str) -> ElasticError:
+def too_weak_error(elastic: Elastic, ratio: float, excess: float, line: str) -> ElasticError:
     """Return what to say of an elastic with which a line stays too long by ``excess`` [mm].
 
     ``ratio`` [1] is the shortest to which it can be cut.
     """
-    limit = f"at its limit, {100.0 * elastic.reach:g} % stretch"
+    limit = f"at its limit, {100.0 * elastic.max_elongation:g} % stretch"
     if ratio <= RATIO_LIMITS[0] + PRECISION:
         limit = f"at the shortest cut, {100.0 * RATIO_LIMITS[0]:g} %"
     return ElasticError(
@@ -79,7 +79,9 @@ def too_weak(elastic: Elastic, ratio: float, excess: float, line: str) -> Elasti
     )
 
 
-def fitted(stages: Stages, control_points: Points, elastics: Mapping[str, Elastic | None]) -> Fitted:
+def match_reached_lengths(
+    stages: Stages, control_points: Points, elastics: Mapping[str, Elastic | None]
+) -> MatchedDesign:
     """Return the design with worn lines made of ``elastics`` and cut so that they reach what they reach now.
 
     ``control_points`` (n, 3) [mm] are those of the design as it stands; None is no elastic, a line with the
@@ -93,7 +95,7 @@ def fitted(stages: Stages, control_points: Points, elastics: Mapping[str, Elasti
         made = made.with_elastic(name, elastic)
     moving = {name: lines[name] for name in elastics if lines[name].constrains}
     if design.line_hold == "held" or not moving:
-        return Fitted(made, {})
+        return MatchedDesign(made, {})
     wanted = np.log([line.length(control_points) / line.rest_length for line in moving.values()])
     tensions = line_tensions(stages, control_points)
     stretch = [_stretch(stages, line, elastics[name], tensions[name].mean) for name, line in moving.items()]
@@ -108,9 +110,9 @@ def fitted(stages: Stages, control_points: Points, elastics: Mapping[str, Elasti
             f"No length of elastic was found with which {', '.join(moving)} would reach the same.",
             "Let the lines be longer, or take stronger or wider elastics.",
         )
-    pairs = {name: _shared(found, design.linked(name), moving) for name in moving}
+    pairs = {name: _shared(found, design.linked_pair(name), moving) for name in moving}
     missed = {name: float(each) for name, each, far in zip(moving, excess, short, strict=True) if far}
-    return Fitted(with_ratios(found, pairs), missed)
+    return MatchedDesign(with_line_ratios(found, pairs), missed)
 
 
 @dataclass
@@ -145,12 +147,12 @@ class _Search:
 
     def at(self, log_ratio: Floats) -> Design:
         """Return the design at these ratios."""
-        return with_ratios(self.made, dict(zip(self.lines, np.exp(log_ratio).tolist(), strict=True)))
+        return with_line_ratios(self.made, dict(zip(self.lines, np.exp(log_ratio).tolist(), strict=True)))
 
     def _most(self) -> Floats:
         """Return how far the lines may be stretched, in logarithms."""
-        made = self.made.worn_elastics()
-        return np.log1p([FULL * made[name].reach if name in made else np.inf for name in self.lines])
+        made = self.made.active_elastics()
+        return np.log1p([FULL * made[name].max_elongation if name in made else np.inf for name in self.lines])
 
     def _tried(self, log_ratio: Floats) -> tuple[Floats, Floats]:
         """Return the ratios, longer where an elastic would be overstretched, and what is reached."""
@@ -181,15 +183,15 @@ def _shared(made: Design, pair: tuple[str, ...], moving: Collection[str]) -> flo
 def _stretch(stages: Stages, line: Line, elastic: Elastic | None, tension: float) -> float:
     """Return how far a line is stretched [1] by about the tension [N] that it has now."""
     if elastic is not None:
-        return min(elastic.elongation(tension), _ROOM * elastic.reach)
+        return min(elastic.elongation(tension), _ROOM * elastic.max_elongation)
     design, model = stages.design, stages.model
-    own = design.traits_of(line.name).stiffness
+    own = design.line_settings(line.name).stiffness
     per_mm = newtons_per_unit(model, design.tissue_stiffness) * model.tensegric.mean_stiffness
     ea = per_mm * (design.line_stiffness if own is None else own) * line.spacing
     return max(tension, 0.0) / ea
 
 
-def with_ratios(design: Design, ratios: Mapping[str, float]) -> Design:
+def with_line_ratios(design: Design, ratios: Mapping[str, float]) -> Design:
     """Return the design with worn lines at ``ratios`` [1], locked ones too."""
     lines = tuple(
         replace(line, ratio=ratios[line.name]) if line.name in ratios else line for line in design.lines

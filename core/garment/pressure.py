@@ -13,11 +13,11 @@ from types import MappingProxyType
 
 import numpy as np
 
-from core.garment.band_contact import STANDS_OFF, Bridge, bridges, straight, taut
-from core.garment.band_path import Course, courses
+from core.garment.band_contact import STANDS_OFF, Bridge, bridge_between, bridges, pull_taut
+from core.garment.band_path import BandPath, band_paths
 from core.garment.curve_smoothing import USUAL_WIDTH
 from core.garment.cut_list import is_strap
-from core.garment.pressure_limits import comfort
+from core.garment.pressure_limits import pressure_limits
 from core.garment.tension import LineTension, line_tensions
 from core.geometry.mesh import Flags, Floats, Points
 from core.pipeline.build import Stages
@@ -37,7 +37,7 @@ LEFT_OUT = (
 )
 """What the figures leave out."""
 
-LIES_SLACK = "It is slack: it does not press."
+SLACK_NOTE = "It is slack: it does not press."
 """What is said of a line without tension."""
 
 NOT_FOR_STRAPS = (
@@ -52,8 +52,8 @@ class LinePressure:
     """What a band presses with at places along it, every ``step`` [mm], shape (k,).
 
     ``places`` (k, 3) [mm] of the taut band, the ``skin`` below it and its ``normals``; ``tension`` [N] (a
-    slack band has none), ``turns`` [rad] towards the skin, how far the band is ``off`` it [mm], ``front``
-    where it is the front part; ``width`` [mm]. A ``closed`` one ends beside its beginning. ``told`` is what
+    slack band has none), ``bends`` [rad] towards the skin, how far the band is ``gap`` it [mm], ``front``
+    where it is the front part; ``width`` [mm]. A ``closed`` one ends beside its beginning. ``input_notes`` is what
     was put in.
     """
 
@@ -61,13 +61,13 @@ class LinePressure:
     skin: Points
     normals: Points
     tension: Floats
-    turns: Floats
-    off: Floats
+    bends: Floats
+    gap: Floats
     front: Flags
     width: float
     step: float
     closed: bool
-    told: tuple[str, ...] = ()
+    input_notes: tuple[str, ...] = ()
 
     @cached_property
     def along(self) -> Floats:
@@ -78,7 +78,7 @@ class LinePressure:
     def radius(self) -> Floats:
         """The radius that the band bends with towards the skin [mm]; infinite where it does not press."""
         with np.errstate(divide="ignore"):
-            return np.asarray(self.step / self.turns)
+            return np.asarray(self.step / self.bends)
 
     @cached_property
     def kpa(self) -> Floats:
@@ -86,17 +86,17 @@ class LinePressure:
         return np.asarray(1000.0 * self.tension / (self.width * self.radius))
 
     @cached_property
-    def lies(self) -> Floats:
+    def contact_share(self) -> Floats:
         """How much of the band lies on the skin at each place, 0 to 1.
 
         It fades while the band comes off, so that a hollow that hardly shows does not decide about the mean.
         """
-        return np.asarray(np.clip(2.0 - self.off / STANDS_OFF, 0.0, 1.0))
+        return np.asarray(np.clip(2.0 - self.gap / STANDS_OFF, 0.0, 1.0))
 
     @cached_property
     def bridges(self) -> tuple[Bridge, ...]:
         """Where it goes straight over a hollow so that it shows; a slack band does not."""
-        return bridges(self.off, self.step, self.closed) if self.tension.any() else ()
+        return bridges(self.gap, self.step, self.closed) if self.tension.any() else ()
 
     @cached_property
     def bridged(self) -> Flags:
@@ -115,7 +115,7 @@ class LinePressure:
     @property
     def mean(self) -> float:
         """The mean pressure where the band lies on the skin [kPa]."""
-        return float(self.kpa.sum() / max(self.lies.sum(), 1.0))
+        return float(self.kpa.sum() / max(self.contact_share.sum(), 1.0))
 
     @property
     def peak(self) -> int:
@@ -130,25 +130,25 @@ class LinePressure:
     @property
     def force(self) -> float:
         """All that the band presses with, whichever way [N]."""
-        return float((self.tension * self.turns).sum())
+        return float((self.tension * self.bends).sum())
 
     @property
     def resultant(self) -> Floats:
         """The sum of all forces on the skin along its normals, shape (3,) [N]; nothing for a level band."""
-        inward = -self.tension * self.turns
+        inward = -self.tension * self.bends
         return np.asarray(inward @ self.normals, dtype=np.float64)
 
     @property
-    def light(self) -> str:
+    def rating(self) -> str:
         """ "green", "amber" or "red" for the largest pressure; see ``core.garment.pressure_limits``."""
-        return comfort().light(self.largest)
+        return pressure_limits().rating(self.largest)
 
     @property
     def notes(self) -> tuple[str, ...]:
         """What is to be said of this band: what was taken for granted, and where it does not press."""
-        said = list(self.told)
+        said = list(self.input_notes)
         if not self.tension.any():
-            said.append(LIES_SLACK)
+            said.append(SLACK_NOTE)
         elif not self.tension.all():
             said.append("Part of it is slack: it does not press there.")
         if self.bridges:
@@ -165,14 +165,14 @@ def mmhg(kpa: float) -> float:
     return kpa / MMHG
 
 
-def band_pressure(course: Course, width: float) -> LinePressure:
+def band_pressure(course: BandPath, width: float) -> LinePressure:
     """Return what a band ``width`` [mm] wide on a course presses with.
 
     The radius is taken over about its width. A hollow is bridged: there it does not press.
     """
     smooth = course.smoothed(max(width, LEAST_OVER))
-    turns, touched = taut(smooth.points, smooth.normals, course.closed)
-    places, off = straight(course.points, smooth.normals, touched, course.closed)
+    turns, touched = pull_taut(smooth.points, smooth.normals, course.closed)
+    places, off = bridge_between(course.points, smooth.normals, touched, course.closed)
     tension = np.maximum(course.tension, 0.0)  # a band cannot push
     front, step, closed = course.front, course.step, course.closed
     return LinePressure(
@@ -188,8 +188,8 @@ def pressures(stages: Stages, control_points: Points) -> Mapping[str, LinePressu
     tensions = line_tensions(stages, control_points)
     return MappingProxyType(
         {
-            name: replace(band_pressure(course, width), told=_told(stages, name, tensions[name]))
-            for name, course, width in courses(stages, control_points, tensions)
+            name: replace(band_pressure(course, width), input_notes=_told(stages, name, tensions[name]))
+            for name, course, width in band_paths(stages, control_points, tensions)
         }
     )
 
@@ -199,7 +199,7 @@ def _told(stages: Stages, name: str, tension: LineTension) -> tuple[str, ...]:
     said = []
     if tension.estimate:
         said.append("Its tension follows from the stiffness of tissue alone, an estimate.")
-    if not stages.design.traits_of(name).width:
+    if not stages.design.line_settings(name).width:
         said.append(f"It is taken to be {USUAL_WIDTH:g} mm wide: no width was told.")
     if any(line.name == name and is_strap(stages, line) for line in stages.model.lines):
         said.append(NOT_FOR_STRAPS)

@@ -10,13 +10,13 @@ from importlib import resources
 from types import MappingProxyType
 from typing import Any
 
-from core.measurements.size_table import Source, Words
+from core.measurements.size_table import LocalizedText, Source
 
 GREEN, AMBER, RED = "green", "amber", "red"
 
 
 @dataclass(frozen=True)
-class Comfort:
+class PressureLimits:
     """From which pressure [kPa] the light is amber and red, what each light says, and how sure that is.
 
     ``beyond`` are pressures [kPa] above which more has to be said than the red light does, the lowest first.
@@ -25,23 +25,23 @@ class Comfort:
 
     amber_kpa: float
     red_kpa: float
-    lights: Mapping[str, Words]
-    beyond: tuple[tuple[float, Words], ...]
+    lights: Mapping[str, LocalizedText]
+    beyond: tuple[tuple[float, LocalizedText], ...]
     sources: tuple[Source, ...]
-    doubts: tuple[Words, ...]
+    doubts: tuple[LocalizedText, ...]
 
-    def light(self, kpa: float) -> str:
+    def rating(self, kpa: float) -> str:
         """Return "green", "amber" or "red" for a pressure [kPa]."""
         return RED if kpa >= self.red_kpa else AMBER if kpa >= self.amber_kpa else GREEN
 
-    def says(self, kpa: float) -> Words:
+    def description(self, kpa: float) -> LocalizedText:
         """Return what is said of a pressure [kPa]."""
         above = [words for limit, words in self.beyond if kpa >= limit]
-        return above[-1] if above else self.lights[self.light(kpa)]
+        return above[-1] if above else self.lights[self.rating(kpa)]
 
 
 @cache
-def comfort() -> Comfort:
+def pressure_limits() -> PressureLimits:
     """Return the limits that come with Busk."""
     values = json.loads((resources.files("resources") / "pressure.json").read_text(encoding="utf-8"))
     lights = {name: _words(values["lights"][name]) for name in (GREEN, AMBER, RED)}
@@ -49,8 +49,8 @@ def comfort() -> Comfort:
     sources = tuple(Source(each["name"], _words(each), each.get("name_ja", "")) for each in values["sources"])
     doubts = tuple(_words(each) for each in values["doubts"])
     amber, red = values["amber_kpa"], values["red_kpa"]
-    return Comfort(amber, red, MappingProxyType(lights), beyond, sources, doubts)
+    return PressureLimits(amber, red, MappingProxyType(lights), beyond, sources, doubts)
 
 
-def _words(values: Mapping[str, Any]) -> Words:
-    return Words(values["en"], values["ja"])
+def _words(values: Mapping[str, Any]) -> LocalizedText:
+    return LocalizedText(values["en"], values["ja"])

@@ -7,9 +7,9 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from core.deformation.tffd import deform
-from core.garment.body_location import whereabouts
+from core.garment.body_location import body_location
 from core.garment.pressure import LEFT_OUT, LinePressure, mmhg, pressures
-from core.garment.pressure_limits import comfort
+from core.garment.pressure_limits import pressure_limits
 from core.garment.tension import LineTension, line_tensions
 from core.geometry.mesh import Mesh, Points
 from core.mechanics.constraint_lines import Line
@@ -17,7 +17,7 @@ from core.pipeline.build import Stages
 
 
 @dataclass(frozen=True)
-class PressRow:
+class PressureRow:
     """What one worn line presses with, or why that is not known: then its figures are None.
 
     ``where`` is the place that is pressed most, see ``body_location``, ``height_mm`` that above the
@@ -44,10 +44,10 @@ class PressRow:
 
 
 @dataclass(frozen=True, eq=False)
-class PressList:
+class PressureList:
     """All worn lines in the order of the model; ``worn`` holds place by place what is known, by line."""
 
-    rows: tuple[PressRow, ...]
+    rows: tuple[PressureRow, ...]
     worn: Mapping[str, LinePressure]
 
     @property
@@ -62,14 +62,14 @@ class PressList:
         return all(row.force_n is not None for row in self.rows)
 
     @property
-    def hardest(self) -> PressRow | None:
+    def highest(self) -> PressureRow | None:
         """The line with the largest pressure, if any presses."""
         pressing = [row for row in self.rows if row.max_kpa]
         return max(pressing, key=lambda row: row.max_kpa or 0.0, default=None)
 
     def as_data(self) -> dict[str, Any]:
         """Return the list ready for JSON, with limits, their sources and what is left out."""
-        limits = comfort()
+        limits = pressure_limits()
         return {
             "rows": [asdict(row) for row in self.rows],
             "force_n": self.force_n,
@@ -85,7 +85,7 @@ class PressList:
         }
 
 
-def press_list(stages: Stages, control_points: Points) -> PressList:
+def pressure_list(stages: Stages, control_points: Points) -> PressureList:
     """Compute the contact pressures of the active lines at ``control_points``, shape (n, 3) [mm].
 
     Raises LineError for control points that are not a valid shape.
@@ -95,26 +95,26 @@ def press_list(stages: Stages, control_points: Points) -> PressList:
     rows = [
         _row(stages, body, line, worn.get(line.name), tensions.get(line.name))
         for line in stages.model.lines
-        if line.name in stages.design.worn()
+        if line.name in stages.design.active_lines()
     ]
-    return PressList(tuple(rows), worn)
+    return PressureList(tuple(rows), worn)
 
 
 def _row(
     stages: Stages, body: Mesh, line: Line, worn: LinePressure | None, tension: LineTension | None
-) -> PressRow:
+) -> PressureRow:
     design = stages.design
-    elastic = design.worn_elastics().get(line.name)
-    named = line.name, design.traits_of(line.name).title or line.name, elastic.name if elastic else ""
+    elastic = design.active_elastics().get(line.name)
+    named = line.name, design.line_settings(line.name).title or line.name, elastic.name if elastic else ""
     if worn is None or tension is None:
-        return PressRow(*named, notes=(_unknown(design.line_hold == "held"),))
+        return PressureRow(*named, notes=(_unknown(design.line_hold == "held"),))
     place = worn.places[worn.peak]
-    at = whereabouts(body, stages.moving.middle, place, worn.normals[worn.peak])
+    at = body_location(body, stages.moving.middle, place, worn.normals[worn.peak])
     pressing = worn.largest > 0.0
-    return PressRow(
+    return PressureRow(
         *named,
         width_mm=worn.width,
-        tension_n=tension.pull,
+        tension_n=tension.tension,
         mean_kpa=worn.mean,
         mean_mmhg=mmhg(worn.mean),
         max_kpa=worn.largest,
@@ -122,7 +122,7 @@ def _row(
         where=at.side if pressing else "",
         height_mm=at.height_mm if pressing else None,
         place=tuple(map(float, place)) if pressing else (),
-        light=worn.light,
+        light=worn.rating,
         force_n=worn.force,
         bridged_mm=worn.bridged_length,
         notes=worn.notes,

@@ -10,9 +10,9 @@ import numpy as np
 from core.errors import LineError
 from core.geometry.mesh import Floats, Points
 from core.mechanics.force_units import newtons_per_unit
-from core.mechanics.newton_sliding import Skin
+from core.mechanics.newton_sliding import SlidingSurface
 from core.mechanics.potential import Potential
-from core.pipeline.build import Stages, targets_of
+from core.pipeline.build import Stages, line_targets
 
 SLACK = 0.05
 """Up to this push of the model a line counts as without tension [N]: less is not shown."""
@@ -23,7 +23,7 @@ class LineTension:
     """The pull along a worn line: ``segments`` (k - 1,) [N] from its right end to the left.
 
     ``mean`` [N] is that over its natural length, so that of a spring it belongs to the line's whole stretch;
-    where the line is too long for the body it is negative in the model: see ``pull`` for what a band does.
+    where the line is too long for the body it is negative in the model: see ``tension`` for what a band does.
     ``estimate`` is always True where the newtons come from the assumed stiffness of tissue alone and not from
     an elastic.
     """
@@ -33,17 +33,17 @@ class LineTension:
     estimate: bool
 
     @property
-    def pull(self) -> float:
+    def tension(self) -> float:
         """The mean tension of a band in place of the line [N]: none where it would have to push."""
         return max(self.mean, 0.0)
 
     @property
-    def push(self) -> float:
+    def compression(self) -> float:
         """How far the model pushes where a band would be slack [N]; 0 for a line that pulls."""
         return -self.mean if self.mean < -SLACK else 0.0
 
 
-def ran_away() -> LineError:
+def divergence_error() -> LineError:
     """Return what to say where the points are those of no body any more."""
     return LineError(
         "The calculation ran away: there is no body to measure or to sew for.",
@@ -58,9 +58,9 @@ def line_tensions(stages: Stages, control_points: Points) -> Mapping[str, LineTe
     length is held. The tension of held lines is read from the balance of the points around them. Raises
     LineError for points that are no shape: not finite, or with a line of no length.
     """
-    worn = [line for line in stages.model.lines if line.name in stages.design.worn()]
+    worn = [line for line in stages.model.lines if line.name in stages.design.active_lines()]
     if not np.isfinite(control_points).all() or not all(line.length(control_points) for line in worn):
-        raise ran_away()
+        raise divergence_error()
     held = stages.design.line_hold == "held"
     pulling = _held(stages, control_points) if held else _springs(stages, control_points)
     return pulling if held else {**pulling, **_on_ribs(stages)}
@@ -69,11 +69,11 @@ def line_tensions(stages: Stages, control_points: Points) -> Mapping[str, LineTe
 def _springs(stages: Stages, points: Points) -> dict[str, LineTension]:
     model = stages.model
     unit = newtons_per_unit(model, stages.design.tissue_stiffness)
-    natural = model.natural_lengths(targets_of(stages.design, stages).ratios)
+    natural = model.natural_lengths(line_targets(stages.design, stages).ratios)
     force = unit * model.segments.stiffness * (model.segments.lengths(points) - natural)
-    made = stages.design.worn_elastics()
+    made = stages.design.active_elastics()
     tensions = {}
-    for index in model.pulling:
+    for index in model.acting_lines:
         here, name = model.owner == index, model.lines[index].name
         mean = float(np.average(force[here], weights=(natural + model.beyond)[here]))
         tensions[name] = LineTension(force[here], mean, name not in made)
@@ -84,7 +84,7 @@ def _on_ribs(stages: Stages) -> dict[str, LineTension]:
     """Return the tensions of lines made of elastic that cannot move: their length is that at rest."""
     tensions = {}
     lines = {line.name: line for line in stages.model.lines}
-    for name, elastic in stages.design.worn_elastics().items():
+    for name, elastic in stages.design.active_elastics().items():
         if not lines[name].constrains:
             force = elastic.force(1.0 / stages.design.ratio(name) - 1.0)
             tensions[name] = LineTension(np.full(len(lines[name].rest_lengths), force), force, estimate=False)
@@ -94,16 +94,16 @@ def _on_ribs(stages: Stages) -> dict[str, LineTension]:
 def _held(stages: Stages, points: Points) -> dict[str, LineTension]:
     """Return the tensions of held lines: what, with the pressures, balances the free points best."""
     model, design = stages.model, stages.design
-    potential = Potential(model, targets_of(design, stages).ratios)
+    potential = Potential(model, line_targets(design, stages).ratios)
     place = potential.at(points[model.tensegric.free] - model.tensegric.rest[model.tensegric.free])
     forces, slopes = place.gradient, place.slopes
     if design.line_contact == "sliding" and len(model.owner):
-        forces, slopes = Skin(model).projected(place)
+        forces, slopes = SlidingSurface(model).projected(place)
     # First the pressures, which come out as nothing where the volume is not held.
     multipliers = np.linalg.lstsq(slopes.T, forces, rcond=1e-12)[0]
     unit = newtons_per_unit(model, design.tissue_stiffness)
     tensions = {}
-    for index, multiplier in zip(model.pulling, multipliers[len(potential.sides) :], strict=True):
+    for index, multiplier in zip(model.acting_lines, multipliers[len(potential.sides) :], strict=True):
         line = model.lines[index]
         force = -unit * float(multiplier)
         tensions[line.name] = LineTension(np.full(len(line.rest_lengths), force), force, estimate=True)

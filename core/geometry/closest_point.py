@@ -27,7 +27,7 @@ _AT_ONCE = 50_000
 Table = tuple[Floats, Floats, Floats]
 
 
-def usable(mesh: Mesh) -> Flags:
+def is_usable(mesh: Mesh) -> Flags:
     """Tell which triangles span a plane, shape (m,)."""
     sides = mesh.vertices[np.roll(mesh.faces, -1, axis=1)] - mesh.vertices[mesh.faces]
     return np.asarray(mesh.face_areas > _FLAT * np.einsum("ijk,ijk->ij", sides, sides).max(axis=1))
@@ -52,7 +52,7 @@ def neighbourhoods(
     the distance of the point to the nearest triangle; or, if ``reach`` (m,) [mm] is given, each whose
     centroid is nearer than that. Points that none can matter to are in no group.
     """
-    good = np.flatnonzero(usable(mesh))
+    good = np.flatnonzero(is_usable(mesh))
     if not len(good) or not len(points):
         return
     centres = centroids(mesh)[good]
@@ -124,7 +124,7 @@ def nearest_faces(
     return near[best], places[best]
 
 
-def shares(corners: Points, places: Points) -> Floats:
+def barycentric(corners: Points, places: Points) -> Floats:
     """Return the barycentric coordinates of places (k, 3) on triangles (k, 3, 3) [mm], shape (k, 3) [1]."""
     a, b, way = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], places - corners[:, 0]
     aa, bb, ab = (np.einsum("kj,kj->k", p, q) for p, q in ((a, a), (b, b), (a, b)))
@@ -157,7 +157,7 @@ class Frames:
         along = sides / np.where(lengths > 0.0, lengths, 1.0)[:, :, None]
         across = np.cross(mesh.face_normals[:, None], along)
         frames = np.stack([sides[:, 0], -sides[:, 2], mesh.face_normals], axis=2)
-        frames[~usable(mesh)] = np.eye(3)
+        frames[~is_usable(mesh)] = np.eye(3)
         return cls(corners, np.linalg.inv(frames), along, across, lengths)
 
     def coordinates(self, points: Points, triangles: Indices) -> Table:

@@ -11,24 +11,24 @@ import potpourri3d
 from scipy.spatial import cKDTree
 
 from core.errors import LineError
-from core.geometry.closest_point import nearest_faces, shares
+from core.geometry.closest_point import barycentric, nearest_faces
 from core.geometry.mesh import Faces, Flags, Mesh, Points, half_edges
 from core.geometry.plane_sections import arc_length
 
 
-def no_way() -> LineError:
+def no_path_error() -> LineError:
     """Return what to say where two places do not hang together."""
     return LineError("There is no way over the skin to that place.", "Click on the same part of the body.")
 
 
-class SkinWays:
+class SurfacePaths:
     """Ways over one body; it takes a third of a second to prepare and some milliseconds for each.
 
     Raises LineError if the body's surface branches: then there is no way over it.
     """
 
     def __init__(self, mesh: Mesh) -> None:
-        mesh = unpinched(mesh)
+        mesh = split_pinched_vertices(mesh)
         self._tree = cKDTree(mesh.vertices)
         try:
             self._solver = potpourri3d.EdgeFlipGeodesicSolver(mesh.vertices, mesh.faces.astype(np.int64))
@@ -37,7 +37,7 @@ class SkinWays:
                 "Lines cannot be drawn on the skin of this scan.", "Lead one through control points."
             ) from problem
 
-    def way(self, start: Points, end: Points) -> Points:
+    def path(self, start: Points, end: Points) -> Points:
         """Return the way between two places of the skin, each (3,) [mm], shape (k, 3); both are its ends.
 
         Raises LineError if they lie on parts of the body that do not hang together.
@@ -48,12 +48,12 @@ class SkinWays:
         try:
             way = np.asarray(self._solver.find_geodesic_path(first, last), dtype=np.float64)
         except (RuntimeError, ValueError) as problem:
-            raise no_way() from problem
+            raise no_path_error() from problem
         # The places themselves stand for the vertices beside them, or the way would go there and back.
         return np.concatenate([[start], way[1:-1], [end]])
 
 
-def unpinched(mesh: Mesh) -> Mesh:
+def split_pinched_vertices(mesh: Mesh) -> Mesh:
     """Return ``mesh`` with each vertex at which holes meet doubled: one for each piece of skin there.
 
     The library walks round each vertex, and refuses a skin where it cannot.
@@ -91,7 +91,7 @@ INWARD = 0.02
 """So far from its border a place is put into a triangle, in parts of it [1]: no triangle becomes a thread."""
 
 
-def shortest_way(mesh: Mesh, start: Points, end: Points) -> Points:
+def shortest_path(mesh: Mesh, start: Points, end: Points) -> Points:
     """Return the shortest way over the skin between two places on it, each (3,) [mm], shape (k, 3) [mm].
 
     Only the skin near both is looked at: all places of a way of some length lie within the ellipsoid about
@@ -117,18 +117,18 @@ def shortest_way(mesh: Mesh, start: Points, end: Points) -> Points:
 def _way_within(mesh: Mesh, near: Flags, start: Points, end: Points) -> Points:
     rows, faces = np.unique(mesh.faces[near[mesh.faces].all(axis=1)], return_inverse=True)
     if not len(rows):
-        raise no_way()
+        raise no_path_error()
     piece = Mesh(mesh.vertices[rows], faces.reshape(-1, 3))
     for place in (start, end):
         piece = _with_vertex(piece, place)
-    return SkinWays(piece).way(start, end)
+    return SurfacePaths(piece).path(start, end)
 
 
 def _with_vertex(mesh: Mesh, place: Points) -> Mesh:
     """Return ``mesh`` with a vertex at a ``place`` of it, shape (3,) [mm], or hardly beside."""
     face, foot = nearest_faces(mesh, place[None])
     corners = mesh.faces[face[0]]
-    part = np.maximum(shares(mesh.vertices[corners][None], foot)[0], INWARD)
+    part = np.maximum(barycentric(mesh.vertices[corners][None], foot)[0], INWARD)
     vertex = len(mesh.vertices)
     parts = [[a, b, vertex] for a, b in zip(corners, np.roll(corners, -1), strict=True)]
     faces = np.concatenate([np.delete(mesh.faces, face[0], axis=0), parts])

@@ -95,7 +95,7 @@ def _cut_levels(mesh: Mesh, z: Floats) -> tuple[Points, Indices, Indices]:
     first = over.min(axis=0)
     count = over.max(axis=0) - first
     if count.sum() > MOST_SEGMENTS:
-        raise through_the_body()
+        raise not_a_surface_error()
     face = np.repeat(np.arange(len(mesh.faces)), count)
     level = np.arange(len(face)) - np.repeat(np.cumsum(count) - count - first, count)
     above = over[:, face] > level
@@ -113,7 +113,7 @@ def _cut_levels(mesh: Mesh, z: Floats) -> tuple[Points, Indices, Indices]:
     return np.stack(ends, axis=1), np.stack(ids, axis=1), level
 
 
-def through_the_body() -> LandmarkError:
+def not_a_surface_error() -> LandmarkError:
     """Return the refusal of a skin most of which is none."""
     return LandmarkError(
         "The triangles of this scan run right through the body.", "Export the skin of the body alone."
@@ -203,7 +203,7 @@ def _joined(segments: Points, paths: list[list[int]]) -> list[int]:
     return whole
 
 
-def reach(segments: Points, level: Indices, centre: Points, bins: int = BINS) -> Floats:
+def radii(segments: Points, level: Indices, centre: Points, bins: int = BINS) -> Floats:
     """Return how far outlines reach from a centre in each direction, shape (k, bins) [mm]; NaN where open.
 
     ``segments``, shape (s, 2, 3), lie on levels ``level``, shape (s,), round ``centre``, shape (k, 2) [mm].
@@ -230,7 +230,7 @@ def reach(segments: Points, level: Indices, centre: Points, bins: int = BINS) ->
     return np.where(np.isfinite(result), result, np.nan)
 
 
-def places(radius: Floats, bins: Indices, centre: Points, z: float) -> Points:
+def points_at(radius: Floats, bins: Indices, centre: Points, z: float) -> Points:
     """Return the points at ``radius``, shape (b,) [mm], in directions ``bins`` from a centre, (b, 3) [mm]."""
     bearing = BEARINGS[bins]
     x, y = centre[0] + radius * np.sin(bearing), centre[1] - radius * np.cos(bearing)

@@ -21,7 +21,7 @@ Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
 
 
-FARTHEST = 1e9
+MAX_COORDINATE = 1e9
 """A coordinate beyond this [file units, mm] is a mistake: squares and cubes of it would not stay finite."""
 
 
@@ -107,7 +107,7 @@ def area_vectors(vertices: Points, faces: Faces) -> Points:
     return np.asarray(0.5 * np.cross(b - a, c - a))
 
 
-def strewn(vertices: Points, faces: Faces, areas: Floats, count: int) -> tuple[Points, Indices]:
+def sample_surface(vertices: Points, faces: Faces, areas: Floats, count: int) -> tuple[Points, Indices]:
     """Return places strewn evenly over faces of known ``areas``, shape (count, 3), and the face of each.
 
     The same each time, and as even whatever the order and the size of the faces. Source: ours.

@@ -44,7 +44,7 @@ def mirror_plane(body: Mesh, still: Flags, start: float) -> float:
     return middle
 
 
-class Sides:
+class SideComparison:
     """Lays one side of a body over the other at x = ``middle`` [mm], again and again while it moves.
 
     ``rows`` are the vertices whose answer changes when those of ``moving`` (k,) move. ``partner`` (n,) is the
@@ -58,7 +58,7 @@ class Sides:
         moves[moving] = True
         self.rows = np.flatnonzero(moves | moves[self.partner])
 
-    def differ(self, places: Points, normals: Points, rows: Indices | None = None) -> Floats:
+    def protrusion_difference(self, places: Points, normals: Points, rows: Indices | None = None) -> Floats:
         """Return how far the skin at ``rows`` (all if None) stands out beyond the other side, mirrored [mm].
 
         ``places`` [mm] and ``normals`` [1] are those of all vertices, (n, 3); NaN without a counterpart.

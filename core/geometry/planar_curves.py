@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.geometry.mesh import Floats, Indices, Mesh, Points, unit
-from core.geometry.plane_sections import cut, ordered
+from core.geometry.plane_sections import cut, ordered_rows
 
 AXES = ("x", "y", "z")
 """What a plane stands across: the body from side to side, from front to back, or upright."""
@@ -82,9 +82,9 @@ class Slicer:
             Mesh(places[self._vertices], self._faces), self.plane.normal * self.plane.at, self.plane.normal
         )
         edges = section.edge_ids.ravel()
-        return tuple(self._curve(section.points[rows], edges[rows]) for rows in ordered(section))
+        return tuple(self._curve(section.points[rows], edges[rows]) for rows in ordered_rows(section))
 
-    def along(self, places: Points, values: Floats) -> list[Floats]:
+    def interpolate(self, places: Points, values: Floats) -> list[Floats]:
         """Return ``values`` (n,) of the vertices at the places of each of the ``curves``, each (k,)."""
         moved, known = places[self._vertices], values[self._vertices]
         section = cut(Mesh(moved, self._faces), self.plane.normal * self.plane.at, self.plane.normal)
@@ -93,7 +93,7 @@ class Slicer:
         steep = np.where(high == low, 1.0, high - low)
         part = np.clip((self.plane.at - low) / steep, 0.0, 1.0)
         carried = (1.0 - part) * known[first] + part * known[second]
-        return [carried[rows] for rows in ordered(section)]
+        return [carried[rows] for rows in ordered_rows(section)]
 
     def _curve(self, points: Points, edges: Indices) -> Curve:
         first, second = np.divmod(edges, len(self._vertices))
@@ -103,14 +103,14 @@ class Slicer:
 
 
 @dataclass(frozen=True, eq=False)
-class Foot:
+class CurvePoint:
     """A place on a curve: flat ``place`` [mm] and outward ``normal`` [1], both (2,)."""
 
     place: Floats
     normal: Floats
 
 
-def nearest(curves: Sequence[Curve], place: Floats) -> Foot | None:
+def nearest(curves: Sequence[Curve], place: Floats) -> CurvePoint | None:
     """Return the place on ``curves`` nearest to a flat place, shape (2,) [mm]; None without curves."""
     best, least = None, np.inf
     for curve in curves:
@@ -122,11 +122,11 @@ def nearest(curves: Sequence[Curve], place: Floats) -> Foot | None:
         k = int(away.argmin())
         if away[k] < least:
             normal = (1.0 - along[k]) * curve.normals[k] + along[k] * curve.normals[k + 1]
-            best, least = Foot(feet[k], normal), float(away[k])
+            best, least = CurvePoint(feet[k], normal), float(away[k])
     return best
 
 
-def stand_out(foot: Foot, before: Sequence[Curve]) -> tuple[Floats, float] | None:
+def protrusion(foot: CurvePoint, before: Sequence[Curve]) -> tuple[Floats, float] | None:
     """Return where ``before`` is nearest to a foot, (2,), and how far the foot stands out from there [mm]."""
     other = nearest(before, foot.place)
     if other is None:

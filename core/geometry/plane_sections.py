@@ -53,12 +53,12 @@ def cut(mesh: Mesh, origin: npt.ArrayLike, normal: npt.ArrayLike) -> Section:
     return Section(np.stack(ends, axis=1), np.stack(ids, axis=1))
 
 
-def chains(section: Section) -> list[tuple[Points, bool]]:
+def join_segments(section: Section) -> list[tuple[Points, bool]]:
     """Join the segments into curves: a list of (points (k, 3) [mm], closed), longest first."""
-    return [(section.points[rows], bool(rows[0] == rows[-1])) for rows in ordered(section)]
+    return [(section.points[rows], bool(rows[0] == rows[-1])) for rows in ordered_rows(section)]
 
 
-def ordered(section: Section) -> list[Indices]:
+def ordered_rows(section: Section) -> list[Indices]:
     """Join the segments into curves: the rows of ``section.points`` in order, the longest curve first.
 
     A closed curve ends with the row that it begins with.

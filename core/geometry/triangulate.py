@@ -11,7 +11,7 @@ TOOTH = np.radians(75.0)
 """Corners sharper than this are cut off first [rad]."""
 
 
-def triangulated(outline: Floats, least: float = 0.0) -> tuple[Faces, Floats]:
+def triangulate(outline: Floats, least: float = 0.0) -> tuple[Faces, Floats]:
     """Return triangles over the polygon ``outline``, shape (b, 2), counter-clockwise, and places inside it.
 
     Corners from b on are those places, shape (k, 2), about as far from each other as the corners of the

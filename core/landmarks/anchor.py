@@ -8,7 +8,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter, maximum_filter1d, uniform_filter1d
 
 from core.geometry.mesh import SIGNS, Flags, Floats, Indices
-from core.landmarks.torso.cross_sections import Survey
+from core.landmarks.torso.cross_sections import TorsoSections
 
 CELL = 5.0
 """Cell of the reach map across the body [mm]."""
@@ -56,7 +56,7 @@ class Anchor:
     ridge: float = -np.inf
 
 
-def reach_map(survey: Survey, half_width: float) -> tuple[Floats, Floats]:
+def reach_map(survey: TorsoSections, half_width: float) -> tuple[Floats, Floats]:
     """Return how far the trunk reaches forward, shape (levels, columns) [mm], and x of the columns.
 
     NaN where there is no front. Smoothed by 8 mm.
@@ -79,7 +79,7 @@ def smoothed(grid: Floats, sigma: tuple[float, float]) -> Floats:
     return np.asarray(np.where(weight > 0.2, value / np.maximum(weight, 0.2), np.nan))
 
 
-def find_anchor(survey: Survey) -> Anchor:
+def find_anchor(survey: TorsoSections) -> Anchor:
     """Return the level under the bust where the body kinks forward most on both sides.
 
     Raises LandmarkError if there is no trunk or no such level. Source: ours.

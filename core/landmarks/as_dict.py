@@ -9,9 +9,9 @@ import numpy as np
 
 from core.geometry.mesh import Points
 from core.landmarks.detect import find_landmarks
-from core.landmarks.torso.girths import girth_doubts, girths, levels
+from core.landmarks.torso.girths import girth_warnings, girths, levels
 from core.landmarks.types import Landmarks
-from core.landmarks.warnings import doubts
+from core.landmarks.warnings import collect_warnings
 from core.scan.body import Body
 
 MOST = 60
@@ -47,12 +47,12 @@ def detection(body: Body, landmarks: Landmarks | None = None) -> dict[str, Any]:
         "up": body.pose.up,
         "front": body.pose.front,
         "file_to_mm": body.pose.file_to_mm.tolist(),
-        "sure": body.pose.sure and not landmarks.size_doubted,
+        "sure": body.pose.is_certain and not landmarks.size_doubted,
         "hints": [hint.kind for hint in landmarks.hints],
         "upright": landmarks.upright,
         "reason": body.pose.reason,
         "repairs": list(body.repairs),
-        "warnings": doubts(body, landmarks) + girth_doubts(found),
+        "warnings": collect_warnings(body, landmarks) + girth_warnings(found),
     }
 
 

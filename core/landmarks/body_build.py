@@ -20,7 +20,7 @@ class Build:
     armpit: float
 
 
-def build_of(mesh: Mesh, landmarks: Landmarks) -> Build:
+def measure_build(mesh: Mesh, landmarks: Landmarks) -> Build:
     """Measure the trunk around the landmarks of the bust."""
     pits = [mark.position[2] for name, mark in landmarks.points.items() if name.startswith("armpit")]
     armpit = float(np.mean(pits)) if pits else landmarks.bust_level + 60.0

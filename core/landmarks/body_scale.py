@@ -9,7 +9,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from core.geometry.mesh import Floats, Indices
 from core.landmarks.body_build import Build
-from core.landmarks.torso.torso_axis import guide_of
+from core.landmarks.torso.torso_axis import torso_axis
 from core.landmarks.types import Hint
 from core.scan.orientation.pose import Pose
 from core.scan.orientation.unit_detection import MILLIMETRES
@@ -96,7 +96,7 @@ def whole_figure(heights: Floats, widths: Floats, armpit: float, low: float) -> 
 def _lengths(build: Build, heights: Floats, widths: Floats) -> dict[str, float]:
     """Return those of the lengths in ``TYPICAL`` that the scan shows [mm]."""
     lengths: dict[str, float] = {}
-    guide = guide_of(build.mesh)
+    guide = torso_axis(build.mesh)
     shown = guide.tape > 0.0
     if not shown.any():
         return lengths

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from core.geometry.mesh import Flags, Floats, Mesh, Points
-from core.geometry.plane_sections import arc_length, chains, curvature, cut, downward, resample
+from core.geometry.plane_sections import arc_length, curvature, cut, downward, join_segments, resample
 
 OFFSETS = np.arange(-44.0, 45.0, 4.0)
 """The fold is traced over profiles so far beside the bust point [mm]."""
@@ -69,7 +69,7 @@ def profiles(mesh: Mesh, bust: Points, bottom: float) -> list[Profile]:
 
 
 def _profile(mesh: Mesh, bust: Points, offset: float, bottom: float) -> Profile:
-    pieces = chains(cut(mesh, bust + np.array([offset, 0.0, 0.0]), (1.0, 0.0, 0.0)))[:MOST_PIECES]
+    pieces = join_segments(cut(mesh, bust + np.array([offset, 0.0, 0.0]), (1.0, 0.0, 0.0)))[:MOST_PIECES]
     start = bust + np.array([offset, 0.0, 0.0])
     if not pieces:
         return _measured(start[None], np.empty((0, 2, 3)), bottom)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from core.geometry.level_outlines import reach
+from core.geometry.level_outlines import radii
 from core.geometry.mesh import SIGNS, Flags, Floats, Mesh, Points
 from core.geometry.plane_sections import curvature
 from core.landmarks.torso.cross_sections import trunk_levels
@@ -31,7 +31,7 @@ OUTER = (
 NO_OUTER = "Where the root of a breast usually ends: the breast passes into the side without a hollow."
 
 
-def root_marks(mesh: Mesh, found: Landmarks) -> list[Landmark]:
+def breast_root_landmarks(mesh: Mesh, found: Landmarks) -> list[Landmark]:
     """Return inner and outer end of both breast roots, those that the outlines show. Source: ours."""
     busts = [found.position(f"bust_point_{side}") for side in SIDES]
     marks = []
@@ -78,7 +78,7 @@ def _side(mesh: Mesh, bust: Points, middle: float, side: str, sign: float) -> li
 
 def _line(segments: Points, centre: Points, sign: float, count: int) -> Floats:
     """Return how far an outline reaches, shape (count,) [mm], from the front towards one side."""
-    far = reach(segments, np.zeros(len(segments), dtype=np.int64), centre[None], FINE)[0]
+    far = radii(segments, np.zeros(len(segments), dtype=np.int64), centre[None], FINE)[0]
     half = far[FINE // 2 :] if sign > 0.0 else far[FINE // 2 - 1 :: -1]
     return np.asarray(half[:count])
 

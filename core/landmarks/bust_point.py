@@ -11,7 +11,7 @@ from core.geometry.mesh import Floats, Mesh, Points
 from core.geometry.mirror_plane import MIRROR, mirror
 from core.landmarks.anchor import smoothed
 from core.landmarks.chest import Pole
-from core.landmarks.nipple import GRID, Patch, breast_patch
+from core.landmarks.nipple import GRID, BreastPatch, breast_patch
 from core.landmarks.nipple_pair import ALONE, BORNE, Nipple, find_nipples
 from core.landmarks.types import SIDES, Landmark
 
@@ -68,7 +68,7 @@ def bust_points(
         marks = _evened(marks, patches, middle)
         apart = _unlike(marks, middle) if not missing else 0.0
         marks = [
-            replace(mark, confidence=by_shape(patch, apart))
+            replace(mark, confidence=shape_confidence(patch, apart))
             for mark, patch in zip(marks, patches, strict=True)
         ]
     if len(missing) != 1:
@@ -79,7 +79,7 @@ def bust_points(
     return marks
 
 
-def _evened(marks: list[Landmark], patches: Sequence[Patch], middle: float) -> list[Landmark]:
+def _evened(marks: list[Landmark], patches: Sequence[BreastPatch], middle: float) -> list[Landmark]:
     """Return the points of two smooth breasts that are alike as mirror images: halves what is chance."""
     if _unlike(marks, middle) > ALIKE:
         return marks
@@ -87,7 +87,7 @@ def _evened(marks: list[Landmark], patches: Sequence[Patch], middle: float) -> l
     mean = 0.5 * (left + mirror(right, middle))
     places = (mean, mirror(mean, middle))
     return [
-        replace(mark, position=patch.onto(place))
+        replace(mark, position=patch.project(place))
         for mark, patch, place in zip(marks, patches, places, strict=True)
     ]
 
@@ -117,41 +117,41 @@ def missing_sides(poles: Sequence[Pole], lone: bool) -> list[str]:
 
 
 def _bust_point(
-    name: str, patch: Patch, own: Nipple | None, other: Nipple | None, middle: float | None
+    name: str, patch: BreastPatch, own: Nipple | None, other: Nipple | None, middle: float | None
 ) -> Landmark:
     """Return the bust point of one breast; without a ``middle`` [mm] it is the only breast."""
     if own is not None:
         place, rule = own.position, NIPPLE
-        confidence = likelihood(own) if middle is None else borne_out(own, other, middle)
+        confidence = likelihood(own) if middle is None else mutual_confidence(own, other, middle)
     elif other is not None:
         place, rule = patch.nearest(patch.forward + MIRROR * other.out), MIRRORED
         confidence = 0.4
     else:
-        place, rule = smooth_point(patch), SMOOTH
-        confidence = by_shape(patch, 0.0)
+        place, rule = shape_bust_point(patch), SMOOTH
+        confidence = shape_confidence(patch, 0.0)
     return Landmark(name, place, confidence, rule, patch.ring(place, 12.0))
 
 
 def likelihood(spot: Nipple) -> float:
     """Return how likely (0..1) a spot is a nipple, whatever the other breast shows."""
-    return float(1.0 / (1.0 + np.exp(-spot.odds)))
+    return float(1.0 / (1.0 + np.exp(-spot.log_odds)))
 
 
-def borne_out(own: Nipple, other: Nipple | None, middle: float) -> float:
+def mutual_confidence(own: Nipple, other: Nipple | None, middle: float) -> float:
     """Return how sure it is (0..1) that the spot is the nipple, by that of the other breast. Source: ours.
 
     Two spots at the same place of both breasts bear each other out, however the breasts differ. Of two that
     do not, one at most is a nipple: rather the likelier one.
     """
     if other is None:
-        return float(1.0 / (1.0 + np.exp(ALONE - own.odds)))
+        return float(1.0 / (1.0 + np.exp(ALONE - own.log_odds)))
     alike = float(np.exp(-max(own.apart(other, middle) - SAME, 0.0) / OTHER))
-    both = float(1.0 / (1.0 + np.exp(BORNE - 0.5 * (own.odds + other.odds))))
-    rivals = np.exp([0.0, own.odds, other.odds])
+    both = float(1.0 / (1.0 + np.exp(BORNE - 0.5 * (own.log_odds + other.log_odds))))
+    rivals = np.exp([0.0, own.log_odds, other.log_odds])
     return alike * both + (1.0 - alike) * float(rivals[1] / rivals.sum())
 
 
-def by_shape(patch: Patch, apart: float) -> float:
+def shape_confidence(patch: BreastPatch, apart: float) -> float:
     """Return how sure (0..1) the bust point of a breast without a nipple is.
 
     Breasts whose points lie ``apart`` [mm] from each other's mirror images are less sure, and so are those
@@ -163,12 +163,12 @@ def by_shape(patch: Patch, apart: float) -> float:
     return 0.6 * float(np.exp(-doubt))
 
 
-def _gap(patch: Patch) -> float:
+def _gap(patch: BreastPatch) -> float:
     """Return how far outside of the place that reaches furthest forward the pole lies [mm]."""
     return patch.side * float((patch.centre - patch.forward)[0])
 
 
-def smooth_point(patch: Patch) -> Points:
+def shape_bust_point(patch: BreastPatch) -> Points:
     """Return where a breast without a nipple points to, shape (3,) [mm].
 
     The foremost place lies inside the nipple, the pole outside of it: the point lies between, unless the pole
@@ -182,10 +182,10 @@ def smooth_point(patch: Patch) -> Points:
     way = patch.centre - foremost
     apart = float(np.linalg.norm(way))
     outside = foremost + way * min(OUTWARD / max(apart, 1.0), 0.75) + (0.0, 0.0, RAISED)
-    return patch.onto(patch.forward + near * (outside - patch.forward))
+    return patch.project(patch.forward + near * (outside - patch.forward))
 
 
-def _foremost(patch: Patch) -> tuple[Points, bool]:
+def _foremost(patch: BreastPatch) -> tuple[Points, bool]:
     """Return the foremost surface point near the pole, and whether it is a summit of the breast."""
     forward = np.where(patch.distance < WIDE, -patch.points[..., 1], np.nan)
     calm: Floats = np.where(np.isnan(forward), np.nan, smoothed(_finite(forward), (3.0, 3.0)))

@@ -11,7 +11,7 @@ from scipy.spatial import ConvexHull, QhullError
 from core.errors import LandmarkError
 from core.geometry.mesh import SIGNS, Floats, Indices, Points
 from core.landmarks.anchor import ABOVE, LOWEST, Anchor, reach_map, smoothed
-from core.landmarks.torso.cross_sections import Survey
+from core.landmarks.torso.cross_sections import TorsoSections
 
 BELOW = 25.0
 """A pole is looked for so far below the anchor [mm], and up to the highest breast."""
@@ -64,7 +64,7 @@ class Pole:
         return np.array([self.side * np.sin(turn), -np.cos(turn), 0.0])
 
 
-def forward_places(survey: Survey, anchor: Anchor) -> tuple[Points, Points]:
+def forward_places(survey: TorsoSections, anchor: Anchor) -> tuple[Points, Points]:
     """Return where the left and the right breast reach furthest forward, each (3,) [mm].
 
     They are looked for as a mirrored pair: first where both sides together reach furthest, then on each side
@@ -90,7 +90,7 @@ def forward_places(survey: Survey, anchor: Anchor) -> tuple[Points, Points]:
     return places[0], places[1]
 
 
-def find_poles(survey: Survey, anchor: Anchor) -> tuple[Pole, Pole]:
+def find_poles(survey: TorsoSections, anchor: Anchor) -> tuple[Pole, Pole]:
     """Return the poles of the left and the right breast.
 
     Prominence is measured from the convex outline of the trunk under the breasts, after the body has been
@@ -120,7 +120,7 @@ def _no_base() -> LandmarkError:
     return LandmarkError("The trunk under the breasts is missing.", "Open a scan that shows the whole trunk.")
 
 
-def _prominence(survey: Survey, anchor: Anchor, p: Points, row: Indices) -> Floats:
+def _prominence(survey: TorsoSections, anchor: Anchor, p: Points, row: Indices) -> Floats:
     shown = np.unique(survey.row)  # a gap all round leaves levels without skin
     base = shown[np.argmin(np.abs(survey.z[shown] - (anchor.z - 12.0)))]
     try:

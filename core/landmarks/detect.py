@@ -10,16 +10,16 @@ import numpy as np
 
 from core.geometry.mesh import Mesh, Points
 from core.landmarks.anchor import find_anchor
-from core.landmarks.body_build import build_of
-from core.landmarks.breast_root import root_marks
+from core.landmarks.body_build import measure_build
+from core.landmarks.breast_root import breast_root_landmarks
 from core.landmarks.bust_point import bust_points, missing_sides
 from core.landmarks.chest import find_poles
 from core.landmarks.lower_breast import ABOVE, folds_and_lowest
-from core.landmarks.manual import held_against, laid_on
-from core.landmarks.plausibility import doubted, hints, refuse_angular
-from core.landmarks.resolution import coarse_warning, spacing, trust
-from core.landmarks.torso.cross_sections import survey
-from core.landmarks.torso_landmarks import trunk_marks
+from core.landmarks.manual import project_to_skin, reconcile_with_detected
+from core.landmarks.plausibility import confidence_limit, hints, require_not_angular
+from core.landmarks.resolution import coarse_warning, confidence_factor, spacing
+from core.landmarks.torso.cross_sections import scan_torso
+from core.landmarks.torso_landmarks import torso_landmarks
 from core.landmarks.types import SIDES, Landmark, Landmarks
 from core.landmarks.validation import check, check_anchor, check_placed, placed_warnings
 from core.progress import Progress, quiet
@@ -51,23 +51,23 @@ def find_landmarks(
     follow. Raises LandmarkError if no bust is detected, unless bust points and folds are all placed, or if a
     position or name is invalid; Cancelled. Source: ours.
     """
-    calm = body.calm
-    by_hand = laid_on(calm, placed)
+    calm = body.smoothed
+    by_hand = project_to_skin(calm, placed)
     around = all(f"{name}_{side}" in by_hand for name in ("bust_point", "fold") for side in SIDES)
     found, warnings = (_around(calm, by_hand), ()) if around else _detected(calm, by_hand, progress)
     progress(FINDING, 0.7)
     further = {
         mark.name: mark if mark.name.startswith("front_centre") else _less(mark, UNMEASURED)
-        for mark in (*trunk_marks(calm, found), *root_marks(calm, found))
+        for mark in (*torso_landmarks(calm, found), *breast_root_landmarks(calm, found))
     }
-    further = {name: held_against(by_hand.get(name), mark) for name, mark in further.items()}
+    further = {name: reconcile_with_detected(by_hand.get(name), mark) for name, mark in further.items()}
     told = replace(found, points=MappingProxyType({**by_hand, **further, **found.points}))
     progress(FINDING, 0.9)
-    build = build_of(calm, told)
+    build = measure_build(calm, told)
     if not around:
-        refuse_angular(build, found)
+        require_not_angular(build, found)
     strange = hints(build, body.pose, told)
-    most = doubted(found.points, strange)
+    most = confidence_limit(found.points, strange)
     bust = {name: _at_most(mark, most) for name, mark in found.points.items()}
     points = MappingProxyType(_on_filled(body, {**told.points, **bust}))
     warnings = (*[BURIED] * (BURIED in body.repairs), *(hint.sentence for hint in strange), *warnings)
@@ -79,7 +79,7 @@ def _detected(
     mesh: Mesh, by_hand: Mapping[str, Landmark], progress: Progress
 ) -> tuple[Landmarks, tuple[str, ...]]:
     """Return the landmarks of the bust, with warnings, where not all of them are placed."""
-    trunk = survey(mesh)
+    trunk = scan_torso(mesh)
     progress(FINDING, 0.3)
     anchor = find_anchor(trunk)
     check_anchor(anchor)
@@ -88,7 +88,7 @@ def _detected(
     flat = missing_sides(poles, anchor.lone)
     missing = [side for side in flat if f"bust_point_{side}" not in by_hand]
     seen = bust_points(mesh, poles, trunk.middle, flat)
-    busts = [held_against(by_hand.get(mark.name), mark) for mark in seen]
+    busts = [reconcile_with_detected(by_hand.get(mark.name), mark) for mark in seen]
     progress(FINDING, 0.6)
     marks = busts + folds_and_lowest(mesh, busts, anchor.z, by_hand)
     found = _levels(mesh, marks, by_hand, missing)
@@ -108,9 +108,9 @@ def _levels(
     mesh: Mesh, marks: list[Landmark], by_hand: Mapping[str, Landmark], missing: Sequence[str] = ()
 ) -> Landmarks:
     """Return the landmarks with the levels of the sides that have a breast; others are unsure."""
-    sure = trust(_spacing(mesh, {mark.name: mark for mark in marks}))
+    sure = confidence_factor(_spacing(mesh, {mark.name: mark for mark in marks}))
     found = {
-        mark.name: held_against(
+        mark.name: reconcile_with_detected(
             by_hand.get(mark.name), _less(mark, sure * (0.3 if mark.name.endswith(tuple(missing)) else 1.0))
         )
         for mark in marks

@@ -11,7 +11,7 @@ from core.geometry.mesh import Mesh, Points
 from core.geometry.mirror_plane import MIRROR
 from core.landmarks.breast_profiles import OWN, Profile, profiles
 from core.landmarks.inframammary_fold import Trace, trace
-from core.landmarks.manual import held_against
+from core.landmarks.manual import reconcile_with_detected
 from core.landmarks.types import SIDES, Landmark
 
 HOLLOW = 0.006
@@ -70,16 +70,16 @@ UNLIKE = 6.0, 8.0
 
 
 @dataclass(frozen=True, eq=False)
-class Under:
+class LowerBreast:
     """What was found under one breast; ``fold`` is None where its crease does not show.
 
-    ``sure`` is the confidence (0..1) in what the profile shows, whoever placed the fold.
+    ``confidence`` is the confidence (0..1) in what the profile shows, whoever placed the fold.
     """
 
     bundle: Sequence[Profile]
     trace: Trace | None
     fold: Landmark | None
-    sure: float
+    confidence: float
 
 
 def folds_and_lowest(
@@ -115,7 +115,9 @@ def _less_sure(fold: Landmark, other: Landmark, apart: float) -> Landmark:
     return replace(fold, confidence=fold.confidence * float(np.exp(-doubt)))
 
 
-def _under(mesh: Mesh, bust: Landmark, level: float, side: str, placed: Mapping[str, Landmark]) -> Under:
+def _under(
+    mesh: Mesh, bust: Landmark, level: float, side: str, placed: Mapping[str, Landmark]
+) -> LowerBreast:
     name = f"fold_{side}"
     bottom = level - BELOW
     if name in placed:
@@ -125,8 +127,10 @@ def _under(mesh: Mesh, bust: Landmark, level: float, side: str, placed: Mapping[
     found = _fold(name, bust, crease, torn=not bundle[OWN].whole)
     sure = found.confidence if found else 0.0
     if name in placed:
-        return Under(bundle, None, held_against(placed[name], found) if found else placed[name], sure)
-    return Under(bundle, crease, found, sure)
+        return LowerBreast(
+            bundle, None, reconcile_with_detected(placed[name], found) if found else placed[name], sure
+        )
+    return LowerBreast(bundle, crease, found, sure)
 
 
 def _fold(name: str, bust: Landmark, crease: Trace | None, torn: bool) -> Landmark | None:
@@ -154,7 +158,9 @@ def _confidence(crease: Trace, bust: Landmark) -> float:
     return float(confidence * np.exp(-doubt))
 
 
-def _estimated(own: Under, other: Under, side: str, busts: tuple[Points, Points], level: float) -> Landmark:
+def _estimated(
+    own: LowerBreast, other: LowerBreast, side: str, busts: tuple[Points, Points], level: float
+) -> Landmark:
     """Return the fold that a hole hides: as on the other side, else as its visible parts or the hole lie."""
     name = f"fold_{side}"
     mirrored = _mirrored(other, busts)
@@ -172,7 +178,7 @@ def _estimated(own: Under, other: Under, side: str, busts: tuple[Points, Points]
     return Landmark(name, place, 0.05, UNSEEN, place[None])
 
 
-def _doubtful(own: Under, other: Under, busts: tuple[Points, Points]) -> bool:
+def _doubtful(own: LowerBreast, other: LowerBreast, busts: tuple[Points, Points]) -> bool:
     """Tell whether a hole makes one side unlike the other, so that the whole one is to be trusted."""
     if own.fold is None or own.trace is None or own.bundle[OWN].whole or not other.bundle[OWN].whole:
         return False
@@ -180,7 +186,7 @@ def _doubtful(own: Under, other: Under, busts: tuple[Points, Points]) -> bool:
     return mirrored is not None and abs(float(mirrored[2] - own.fold.position[2])) > CONTRADICTED
 
 
-def _mirrored(other: Under, busts: tuple[Points, Points]) -> Points | None:
+def _mirrored(other: LowerBreast, busts: tuple[Points, Points]) -> Points | None:
     """Return the fold of the other breast below the own bust point, shape (3,) [mm]; None if it is unsure."""
     if other.fold is None or other.fold.rule == NO_CREASE:
         return None
@@ -199,7 +205,9 @@ def _beside(crease: Trace | None, bust: Points) -> Points | None:
     return np.array([bust[0], *(float(share[0] @ each) for each in (y, z))])
 
 
-def _lowest(own: Under, other: Under, fold: Landmark, side: str, busts: tuple[Points, Points]) -> Landmark:
+def _lowest(
+    own: LowerBreast, other: LowerBreast, fold: Landmark, side: str, busts: tuple[Points, Points]
+) -> Landmark:
     """Return the lowest point of the profile between bust point and fold."""
     profile = own.bundle[OWN]
     end = int(np.argmin(((profile.points - fold.position) ** 2).sum(axis=1)))
@@ -211,6 +219,6 @@ def _lowest(own: Under, other: Under, fold: Landmark, side: str, busts: tuple[Po
         curve = np.concatenate([curve, [busts[0] + MIRROR * (lowest - busts[1])]])
     over = fold.position[2] > busts[0][2]  # which is right only where the breast hangs over its fold
     # That a hand has placed the fold says nothing about the profile above it.
-    seen = max(own.sure, MISSING) if fold.by_hand else fold.confidence
+    seen = max(own.confidence, MISSING) if fold.by_hand else fold.confidence
     sure = min(seen, MISSING) if over else seen
     return Landmark(f"lowest_{side}", curve[np.argmin(curve[:, 2])], sure, LOWEST, curve)

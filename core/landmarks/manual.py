@@ -9,7 +9,7 @@ import numpy as np
 
 from core.errors import LandmarkError
 from core.geometry.closest_point import nearest_on
-from core.geometry.mesh import FARTHEST, Floats, Mesh, Points
+from core.geometry.mesh import MAX_COORDINATE, Floats, Mesh, Points
 from core.geometry.mirror_plane import mirror
 from core.landmarks.types import CERTAIN, NAMES, Landmark
 
@@ -52,7 +52,7 @@ def check_place(name: str, place: Sequence[float] | Points) -> None:
     """Raise LandmarkError for a name that no landmark has, and for what is no place."""
     if name not in NAMES:
         raise LandmarkError(f"There is no landmark {name}.", f"Choose one of {', '.join(NAMES)}.")
-    if np.shape(place) != (3,) or not (np.abs(place) < FARTHEST).all():
+    if np.shape(place) != (3,) or not (np.abs(place) < MAX_COORDINATE).all():
         raise LandmarkError(f"{name} needs a place with three numbers.", "Give x, y and z.")
 
 
@@ -79,7 +79,7 @@ def in_file(position: Points, file_to_mm: Floats) -> tuple[float, float, float]:
     return x, y, z
 
 
-def laid_on(mesh: Mesh, placed: Mapping[str, Points]) -> dict[str, Landmark]:
+def project_to_skin(mesh: Mesh, placed: Mapping[str, Points]) -> dict[str, Landmark]:
     """Return ``placed`` points, each of shape (3,) [mm], as landmarks at the nearest place of the skin.
 
     Raises LandmarkError for a name that no landmark has, and for a place that is not near the skin.
@@ -87,7 +87,7 @@ def laid_on(mesh: Mesh, placed: Mapping[str, Points]) -> dict[str, Landmark]:
     return {name: _laid(mesh, name, np.asarray(place, dtype=np.float64)) for name, place in placed.items()}
 
 
-def held_against(placed: Landmark | None, found: Landmark) -> Landmark:
+def reconcile_with_detected(placed: Landmark | None, found: Landmark) -> Landmark:
     """Return a landmark ``placed`` by hand, with how far it is off what its rule ``found``, which stands if
     none was placed.
     """

@@ -39,7 +39,7 @@ BUMP = 3
 
 
 @dataclass(frozen=True, eq=False)
-class Patch:
+class BreastPatch:
     """A breast seen along the normal at its pole, over a square grid.
 
     ``points`` are the surface points, shape (g, g, 3) [mm]; ``distance`` is how far they lie from the pole,
@@ -63,7 +63,7 @@ class Patch:
         """Return the surface point of the grid nearest to ``point``, shape (3,) [mm]."""
         return np.asarray(self.points.reshape(-1, 3)[np.nanargmin(((self.points - point) ** 2).sum(axis=-1))])
 
-    def onto(self, place: Points) -> Points:
+    def project(self, place: Points) -> Points:
         """Return the surface point nearest to ``place``, between the grid's points too, shape (3,) [mm]."""
         away = ((self.points - place) ** 2).sum(axis=-1)
         row, column = divmod(int(np.nanargmin(away)), away.shape[1])
@@ -116,7 +116,7 @@ class Patch:
         return np.asarray(ring[np.isfinite(ring).all(axis=1)])
 
 
-def breast_patch(mesh: Mesh, pole: Pole) -> Patch:
+def breast_patch(mesh: Mesh, pole: Pole) -> BreastPatch:
     """Lay a grid over the surface round the ``pole`` of a breast, and measure the relief on it.
 
     Raises LandmarkError if there is no surface.
@@ -140,7 +140,7 @@ def breast_patch(mesh: Mesh, pole: Pole) -> Patch:
     own = _hanging_together(height)
     points = pole.position + np.stack([u, v, np.where(own, height, np.nan)], axis=-1) @ frame
     relief = np.where(own, _relief(_carried_on(height, own)), np.nan)
-    return Patch(points, np.hypot(u, v), relief, _furthest(points, pole), pole.side)
+    return BreastPatch(points, np.hypot(u, v), relief, _furthest(points, pole), pole.side)
 
 
 def in_front(surface: Points) -> Points:

@@ -9,7 +9,7 @@ from scipy.ndimage import maximum_filter
 
 from core.geometry.mesh import Points
 from core.geometry.mirror_plane import MIRROR, mirror
-from core.landmarks.nipple import GRID, Patch
+from core.landmarks.nipple import GRID, BreastPatch
 
 NEAR = 40.0
 """A nipple is looked for so far from the pole [mm]."""
@@ -40,15 +40,15 @@ BORNE, ALONE = 1.0, 2.0
 class Nipple:
     """A spot that stands out of the breast: its centre, shape (3,) [mm], and what tells that it is a nipple.
 
-    ``way`` leads to it from the pole and ``out`` from the place that reaches furthest forward, (3,) [mm];
+    ``from_pole`` leads to it from the pole and ``out`` from the place that reaches furthest forward, (3,) [mm];
     ``relief`` is how far it stands out [mm], and ``clarity`` that over the roughness of the breast;
     ``roundness`` is 1 for a spot and 0 for an edge;
     ``aside`` is how far it lies from where nipples do [mm]; ``down`` how steeply the breast turns down there
-    [degrees]. The weights in ``odds`` are a logistic regression over the spots of 200 made bodies.
+    [degrees]. The weights in ``log_odds`` are a logistic regression over the spots of 200 made bodies.
     """
 
     position: Points
-    way: Points
+    from_pole: Points
     out: Points
     relief: float
     clarity: float
@@ -57,7 +57,7 @@ class Nipple:
     down: float
 
     @property
-    def odds(self) -> float:
+    def log_odds(self) -> float:
         """The logarithm of the odds that this is a nipple, by its looks and its place alone.
 
         Each trait counts within bounds beyond which more of it tells nothing.
@@ -72,32 +72,38 @@ class Nipple:
         The less of two: pole laid over pole, as breasts differ, or at the ``middle`` of the body, x [mm].
         """
         across = self.position - mirror(other.position, middle)
-        return float(min(np.linalg.norm(self.way - MIRROR * other.way), np.linalg.norm(across)))
+        return float(min(np.linalg.norm(self.from_pole - MIRROR * other.from_pole), np.linalg.norm(across)))
 
 
 def find_nipples(
-    left: Patch | None, right: Patch | None, middle: float
+    left: BreastPatch | None, right: BreastPatch | None, middle: float
 ) -> tuple[Nipple | None, Nipple | None]:
     """Return the nipples, which are likely alike on both sides; None where none shows, or there is no breast.
 
     ``middle`` is x of the middle of the body [mm]. Source: ours.
     """
     spots = [
-        [spot for spot in spots_of(patch) if spot.relief > LEAST] if patch else [] for patch in (left, right)
+        [spot for spot in relief_summits(patch) if spot.relief > LEAST] if patch else []
+        for patch in (left, right)
     ]
     alone = ALONE if left and right else BORNE
 
     def worth(a: Nipple | None, b: Nipple | None) -> float:
         if a is None or b is None:
             only = a or b
-            return only.odds - alone if only else 0.0
-        return a.odds + b.odds - 2.0 * BORNE - 0.5 * (max(a.apart(b, middle) - UNLIKE, 0.0) / UNLIKELY) ** 2
+            return only.log_odds - alone if only else 0.0
+        return (
+            a.log_odds
+            + b.log_odds
+            - 2.0 * BORNE
+            - 0.5 * (max(a.apart(b, middle) - UNLIKE, 0.0) / UNLIKELY) ** 2
+        )
 
     pairs = ((a, b) for a in (None, *spots[0]) for b in (None, *spots[1]))
     return max(pairs, key=lambda pair: worth(*pair))
 
 
-def spots_of(patch: Patch) -> list[Nipple]:
+def relief_summits(patch: BreastPatch) -> list[Nipple]:
     """Return the summits of the relief near the pole, the likeliest nipple first."""
     r = np.where(np.isnan(patch.relief), -np.inf, patch.relief)
     summits = (r == maximum_filter(r, 2 * round(APART / GRID) + 1)) & (patch.distance < NEAR) & (r > 0.0)
@@ -112,7 +118,7 @@ def spots_of(patch: Patch) -> list[Nipple]:
         spots.append(
             Nipple(
                 position=place,
-                way=place - patch.centre,
+                from_pole=place - patch.centre,
                 out=from_forward,
                 relief=top,
                 clarity=top / rough,
@@ -123,10 +129,10 @@ def spots_of(patch: Patch) -> list[Nipple]:
                 down=-float(np.degrees(np.arcsin(np.clip(np.nan_to_num(looks[2]), -1.0, 1.0)))),
             )
         )
-    return sorted(spots, key=lambda spot: spot.odds, reverse=True)
+    return sorted(spots, key=lambda spot: spot.log_odds, reverse=True)
 
 
-def _centre(patch: Patch, row: int, column: int) -> Points:
+def _centre(patch: BreastPatch, row: int, column: int) -> Points:
     """Return the centre of the upper half of a summit, on the surface, shape (3,) [mm]."""
     rows, columns = np.indices(patch.relief.shape)
     close = np.hypot(rows - row, columns - column) * GRID <= 9.0

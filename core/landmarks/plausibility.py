@@ -58,7 +58,7 @@ UNCLEAR = ("flat", "clothes")
 """The kinds of hints that make landmarks of the bust doubtful."""
 
 
-def refuse_angular(build: Build, landmarks: Landmarks) -> None:
+def require_not_angular(build: Build, landmarks: Landmarks) -> None:
     """Raise LandmarkError where the trunk is a block rather than a body."""
     under = [level for level in build.levels if level.z < landmarks.underbust_level - 5.0]
     if len(under) > 2 and np.median([_filling(level) for level in under[-4:]]) > ANGULAR:
@@ -144,7 +144,7 @@ def _waves(levels: Sequence[Level], low: float, high: float) -> float:
     return float(np.sqrt((np.median(waves, axis=0)[measured] ** 2).mean()))
 
 
-def doubted(points: Mapping[str, Landmark], found: tuple[Hint, ...]) -> float:
+def confidence_limit(points: Mapping[str, Landmark], found: tuple[Hint, ...]) -> float:
     """Return the most that landmarks of the bust may claim (0..1) with these hints."""
     by_hand = all(points[f"bust_point_{side}"].by_hand for side in SIDES)
     return DOUBTED if not by_hand and any(hint.kind in UNCLEAR for hint in found) else 1.0

@@ -21,7 +21,7 @@ def spacing(mesh: Mesh, places: Sequence[Points]) -> float:
     return float(np.median(NEAR * np.sqrt(np.pi / np.maximum(counts, 1))))
 
 
-def trust(apart: float) -> float:
+def confidence_factor(apart: float) -> float:
     """Return how much (0..1) of a confidence holds where the points of the scan lie ``apart`` [mm]. Ours."""
     return float(np.exp(-max(apart - FINE, 0.0) / COARSER))
 

@@ -6,10 +6,10 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from core.geometry.mesh import SIGNS, Flags, Floats, Mesh, Points
-from core.geometry.plane_sections import arc_length, chains, curvature, cut, resample
+from core.geometry.plane_sections import arc_length, curvature, cut, join_segments, resample
 from core.landmarks.bust_point import ACROSS
 from core.landmarks.torso.cross_sections import Level, stable_level, trunk_levels
-from core.landmarks.torso.torso_axis import STEP, Guide, guide_of
+from core.landmarks.torso.torso_axis import STEP, TorsoAxis, torso_axis
 from core.landmarks.types import SIDES, Landmark, Landmarks
 
 FRONT = "On the centre line of the front, half way between the bust points, at the bust level."
@@ -34,9 +34,9 @@ EVEN = 4.0
 """The bust points lie so evenly about the middle of the trunk [mm]; twice that more, and a third is left."""
 
 
-def trunk_marks(mesh: Mesh, found: Landmarks) -> list[Landmark]:
+def torso_landmarks(mesh: Mesh, found: Landmarks) -> list[Landmark]:
     """Return the landmarks of the trunk round the bust landmarks ``found``. Source: ours."""
-    guide = guide_of(mesh)
+    guide = torso_axis(mesh)
     left, right = (found.position(f"bust_point_{side}") for side in SIDES)
     middle = 0.5 * float(left[0] + right[0])
     tape = np.where(guide.tape > 0.0, guide.tape, np.nan)
@@ -65,7 +65,7 @@ def _line(mesh: Mesh, x: float, low: float, high: float, back: bool, split: floa
     """
     across = mesh.vertices[:, 0][mesh.faces.T]
     crossed = (across.min(axis=0) <= x) & (across.max(axis=0) >= x)
-    pieces = chains(cut(Mesh(mesh.vertices, mesh.faces[crossed]), (x, 0.0, 0.0), (1.0, 0.0, 0.0)))
+    pieces = join_segments(cut(Mesh(mesh.vertices, mesh.faces[crossed]), (x, 0.0, 0.0), (1.0, 0.0, 0.0)))
     best = np.empty((0, 3))
     for curve, _ in pieces:
         own = (curve[:, 2] >= low) & (curve[:, 2] <= high) & ((curve[:, 1] > split) == back)
@@ -120,7 +120,7 @@ def _fronts(
     return marks
 
 
-def _back(mesh: Mesh, guide: Guide, level: Level, name: str) -> Landmark | None:
+def _back(mesh: Mesh, guide: TorsoAxis, level: Level, name: str) -> Landmark | None:
     """Return the back centre on one level: in the hollow of the spine, near the middle of the trunk."""
     points = level.segments.reshape(-1, 3)
     if len(points) < 40:
@@ -146,7 +146,7 @@ def _back(mesh: Mesh, guide: Guide, level: Level, name: str) -> Landmark | None:
     return Landmark(f"back_centre{name}", place, sure, rule, line)
 
 
-def _side(guide: Guide, level: Level, name: str, sign: float) -> Landmark | None:
+def _side(guide: TorsoAxis, level: Level, name: str, sign: float) -> Landmark | None:
     points = level.segments.reshape(-1, 3)
     if len(points) < 40:
         return None
@@ -163,7 +163,7 @@ def _side(guide: Guide, level: Level, name: str, sign: float) -> Landmark | None
     return Landmark(f"side_{name}", best, CLEAR * float(np.exp(-max(spread - 15.0, 0.0) / 40.0)), SIDE, curve)
 
 
-def _armpit(mesh: Mesh, guide: Guide, found: Landmarks, s: int) -> Landmark | None:
+def _armpit(mesh: Mesh, guide: TorsoAxis, found: Landmarks, s: int) -> Landmark | None:
     """Return the armpit of one side: under the levels that an arm joins, up to the shoulder."""
     joined = guide.cut[:, s] & guide.shown & (guide.z > found.underbust_level)
     above = np.flatnonzero(joined & (guide.z > found.bust_level - 60.0))
@@ -185,18 +185,18 @@ def _armpit(mesh: Mesh, guide: Guide, found: Landmarks, s: int) -> Landmark | No
     return Landmark(f"armpit_{SIDES[s]}", best, sure, ARMPIT, near[np.argsort(near[:, 1])])
 
 
-def _waist(guide: Guide, tape: Floats, found: Landmarks) -> tuple[float, float] | None:
+def _waist(guide: TorsoAxis, tape: Floats, found: Landmarks) -> tuple[float, float] | None:
     """Return height [mm] and confidence of the natural waist; None if the scan ends above it."""
     low, high = found.underbust_level - 260.0, found.underbust_level - 20.0
     return _extreme(guide, -tape, (guide.z > low) & (guide.z < high), 4.0)
 
 
-def _hip(guide: Guide, tape: Floats, waist: float) -> tuple[float, float] | None:
+def _hip(guide: TorsoAxis, tape: Floats, waist: float) -> tuple[float, float] | None:
     """Return height [mm] and confidence of the hip; None if the scan ends above it."""
     return _extreme(guide, tape, (guide.z > waist - 320.0) & (guide.z < waist - 40.0), 4.0)
 
 
-def _extreme(guide: Guide, value: Floats, inside: Flags, clear: float) -> tuple[float, float] | None:
+def _extreme(guide: TorsoAxis, value: Floats, inside: Flags, clear: float) -> tuple[float, float] | None:
     """Return height and confidence of the highest ``value`` with lower ones on both sides of it."""
     rows = np.flatnonzero(inside & np.isfinite(value))
     if len(rows) < 9 or (np.diff(rows) > 3).any():
@@ -211,7 +211,9 @@ def _extreme(guide: Guide, value: Floats, inside: Flags, clear: float) -> tuple[
     return float(guide.z[rows[best]] + STEP * np.clip(shift, -1.0, 1.0)), 0.3 + 0.5 * min(fall / clear, 1.0)
 
 
-def _girdle(mesh: Mesh, guide: Guide, z: float, confidence: float, name: str, rule: str) -> Landmark | None:
+def _girdle(
+    mesh: Mesh, guide: TorsoAxis, z: float, confidence: float, name: str, rule: str
+) -> Landmark | None:
     """Return the centre front at height ``z`` [mm]; its evidence is the front of the outline there."""
     level = trunk_levels(mesh, [z])[0]
     points = level.segments.reshape(-1, 3)
@@ -227,7 +229,9 @@ def _girdle(mesh: Mesh, guide: Guide, z: float, confidence: float, name: str, ru
     return Landmark(name, front[nearest], sure, rule, front)
 
 
-def _neck(mesh: Mesh, guide: Guide, tape: Floats, found: Landmarks, middle: float) -> list[Landmark | None]:
+def _neck(
+    mesh: Mesh, guide: TorsoAxis, tape: Floats, found: Landmarks, middle: float
+) -> list[Landmark | None]:
     """Return the foot of the neck in front and behind, if the scan shows a neck under a head."""
     rows = np.flatnonzero((guide.z > found.bust_level + 120.0) & np.isfinite(tape))
     if len(rows) < 12:

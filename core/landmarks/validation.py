@@ -12,7 +12,7 @@ from core.landmarks.anchor import KINK, Anchor
 from core.landmarks.bust_point import FLAT, NIPPLE
 from core.landmarks.chest import Pole
 from core.landmarks.lower_breast import HIDDEN, NO_CREASE, UNSEEN
-from core.landmarks.torso.cross_sections import Survey, stable_level, trunk_levels
+from core.landmarks.torso.cross_sections import TorsoSections, stable_level, trunk_levels
 from core.landmarks.types import SIDES, Landmarks
 
 SLIMMEST, WIDEST = 550.0, 1600.0
@@ -91,7 +91,7 @@ def _placed(landmarks: Landmarks) -> bool:
 
 def check(
     mesh: Mesh,
-    trunk: Survey,
+    trunk: TorsoSections,
     anchor: Anchor,
     poles: tuple[Pole, Pole],
     missing: Sequence[str],
@@ -116,7 +116,7 @@ def check(
 
 def _rules(
     mesh: Mesh,
-    trunk: Survey,
+    trunk: TorsoSections,
     poles: tuple[Pole, Pole],
     missing: Sequence[str],
     landmarks: Landmarks,

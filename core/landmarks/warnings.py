@@ -11,27 +11,27 @@ ESSENTIAL = ("bust_point", "fold")
 """The landmarks, a pair each, that the control mesh hangs on: doubts about others would only distract."""
 
 
-def doubts(body: Body, landmarks: Landmarks) -> list[str]:
+def collect_warnings(body: Body, landmarks: Landmarks) -> list[str]:
     """Return one sentence for each thing that should be looked at. Source: ours."""
     unsure = "It is not certain how this scan is to be understood: please check unit, up and front."
-    return [unsure] * (not body.pose.sure) + edit_doubts(body) + landmark_doubts(landmarks)
+    return [unsure] * (not body.pose.is_certain) + edit_warnings(body) + landmark_warnings(landmarks)
 
 
-def edit_doubts(body: Body) -> list[str]:
+def edit_warnings(body: Body) -> list[str]:
     """Return what edits of the scan leave to be looked at."""
     filled = "Holes of the scan are filled by hand: what is measured there is an estimate."
     mirrored = [mirror_sentence(body.edits.kept)] if body.edits.kept else []
     return mirrored + [filled] * (len(body.estimated) > 0)
 
 
-def landmark_doubts(landmarks: Landmarks) -> list[str]:
+def landmark_warnings(landmarks: Landmarks) -> list[str]:
     """Return what should be looked at on the landmarks alone; a side without a breast is named once."""
     said = [sentence for kind in ESSENTIAL for sentence in _doubt(kind, _untold(landmarks, kind), landmarks)]
     return [*said, *landmarks.warnings]
 
 
-def first_doubt(landmarks: Landmarks) -> str:
-    """Return the name of the landmark that the first sentence of ``landmark_doubts`` speaks of, or of the
+def first_warning(landmarks: Landmarks) -> str:
+    """Return the name of the landmark that the first sentence of ``landmark_warnings`` speaks of, or of the
     least sure one.
     """
     weak = [f"{kind}_{side}" for kind in ESSENTIAL for side in _untold(landmarks, kind)]
@@ -42,10 +42,10 @@ def first_doubt(landmarks: Landmarks) -> str:
 def _untold(landmarks: Landmarks, kind: str) -> list[str]:
     """Return the weak sides of a landmark, but for sides without a breast, of which a warning tells."""
     told = [side for side in SIDES if landmarks.points[f"bust_point_{side}"].rule == ACROSS]
-    return [side for side in weak_sides(landmarks, kind) if side not in told]
+    return [side for side in uncertain_sides(landmarks, kind) if side not in told]
 
 
-def weak_sides(landmarks: Landmarks, kind: str) -> list[str]:
+def uncertain_sides(landmarks: Landmarks, kind: str) -> list[str]:
     """Return the sides on which a landmark, like "fold", was found and is not certain."""
     found = {side: landmarks.points.get(f"{kind}_{side}") for side in SIDES}
     return [side for side, mark in found.items() if mark and not mark.by_hand and mark.confidence < CERTAIN]

@@ -10,7 +10,7 @@ from core.geometry.closest_point import nearest_faces
 from core.geometry.mesh import Floats, Indices, Mesh, Points
 from core.landmarks.lower_breast import CREASE, ESTIMATED, NO_CREASE
 from core.landmarks.types import SIDES, Landmark, Landmarks
-from core.measurements.unrolled_torso import Chart, innermost
+from core.measurements.unrolled_torso import UnrolledTorso, innermost
 
 POINTS = 96
 """So many points a root has."""
@@ -41,7 +41,7 @@ class Root:
 
     loop: Points
     lower: int
-    chart: Chart
+    chart: UnrolledTorso
     confidence: float
 
     @property
@@ -55,7 +55,7 @@ class Root:
         return np.concatenate([self.loop, self.loop[:1]])
 
 
-def chart_of(landmarks: Landmarks, side: str, depth: tuple[float, float]) -> Chart:
+def chart_of(landmarks: Landmarks, side: str, depth: tuple[float, float]) -> UnrolledTorso:
     """Return a chart about the axis of the trunk, ``depth`` being y of its front and of its back [mm].
 
     It keeps lengths where the root of the breast of a ``side`` ends.
@@ -64,7 +64,7 @@ def chart_of(landmarks: Landmarks, side: str, depth: tuple[float, float]) -> Cha
     centre = np.array([busts[:, 0].mean(), 0.5 * (depth[0] + depth[1])])
     ends = [landmarks.points.get(f"root_{name}_{side}") for name in ("inner", "outer")]
     reach = [float(np.linalg.norm(mark.position[:2] - centre)) for mark in ends if mark]
-    return Chart(centre, float(np.mean(reach)) if reach else 0.5 * abs(depth[1] - depth[0]))
+    return UnrolledTorso(centre, float(np.mean(reach)) if reach else 0.5 * abs(depth[1] - depth[0]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +77,7 @@ class Side:
 
     piece: Mesh
     rows: Indices
-    chart: Chart
+    chart: UnrolledTorso
     uvw: Points
     ends: Points
     fold: Points
@@ -98,13 +98,13 @@ NEEDED = ("root_inner", "root_outer", "fold", "bust_point")
 """The landmarks that a root is taken from."""
 
 
-def side_of(mesh: Mesh, landmarks: Landmarks, side: str, chart: Chart) -> Side | None:
+def side_of(mesh: Mesh, landmarks: Landmarks, side: str, chart: UnrolledTorso) -> Side | None:
     """Return the skin round the breast of a ``side``; None if its ends or its fold were not found."""
     if not all(f"{name}_{side}" in landmarks.points for name in NEEDED):
         return None
     marks = tuple(landmarks.points[f"{name}_{side}"] for name in NEEDED)
-    spots = chart.flat(np.array([mark.position for mark in marks[:3]]))
-    uvw = chart.flat(mesh.vertices)
+    spots = chart.unroll(np.array([mark.position for mark in marks[:3]]))
+    uvw = chart.unroll(mesh.vertices)
     half = 0.5 * abs(float(spots[1, 0] - spots[0, 0]))
     low = spots[:, :2].min(axis=0) - AROUND
     high = spots[:, :2].max(axis=0) + AROUND + np.array([0.0, half])
@@ -133,7 +133,7 @@ def root_of(side: Side, rise: float = 0.0) -> Root | None:
         return None
     samples = np.concatenate([top, _crease(side, middle)])
     loop, lower = _joined(samples, middle, bool(side.ends[0, 0] < side.ends[1, 0]))
-    _, places = nearest_faces(side.piece, side.chart.back(loop))
+    _, places = nearest_faces(side.piece, side.chart.roll_up(loop))
     return Root(places, lower, side.chart, min(mark.confidence for mark in side.marks[:3]))
 
 
@@ -142,7 +142,7 @@ def _crease(side: Side, middle: Points) -> Points:
     fold, mark = side.fold, side.marks[2]
     if mark.rule not in TRACED or len(mark.evidence) < 5:
         return fold[None]
-    traced = side.chart.flat(mark.evidence)
+    traced = side.chart.unroll(mark.evidence)
     limit = fold[1] + TRUSTED * (middle[1] - fold[1])
     kept = (traced[:, 1] < limit) & (np.abs(traced[:, 0] - middle[0]) < 0.95 * side.half)
     return traced[kept] if kept.sum() > 2 else fold[None]

@@ -14,8 +14,8 @@ from scipy.spatial import cKDTree
 from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points, area_vectors, boundary_loops
 from core.geometry.plane_sections import resample
 from core.measurements.breast_root import Root, Side
-from core.measurements.chest_wall import Wall, wall_of
-from core.measurements.unrolled_torso import Chart
+from core.measurements.chest_wall import ChestWall, fit_chest_wall
+from core.measurements.unrolled_torso import UnrolledTorso
 
 BAND = 4.0
 """Skin so near to the root counts as lying on it [mm], on coarse skins further."""
@@ -62,7 +62,7 @@ def breast_of(side: Side, root: Root) -> Breast | None:
         return None  # the skin goes on from the breast to the rim: the root is open
     outside = ~band & ~own
     facing = np.einsum("ij,ij->i", piece.vertex_normals, chart.outward(piece.vertices)) > FACING
-    wall = wall_of(chart, uvw[outside & facing], chart.flat(root.loop))
+    wall = fit_chest_wall(chart, uvw[outside & facing], chart.unroll(root.loop))
     if wall is None:
         return None
     inside = piece.faces[(own | band)[piece.faces].all(axis=1)]
@@ -80,7 +80,7 @@ def _filled(places: Points, faces: Faces, holes: Sequence[Indices]) -> tuple[Poi
     return places, faces
 
 
-def _volume(chart: Chart, wall: Wall, places: Points, faces: Faces) -> float:
+def _volume(chart: UnrolledTorso, wall: ChestWall, places: Points, faces: Faces) -> float:
     """Return the volume between the skin ``faces`` and the wall [mm^3].
 
     A flow away from the axis that grows by its own volume everywhere and is nil on the wall passes the skin:
@@ -89,7 +89,7 @@ def _volume(chart: Chart, wall: Wall, places: Points, faces: Faces) -> float:
     """
     rows, faces = np.unique(faces, return_inverse=True)
     skin, faces = places[rows], faces.reshape(-1, 3)
-    flat = chart.flat(skin)
+    flat = chart.unroll(skin)
     far = np.maximum(flat[:, 2], 1.0)
     strength = (far**2 - wall.out(flat[:, :2]) ** 2) / (2.0 * far)
     flow = strength[:, None] * chart.outward(skin)

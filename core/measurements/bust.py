@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from core.errors import LineError
-from core.geometry.geodesic import shortest_way
+from core.geometry.geodesic import shortest_path
 from core.geometry.mesh import Mesh, Points
 from core.geometry.plane_sections import arc_length
 from core.landmarks.types import SIDES, Landmark
@@ -62,7 +62,7 @@ def over_skin(key: str, subject: Subject, marks: list[Landmark | None]) -> Measu
     if len(ends) < 2:
         return Measure(key, None, "mm", confidence=0.0, note=NO_MARK)
     try:
-        way = shortest_way(subject.mesh, ends[0].position, ends[1].position)
+        way = shortest_path(subject.mesh, ends[0].position, ends[1].position)
     except LineError:
         return Measure(key, None, "mm", confidence=0.0, note=NO_WAY)
     round_hole = _along_border(subject.mesh, way)
@@ -78,7 +78,7 @@ def _along_border(mesh: Mesh, way: Points) -> bool:
     return bool((np.asarray(cKDTree(border).query(way[1:-1])[0]) < 1e-6).any())
 
 
-def foremost_places(subject: Subject) -> Points | None:
+def apexes(subject: Subject) -> Points | None:
     """Return the foremost place of each breast, shape (2, 3) [mm]; None without both."""
     if len(subject.breasts) < len(SIDES):
         return None
@@ -109,7 +109,7 @@ def _heights(subject: Subject) -> Iterator[Measure]:
     sure = min((mark.confidence for mark in marks), default=0.0)
     shown = [side for side in SIDES if shows_breast(landmarks, side)]
     yield _by_fold(Measure("bust_height", height, "mm", lines, sure), subject, shown)
-    apex, chest = foremost_places(subject), subject.mark("front_centre_underbust")
+    apex, chest = apexes(subject), subject.mark("front_centre_underbust")
     if apex is None or chest is None:
         yield missing("bust_protrusion", NO_ROOT if chest else NO_MARK)
         return

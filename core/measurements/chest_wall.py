@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from core.geometry.mesh import Floats, Points
-from core.measurements.unrolled_torso import Chart
+from core.measurements.unrolled_torso import UnrolledTorso
 
 if TYPE_CHECKING:
     from scipy.interpolate import RBFInterpolator
@@ -32,7 +32,7 @@ FEWEST = 24
 
 
 @dataclass(frozen=True, eq=False)
-class Wall:
+class ChestWall:
     """How far out the chest lies behind a breast, in its chart: an oval trunk, and what it differs from that.
 
     1 / w^2 of an oval, a round or a flat trunk is one wave of twice the angle: ``wave`` (4,), with the
@@ -48,7 +48,7 @@ class Wall:
         return np.asarray(_oval(uv, self.radius, self.wave) + self.spline(uv)[:, 0])
 
 
-def wall_of(chart: Chart, chest: Points, loop: Points) -> Wall | None:
+def fit_chest_wall(chart: UnrolledTorso, chest: Points, loop: Points) -> ChestWall | None:
     """Lay the wall through the skin just outside a root; None if there is too little of it.
 
     ``chest`` (n, 3) [mm] are the vertices outside the breast and ``loop`` (k, 3) [mm] the root, in the chart.
@@ -64,7 +64,7 @@ def wall_of(chart: Chart, chest: Points, loop: Points) -> Wall | None:
     uv, out = np.split(np.concatenate([places, loop[::2]]), [2], axis=1)
     wave = np.asarray(np.linalg.lstsq(_waves(uv, chart.radius), out[:, 0] ** -2.0, rcond=None)[0], np.float64)
     rest = out - _oval(uv, chart.radius, wave)[:, None]
-    return Wall(chart.radius, wave, RBFInterpolator(uv, rest, smoothing=STIFF))
+    return ChestWall(chart.radius, wave, RBFInterpolator(uv, rest, smoothing=STIFF))
 
 
 def _waves(uv: Points, radius: float) -> Floats:

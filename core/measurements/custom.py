@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
-from core.document.custom_measures import OwnMeasure
+from core.document.custom_measures import CustomMeasurement
 from core.landmarks.torso.cross_sections import trunk_levels
 from core.measurements.bust import NO_MARK, over_skin, straight
 from core.measurements.definitions import Measure
@@ -19,13 +19,13 @@ OWN = "own:"
 NO_TRUNK = "The scan shows no trunk at that height."
 
 
-def own_measures(subject: Subject, own: Iterable[OwnMeasure]) -> Iterator[Measure]:
+def measure_custom(subject: Subject, own: Iterable[CustomMeasurement]) -> Iterator[Measure]:
     """Yield the measures of the designer's own."""
     for each in own:
         yield replace(_measured(subject, each), text=each.text)
 
 
-def _measured(subject: Subject, own: OwnMeasure) -> Measure:
+def _measured(subject: Subject, own: CustomMeasurement) -> Measure:
     key = f"{OWN}{own.name}"
     if own.kind == "girth":
         return _girth(key, subject, own)
@@ -33,7 +33,7 @@ def _measured(subject: Subject, own: OwnMeasure) -> Measure:
     return straight(key, marks) if own.kind == "straight" else over_skin(key, subject, marks)
 
 
-def _girth(key: str, subject: Subject, own: OwnMeasure) -> Measure:
+def _girth(key: str, subject: Subject, own: CustomMeasurement) -> Measure:
     marks = [subject.mark(name) for name in own.marks]
     at = marks[0] if marks else None
     if marks and at is None:

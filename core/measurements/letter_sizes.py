@@ -9,7 +9,7 @@ from functools import cache
 from importlib import resources
 from typing import Any
 
-from core.measurements.size_table import Source, Step, Words
+from core.measurements.size_table import LocalizedText, Source, Step
 
 
 @dataclass(frozen=True)
@@ -17,14 +17,14 @@ class LetterTable:
     """What a letter stands for: ``steps`` [cm] of the measure ``girth``; where two overlap, both fit."""
 
     key: str
-    title: Words
+    title: LocalizedText
     girth: str
     steps: tuple[Step, ...]
 
     def sizes(self, girth_mm: float) -> tuple[str, ...]:
         """Return the letters that a girth [mm] may have, that with the nearest middle first."""
         girth = round(girth_mm / 10.0, 6)
-        fitting = [step for step in self.steps if step.says(girth)]
+        fitting = [step for step in self.steps if step.is_listed(girth)]
         return tuple(step.name for step in sorted(fitting, key=lambda step: abs(step.middle - girth)))
 
 
@@ -34,7 +34,7 @@ class LetterSizes:
 
     tables: tuple[LetterTable, ...]
     sources: tuple[Source, ...]
-    doubts: tuple[Words, ...]
+    doubts: tuple[LocalizedText, ...]
 
 
 @cache
@@ -54,5 +54,5 @@ def _table(values: Mapping[str, Any]) -> LetterTable:
     return LetterTable(values["key"], _words(values["names"]), values["girth"], steps)
 
 
-def _words(values: Mapping[str, Any]) -> Words:
-    return Words(values["en"], values["ja"])
+def _words(values: Mapping[str, Any]) -> LocalizedText:
+    return LocalizedText(values["en"], values["ja"])

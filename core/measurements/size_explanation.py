@@ -62,7 +62,7 @@ def _sentences(words: _Words, scale: Scale, value: float, unit: str) -> tuple[st
         return (words.above.format(told, scale.steps[-1].name, plain(scale.borders[-1])),)
     # The borders that decide, in gaps of the source too: how far the next step is counts from them.
     rule = words.inside.format(told, step.name, *map(plain, scale.ends(place)))
-    return (rule,) if step.says(value) else (rule, _gap(step.name, plain(step.least), plain(step.most)))
+    return (rule,) if step.is_listed(value) else (rule, _gap(step.name, plain(step.least), plain(step.most)))
 
 
 def _gap(name: str, least: str, most: str) -> str:

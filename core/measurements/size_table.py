@@ -15,7 +15,7 @@ UNDERBUST, BAND = "underbust", "band"
 
 
 @dataclass(frozen=True)
-class Words:
+class LocalizedText:
     """A text of a table in English, and in Japanese where somebody wrote it."""
 
     en: str
@@ -34,12 +34,12 @@ class Source:
     """
 
     name: str
-    words: Words
+    words: LocalizedText
     name_ja: str = ""
 
     def named(self, language: str) -> str:
         """Return the name in a language."""
-        return Words(self.name, self.name_ja).told(language)
+        return LocalizedText(self.name, self.name_ja).told(language)
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Step:
         """The nominal value of the step [unit]."""
         return (self.least + self.most) / 2
 
-    def says(self, value: float) -> bool:
+    def is_listed(self, value: float) -> bool:
         """Tell whether the source itself names this value, so that it lies in no gap of the table."""
         return self.least <= value <= self.most
 
@@ -116,16 +116,16 @@ class SizeTable:
 
     key: str
     system: str
-    title: Words
+    title: LocalizedText
     unit: str
     label: str
     cup_from: str
     bands: Scale
     cups: Scale
     sources: tuple[Source, ...]
-    doubts: tuple[Words, ...]
+    doubts: tuple[LocalizedText, ...]
     examples: tuple[Example, ...] = ()
-    caution: Words | None = None
+    caution: LocalizedText | None = None
 
     @property
     def unit_mm(self) -> float:

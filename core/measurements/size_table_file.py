@@ -16,11 +16,11 @@ from core.measurements.size_table import (
     UNDERBUST,
     UNIT_MM,
     Example,
+    LocalizedText,
     Scale,
     SizeTable,
     Source,
     Step,
-    Words,
 )
 
 FORMAT = 1
@@ -129,10 +129,10 @@ def _list(what: str, values: Any, read: Callable[[str, Any], T], least: int = 0)
     return tuple(read(what, each) for each in values)
 
 
-def _words(what: str, values: Any) -> Words:
+def _words(what: str, values: Any) -> LocalizedText:
     if not isinstance(values, dict) or "en" not in values or values.keys() - {"en", "ja"}:
         raise ValueError(f"{what} must have 'en', may have 'ja', and nothing else")
-    return Words(**{language: _text(what, text) for language, text in values.items()})
+    return LocalizedText(**{language: _text(what, text) for language, text in values.items()})
 
 
 def _source(what: str, values: Any) -> Source:

@@ -18,7 +18,7 @@ import platformdirs
 from core.document.custom_measures import WORN_TIGHT
 from core.errors import SizeError
 from core.measurements.size_explanation import allowance_sentence, band_sentences, cup_sentences
-from core.measurements.size_table import BAND, Scale, SizeTable, Words
+from core.measurements.size_table import BAND, LocalizedText, Scale, SizeTable
 from core.measurements.size_table_file import read_table, table_of
 
 ALLOWANCE = WORN_TIGHT
@@ -83,7 +83,7 @@ class SizeAnswer:
         return bool(self.label)
 
     @property
-    def doubts(self) -> tuple[Words, ...]:
+    def doubts(self) -> tuple[LocalizedText, ...]:
         """What is uncertain in the table."""
         return self.table.doubts
 
@@ -121,11 +121,11 @@ def sizes(underbust_mm: float, bust_mm: float, allowance_mm: float = 0.0) -> Map
 
     Custom tables that cannot be read are left out. Raises SizeError for girths that are not plausible.
     """
-    tables = (*built_in(), *own_tables()[0])
+    tables = (*built_in(), *user_tables()[0])
     return MappingProxyType({each.key: size(each, underbust_mm, bust_mm, allowance_mm) for each in tables})
 
 
-def nearby(answer: SizeAnswer, underbust_off: float, bust_off: float) -> tuple[str, ...]:
+def neighbours_of(answer: SizeAnswer, underbust_off: float, bust_off: float) -> tuple[str, ...]:
     """Return the other sizes of bodies whose girths are no further off than that [mm], the nearest first.
 
     Both girths may be off at once, together no further than the ellipse with these half axes.
@@ -174,16 +174,17 @@ def sizes_text(answer: SizeAnswer, language: str = "en") -> dict[str, Any]:
     }
 
 
-def with_nearby(
+def with_neighbours(
     told: Sequence[dict[str, Any]], underbust_off: float | None, bust_off: float | None
 ) -> tuple[dict[str, Any], ...]:
-    """Return sizes of ``sizes_text``, each with the others ``within_off`` (``nearby``) if both are known."""
+    """Return sizes of ``sizes_text``, each with the others ``within_off`` (``neighbours_of``) if both are known."""
     if underbust_off is None or bust_off is None or not told:
         return tuple(told)
     girths = ("underbust_mm", "bust_mm", "allowance_mm")
     answers = sizes(*(told[0][name] for name in girths))
     return tuple(
-        {**each, "within_off": list(nearby(answers[each["key"]], underbust_off, bust_off))} for each in told
+        {**each, "within_off": list(neighbours_of(answers[each["key"]], underbust_off, bust_off))}
+        for each in told
     )
 
 
@@ -194,15 +195,15 @@ def built_in() -> tuple[SizeTable, ...]:
     return tuple(table_of(key, (folder / f"{key}.json").read_text(encoding="utf-8")) for key in _ORDER)
 
 
-def own_folder() -> Path:
+def user_folder() -> Path:
     """Return where a designer's own tables lie, each as one JSON file."""
     return Path(platformdirs.user_data_path("Busk", appauthor=False)) / "sizes"
 
 
-def own_tables() -> tuple[list[SizeTable], list[SizeError]]:
+def user_tables() -> tuple[list[SizeTable], list[SizeError]]:
     """Return the designer's own tables, and why some of them cannot be read."""
     tables, problems = [], []
-    for path in sorted(own_folder().glob("*.json")):
+    for path in sorted(user_folder().glob("*.json")):
         try:
             if path.stem in _ORDER:
                 raise SizeError(f"Busk has a table {path.stem} itself.", f"Give {path.name} another name.")

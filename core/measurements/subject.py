@@ -17,7 +17,7 @@ from core.landmarks.torso.girths import trunk_sections
 from core.landmarks.types import CERTAIN, SIDES, Landmark, Landmarks
 from core.measurements.breast_root import Root, chart_of, root_of, side_of
 from core.measurements.breast_volume import Breast, breast_of
-from core.measurements.tracked_points import Riders, carried, riders
+from core.measurements.tracked_points import TrackedPoints, moved_landmarks, track_points
 
 UNSURE_TOP = 15.0
 """The top of a root may lie so much lower or higher than it is taken [mm]."""
@@ -76,14 +76,14 @@ class Subject:
             side: replace(root, loop=loop)
             for (side, root), loop in zip(self.roots.items(), loops, strict=True)
         }
-        after = carried(self.landmarks, marks)
+        after = moved_landmarks(self.landmarks, marks)
         return replace(self, mesh=self.mesh.moved(vertices), landmarks=after, roots=roots, gains=gains)
 
     @cached_property
-    def _riders(self) -> Riders:
+    def _riders(self) -> TrackedPoints:
         """All that rides on the skin: the landmarks, then the roots."""
         marks = [mark.position for mark in self.landmarks.points.values()]
-        return riders(self.mesh, np.concatenate([marks, *(root.loop for root in self.roots.values())]))
+        return track_points(self.mesh, np.concatenate([marks, *(root.loop for root in self.roots.values())]))
 
     @property
     def _parts(self) -> Indices:

@@ -11,11 +11,11 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from core.deformation.tffd import deform
-from core.document.custom_measures import OwnMeasure
+from core.document.custom_measures import CustomMeasurement
 from core.geometry.mesh import Mesh, Points
 from core.landmarks.types import Landmarks
-from core.measurements.bust import NO_ROOT, cup_measures, foremost_places
-from core.measurements.custom import OWN, own_measures
+from core.measurements.bust import NO_ROOT, apexes, cup_measures
+from core.measurements.custom import OWN, measure_custom
 from core.measurements.definitions import KEYS, Measure, definition_of, missing
 from core.measurements.girths import girth_measures
 from core.measurements.subject import Subject, subject_of
@@ -26,7 +26,7 @@ Measures = Mapping[str, Measure]
 """Measures by their keys, in the order of the table of definitions; own ones come last, as "own:NAME"."""
 
 
-def measures(mesh: Mesh, landmarks: Landmarks, own: Iterable[OwnMeasure] = ()) -> Measures:
+def measures(mesh: Mesh, landmarks: Landmarks, own: Iterable[CustomMeasurement] = ()) -> Measures:
     """Measure a body, by key; use the smoothed skin ``body.calm`` of a scan.
 
     A measurement that the scan does not show has the value None and the reason.
@@ -40,13 +40,15 @@ def before_after(stages: Stages, control_points: Points) -> tuple[Measures, Meas
     The landmarks move with the skin and the levels follow them; the lift of the apex exists only after.
     Raises ValueError unless there are as many control points as the control mesh has.
     """
-    mesh, landmarks, own = stages.body.calm, stages.landmarks, stages.design.own_measures
-    rest, before = subject_at_rest(mesh, landmarks), _at_rest(mesh, landmarks)
-    after = reshaped(rest, stages, control_points)
+    mesh, landmarks, own = stages.body.smoothed, stages.landmarks, stages.design.own_measures
+    rest, before = original_subject(mesh, landmarks), _at_rest(mesh, landmarks)
+    after = reshaped_subject(rest, stages, control_points)
     return _with_own(before, rest, own), of_subject(after, own, rest)
 
 
-def of_subject(subject: Subject, own: Iterable[OwnMeasure] = (), rest: Subject | None = None) -> Measures:
+def of_subject(
+    subject: Subject, own: Iterable[CustomMeasurement] = (), rest: Subject | None = None
+) -> Measures:
     """Return what a subject measures; told who it was at ``rest``, the lift of its apex too."""
     usual = dict(_usual(subject))
     if rest is not None:
@@ -54,44 +56,47 @@ def of_subject(subject: Subject, own: Iterable[OwnMeasure] = (), rest: Subject |
     return _with_own(_ordered(usual), subject, own)
 
 
-def own_before_after(stages: Stages, control_points: Points, own: OwnMeasure) -> tuple[Measure, Measure]:
+def custom_before_after(
+    stages: Stages, control_points: Points, own: CustomMeasurement
+) -> tuple[Measure, Measure]:
     """Return one measure of the designer's own at rest, and reshaped by ``control_points`` (n, 3) [mm].
 
     It need not belong to the design yet. Raises ValueError as ``before_after`` does.
     """
-    rest = subject_at_rest(stages.body.calm, stages.landmarks)
+    rest = original_subject(stages.body.smoothed, stages.landmarks)
     before, after = (
-        next(own_measures(subject, (own,))) for subject in (rest, reshaped(rest, stages, control_points))
+        next(measure_custom(subject, (own,)))
+        for subject in (rest, reshaped_subject(rest, stages, control_points))
     )
     return before, after
 
 
 @lru_cache(maxsize=2)  # while a line is dragged, the body at rest is one and the same
-def subject_at_rest(mesh: Mesh, landmarks: Landmarks) -> Subject:
+def original_subject(mesh: Mesh, landmarks: Landmarks) -> Subject:
     """Return who is measured, at rest: the calm skin, ``body.calm``, with its landmarks."""
     return subject_of(mesh, landmarks)
 
 
 @lru_cache(maxsize=2)
 def _at_rest(mesh: Mesh, landmarks: Landmarks) -> Measures:
-    return _ordered(_usual(subject_at_rest(mesh, landmarks)))
+    return _ordered(_usual(original_subject(mesh, landmarks)))
 
 
-def reshaped(rest: Subject, stages: Stages, control_points: Points) -> Subject:
+def reshaped_subject(rest: Subject, stages: Stages, control_points: Points) -> Subject:
     """Return a subject as ``control_points``, shape (n, 3) [mm], reshape it."""
     moves = deform(stages.binding, control_points) - stages.body.mesh.vertices
     left, right = stages.body_change(control_points).tolist()
-    return rest.moved(rest.mesh.vertices + calm_moves(stages.body, moves), (left, right))
+    return rest.moved(rest.mesh.vertices + smoothed_moves(stages.body, moves), (left, right))
 
 
-def calm_moves(body: Body, moves: Points) -> Points:
+def smoothed_moves(body: Body, moves: Points) -> Points:
     """Return how the vertices of the calm skin move where those of the scan make ``moves``, (n, 3) [mm].
 
     The calm skin has the vertices of the scan, or, of a giant scan, fewer: these go as the nearest do.
     """
-    if len(body.calm.vertices) == len(moves):
+    if len(body.smoothed.vertices) == len(moves):
         return moves
-    nearest = cKDTree(body.mesh.vertices).query(body.calm.vertices)[1]
+    nearest = cKDTree(body.mesh.vertices).query(body.smoothed.vertices)[1]
     return np.asarray(moves[nearest])
 
 
@@ -145,12 +150,12 @@ def _ordered(found: Measures) -> Measures:
     return {key: found[key] for key in KEYS if key in found}
 
 
-def _with_own(found: Measures, subject: Subject, own: Iterable[OwnMeasure]) -> Measures:
-    return MappingProxyType({**found, **{each.key: each for each in own_measures(subject, own)}})
+def _with_own(found: Measures, subject: Subject, own: Iterable[CustomMeasurement]) -> Measures:
+    return MappingProxyType({**found, **{each.key: each for each in measure_custom(subject, own)}})
 
 
 def _lift(subject: Subject, rest: Subject) -> Measure:
-    now, before = foremost_places(subject), foremost_places(rest)
+    now, before = apexes(subject), apexes(rest)
     if now is None or before is None:
         return missing("apex_lift", NO_ROOT)
     sure = min(root.confidence for root in subject.roots.values())

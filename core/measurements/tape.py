@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from core.geometry.mesh import Points
-from core.geometry.plane_sections import Section, hull_corners, ordered
+from core.geometry.plane_sections import Section, hull_corners, ordered_rows
 from core.landmarks.torso.cross_sections import Level
 
 ROUNDED = 4
@@ -27,7 +27,7 @@ def skin_ring(level: Level) -> Points:
     ids = np.unique(rounded, axis=0, return_inverse=True)[1].reshape(len(segments), 2)
     whole = ids[:, 0] != ids[:, 1]
     section = Section(segments[whole], ids[whole])
-    pieces = [section.points[rows] for rows in ordered(section)]
+    pieces = [section.points[rows] for rows in ordered_rows(section)]
     if not pieces:
         return np.empty((0, 3))
     ends = np.array([[piece[0], piece[-1]] for piece in pieces])

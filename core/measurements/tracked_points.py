@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from core.geometry.closest_point import nearest_faces, shares
+from core.geometry.closest_point import barycentric, nearest_faces
 from core.geometry.mesh import Faces, Floats, Mesh, Points
 from core.landmarks.types import SIDES, Landmark, Landmarks
 
@@ -17,7 +17,7 @@ SAME = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Riders:
+class TrackedPoints:
     """Places, shape (k, 3) [mm], that move as the triangles ``corners`` (k, 3) below them, by ``shares``."""
 
     places: Points
@@ -29,14 +29,14 @@ class Riders:
         return np.asarray(self.places + np.einsum("kc,kcj->kj", self.shares, moves[self.corners]))
 
 
-def riders(mesh: Mesh, places: Points) -> Riders:
+def track_points(mesh: Mesh, places: Points) -> TrackedPoints:
     """Bind ``places``, shape (k, 3) [mm], to the nearest skin of ``mesh``; they keep their distance to it."""
     faces, feet = nearest_faces(mesh, places)
     corners = mesh.faces[faces]
-    return Riders(places, corners, shares(mesh.vertices[corners], feet))
+    return TrackedPoints(places, corners, barycentric(mesh.vertices[corners], feet))
 
 
-def carried(landmarks: Landmarks, places: Points) -> Landmarks:
+def moved_landmarks(landmarks: Landmarks, places: Points) -> Landmarks:
     """Return ``landmarks`` at other ``places``, in their order, shape (k, 3) [mm].
 
     The levels follow the landmarks that they were taken from.

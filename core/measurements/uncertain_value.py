@@ -30,7 +30,7 @@ MOST = 3.0
 
 
 @dataclass(frozen=True)
-class Doubt:
+class Uncertainty:
     """How far one figure may be off: the standard deviation by source, in the figure's unit."""
 
     by_source: Mapping[str, float]
@@ -48,7 +48,7 @@ class Doubt:
         return dict(sorted(parts.items(), key=lambda part: -part[1]))
 
     @property
-    def by_factor(self) -> bool:
+    def is_factor(self) -> bool:
         """Whether sources that are known to a factor make most of it."""
         return sum(self.shares.get(name, 0.0) for name in FACTORS) > 0.5
 
@@ -57,16 +57,16 @@ class Doubt:
 class Spread:
     """How far the figures of one solved design may be off.
 
-    ``doubts`` by the keys of figures; a figure that is not known has none. ``skin`` (n,) [mm] is the standard
+    ``by_output`` by the keys of figures; a figure that is not known has none. ``skin`` (n,) [mm] is the standard
     deviation of each vertex of the reshaped body along its normal, ``rest`` [mm] that of the body at rest.
     What is told after the ± is ``sds`` standard deviations. ``sources`` are those that are in; the landmarks
     come last. ``other`` tells the figures if lines had the ``contact`` that the design has not: a choice of
-    the model, and no part of the ±. ``failed`` counts what was tried and had no answer. ``figures`` are
+    the model, and no part of the ±. ``failed`` counts what was tried and had no answer. ``values`` are
     those where the run comes to rest, which all of this is told of; ``bare`` is a body that wears no line.
     ``cautions`` are sentences on where this ± says less than it seems to.
     """
 
-    doubts: Mapping[str, Doubt]
+    by_output: Mapping[str, Uncertainty]
     skin: Floats
     rest: float
     sds: float
@@ -74,7 +74,7 @@ class Spread:
     other: Mapping[str, float]
     contact: str
     failed: int = 0
-    figures: Mapping[str, float] = field(default_factory=dict)
+    values: Mapping[str, float] = field(default_factory=dict)
     bare: bool = False
     cautions: tuple[str, ...] = ()
 
@@ -89,13 +89,13 @@ class Spread:
         None for one that is not known, and where a ± would be wrong: see ``between``.
         """
         off = self._off(key)
-        uneven = off is not None and _kind(key) in FORCES and (self.factor(key) or off > self.figures[key])
+        uneven = off is not None and _kind(key) in FORCES and (self.factor(key) or off > self.values[key])
         return None if uneven else off
 
     def factor(self, key: str) -> float | None:
         """Return by what a figure may be too small or too large, where mostly factors make it so."""
-        off, value = self._off(key), self.figures.get(key, 0.0)
-        if off is None or _kind(key) not in FORCES or not self.doubts[key].by_factor or off > MOST * value:
+        off, value = self._off(key), self.values.get(key, 0.0)
+        if off is None or _kind(key) not in FORCES or not self.by_output[key].is_factor or off > MOST * value:
             return None
         return exp(off / value)
 
@@ -110,7 +110,7 @@ class Spread:
         return (max(ends[0], 0.0), max(ends[1], 0.0)) if _kind(key) in FORCES else ends  # a band cannot push
 
     def _off(self, key: str) -> float | None:
-        doubt = self.doubts.get(key)
+        doubt = self.by_output.get(key)
         return None if doubt is None else self.sds * doubt.sd
 
 
@@ -118,21 +118,21 @@ def _kind(key: str) -> str:
     return key.partition(":")[0]
 
 
-def told_between(low: float, high: float) -> str:
+def format_range(low: float, high: float) -> str:
     """Return a range as it is written where there are no other words for numbers."""
-    return f"{low:.{digits(low)}f} to {high:.{digits(high)}f}"
+    return f"{low:.{uncertainty_digits(low)}f} to {high:.{uncertainty_digits(high)}f}"
 
 
-def digits(off: float) -> int:
+def uncertainty_digits(off: float) -> int:
     """Return how many decimals a ± is told with: none from 10 on, else one; the one rule of rounding."""
     return 0 if off >= 9.95 else 1
 
 
-def told_off(off: float) -> str:
+def format_uncertainty(off: float) -> str:
     """Return a ± as it is written where there are no other words for numbers."""
-    return f"{rounded(off):.{digits(off)}f}"
+    return f"{round_uncertainty(off):.{uncertainty_digits(off)}f}"
 
 
-def rounded(off: float) -> float:
+def round_uncertainty(off: float) -> float:
     """Return a ± as it is told; nothing is told to be surer than 0.1."""
-    return max(round(off, digits(off)), 0.1)
+    return max(round(off, uncertainty_digits(off)), 0.1)

@@ -10,7 +10,7 @@ from core.geometry.mesh import Faces, Flags, Floats, Points
 
 
 @dataclass(frozen=True, eq=False)
-class Chart:
+class UnrolledTorso:
     """Rolls out places about an upright axis at ``centre``, shape (2,) [mm].
 
     u [mm] is the way round the axis at the distance ``radius`` [mm], 0 in front and growing towards the left,
@@ -20,12 +20,12 @@ class Chart:
     centre: Points
     radius: float
 
-    def flat(self, places: Points) -> Points:
+    def unroll(self, places: Points) -> Points:
         """Return u, v, w of ``places``, shape (k, 3) [mm]."""
         x, y = (places[:, :2] - self.centre).T
         return np.stack([self.radius * np.arctan2(x, -y), places[:, 2], np.hypot(x, y)], axis=1)
 
-    def back(self, uvw: Points) -> Points:
+    def roll_up(self, uvw: Points) -> Points:
         """Return the places with u, v, w as in ``uvw``, shape (k, 3) [mm]."""
         u, v, w = uvw.T
         angle = u / self.radius

@@ -51,7 +51,7 @@ def member_entries(signs: Operator) -> Entries:
     Of a member whose vector is the sum of ``signs`` (s, f) times the free points, B lies between points i and
     j times both signs. The figures are the blocks, (9 s,).
     """
-    member, point, sign = nonzeros(signs)
+    member, point, sign = nonzero_entries(signs)
     i, j = same_member(member)
     a, b = (axis.ravel()[None, :] for axis in np.indices((3, 3)))
     row, column = 3 * point[i][:, None] + a, 3 * point[j][:, None] + b
@@ -64,11 +64,11 @@ def same_member(member: Indices) -> tuple[Indices, Indices]:
     """Return all pairs of rows, both (p,), that belong to the same ``member`` (e,)."""
     shape = int(member.max(initial=-1)) + 1, len(member)
     belongs = sparse.csr_array((np.ones(len(member)), (member, np.arange(len(member)))), shape=shape)
-    first, second, _ = nonzeros(sparse.csr_array(belongs.T @ belongs))
+    first, second, _ = nonzero_entries(sparse.csr_array(belongs.T @ belongs))
     return first, second
 
 
-def nonzeros(matrix: Operator) -> tuple[Indices, Indices, Floats]:
+def nonzero_entries(matrix: Operator) -> tuple[Indices, Indices, Floats]:
     """Return rows, columns and values of the entries that are not 0, each (e,)."""
     row, column, value = sparse.find(sparse.csr_array(matrix))
     return row.astype(np.int64), column.astype(np.int64), value

@@ -96,7 +96,7 @@ def free_line(
     return Line(name, weights, frozen(lengths), spacing, back_length, constrains, tail_length)
 
 
-def typed_ratio(text: str, rest_mm: float, unit: str = "%") -> float | None:
+def parse_ratio(text: str, rest_mm: float, unit: str = "%") -> float | None:
     """Return what a designer writes for a length as ratio of the rest length [1], or None if it is no length.
 
     ``97%`` of the front part's rest length, ``-6%`` or ``-20mm`` (also cm, in) shorter or longer, ``400mm``
@@ -121,12 +121,12 @@ def _typed(text: str, unit: str) -> tuple[str, float, str] | None:
 
 
 def length_ratio(text: str, name: str, rest_mm: float, whole_mm: float, unit: str = "%") -> float:
-    """Read the length of line ``name`` as ``typed_ratio`` does, within RATIO_LIMITS.
+    """Read the length of line ``name`` as ``parse_ratio`` does, within RATIO_LIMITS.
 
     Raises LineError if it is none, or out of range: what can only be the length of the whole band,
     ``whole_mm`` at rest, is not taken for that of the front part without a word.
     """
-    typed, ratio = _typed(text, unit), typed_ratio(text, rest_mm, unit)
+    typed, ratio = _typed(text, unit), parse_ratio(text, rest_mm, unit)
     if typed is None or ratio is None:
         raise LineError(
             f"'{text}' is not a length for {name}.",

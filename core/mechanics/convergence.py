@@ -13,7 +13,7 @@ import numpy as np
 
 from core.geometry.mesh import Floats, Indices
 from core.mechanics.iteration import Record
-from core.mechanics.mesh_quality import Condition
+from core.mechanics.mesh_quality import MeshQuality
 
 MOTIONS = ("settled", "settling", "vibrating", "diverging")
 """What a run can do."""
@@ -24,7 +24,7 @@ STATES = (*MOTIONS, "folded", "overstrained")
 SOUND = ("settled", "strained", "settling")
 """What is told of runs whose figures can be worked with, or will be once all has settled."""
 
-SETTLED_STEP = 0.002
+CONVERGED_STEP = 0.002
 """A run has settled when no control point moved further than this in each of the last turns [mm]."""
 
 _QUIET_TURNS = 5
@@ -40,7 +40,7 @@ _SPANS = (24, 48)  # over which its growth is: the longer for swings that come a
 
 
 @dataclass(frozen=True)
-class Verdict:
+class Convergence:
     """How a run stands: ``motion`` is one of MOTIONS, ``condition`` that of the control mesh, if known.
 
     ``error`` [1] is the mean volume error of the last turns. ``period`` [turns], ``amplitude`` [1] (half the
@@ -49,12 +49,12 @@ class Verdict:
     """
 
     motion: str
-    turns: int
+    iterations: int
     error: float
     period: float = 0.0
     amplitude: float = 0.0
     growth: float = 1.0
-    condition: Condition | None = None
+    condition: MeshQuality | None = None
 
     @property
     def state(self) -> str:
@@ -70,7 +70,7 @@ class Verdict:
         return "overstrained" if self.condition.overstrained else self.motion
 
     @property
-    def told(self) -> str:
+    def display_state(self) -> str:
         """The state as designers are told it: "strained" where skin strains though all has settled."""
         strained = self.condition is not None and self.condition.strained
         return "strained" if self.state == "settled" and strained else self.state
@@ -79,14 +79,14 @@ class Verdict:
     def strain(self) -> tuple[float, float] | None:
         """How far a "strained" skin is pressed together and stretched at most [%], else None."""
         condition = self.condition
-        if condition is None or self.told != "strained":
+        if condition is None or self.display_state != "strained":
             return None
         return 100.0 * (condition.shortest - 1.0), 100.0 * (condition.longest - 1.0)
 
     @property
-    def sound(self) -> bool:
+    def is_valid(self) -> bool:
         """Whether figures can be worked with, or will be once all has settled."""
-        return self.told in SOUND
+        return self.display_state in SOUND
 
     @property
     def words(self) -> str:
@@ -94,23 +94,25 @@ class Verdict:
         return self.motion if self.state == self.motion else f"{self.motion} but {self.state}"
 
 
-def judge(records: Sequence[Record], condition: Condition | None = None) -> Verdict:
+def assess_convergence(records: Sequence[Record], condition: MeshQuality | None = None) -> Convergence:
     """Judge a run by its records so far, and by the condition of its control mesh if that is known."""
     if not records:
-        return Verdict("settling", 0, 0.0, condition=condition)
+        return Convergence("settling", 0, 0.0, condition=condition)
     last, recent = records[-1], records[-_LOOK_BACK:]
     errors = np.array([record.error for record in recent])
     if not np.isfinite(errors).all():
-        return Verdict("diverging", last.turn, last.error, condition=condition)
-    if len(recent) >= _QUIET_TURNS and max(record.step for record in recent[-_QUIET_TURNS:]) < SETTLED_STEP:
-        return Verdict("settled", last.turn, last.error, condition=condition)
+        return Convergence("diverging", last.iteration, last.error, condition=condition)
+    if len(recent) >= _QUIET_TURNS and max(record.step for record in recent[-_QUIET_TURNS:]) < CONVERGED_STEP:
+        return Convergence("settled", last.iteration, last.error, condition=condition)
     if abs(last.error) > _DIVERGED:
-        return Verdict("diverging", last.turn, last.error, condition=condition)
+        return Convergence("diverging", last.iteration, last.error, condition=condition)
     swing = _strongest_swing(errors) or _shape_swing(recent)
     if swing is None:
-        return Verdict("settling", last.turn, float(errors[-2:].mean()), condition=condition)
+        return Convergence("settling", last.iteration, float(errors[-2:].mean()), condition=condition)
     mean = float(errors[-swing.window :].mean())
-    return Verdict("vibrating", last.turn, mean, swing.period, swing.amplitude, swing.growth, condition)
+    return Convergence(
+        "vibrating", last.iteration, mean, swing.period, swing.amplitude, swing.growth, condition
+    )
 
 
 @dataclass(frozen=True)

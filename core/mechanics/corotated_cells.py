@@ -55,7 +55,7 @@ class Cells:
         np.subtract.at(total, self.around.ravel(), force.reshape(-1, 3))
         return np.asarray(total[self.place >= 0])
 
-    def turning(self, spans: Points, rotations: Points) -> Floats:
+    def rotation_blocks(self, spans: Points, rotations: Points) -> Floats:
         """Return what free turning takes off the stiffness: a block per cell, shape (c, 3 k + 3, 3 k + 3).
 
         With S = R Y the correlation and b = sum w E x R^T de, a change de costs b . (tr Y - Y)^-1 b less.
@@ -69,7 +69,7 @@ class Cells:
         return np.asarray(np.swapaxes(flat, 1, 2) @ np.linalg.solve(stiff, flat))
 
     def entries(self) -> Entries:
-        """Return where the blocks of ``turning`` lie, with the sign that takes them off."""
+        """Return where the blocks of ``rotation_blocks`` lie, with the sign that takes them off."""
         members = self.place[np.column_stack([self.centre, self.around])]
         members[:, 1:][self.weight == 0.0] = -1
         coordinate = (3 * members[:, :, None] + np.arange(3)).reshape(len(members), -1)

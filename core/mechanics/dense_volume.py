@@ -15,7 +15,7 @@ import numpy as np
 from core.geometry.mesh import Floats, Points
 from core.mechanics.exact_solution import NEWTON_LIMIT, solve_exact
 from core.mechanics.model import ConstrainedModel
-from core.mechanics.newton import Balance
+from core.mechanics.newton import Equilibrium
 from core.mechanics.sensitivity import Rates
 
 BodyChange = Callable[[Points], Floats]
@@ -33,8 +33,8 @@ def solve_body_exact(
     change: BodyChange,
     limit: int = NEWTON_LIMIT,
     *,
-    near: Balance | None = None,
-) -> Balance:
+    near: Equilibrium | None = None,
+) -> Equilibrium:
     """Return the exact balance for line ``ratios`` at which the body keeps its volume.
 
     With ``volume_of`` "each" both breasts of the body do. It is not ``found`` if the outer loop does not end.
@@ -43,23 +43,23 @@ def solve_body_exact(
     for _ in range(_ROUNDS):
         last = near = solve_exact(model, ratios, limit, excess=excess, near=near)
         steps += last.steps
-        too_much = gained(model, change, last)
-        if not last.found or np.abs(too_much).max() < PRECISION * abs(model.volume.rest_volume):
+        too_much = volume_gain(model, change, last)
+        if not last.is_converged or np.abs(too_much).max() < PRECISION * abs(model.volume.rest_volume):
             return replace(last, steps=steps)
         excess = excess - too_much
     return replace(last, steps=steps, residual=np.inf)
 
 
-def gained(model: ConstrainedModel, change: BodyChange, balance: Balance) -> Floats:
+def volume_gain(model: ConstrainedModel, change: BodyChange, balance: Equilibrium) -> Floats:
     """Return what the body's left and right have beyond what they are to keep, shape (2,) [mm^3].
 
     Where only their sum is kept, each side's is half of it.
     """
     more = change(model.tensegric.expand(balance.state.moved))
-    return more if model.mechanics.volume_of == "each" else np.full(2, more.sum() / 2.0)
+    return more if model.options.volume_of == "each" else np.full(2, more.sum() / 2.0)
 
 
-def body_kept(rates: Rates, by_excess: Rates, slopes: Floats, *, each: bool) -> Rates:
+def rates_at_body_volume(rates: Rates, by_excess: Rates, slopes: Floats, *, each: bool) -> Rates:
     """Return the rates at which the body, not the control mesh, keeps its volume.
 
     ``rates`` are those at which the control mesh keeps it and ``by_excess`` those by its excess; ``slopes``

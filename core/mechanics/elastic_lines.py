@@ -15,7 +15,7 @@ import numpy as np
 
 from core.geometry.mesh import Floats
 from core.mechanics.model import ConstrainedModel, assemble
-from core.mechanics.newton import Balance
+from core.mechanics.newton import Equilibrium
 
 PRECISION = 1e-9
 """By how much the force of a line may differ from its elastic's at the same length, in parts."""
@@ -24,11 +24,11 @@ _GOOD = 1e-6  # where the precision above is out of reach, this will do
 _ROUNDS = 40
 _STEEPEST, _FLATTEST = -10.0, -0.2  # how the misfit is thought to change with the logarithm of EA
 
-Solve = Callable[[ConstrainedModel], Balance]
+Solve = Callable[[ConstrainedModel], Equilibrium]
 """Finds the exact answer of a model from rest."""
 
 
-class Stretchy(Protocol):
+class ElasticCurve(Protocol):
     """What is asked of an elastic."""
 
     def secant(self, elongation: float) -> float:
@@ -36,7 +36,7 @@ class Stretchy(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Fitted:
+class FittedModel:
     """A ``model`` whose lines pull as their elastics do, with their ``elongations`` [1] by name.
 
     ``agreed`` tells whether it has an exact answer at all, and force and length agree there; ``balance`` is
@@ -46,7 +46,7 @@ class Fitted:
     model: ConstrainedModel
     elongations: Mapping[str, float]
     agreed: bool
-    balance: Balance
+    balance: Equilibrium
     log_ea: Floats
 
 
@@ -60,7 +60,7 @@ class ElasticLines:
 
     model: ConstrainedModel
     ratios: Mapping[str, float]
-    elastics: Mapping[str, Stretchy]
+    elastics: Mapping[str, ElasticCurve]
     newtons: float
     own_stiffness: Mapping[str, float]
 
@@ -76,11 +76,11 @@ class ElasticLines:
             name: float(each) / self.ratios[name] / (unit * segment[name])
             for name, each in zip(self.elastics, ea, strict=True)
         }
-        worn = [model.lines[at].name for at in model.pulling]
+        worn = [model.lines[at].name for at in model.acting_lines]
         stiffness = {**self.own_stiffness, **own}
-        return assemble(model.tensegric, model.lines, model.volume, worn, stiffness).laid_as(model)
+        return assemble(model.tensegric, model.lines, model.volume, worn, stiffness).with_layout_of(model)
 
-    def elongations(self, model: ConstrainedModel, balance: Balance) -> dict[str, float]:
+    def elongations(self, model: ConstrainedModel, balance: Equilibrium) -> dict[str, float]:
         """Return how far the front of each elastic is stretched [1], by line."""
         lengths = dict(
             zip(
@@ -99,7 +99,7 @@ class ElasticLines:
 
 def fit_elastics(
     lines: ElasticLines, solve: Solve, begin: Floats | None = None, precision: float = PRECISION
-) -> Fitted:
+) -> FittedModel:
     """Return the model in which each elastic's force and length are a point of its curve.
 
     EA is sought in logarithms, for each line with the slope that its last two rounds showed, from ``begin``
@@ -116,11 +116,13 @@ def fit_elastics(
         stretched = lines.elongations(model, balance)
         misfit = np.log(lines.secants(stretched)) - log_ea
         worst = float(np.abs(misfit).max(initial=0.0))
-        if not balance.found or worst < precision:
+        if not balance.is_converged or worst < precision:
             break
         seen = np.abs(step) > 1e-12
         slope = np.where(seen, (misfit - before) / np.where(seen, step, 1.0), slope)
         slope = np.clip(slope, _STEEPEST, _FLATTEST)
         before, step = misfit, -misfit / slope
         log_ea = log_ea + step
-    return Fitted(model, stretched, balance.found and worst < max(_GOOD, precision), balance, log_ea)
+    return FittedModel(
+        model, stretched, balance.is_converged and worst < max(_GOOD, precision), balance, log_ea
+    )

@@ -13,10 +13,10 @@ from dataclasses import replace
 import numpy as np
 
 from core.geometry.mesh import Floats
-from core.mechanics.iteration import Targets, at_rest, iterate
+from core.mechanics.iteration import LineTargets, initial_state, iterate
 from core.mechanics.model import ConstrainedModel
-from core.mechanics.newton import Balance, balance_at, energy_steps
-from core.mechanics.newton_sliding import Skin, sliding_steps
+from core.mechanics.newton import Equilibrium, energy_steps, equilibrium_at
+from core.mechanics.newton_sliding import SlidingSurface, sliding_steps
 from core.mechanics.potential import Potential
 
 NEWTON_LIMIT = 200
@@ -37,9 +37,9 @@ def solve_exact(
     limit: int = NEWTON_LIMIT,
     *,
     excess: Floats | None = None,
-    near: Balance | None = None,
+    near: Equilibrium | None = None,
     turns: bool = True,
-) -> Balance:
+) -> Equilibrium:
     """Return the exact balance for line ``ratios``, one per line.
 
     ``excess`` (2,) [mm^3] is what the left and the right volume are to have beyond rest. ``near`` is a
@@ -57,32 +57,32 @@ def newton(
     limit: int = NEWTON_LIMIT,
     *,
     excess: Floats | None = None,
-    near: Balance | None = None,
+    near: Equilibrium | None = None,
     turns: bool = True,
-) -> Iterator[Balance]:
+) -> Iterator[Equilibrium]:
     """Yield the iterates on the way to the exact balance, the start included; see ``solve_exact``."""
     potential = Potential(model, ratios, excess)
-    start = balance_at(potential, at_rest(model).moved) if near is None else near
+    start = equilibrium_at(potential, initial_state(model).moved) if near is None else near
     last = replace(start, steps=0)
     if near is not None or not _slides(model):
         for last in _steps(potential, start, min(limit, _most_steps(model))):
             yield last
-        if last.found or last.steps >= limit:
+        if last.is_converged or last.steps >= limit:
             return
     slides, spared = _slides(model), _STRIDE_STEPS if _slides(model) else 0
     done, most = last.steps, limit - last.steps - spared
     for last in _walk(model, ratios, excess, max(most, 1), keeps=slides):
         yield replace(last, steps=done + last.steps)
-    if last.found or not slides:
+    if last.is_converged or not slides:
         return
     done += last.steps
     turned = _turned(model, ratios, excess) if turns and most >= 0 else None
-    if turned is None or not turned.found:
+    if turned is None or not turned.is_converged:
         for last in _walk(model, ratios, excess, max(most, 1), keeps=False):
             yield replace(last, steps=done + last.steps)
         done += last.steps
     # Where turns run away, what the walk came to stays the answer.
-    if turned is not None and not last.found:
+    if turned is not None and not last.is_converged:
         yield replace(turned, steps=done + turned.steps)
 
 
@@ -91,17 +91,17 @@ def _most_steps(model: ConstrainedModel) -> int:
 
 
 def _slides(model: ConstrainedModel) -> bool:
-    return model.mechanics.line_contact == "sliding" and len(model.owner) > 0
+    return model.options.line_contact == "sliding" and len(model.owner) > 0
 
 
-def _steps(potential: Potential, start: Balance, limit: int) -> Iterator[Balance]:
+def _steps(potential: Potential, start: Equilibrium, limit: int) -> Iterator[Equilibrium]:
     steps = sliding_steps if _slides(potential.model) else energy_steps
     return steps(potential, start, limit)
 
 
 def _walk(
     model: ConstrainedModel, ratios: tuple[float, ...], excess: Floats | None, limit: int, keeps: bool
-) -> Iterator[Balance]:
+) -> Iterator[Equilibrium]:
     """Yield the iterates of a walk from rest to ``ratios`` in strides, the last one where it breaks off.
 
     Each stride ends in a balance. Under sliding lines others lie about: one that ``keeps`` to the branch that
@@ -111,17 +111,17 @@ def _walk(
     way = max(abs(ratio - 1.0) for ratio in ratios)
     first = stride = min(1.0, _STRIDE / max(way, 1e-9))
     done, steps, kept = 0.0, 0, keeps
-    last = balance_at(Potential(model, ratios), at_rest(model).moved)
+    last = equilibrium_at(Potential(model, ratios), initial_state(model).moved)
     while done < 1.0 and steps < limit and stride > _SHORTEST_STRIDE * first:
         share = min(done + stride, 1.0)
         between = tuple(1.0 + share * (ratio - 1.0) for ratio in ratios)
         potential = Potential(model, between, None if excess is None else share * excess)
         found, ways = last, _steps(potential, last, min(_STRIDE_STEPS, limit - steps))
         for found in _as_led(last, ways) if kept else ways:
-            if found.steps or found.found:
+            if found.steps or found.is_converged:
                 yield replace(found, steps=steps + found.steps)
         steps += found.steps
-        if found.found:
+        if found.is_converged:
             done, last, stride, kept = share, found, 1.5 * stride, keeps
         elif kept and stride < _KEEPS_DOWN_TO * first:
             stride, kept = first, False
@@ -131,7 +131,7 @@ def _walk(
         yield replace(last, steps=steps, residual=np.inf)
 
 
-def _as_led(start: Balance, steps: Iterator[Balance]) -> Iterator[Balance]:
+def _as_led(start: Equilibrium, steps: Iterator[Equilibrium]) -> Iterator[Equilibrium]:
     """Yield ``steps`` as long as they keep to where the first of them leads from ``start``."""
     towards, allowed = start.state.moved, np.inf
     for step in steps:
@@ -143,35 +143,37 @@ def _as_led(start: Balance, steps: Iterator[Balance]) -> Iterator[Balance]:
         yield step
 
 
-def _turned(model: ConstrainedModel, ratios: tuple[float, ...], excess: Floats | None) -> Balance | None:
+def _turned(model: ConstrainedModel, ratios: tuple[float, ...], excess: Floats | None) -> Equilibrium | None:
     """Return what adaptive turns and a few Newton steps after them come to, None if they run away.
 
     Turns hold the sum of both breasts, so that is balanced first; then each is given what it should have.
     """
-    moved = at_rest(model).moved
-    for state, measured in iterate(model, lambda: Targets(ratios), turns=_TURNS):
+    moved = initial_state(model).moved
+    for state, measured in iterate(model, lambda: LineTargets(ratios), turns=_TURNS):
         moved = state.moved
         if measured.step < _AT_REST:
             break
-    both = replace(model.tensegric, mechanics=replace(model.mechanics, volume_of="both"))
+    both = replace(model.tensegric, mechanics=replace(model.options, volume_of="both"))
     potential = Potential(replace(model, tensegric=both), ratios, excess)
     place = potential.at(moved)
-    forces, push = Skin(potential.model).projected(place)
+    forces, push = SlidingSurface(potential.model).projected(place)
     multipliers = np.asarray(np.linalg.lstsq(push.T, forces, rcond=1e-12)[0])
-    start = balance_at(potential, moved, np.inf, multipliers)
+    start = equilibrium_at(potential, moved, np.inf, multipliers)
     best = min(_steps(potential, start, _STRIDE_STEPS), key=lambda balance: balance.residual)
-    if best.found and len(Potential(model, ratios).sides) == 2:
+    if best.is_converged and len(Potential(model, ratios).sides) == 2:
         best = _shared_out(model, ratios, np.zeros(2) if excess is None else excess, best)
-    return best if best.found or measured.step < _AWAY else None
+    return best if best.is_converged or measured.step < _AWAY else None
 
 
-def _shared_out(model: ConstrainedModel, ratios: tuple[float, ...], excess: Floats, both: Balance) -> Balance:
+def _shared_out(
+    model: ConstrainedModel, ratios: tuple[float, ...], excess: Floats, both: Equilibrium
+) -> Equilibrium:
     """Return the balance in which each breast has its volume, from one in which the sum is right."""
     gap = model.volume.side_volumes(model.tensegric.expand(both.state.moved)) - model.rest_sides - excess
     last = replace(both, multipliers=np.concatenate([both.multipliers[:1], both.multipliers]))
     for share in np.linspace(0.95, 0.0, 20):
         potential = Potential(model, ratios, excess + share * gap)
         *_, last = _steps(potential, last, _STRIDE_STEPS)
-        if not last.found:
+        if not last.is_converged:
             break
     return last

@@ -18,9 +18,9 @@ from core.geometry.mesh import Floats, unit
 from core.mechanics.banded_matrix import Entries, Operator, Solve
 from core.mechanics.iteration import HELD_GROWTH
 from core.mechanics.model import ConstrainedModel
-from core.mechanics.newton import Balance, balance_at
-from core.mechanics.newton_sliding import LONGEST_STEP, Skin
-from core.mechanics.potential import Place, Potential
+from core.mechanics.newton import Equilibrium, equilibrium_at
+from core.mechanics.newton_sliding import LONGEST_STEP, SlidingSurface
+from core.mechanics.potential import Evaluation, Potential
 from core.mechanics.springs import stretch_blocks
 
 _NEAR_ENOUGH = 1e-6  # largest unbalanced force over the mean stiffness [mm]: the limit does not see less
@@ -34,7 +34,7 @@ def gain_limit(model: ConstrainedModel) -> float:
     """
     a = model.rest_gradient
     cables, lines = _double_lower_less_true(model)
-    if model.mechanics.line_contact == "sliding":
+    if model.options.line_contact == "sliding":
         n = unit(a)
         across = sparse.csr_array(sparse.block_diag([np.outer(v, v) for v in n], format="csr"))
         lines = sparse.csr_array(across @ lines)
@@ -42,13 +42,13 @@ def gain_limit(model: ConstrainedModel) -> float:
     return model.probe / abs(float(a.ravel() @ d))
 
 
-class Swing:
+class OscillationLimit:
     """What turns of the conventional control come to in a ``model``, and when they swing about it."""
 
     def __init__(self, model: ConstrainedModel) -> None:
         self._model = model
-        slides = model.mechanics.line_contact == "sliding" and len(model.owner) > 0
-        self._skin = Skin(model) if slides else None
+        slides = model.options.line_contact == "sliding" and len(model.owner) > 0
+        self._skin = SlidingSurface(model) if slides else None
         band = model.layout.band
         lower = _lower_entries(model.tensegric.stiffness if slides else model.stiffness)
         self._lower = band.general(lower) @ np.ones(1)
@@ -66,7 +66,7 @@ class Swing:
                 )
             )
 
-    def balance(self, potential: Potential, near: Balance, gain: float) -> Balance | None:
+    def equilibrium(self, potential: Potential, near: Equilibrium, gain: float) -> Equilibrium | None:
         """Return where turns of the conventional control with ``gain`` come to rest, if they do, or None.
 
         Its pressure is ``gain`` times the volume error, so volume is missing there; ``near`` is the exact
@@ -85,7 +85,7 @@ class Swing:
             unbalanced = np.abs(forces - multipliers @ push).max() / self._model.tensegric.mean_stiffness
             whole = _apart(multipliers, sides)
             if max(unbalanced, np.abs(amiss).max()) < _NEAR_ENOUGH:
-                return balance_at(potential, moved, unbalanced, whole, step)
+                return equilibrium_at(potential, moved, unbalanced, whole, step)
             solve = self._model.layout.band.lu(self._derivative(potential, place, whole))
             if solve is None:
                 return None
@@ -100,8 +100,8 @@ class Swing:
             moved = moved + shift * (LONGEST_STEP / max(longest, LONGEST_STEP))
         return None
 
-    def limit(self, potential: Potential, balance: Balance) -> float:
-        """Return the gain above which small errors flip and grow where ``balance`` is (probe units [1]).
+    def limit(self, potential: Potential, balance: Equilibrium) -> float:
+        """Return the gain above which small errors flip and grow where ``equilibrium`` is (probe units [1]).
 
         Lines whose length is held also change their tension from turn to turn; that is in it. Whether turns
         swing without any volume force is told by ``overshoot``.
@@ -116,8 +116,8 @@ class Swing:
         flipped = self._with_held(potential, place, solve, a)
         return max(self._model.probe / float(a @ flipped), 0.0)
 
-    def overshoot(self, potential: Potential, balance: Balance) -> float:
-        """Return how far one turn goes where it goes furthest, over the way to ``balance`` [1].
+    def overshoot(self, potential: Potential, balance: Equilibrium) -> float:
+        """Return how far one turn goes where it goes furthest, over the way to ``equilibrium`` [1].
 
         Beyond 2 that move flips and grows from turn to turn, whatever holds the volume. It can only where
         turns leave out the stiffness of the lines: it is the largest real part of an eigenvalue of M^-1 K.
@@ -140,26 +140,26 @@ class Swing:
         found = sparse_linalg.eigs(loop, 1, which="LR", v0=begin, tol=1e-4, return_eigenvectors=False)
         return float(found[0].real)
 
-    def _forces(self, place: Place, sides: int) -> tuple[Floats, Floats]:
+    def _forces(self, place: Evaluation, sides: int) -> tuple[Floats, Floats]:
         """Return the forces to balance, (3 f,), and the directions of one pressure and the tensions."""
         forces, push = (place.gradient, place.slopes) if self._skin is None else self._skin.projected(place)
         return forces, _together(push, sides)
 
-    def _derivative(self, potential: Potential, place: Place, multipliers: Floats) -> Floats:
+    def _derivative(self, potential: Potential, place: Evaluation, multipliers: Floats) -> Floats:
         if self._skin is not None:
             return self._skin.derivative(potential, place, multipliers)
         return potential.model.layout.band.spread(
             potential.hessian(place, multipliers, clip=False, curved=True)
         )
 
-    def _turn(self, place: Place) -> Floats:
+    def _turn(self, place: Evaluation) -> Floats:
         """Return M, the triangle that a turn solves with, as a general band."""
         if self._skin is None:
             return self._lower
         n = self._skin.normals(place)[self._row]
         return np.asarray(self._lower + self._of_lines @ (n[:, :, None] * n[:, None, :]).ravel())
 
-    def _with_held(self, potential: Potential, place: Place, solve: Solve, a: Floats) -> Floats:
+    def _with_held(self, potential: Potential, place: Evaluation, solve: Solve, a: Floats) -> Floats:
         """Solve for ``a`` with what held lines add: each pulls by its excess, less what its tension learns.
 
         A tension that takes a share of the excess each turn, while that flips, is half a share behind it.
@@ -197,10 +197,10 @@ def _double_lower_less_true(model: ConstrainedModel) -> tuple[sparse.csr_array, 
     tensegric, segments = model.tensegric, model.segments
     rest = np.zeros((len(tensegric.free), 3))
     figures = [np.ones(1), *tensegric.hessian_figures(rest, False)]
-    true = sum_of(tensegric.hessian_entries, figures, rest.size)
+    true = weighted_sum(tensegric.hessian_entries, figures, rest.size)
     u = segments.rest_spans / segments.rest_lengths[:, None]
     blocks = stretch_blocks(u, segments.stiffness, np.zeros(len(u)))
-    line_true = sum_of([segments.entries], [blocks.ravel()], rest.size)
+    line_true = weighted_sum([segments.entries], [blocks.ravel()], rest.size)
     return (
         sparse.csr_array(2.0 * _lower(tensegric.stiffness) - true),
         sparse.csr_array(2.0 * _lower(model.line_laplacian) - line_true),
@@ -211,7 +211,7 @@ def _lower(stiffness: Operator) -> sparse.csr_array:
     return sparse.csr_array(sparse.kron(sparse.tril(sparse.csr_array(stiffness)), np.eye(3)))
 
 
-def sum_of(parts: Sequence[Entries], figures: Sequence[Floats], size: int) -> sparse.csr_array:
+def weighted_sum(parts: Sequence[Entries], figures: Sequence[Floats], size: int) -> sparse.csr_array:
     """Return the matrix (size, size) that ``figures`` make with the entries of ``parts``."""
     pieces = [
         (part.value * of[part.source], part.row, part.column) for part, of in zip(parts, figures, strict=True)

@@ -19,20 +19,20 @@ from core.mechanics.banded_matrix import DENSE_LIMIT, Operator, Solve
 
 
 @dataclass(frozen=True, eq=False)
-class Sweep:
+class GaussSeidelSweep:
     """The answer of one sweep; ``forward`` solves the lower triangle for forces of shape (f, 3).
 
     Under sliding lines it is that of the cables alone. There only the part of a line's force across the skin
-    acts at the points ``nodes`` (l,) of the lines: ``reach`` (l, f) is the lower triangle of the lines times
+    acts at the points ``nodes`` (l,) of the lines: ``line_response`` (l, f) is the lower triangle of the lines times
     ``forward``, ``among`` (l, l) the same between the nodes.
     """
 
     forward: Solve
     nodes: Indices
-    reach: Floats
+    line_response: Floats
     among: Floats
 
-    def answer(self, inner: Points, line: Points, outward: Points) -> Points:
+    def solve(self, inner: Points, line: Points, outward: Points) -> Points:
         """Return how far the points move for unbalanced forces of the body and of the lines, all (f, 3).
 
         ``outward`` are vectors across the skin, of any length; glued lines do not ask for them.
@@ -43,19 +43,19 @@ class Sweep:
         n = unit(outward[self.nodes])
         forces = inner.copy()
         forces[self.nodes] += n * np.einsum("ij,ij->i", n, line[self.nodes])[:, None]
-        known = np.einsum("ij,ij->i", n, self.reach @ forces)
+        known = np.einsum("ij,ij->i", n, self.line_response @ forces)
         taken = np.linalg.solve(np.eye(len(n)) + self.among * (n @ n.T), known)
         forces[self.nodes] -= n * taken[:, None]
         return self.forward(forces)
 
 
-def glued_sweep(stiffness: Operator) -> Sweep:
+def bonded_sweep(stiffness: Operator) -> GaussSeidelSweep:
     """Return the sweep of a stiffness (f, f) that acts alike in all directions."""
     none = np.empty((0, stiffness.shape[0]))
-    return Sweep(_forward(stiffness), np.empty(0, dtype=np.int64), none, np.empty((0, 0)))
+    return GaussSeidelSweep(_forward(stiffness), np.empty(0, dtype=np.int64), none, np.empty((0, 0)))
 
 
-def sliding_sweep(cables: Operator, lines: Operator, nodes: Indices) -> Sweep:
+def sliding_sweep(cables: Operator, lines: Operator, nodes: Indices) -> GaussSeidelSweep:
     """Return the sweep of cables (f, f) and of lines (f, f) that slide over the points ``nodes``, (l,)."""
     forward = _forward(cables)
     lower = sparse.tril(sparse.csr_array(lines), format="csr")[nodes]
@@ -64,7 +64,7 @@ def sliding_sweep(cables: Operator, lines: Operator, nodes: Indices) -> Sweep:
     at_nodes[nodes, np.arange(len(nodes))] = 1.0
     among = lower @ forward(at_nodes)
     reach = lower @ forward(np.eye(cables.shape[0]))
-    return Sweep(forward, nodes, frozen(reach), frozen(among))
+    return GaussSeidelSweep(forward, nodes, frozen(reach), frozen(among))
 
 
 def _forward(stiffness: Operator) -> Solve:

@@ -9,14 +9,22 @@ import numpy as np
 from scipy import sparse
 
 from core.geometry.mesh import Floats, Indices
-from core.mechanics.banded_matrix import Band, Entries, Operator, band_of, joined, nonzeros, same_member
+from core.mechanics.banded_matrix import (
+    Band,
+    Entries,
+    Operator,
+    band_of,
+    joined,
+    nonzero_entries,
+    same_member,
+)
 from core.mechanics.springs import Springs
-from core.mechanics.tensegrity import TensegricModel
+from core.mechanics.tensegrity import TensegrityModel
 from core.mechanics.volume import VolumeMeasure
 
 
 @dataclass(frozen=True, eq=False)
-class Layout:
+class HessianLayout:
     """Where the second derivatives of one model lie in band storage; it does not depend on any length.
 
     ``constant`` is what never changes, ``changing`` the map of the other figures: those of the cables' law,
@@ -38,9 +46,9 @@ class Layout:
         return self.band.general(sliding_entries(self.segments.signs))
 
     @cached_property
-    def felt(self) -> tuple[Indices, Indices]:
+    def acting_pairs(self) -> tuple[Indices, Indices]:
         """The worn segments and the free points that they act on, pair by pair, both shape (e,)."""
-        segment, point, _ = nonzeros(self.segments.signs)
+        segment, point, _ = nonzero_entries(self.segments.signs)
         return segment, point
 
     @property
@@ -57,7 +65,7 @@ class Layout:
         return Entries(row, column, source, corners.value[here], corners.width)
 
     @cached_property
-    def turning_general(self) -> Operator:
+    def rotation_general(self) -> Operator:
         """The map to a general band of what ``corners_of_lines`` do to all three axes of their points."""
         corners = self.corners_of_lines
         row = (3 * (corners.row // 3)[:, None] + np.arange(3)).ravel()
@@ -67,7 +75,7 @@ class Layout:
         )
 
 
-def layout_of(tensegric: TensegricModel, segments: Springs, volume: VolumeMeasure) -> Layout:
+def layout_of(tensegric: TensegrityModel, segments: Springs, volume: VolumeMeasure) -> HessianLayout:
     """Work out the layout of a model with the ``segments`` of its worn lines."""
     fixed, *parts = tensegric.hessian_entries
     corners = volume.curvature(tensegric.place)
@@ -81,16 +89,16 @@ def layout_of(tensegric: TensegricModel, segments: Springs, volume: VolumeMeasur
     diagonal = np.arange(band.size)
     loose = Entries(diagonal, diagonal, np.zeros_like(diagonal), np.full(band.size, trace), 1)
     constant = band.lower(joined([fixed, loose], 1)) @ np.ones(1)
-    return Layout(band, constant, changing, segments, corners, trace)
+    return HessianLayout(band, constant, changing, segments, corners, trace)
 
 
 def sliding_entries(signs: Operator) -> Entries:
     """Return the entries of the blocks with which segments act on free points, (e, 3, 3) figures.
 
-    ``signs`` (s, f) see ``Springs``; its entries that are not 0 come in the order of ``Layout.felt``. Each
+    ``signs`` (s, f) see ``Springs``; its entries that are not 0 come in the order of ``HessianLayout.acting_pairs``. Each
     point feels the segment's vector through a block of its own: the matrix is not symmetric.
     """
-    segment, point, sign = nonzeros(signs)
+    segment, point, sign = nonzero_entries(signs)
     i, j = same_member(segment)
     a, b = (axis.ravel()[None, :] for axis in np.indices((3, 3)))
     row, column = 3 * point[i][:, None] + a, 3 * point[j][:, None] + b

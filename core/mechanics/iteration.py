@@ -20,7 +20,7 @@ HELD_GROWTH = 0.1
 
 
 @dataclass(frozen=True)
-class Targets:
+class LineTargets:
     """All that can change while a run goes on: a ratio per line [1], volume control, gain [probe units]."""
 
     ratios: tuple[float, ...]
@@ -29,18 +29,18 @@ class Targets:
 
 
 @dataclass(frozen=True)
-class Marks:
+class Observables:
     """What is watched on the body: height and protrusion of the bust points and of the apex [mm]."""
 
-    nipple_left_z: float
-    nipple_right_z: float
+    bust_point_left_z: float
+    bust_point_right_z: float
     apex_z: float
     apex_protrusion: float
-    nipple_left_out: float
-    nipple_right_out: float
+    bust_point_left_out: float
+    bust_point_right_out: float
 
 
-Watch = Callable[[Points], Marks]
+Watch = Callable[[Points], Observables]
 
 
 @dataclass(frozen=True)
@@ -51,16 +51,16 @@ class Record:
     largest move of a control point in this turn; ``lengths`` [mm] of the lines' front parts.
     """
 
-    turn: int
+    iteration: int
     error: float
     error_ml: float
     step: float
     lengths: tuple[float, ...]
-    marks: Marks | None = None
+    marks: Observables | None = None
 
 
 @dataclass(frozen=True, eq=False)
-class State:
+class SolverState:
     """Where a run stands: displacements of the free points, shape (f, 3) [mm], and the turns made.
 
     ``pressure`` is that of the coming turn; ``tensions`` (lines,) [mm] those of lines whose length is held,
@@ -69,21 +69,21 @@ class State:
 
     moved: Points
     pressure: Pressure = field(default_factory=Pressure)
-    turn: int = 0
+    iteration: int = 0
     tensions: Floats = field(default_factory=lambda: np.zeros(0))
 
 
-def at_rest(model: ConstrainedModel) -> State:
+def initial_state(model: ConstrainedModel) -> SolverState:
     """Return the state in which nothing has moved."""
-    return State(np.zeros((len(model.tensegric.free), 3)))
+    return SolverState(np.zeros((len(model.tensegric.free), 3)))
 
 
-def record(model: ConstrainedModel, state: State, step: float, watch: Watch | None = None) -> Record:
+def record(model: ConstrainedModel, state: SolverState, step: float, watch: Watch | None = None) -> Record:
     """Measure a state."""
     points = model.tensegric.expand(state.moved)
     change = model.volume.volume(points) - model.volume.rest_volume
     return Record(
-        state.turn,
+        state.iteration,
         change / model.volume.rest_volume,
         change / 1000.0,
         step,
@@ -92,30 +92,32 @@ def record(model: ConstrainedModel, state: State, step: float, watch: Watch | No
     )
 
 
-def turn(
-    model: ConstrainedModel, targets: Targets, state: State, watch: Watch | None = None
-) -> tuple[State, Record]:
+def step(
+    model: ConstrainedModel, targets: LineTargets, state: SolverState, watch: Watch | None = None
+) -> tuple[SolverState, Record]:
     """Make one turn: every point to its local balance, then measure, then refresh the forces.
 
     Source: paper section 5.
     """
     moved, volume = state.moved, model.volume
     spans, lengths = model.segments.spans(moved)
-    natural, tensions = aims(model, targets, state, lengths)
+    natural, tensions = natural_lengths_for(model, targets, state, lengths)
     outward = volume.gradient(model.tensegric.expand(moved))
     inner = -model.tensegric.gradient(moved)
     if targets.control != "none":
         inner += (state.pressure.value * model.pressure_unit) * outward
     line = -model.segments.gradient(spans, lengths, natural)
-    shift = model.sweep.answer(inner, line, outward)
+    shift = model.sweep.solve(inner, line, outward)
     step = float(np.sqrt(np.max(np.einsum("ij,ij->i", shift, shift), initial=0.0)))
-    after = State(moved + shift, state.pressure, state.turn + 1, tensions)
+    after = SolverState(moved + shift, state.pressure, state.iteration + 1, tensions)
     measured = record(model, after, step, watch)
     pressure = next_pressure(targets.control, state.pressure, -measured.error, targets.gain)
     return replace(after, pressure=pressure), measured
 
 
-def aims(model: ConstrainedModel, targets: Targets, state: State, lengths: Floats) -> tuple[Floats, Floats]:
+def natural_lengths_for(
+    model: ConstrainedModel, targets: LineTargets, state: SolverState, lengths: Floats
+) -> tuple[Floats, Floats]:
     """Return the natural lengths of the worn segments in the coming turn, (s,) [mm], and the lines' tensions.
 
     A spring has its own (paper section 3). A line whose length is held pulls with one tension all along and,
@@ -124,7 +126,7 @@ def aims(model: ConstrainedModel, targets: Targets, state: State, lengths: Float
     turns; if it pulled harder short lines would run away; ours).
     """
     natural = model.natural_lengths(targets.ratios)
-    if model.mechanics.line_hold == "spring":
+    if model.options.line_hold == "spring":
         return natural, state.tensions
     before = state.tensions if len(state.tensions) else np.zeros(len(model.lines))
     excess = model.tapes * model.sums(lengths - natural)
@@ -134,16 +136,16 @@ def aims(model: ConstrainedModel, targets: Targets, state: State, lengths: Float
 
 def iterate(
     model: ConstrainedModel,
-    targets: Callable[[], Targets],
-    state: State | None = None,
+    targets: Callable[[], LineTargets],
+    state: SolverState | None = None,
     *,
     turns: int,
     watch: Watch | None = None,
-) -> Iterator[tuple[State, Record]]:
+) -> Iterator[tuple[SolverState, Record]]:
     """Yield up to ``turns`` turns; not asking for the next one is how to stop."""
-    state = at_rest(model) if state is None else state
+    state = initial_state(model) if state is None else state
     for _ in range(turns):
-        state, measured = turn(model, targets(), state, watch)
+        state, measured = step(model, targets(), state, watch)
         yield state, measured
         if not np.isfinite(measured.error) or abs(measured.error) > 10.0:
             return

@@ -20,36 +20,36 @@ FOLD_LIMIT = 0.2
 STRAIN_RANGE = (0.7, 1.3)
 """Edge lengths over rest lengths between which a control mesh keeps its sense [1]; ours."""
 
-CALM_RANGE = (0.8, 1.2)
+STRAINED_RANGE = (0.8, 1.2)
 """Edge lengths over rest lengths between which bodies still look natural [1]; ours."""
 
 
 @dataclass(frozen=True)
-class Condition:
+class MeshQuality:
     """The worst places of a control mesh.
 
-    ``turned`` [1] is the least cosine between a triangle's normal and its normal at rest, 0 for a triangle
+    ``least_cosine`` [1] is the least cosine between a triangle's normal and its normal at rest, 0 for a triangle
     without area; ``shortest`` and ``longest`` [1] are the extreme edge lengths over rest lengths.
     """
 
-    turned: float
+    least_cosine: float
     shortest: float
     longest: float
 
     @property
-    def largest_turn(self) -> float:
+    def largest_rotation(self) -> float:
         """The angle by which the worst triangle has turned [degrees]."""
-        return math.degrees(math.acos(min(max(self.turned, -1.0), 1.0)))
+        return math.degrees(math.acos(min(max(self.least_cosine, -1.0), 1.0)))
 
     @property
     def folded(self) -> bool:
         """Whether a triangle has turned to its side: the shape is no body any more."""
-        return not self.turned > FOLD_LIMIT  # so that nan counts
+        return not self.least_cosine > FOLD_LIMIT  # so that nan counts
 
     @property
     def inverted(self) -> bool:
         """Whether a triangle shows its back."""
-        return not self.turned > 0.0
+        return not self.least_cosine > 0.0
 
     @property
     def overstrained(self) -> bool:
@@ -59,30 +59,30 @@ class Condition:
     @property
     def strained(self) -> bool:
         """Whether an edge is outside CALM_RANGE."""
-        return not self._within(CALM_RANGE)
+        return not self._within(STRAINED_RANGE)
 
     def _within(self, bounds: tuple[float, float]) -> bool:
         return bounds[0] <= self.shortest and self.longest <= bounds[1]
 
 
 @dataclass(frozen=True, eq=False)
-class RestShape:
+class OriginalShape:
     """A control mesh at rest: points (n, 3) [mm], and the triangles (m, 3) and edges (e, 2) that can move."""
 
     rest: Points
     faces: Faces
     edges: Indices
 
-    def condition(self, points: Points) -> Condition:
+    def quality(self, points: Points) -> MeshQuality:
         """Return the condition of the mesh with its points at ``points``, shape (n, 3) [mm]."""
         if not len(self.faces):
-            return Condition(1.0, 1.0, 1.0)
+            return MeshQuality(1.0, 1.0, 1.0)
         # A run that blows up may come here with figures that have no squares.
         with np.errstate(over="ignore", invalid="ignore"):
             axes = np.ascontiguousarray(points.T)
             turned = self._turned(axes)
             strain = _lengths(axes, self._ends) * self._per_rest_length
-        return Condition(float(turned.min()), float(strain.min()), float(strain.max()))
+        return MeshQuality(float(turned.min()), float(strain.min()), float(strain.max()))
 
     def _turned(self, axes: Floats) -> Floats:
         x, y, z = _normals(axes, self._corners)
@@ -108,19 +108,19 @@ class RestShape:
         return np.asarray(1.0 / _lengths(self.rest.T, self._ends))
 
 
-def rest_shape(mesh: Mesh, fixed: Flags | None = None) -> RestShape:
+def original_shape(mesh: Mesh, fixed: Flags | None = None) -> OriginalShape:
     """Prepare a control mesh at rest; ``fixed``, shape (n,), marks the points that stay (none if None)."""
     still = np.zeros(len(mesh.vertices), dtype=bool) if fixed is None else fixed
     faces, edges = (cells[~still[cells].all(axis=1)] for cells in (mesh.faces, mesh.edges))
-    return RestShape(mesh.vertices, faces, edges)
+    return OriginalShape(mesh.vertices, faces, edges)
 
 
-def condition(mesh: Mesh, points: Points, fixed: Flags | None = None) -> Condition:
+def mesh_quality(mesh: Mesh, points: Points, fixed: Flags | None = None) -> MeshQuality:
     """Return the condition of a control mesh with its points at ``points``, shape (n, 3) [mm].
 
-    ``fixed`` as in ``rest_shape``; who asks again and again keeps the ``RestShape``.
+    ``fixed`` as in ``original_shape``; who asks again and again keeps the ``OriginalShape``.
     """
-    return rest_shape(mesh, fixed).condition(points)
+    return original_shape(mesh, fixed).quality(points)
 
 
 def _normals(axes: Floats, corners: Indices) -> tuple[Floats, Floats, Floats]:

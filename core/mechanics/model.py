@@ -14,11 +14,11 @@ from core.control_mesh.fit import ControlMesh
 from core.geometry.mesh import Floats, Indices, Points, frozen
 from core.mechanics.banded_matrix import Operator, compact
 from core.mechanics.constraint_lines import Line, free_line, line_on
-from core.mechanics.gauss_seidel import Sweep, glued_sweep, sliding_sweep
-from core.mechanics.hessian_layout import Layout, layout_of
-from core.mechanics.options import Mechanics
+from core.mechanics.gauss_seidel import GaussSeidelSweep, bonded_sweep, sliding_sweep
+from core.mechanics.hessian_layout import HessianLayout, layout_of
+from core.mechanics.options import ModelOptions
 from core.mechanics.springs import Springs, members
-from core.mechanics.tensegrity import TensegricModel, tensegric_model
+from core.mechanics.tensegrity import TensegrityModel, tensegrity_model
 from core.mechanics.volume import VolumeMeasure, volume_measure
 
 
@@ -31,7 +31,7 @@ class ConstrainedModel:
     slides over the shoulder from the segment on, as long as it is whatever the body does.
     """
 
-    tensegric: TensegricModel
+    tensegric: TensegrityModel
     lines: tuple[Line, ...]
     volume: VolumeMeasure
     segments: Springs
@@ -39,7 +39,7 @@ class ConstrainedModel:
     beyond: Floats
 
     @property
-    def mechanics(self) -> Mechanics:
+    def options(self) -> ModelOptions:
         """The choices that this model was built with."""
         return self.tensegric.mechanics
 
@@ -51,17 +51,17 @@ class ConstrainedModel:
     @cached_property
     def line_laplacian(self) -> sparse.csr_array:
         """What the segments of the lines add to the stiffness of a turn, shape (f, f) [1]."""
-        if self.mechanics.line_force != "implicit":
+        if self.options.line_force != "implicit":
             return self.segments.weighted(np.zeros(len(self.owner)))
         # A long tail makes a segment soft along it, but not across: the upper bound is that without a tail.
         bound = self.tapes_at_rest / self.segments.rest_lengths
         return self.segments.weighted(self.segments.stiffness * bound)
 
     @cached_property
-    def sweep(self) -> Sweep:
+    def sweep(self) -> GaussSeidelSweep:
         """How one turn answers the forces that it finds unbalanced."""
-        if self.mechanics.line_contact == "glued" or not len(self.owner):
-            return glued_sweep(self.stiffness)
+        if self.options.line_contact == "glued" or not len(self.owner):
+            return bonded_sweep(self.stiffness)
         return sliding_sweep(self.tensegric.stiffness, self.line_laplacian, self.segments.nodes)
 
     @cached_property
@@ -78,14 +78,14 @@ class ConstrainedModel:
     def probe(self) -> float:
         """Volume change of one sweep per unit of pressure, dV/dP [mm^5], measured on a zero field (ours)."""
         a = self.rest_gradient
-        return float(np.sum(a * self.sweep.answer(a, np.zeros_like(a), a)))
+        return float(np.sum(a * self.sweep.solve(a, np.zeros_like(a), a)))
 
     @cached_property
-    def layout(self) -> Layout:
+    def layout(self) -> HessianLayout:
         """Where the second derivatives lie that the exact answer needs."""
         return layout_of(self.tensegric, self.segments, self.volume)
 
-    def laid_as(self, other: ConstrainedModel) -> ConstrainedModel:
+    def with_layout_of(self, other: ConstrainedModel) -> ConstrainedModel:
         """Return this model with the layout of ``other``, whose members join the same points.
 
         It does not depend on any stiffness, and takes longer than a balance.
@@ -135,7 +135,7 @@ class ConstrainedModel:
         return np.where(give > 0.0, 1.0 / np.where(give > 0.0, give, 1.0), 0.0)
 
     @cached_property
-    def pulling(self) -> Indices:
+    def acting_lines(self) -> Indices:
         """The lines that act on a point which can move, ascending."""
         return np.unique(self.owner)
 
@@ -146,7 +146,7 @@ def constrained_model(
     worn: Collection[str] | None = None,
     back_lengths: Mapping[str, float] | None = None,
     tail_lengths: Mapping[str, float] | None = None,
-    mechanics: Mechanics | None = None,
+    mechanics: ModelOptions | None = None,
     own_stiffness: Mapping[str, float] | None = None,
 ) -> ConstrainedModel:
     """Build the model of a control mesh with a line on each of its paths.
@@ -154,7 +154,7 @@ def constrained_model(
     ``worn`` names the lines that act (all of them if None), the others are only measured; ``back_lengths``
     and ``tail_lengths`` [mm] see ``Line``, ``own_stiffness`` [1] see ``assemble``.
     """
-    tensegric = tensegric_model(control.mesh, control.fixed, mechanics)
+    tensegric = tensegrity_model(control.mesh, control.fixed, mechanics)
     backs, tails, points = back_lengths or {}, tail_lengths or {}, control.mesh.vertices
     through = [
         line_on(name, path, points, tensegric.free, backs.get(name, 0.0))
@@ -172,7 +172,7 @@ def constrained_model(
 
 
 def assemble(
-    tensegric: TensegricModel,
+    tensegric: TensegrityModel,
     lines: tuple[Line, ...],
     volume: VolumeMeasure,
     worn: Collection[str],

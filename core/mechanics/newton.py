@@ -14,8 +14,8 @@ import numpy as np
 
 from core.geometry.mesh import Floats, Points
 from core.mechanics.banded_matrix import Solve
-from core.mechanics.iteration import State
-from core.mechanics.potential import Place, Potential
+from core.mechanics.iteration import SolverState
+from core.mechanics.potential import Evaluation, Potential
 
 RESIDUAL_LIMIT = 1e-10
 """Largest unbalanced force over the mean stiffness [mm] at which the balance counts as exact."""
@@ -31,13 +31,13 @@ _BOLD = 8.0
 
 
 @dataclass(frozen=True, eq=False)
-class Balance:
+class Equilibrium:
     """An iterate of the exact solve: state, residual [mm], left and right pressure, Newton steps taken.
 
     ``tensions`` (lines,) [mm] are the multipliers of held lines; ``multipliers`` all, in the solver's units.
     """
 
-    state: State
+    state: SolverState
     residual: float
     pressures: Floats
     steps: int
@@ -45,12 +45,12 @@ class Balance:
     tensions: Floats = field(default_factory=lambda: np.zeros(0))
 
     @property
-    def found(self) -> bool:
+    def is_converged(self) -> bool:
         """Whether the residual came down to the limit, with some grace for round-off."""
         return self.residual < 100.0 * RESIDUAL_LIMIT
 
 
-def energy_steps(potential: Potential, start: Balance, limit: int) -> Iterator[Balance]:
+def energy_steps(potential: Potential, start: Equilibrium, limit: int) -> Iterator[Equilibrium]:
     """Yield ``start`` and the Newton iterates after it, until exact, lost, or ``limit`` steps are made.
 
     A short step that leaves a quarter of what was amiss, or less, is taken as it is. Any other is brought
@@ -59,10 +59,10 @@ def energy_steps(potential: Potential, start: Balance, limit: int) -> Iterator[B
     place, multipliers = potential.at(start.state.moved), start.multipliers
     spoilt = 0
     for step in range(limit + 1):
-        amiss = potential.amiss(place, multipliers)
+        amiss = potential.residual_norm(place, multipliers)
         held = (np.abs(place.held) <= 1e3 * potential.tolerance).all()
         residual = amiss if held else np.inf
-        yield balance_at(potential, place.moved, residual, multipliers, step)
+        yield equilibrium_at(potential, place.moved, residual, multipliers, step)
         if residual < RESIDUAL_LIMIT or step == limit:
             return
         solve, true = factor(potential, place, multipliers, shifted=spoilt >= _PATIENCE)
@@ -73,24 +73,24 @@ def energy_steps(potential: Potential, start: Balance, limit: int) -> Iterator[B
         place, multipliers = taken
 
 
-def balance_at(
+def equilibrium_at(
     potential: Potential,
     moved: Points,
     residual: float = np.inf,
     multipliers: Floats | None = None,
     steps: int = 0,
-) -> Balance:
+) -> Equilibrium:
     """Return a place as an iterate: ``moved`` (f, 3) [mm] with its residual and multipliers, 0 if None."""
     if multipliers is None:
         multipliers = np.zeros(len(potential.wanted))
-    state = State(moved, turn=steps)
+    state = SolverState(moved, iteration=steps)
     pressures, tensions = potential.pressures(multipliers), potential.tensions(multipliers)
-    return Balance(state, residual, pressures, steps, multipliers, tensions)
+    return Equilibrium(state, residual, pressures, steps, multipliers, tensions)
 
 
 def _step(
-    potential: Potential, place: Place, multipliers: Floats, solve: Solve, amiss: float
-) -> tuple[Place, Floats] | None:
+    potential: Potential, place: Evaluation, multipliers: Floats, solve: Solve, amiss: float
+) -> tuple[Evaluation, Floats] | None:
     """Return where one Newton step leads, and the multipliers there; None if no step lowers the energy.
 
     ``amiss`` is what is amiss in ``place``, 0 to allow no step without safeguard.
@@ -101,7 +101,7 @@ def _step(
     direction = free + push @ new
     if amiss and np.abs(direction).max(initial=0.0) < _BOLD:
         there = potential.at(place.moved + direction.reshape(-1, 3))
-        if potential.amiss(there, new) <= _QUICK * amiss:
+        if potential.residual_norm(there, new) <= _QUICK * amiss:
             return there, new
     if (np.abs(place.held) > potential.tolerance).any():
         start = _retract(potential, place.moved, push)
@@ -111,7 +111,7 @@ def _step(
 
 
 def factor(
-    potential: Potential, place: Place, multipliers: Floats, shifted: bool = False
+    potential: Potential, place: Evaluation, multipliers: Floats, shifted: bool = False
 ) -> tuple[Solve, bool]:
     """Return a solver of the first positive definite Hessian, and whether it is the full one.
 
@@ -135,7 +135,9 @@ def factor(
     return solve, False
 
 
-def _line_search(potential: Potential, place: Place, direction: Floats, push: Floats) -> Place | None:
+def _line_search(
+    potential: Potential, place: Evaluation, direction: Floats, push: Floats
+) -> Evaluation | None:
     """Return where the longest halved step that lowers the energy leads, all held again, or None."""
     here, slope = potential.energy(place), float(place.gradient @ direction)
     length = 1.0
@@ -150,7 +152,7 @@ def _line_search(potential: Potential, place: Place, direction: Floats, push: Fl
     return None
 
 
-def _retract(potential: Potential, moved: Points, push: Floats) -> Place | None:
+def _retract(potential: Potential, moved: Points, push: Floats) -> Evaluation | None:
     """Return the place ``moved`` shifted along ``push`` (3 f, h) until all is held as it should be."""
     for _ in range(12):
         place = potential.at(moved)

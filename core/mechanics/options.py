@@ -7,7 +7,7 @@ from dataclasses import dataclass
 LAWS = ("force-density", "prestressed", "co-rotated")
 LINE_FORCES = ("implicit", "explicit")
 CONTACTS = ("glued", "sliding")
-HOLDS = ("spring", "held")
+LINE_HOLDS = ("spring", "held")
 VOLUMES = ("each", "both")
 
 DEFAULT_LINE_STIFFNESS = 16.0
@@ -15,7 +15,7 @@ DEFAULT_LINE_STIFFNESS = 16.0
 
 
 @dataclass(frozen=True)
-class Mechanics:
+class ModelOptions:
     """How members, lines and volume act; the paper leaves all of it open, so the choices are ours.
 
     ``member_law`` is that of the cables: "force-density" (a constant force for each mm of shift),
@@ -44,7 +44,7 @@ CHOICES = {
     "member_law": LAWS,
     "line_force": LINE_FORCES,
     "line_contact": CONTACTS,
-    "line_hold": HOLDS,
+    "line_hold": LINE_HOLDS,
     "volume_of": VOLUMES,
 }
 """The words that each choice allows."""

@@ -9,10 +9,10 @@ from __future__ import annotations
 import numpy as np
 
 from core.geometry.mesh import Floats
-from core.mechanics.sensitivity import Answer, Rates
+from core.mechanics.sensitivity import Rates, Sensitivities
 
 
-def by_ground(answer: Answer, ground: Floats) -> Rates:
+def d_ground(answer: Sensitivities, ground: Floats) -> Rates:
     """Return the rates by ``Mechanics.firm_chest`` [mm / 1].
 
     ``ground`` (f,) ties each free point to its rest where that is 1; see ``firm_ground``.
@@ -20,7 +20,7 @@ def by_ground(answer: Answer, ground: Floats) -> Rates:
     return answer.by_forces((ground[:, None] * answer.place.moved).reshape(-1, 1))
 
 
-def by_prestress(answer: Answer) -> Rates:
+def d_prestress(answer: Sensitivities) -> Rates:
     """Return the rates by ``Mechanics.prestress`` [mm / 1]; 0 under laws that know none."""
     cables = answer.potential.model.tensegric.cable_springs
     if cables is None:
@@ -31,7 +31,7 @@ def by_prestress(answer: Answer) -> Rates:
     return answer.by_forces(cables.sum(shorter - at_rest).reshape(-1, 1))
 
 
-def by_net(prestress: float) -> float:
+def d_tissue(prestress: float) -> float:
     """Return how the logarithm of what a net of prestressed cables resists with goes with it [1].
 
     See ``net_stiffness``: an elastic of so many newtons is softer beside a stiffer net.

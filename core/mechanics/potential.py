@@ -12,7 +12,7 @@ from core.mechanics.springs import stretch_blocks
 
 
 @dataclass(frozen=True, eq=False)
-class Place:
+class Evaluation:
     """A model looked at in one place: all first-order figures of it.
 
     ``moved`` (f, 3) [mm]; ``inner`` and ``line`` (f, 3) the derivatives of the energy of body and lines;
@@ -46,10 +46,10 @@ class Potential:
     ) -> None:
         self.model = model
         self.natural = model.natural_lengths(ratios)
-        hold = model.mechanics.line_hold == "held"
+        hold = model.options.line_hold == "held"
         self.tape = np.zeros(len(self.natural)) if hold else model.segments.stiffness
-        self.held_lines = model.pulling if hold else model.pulling[:0]
-        together = model.volume.closed or model.mechanics.volume_of == "both"
+        self.held_lines = model.acting_lines if hold else model.acting_lines[:0]
+        together = model.volume.closed or model.options.volume_of == "both"
         self.sides = np.ones((1, 2)) if together else np.eye(2)
         self.area = abs(model.volume.rest_volume) ** (2.0 / 3.0)
         volumes = model.rest_sides + (0.0 if excess is None else excess)
@@ -60,7 +60,7 @@ class Potential:
             [np.full(len(self.sides), self.area**0.5), 10.0 * self.wanted[len(self.sides) :]]
         )
 
-    def energy(self, place: Place) -> float:
+    def energy(self, place: Evaluation) -> float:
         """Return the energy above that of the slack rest shape."""
         longer = place.lengths - self.natural
         return self.model.tensegric.energy(place.moved) + 0.5 * float(self.tape @ (longer * longer))
@@ -76,16 +76,16 @@ class Potential:
             slopes = np.concatenate([slopes, *(self.model.segments.sum(u).reshape(1, -1) for u in each)])
         return values - self.wanted, slopes
 
-    def at(self, moved: Points) -> Place:
+    def at(self, moved: Points) -> Evaluation:
         """Return all first-order figures at displacements of the free points, shape (f, 3) [mm]."""
         spans, lengths = self.model.segments.spans(moved)
         force = (self.tape * (1.0 - self.natural / lengths))[:, None] * spans
         points = self.model.tensegric.expand(moved)
         held, slopes = self._held(*self.model.volume.measure(points), spans, lengths)
         inner, line = self.model.tensegric.gradient(moved), self.model.segments.sum(force)
-        return Place(moved, points, spans, lengths, inner, line, held, slopes)
+        return Evaluation(moved, points, spans, lengths, inner, line, held, slopes)
 
-    def line_blocks(self, place: Place, multipliers: Floats, clip: bool) -> Floats:
+    def line_blocks(self, place: Evaluation, multipliers: Floats, clip: bool) -> Floats:
         """Return the second derivative of each line segment's energy and held length, shape (s, 3, 3)."""
         across = self.tape * (1.0 - self.natural / place.lengths)
         tensions = np.zeros(len(self.model.lines))
@@ -95,13 +95,13 @@ class Potential:
             across = np.maximum(across, 0.0)
         return stretch_blocks(place.spans / place.lengths[:, None], self.tape, across)
 
-    def amiss(self, place: Place, multipliers: Floats) -> float:
+    def residual_norm(self, place: Evaluation, multipliers: Floats) -> float:
         """Return the largest of the unbalanced forces over the mean stiffness and of what is held [mm]."""
         forces = np.abs(place.gradient - multipliers @ place.slopes).max(initial=0.0)
         away = np.abs(place.held).max(initial=0.0)
         return float(max(forces / self.model.tensegric.mean_stiffness, away))
 
-    def residual(self, place: Place, forces: Floats) -> float:
+    def residual(self, place: Evaluation, forces: Floats) -> float:
         """Return the largest of the unbalanced ``forces`` (3 f,) over the mean stiffness [mm].
 
         It is infinite as long as anything that is held is not what it should be.
@@ -121,7 +121,7 @@ class Potential:
         return tensions
 
     def hessian(
-        self, place: Place, multipliers: Floats, *, clip: bool, curved: bool, lines: bool = True
+        self, place: Evaluation, multipliers: Floats, *, clip: bool, curved: bool, lines: bool = True
     ) -> Floats:
         """Return the lower band of the second derivative of energy less multipliers times what is held.
 

@@ -15,9 +15,9 @@ import numpy as np
 
 from core.geometry.mesh import Floats, Indices
 from core.mechanics.banded_matrix import Solve
-from core.mechanics.newton import Balance, small_solve
-from core.mechanics.newton_sliding import Skin
-from core.mechanics.potential import Place, Potential
+from core.mechanics.newton import Equilibrium, small_solve
+from core.mechanics.newton_sliding import SlidingSurface
+from core.mechanics.potential import Evaluation, Potential
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,14 +42,14 @@ class Rates:
         return np.asarray(slopes @ self.moved)
 
 
-class Answer:
+class Sensitivities:
     """An exact balance that can be asked what moves it. Raises ValueError where it moves without bound."""
 
-    def __init__(self, potential: Potential, balance: Balance) -> None:
+    def __init__(self, potential: Potential, balance: Equilibrium) -> None:
         self.potential, self.balance = potential, balance
-        self.place: Place = potential.at(balance.state.moved)
-        sliding = potential.model.mechanics.line_contact == "sliding" and len(potential.model.owner) > 0
-        self._skin = Skin(potential.model) if sliding else None
+        self.place: Evaluation = potential.at(balance.state.moved)
+        sliding = potential.model.options.line_contact == "sliding" and len(potential.model.owner) > 0
+        self._skin = SlidingSurface(potential.model) if sliding else None
 
     def by_ratio(self, lines: Indices) -> Rates:
         """Return the rates by the natural lengths of ``lines`` (p,), over their lengths at rest [mm / 1]."""

@@ -10,15 +10,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from core.mechanics.convergence import Verdict, judge
+from core.mechanics.convergence import Convergence, assess_convergence
 from core.mechanics.dense_volume import BodyChange, solve_body_exact
 from core.mechanics.exact_solution import solve_exact
-from core.mechanics.iteration import Record, State, Targets, Watch, at_rest, record, turn
-from core.mechanics.mesh_quality import Condition, RestShape
+from core.mechanics.iteration import LineTargets, Record, SolverState, Watch, initial_state, record, step
+from core.mechanics.mesh_quality import MeshQuality, OriginalShape
 from core.mechanics.model import ConstrainedModel
-from core.mechanics.newton import Balance
+from core.mechanics.newton import Equilibrium
 
-TURN_CONTROLS = ("adaptive", "conventional")
+ITERATIVE_CONTROLS = ("adaptive", "conventional")
 """The controls that are always compared; another joins when it is the chosen one."""
 
 NEAR = 0.05
@@ -31,36 +31,38 @@ MOST_TURNS = 300
 """Turns after a change of the targets at which a run is left as it is, settled or not."""
 
 
-class Run:
+class ControlRun:
     """One volume control at work: its state, all its records, and its motion since the targets changed."""
 
-    def __init__(self, model: ConstrainedModel, control: str, state: State, watch: Watch | None) -> None:
+    def __init__(
+        self, model: ConstrainedModel, control: str, state: SolverState, watch: Watch | None
+    ) -> None:
         self.control = control
         self.state = self._calm = state
         self.records: list[Record] = [record(model, state, 0.0, watch)]
-        self.watch_anew()
+        self.reset_history()
 
-    def watch_anew(self) -> None:
+    def reset_history(self) -> None:
         """Judge only what comes from now on."""
-        self.changed_at = self.state.turn
-        self.verdict = judge([])
+        self.changed_at = self.state.iteration
+        self.verdict = assess_convergence([])
 
     def restart(self, model: ConstrainedModel) -> None:
         """Go back to rest, turns counted on."""
-        self.state = self._calm = replace(at_rest(model), turn=self.state.turn)
+        self.state = self._calm = replace(initial_state(model), iteration=self.state.iteration)
 
-    def take(self, state: State, measured: Record) -> None:
+    def take(self, state: SolverState, measured: Record) -> None:
         """Take the next turn."""
         self.state = state
         if abs(measured.error) < CALM_ERROR and measured.step < CALM_STEP:
             self._calm = state
         self.records.append(measured)
-        self.verdict = judge(self.records[self.changed_at - self.records[0].turn + 1 :])
+        self.verdict = assess_convergence(self.records[self.changed_at - self.records[0].iteration + 1 :])
 
     @property
-    def resting(self) -> bool:
+    def is_finished(self) -> bool:
         """Whether there is nothing more to see: settled, diverging, or long enough watched."""
-        turns = self.state.turn - self.changed_at
+        turns = self.state.iteration - self.changed_at
         return turns > 0 and (turns >= MOST_TURNS or self.verdict.motion in ("settled", "diverging"))
 
     @property
@@ -69,7 +71,7 @@ class Run:
 
         Collapsed meshes come back from there hardly or never, whatever lengths are asked for then.
         """
-        return not (self.resting and self.verdict.motion == "settling")
+        return not (self.is_finished and self.verdict.motion == "settling")
 
     @property
     def sane(self) -> bool:
@@ -77,38 +79,38 @@ class Run:
         return self.verdict.motion != "diverging"
 
     @property
-    def shown(self) -> State:
+    def shown(self) -> SolverState:
         """The state to show: of a diverging run the last calm one, not a body torn apart."""
         return self.state if self.sane else self._calm
 
 
-class Comparison:
+class SolverComparison:
     """The runs of the compared controls and the exact answer, for one model whose targets may move."""
 
     def __init__(
         self,
         model: ConstrainedModel,
-        targets: Targets,
+        targets: LineTargets,
         watch: Watch | None = None,
         body_change: BodyChange | None = None,
     ) -> None:
         self.model = model
         self.targets = targets
         self.watch = watch
-        self.runs: dict[str, Run] = {}
+        self.runs: dict[str, ControlRun] = {}
         self._body_change = body_change
         self._shape = shape_of(model)
         self._solve(None)
         self._set_runs(fresh=True)
 
-    def retarget(self, model: ConstrainedModel, targets: Targets, fresh: bool = False) -> None:
+    def retarget(self, model: ConstrainedModel, targets: LineTargets, fresh: bool = False) -> None:
         """Take new targets, warm: every run goes on from where it is, unless it diverged or never converged.
 
         ``model`` may differ in the lines that are worn, not in its control points. ``fresh`` begins new
         records at turn 0.
         """
         near, same = None, model is self.model and targets == self.targets
-        if model is self.model and self.exact.found:
+        if model is self.model and self.exact.is_converged:
             moved = np.abs(np.subtract(targets.ratios, self.targets.ratios)).max(initial=0.0)
             near = self.exact if moved <= NEAR else None
         if model is not self.model:
@@ -118,7 +120,7 @@ class Comparison:
         self._solve(near)
         self._set_runs(fresh, same)
 
-    def _solve(self, near: Balance | None) -> None:
+    def _solve(self, near: Equilibrium | None) -> None:
         """Find the exact answer; from one near by it is quicker, and the first Newton step is its tangent."""
         self._exact_is_near = near is not None
         if self._body_change is None:
@@ -127,30 +129,30 @@ class Comparison:
             self.exact = solve_body_exact(self.model, self.targets.ratios, self._body_change, near=near)
 
     @property
-    def main(self) -> Run | None:
+    def main(self) -> ControlRun | None:
         """The run of the chosen control; None when the exact answer is shown."""
         return self.runs.get(self.targets.control)
 
     @property
-    def shown(self) -> State:
+    def shown(self) -> SolverState:
         """The state to show: that of the chosen control's run, or the exact answer."""
         return self.main.shown if self.main else self.exact.state
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> Convergence:
         """How the chosen control stands, and in what condition the mesh is that is shown."""
-        verdict = self.main.verdict if self.main else judge_balance(self.model, self.exact)
+        verdict = self.main.verdict if self.main else assess_equilibrium(self.model, self.exact)
         points = self.model.tensegric.expand(self.shown.moved)
-        return replace(verdict, condition=self._shape.condition(points))
+        return replace(verdict, condition=self._shape.quality(points))
 
     @property
-    def resting(self) -> bool:
+    def is_finished(self) -> bool:
         """Whether every run rests, and the exact answer is that which is found from rest."""
         return not self._exact_is_near and self._runs_rest
 
     @property
     def _runs_rest(self) -> bool:
-        return all(run.resting for run in self.runs.values())
+        return all(run.is_finished for run in self.runs.values())
 
     def advance(self) -> None:
         """Make one turn in every run that does not rest; when all do, find the exact answer from rest.
@@ -160,47 +162,51 @@ class Comparison:
         if self._runs_rest:
             self._solve(None)
         for run in self.runs.values():
-            if not run.resting:
+            if not run.is_finished:
                 targets = replace(self.targets, control=run.control)
-                run.take(*turn(self.model, targets, run.state, self.watch))
+                run.take(*step(self.model, targets, run.state, self.watch))
 
     def _set_runs(self, fresh: bool, same: bool = False) -> None:
         """Let runs go on from where they are, or from rest where that is no place to go on from.
 
         With the ``same`` targets one that has not converged yet does.
         """
-        wanted = dict.fromkeys([*TURN_CONTROLS, self.targets.control])
+        wanted = dict.fromkeys([*ITERATIVE_CONTROLS, self.targets.control])
         wanted.pop("exact", None)
         runs = {}
         for control in wanted:
             old = self.runs.get(control)
             warm = old is not None and old.sane and (old.ended or same)
             if old is None or fresh:
-                state = replace(old.state, turn=0) if old and warm else at_rest(self.model)
-                runs[control] = Run(self.model, control, state, self.watch)
+                state = replace(old.state, iteration=0) if old and warm else initial_state(self.model)
+                runs[control] = ControlRun(self.model, control, state, self.watch)
             else:
                 if not warm:
                     old.restart(self.model)
-                old.watch_anew()
+                old.reset_history()
                 runs[control] = old
         self.runs = runs
 
 
-def carried(state: State, old: ConstrainedModel, new: ConstrainedModel) -> State:
+def carried(state: SolverState, old: ConstrainedModel, new: ConstrainedModel) -> SolverState:
     """Return a state of the ``old`` model for the ``new`` one: the same places and the same pressure.
 
     Tensions of held lines begin anew, for they may be those of other lines.
     """
     pressure = replace(state.pressure, value=state.pressure.value * old.pressure_unit / new.pressure_unit)
-    return State(state.moved, pressure, state.turn)
+    return SolverState(state.moved, pressure, state.iteration)
 
 
-def judge_balance(model: ConstrainedModel, balance: Balance, condition: Condition | None = None) -> Verdict:
+def assess_equilibrium(
+    model: ConstrainedModel, balance: Equilibrium, condition: MeshQuality | None = None
+) -> Convergence:
     """Return the verdict of an exact answer: settled if the balance was found."""
     error = record(model, balance.state, 0.0).error
-    return Verdict("settled" if balance.found else "settling", balance.steps, error, condition=condition)
+    return Convergence(
+        "settled" if balance.is_converged else "settling", balance.steps, error, condition=condition
+    )
 
 
-def shape_of(model: ConstrainedModel) -> RestShape:
+def shape_of(model: ConstrainedModel) -> OriginalShape:
     """Return the control mesh of a model at rest."""
-    return RestShape(model.tensegric.rest, model.volume.faces, model.tensegric.cables)
+    return OriginalShape(model.tensegric.rest, model.volume.faces, model.tensegric.cables)

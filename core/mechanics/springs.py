@@ -12,7 +12,7 @@ import numpy as np
 from scipy import sparse
 
 from core.geometry.mesh import Floats, Indices, Points, frozen
-from core.mechanics.banded_matrix import Entries, Operator, compact, member_entries, nonzeros
+from core.mechanics.banded_matrix import Entries, Operator, compact, member_entries, nonzero_entries
 
 _EYE = np.eye(3)
 
@@ -51,7 +51,7 @@ class Springs:
     @cached_property
     def nodes(self) -> Indices:
         """The free points that the members act on, ascending, shape (l,)."""
-        return np.unique(nonzeros(self.signs)[1])
+        return np.unique(nonzero_entries(self.signs)[1])
 
     def weighted(self, weight: Floats) -> sparse.csr_array:
         """Return the stiffness (f, f) of members that have ``weight`` (s,) in all directions."""

@@ -14,7 +14,7 @@ from typing import Protocol
 import numpy as np
 
 from core.geometry.mesh import Floats, Indices
-from core.mechanics.sensitivity import Answer, Rates
+from core.mechanics.sensitivity import Rates, Sensitivities
 
 _NEAR = 1e-6  # of the elongation, for the slope of a curve of straight pieces
 
@@ -22,7 +22,7 @@ Kept = Callable[[Rates], Rates]
 """What rates become where more is held than the balance itself holds."""
 
 
-class Curved(Protocol):
+class CurvedSecant(Protocol):
     """What is asked of an elastic."""
 
     def secant(self, elongation: float) -> float:
@@ -42,7 +42,7 @@ class Changes:
 
 
 @dataclass(frozen=True, eq=False)
-class Answers:
+class StiffnessRates:
     """What ``Changes`` do: ``moved`` (3 f, p) [mm], and ``pulls`` (s, p), that of each segment's tension.
 
     Tensions are in the model's unit.
@@ -52,21 +52,21 @@ class Answers:
     pulls: Floats
 
 
-def by_stiffness(answer: Answer, lines: Indices) -> Rates:
+def by_stiffness(answer: Sensitivities, lines: Indices) -> Rates:
     """Return the rates by the logarithm of the stiffness of ``lines`` (p,); of held lines none."""
     potential = answer.potential
     pull = potential.tape * (1.0 - potential.natural / answer.place.lengths)
     return answer.by_forces(answer.by_line(pull, lines))
 
 
-def answers_to(
-    answer: Answer,
+def stiffness_rates(
+    answer: Sensitivities,
     changes: Changes,
-    elastics: Mapping[int, Curved],
+    elastics: Mapping[int, CurvedSecant],
     ratios: Floats,
     kept: Kept = lambda r: r,
     beside: Floats | None = None,
-) -> Answers:
+) -> StiffnessRates:
     """Return what ``changes`` do to a balance; ``elastics`` by the number of their line follow their curves.
 
     ``ratios`` (lines,) are the lengths of the lines. ``kept`` see ``Kept``. ``beside`` (3 f, p) [mm] is how
@@ -75,7 +75,7 @@ def answers_to(
     model = answer.potential.model
     every = np.arange(len(model.lines))
     longer, stiffer = kept(answer.by_ratio(every)).moved, kept(by_stiffness(answer, every)).moved
-    made = [line for line in elastics if line in set(model.pulling.tolist())]
+    made = [line for line in elastics if line in set(model.acting_lines.tolist())]
     stiff = changes.stiffer.copy()
     other = np.zeros((len(longer), stiff.shape[1])) if beside is None else beside
     if made and not len(answer.potential.held_lines):
@@ -93,23 +93,23 @@ def answers_to(
         system = np.eye(len(made)) - bend[:, None] * (stretch @ stiffer[:, made])
         stiff[made] += np.linalg.solve(system, right)
     moved = stiffer @ stiff + longer @ changes.ratios + other
-    return Answers(moved, _pulls(answer, moved, stiff, changes.ratios))
+    return StiffnessRates(moved, _pulls(answer, moved, stiff, changes.ratios))
 
 
-def _lengths(answer: Answer, lines: list[int]) -> Floats:
+def _lengths(answer: Sensitivities, lines: list[int]) -> Floats:
     """Return the slopes of the lengths of ``lines`` by the free points, shape (p, 3 f) [1]."""
     segments, owner = answer.potential.model.segments, answer.potential.model.owner
     along = answer.place.spans / answer.place.lengths[:, None]
     return np.stack([segments.sum(np.where(owner[:, None] == line, along, 0.0)).ravel() for line in lines])
 
 
-def _bend(elastic: Curved, elongation: float) -> float:
+def _bend(elastic: CurvedSecant, elongation: float) -> float:
     """Return how the logarithm of an elastic's secant changes with its elongation [1]."""
     low, high = (elastic.secant(elongation + step) for step in (-_NEAR, _NEAR))
     return float(np.log(high / low)) / (2.0 * _NEAR)
 
 
-def _pulls(answer: Answer, moved: Floats, stiff: Floats, ratios: Floats) -> Floats:
+def _pulls(answer: Sensitivities, moved: Floats, stiff: Floats, ratios: Floats) -> Floats:
     """Return what becomes of the tension of each segment that springs, shape (s, p)."""
     potential, place = answer.potential, answer.place
     model = potential.model

@@ -19,17 +19,17 @@ from scipy.sparse import linalg as sparse_linalg
 from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points, frozen
 from core.mechanics.banded_matrix import Entries, Operator, compact
 from core.mechanics.corotated_cells import Cells, cells
-from core.mechanics.options import Mechanics
+from core.mechanics.options import ModelOptions
 from core.mechanics.springs import Springs, laplacian, springs
 
 
 @dataclass(frozen=True, eq=False)
-class TensegricModel:
+class TensegrityModel:
     """Control points at rest, their cables, and which of them are free to move.
 
     ``rest`` (n, 3) [mm]; ``free`` (f,) indices of the moving points, ascending; ``cables`` (m, 2) the pairs
     that have at least one free end; ``density`` (m,) [1] their force densities, 1/length over the mean of
-    1/length; ``ground`` (f,) [1] the stiffness that ties each free point to its rest. ``held`` and
+    1/length; ``ground`` (f,) [1] the stiffness that ties each free point to its rest. ``fixed_edges`` and
     ``held_density`` are the edges between fixed points, which matter to co-rotated cells alone.
     """
 
@@ -37,9 +37,9 @@ class TensegricModel:
     free: Indices
     cables: Indices
     density: Floats
-    mechanics: Mechanics = field(default_factory=Mechanics)
+    mechanics: ModelOptions = field(default_factory=ModelOptions)
     ground: Floats | None = None
-    held: Indices = field(default_factory=lambda: np.empty((0, 2), dtype=np.int64))
+    fixed_edges: Indices = field(default_factory=lambda: np.empty((0, 2), dtype=np.int64))
     held_density: Floats = field(default_factory=lambda: np.empty(0))
 
     @cached_property
@@ -90,7 +90,7 @@ class TensegricModel:
     def _cells(self) -> Cells | None:
         if self.mechanics.member_law != "co-rotated":
             return None
-        edges = np.concatenate([self.cables, self.held])
+        edges = np.concatenate([self.cables, self.fixed_edges])
         return cells(self.rest, edges, np.concatenate([self.density, self.held_density]), self.place)
 
     @cached_property
@@ -150,7 +150,7 @@ class TensegricModel:
             return [self._springs.blocks(*self._springs.spans(moved), self._natural, clip).ravel()]
         if self._cells is not None:
             spans = self._cells.spans(self.expand(moved))
-            turning = self._cells.turning(spans, self._cells.rotations(spans)).ravel()
+            turning = self._cells.rotation_blocks(spans, self._cells.rotations(spans)).ravel()
             return [np.zeros_like(turning) if clip else turning]
         return []
 
@@ -173,20 +173,20 @@ def _isotropic(matrix: sparse.coo_array) -> Entries:
     return Entries(row.ravel(), column.ravel(), np.zeros(value.size, dtype=np.int64), value, 1)
 
 
-def tensegric_model(mesh: Mesh, fixed: Flags, mechanics: Mechanics | None = None) -> TensegricModel:
+def tensegrity_model(mesh: Mesh, fixed: Flags, mechanics: ModelOptions | None = None) -> TensegrityModel:
     """Build the model on a control mesh; ``fixed``, shape (n,), marks what stays (paper section 4)."""
-    mechanics = mechanics or Mechanics()
+    mechanics = mechanics or ModelOptions()
     lengths = np.linalg.norm(mesh.vertices[mesh.edges[:, 0]] - mesh.vertices[mesh.edges[:, 1]], axis=1)
     density = (1.0 / lengths) / np.mean(1.0 / lengths)
     still = fixed[mesh.edges[:, 0]] & fixed[mesh.edges[:, 1]]
     free = np.flatnonzero(~fixed)
-    model = TensegricModel(
+    model = TensegrityModel(
         mesh.vertices,
         free,
         mesh.edges[~still],
         frozen(density[~still]),
         mechanics,
-        held=mesh.edges[still],
+        fixed_edges=mesh.edges[still],
         held_density=frozen(density[still]),
     )
     return _grounded(model, mesh) if mechanics.firm_chest else model
@@ -196,29 +196,29 @@ SOFT_DEPTH, SKIN_DEPTH = 40.0, 4.0
 """Tissue as deep as the first is tied to its rest with ``firm_chest``, thinner tissue much more [mm]."""
 
 
-def _grounded(model: TensegricModel, mesh: Mesh) -> TensegricModel:
+def _grounded(model: TensegrityModel, mesh: Mesh) -> TensegrityModel:
     """Tie each free point to its rest, the more the thinner the tissue under it (firm chest; ours)."""
     mechanics = model.mechanics
     ground = mechanics.firm_chest * firm_ground(model, mesh)
-    return TensegricModel(
+    return TensegrityModel(
         model.rest,
         model.free,
         model.cables,
         model.density,
         mechanics,
         frozen(ground),
-        model.held,
+        model.fixed_edges,
         model.held_density,
     )
 
 
-def firm_ground(model: TensegricModel, mesh: Mesh) -> Floats:
+def firm_ground(model: TensegrityModel, mesh: Mesh) -> Floats:
     """Return what ties each free point to its rest where ``firm_chest`` is 1, shape (f,) [1]."""
     depth = tissue_depth(model, mesh)
     return np.asarray(model.mean_stiffness * (SOFT_DEPTH / (depth + SKIN_DEPTH)) ** 2)
 
 
-def tissue_depth(model: TensegricModel, mesh: Mesh) -> Floats:
+def tissue_depth(model: TensegrityModel, mesh: Mesh) -> Floats:
     """Return how far each free point stands before a soap film over the fixed points, shape (f,) [mm].
 
     The film stands for the chest wall: an estimate, no measurement (ours).

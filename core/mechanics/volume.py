@@ -134,7 +134,7 @@ def _curvature(faces: Faces, place: Indices, offset: int) -> Entries:
 
 ADAPTIVE_STEP = 0.8
 ADAPTIVE_DAMPING = 0.8
-ACCUMULATING_STEP = 0.5
+INTEGRAL_STEP = 0.5
 _FLIP = 0.3
 _QUIET = 1e-7
 
@@ -166,7 +166,7 @@ def next_pressure(control: str, pressure: Pressure, error: float, gain: float) -
     if control == "conventional":
         return replace(pressure, value=gain * error, error=error)
     if control == "accumulating":
-        return replace(pressure, value=pressure.value + ACCUMULATING_STEP * error, error=error)
+        return replace(pressure, value=pressure.value + INTEGRAL_STEP * error, error=error)
     before = pressure.error
     flips = error * before < 0.0 and abs(error) > _FLIP * abs(before) and abs(error) > _QUIET
     step = pressure.step / 2.0 if flips else min(ADAPTIVE_STEP, 1.05 * pressure.step)

@@ -6,19 +6,21 @@ from collections.abc import Collection
 
 from core.pipeline.build import Stages
 
-Together = tuple[str, ...]
+LineGroup = tuple[str, ...]
 """The names of lines that share one length: a line, or a linked pair."""
 
 
-def worn_lines(stages: Stages) -> tuple[Together, ...]:
+def active_line_groups(stages: Stages) -> tuple[LineGroup, ...]:
     """Return the worn lines that pull at points which can move, in the model's order; linked ones as one."""
     model = stages.model
-    pulling = [model.lines[at].name for at in model.pulling]
-    groups = (tuple(sorted(set(stages.design.linked(name)).intersection(pulling))) for name in pulling)
+    pulling = [model.lines[at].name for at in model.acting_lines]
+    groups = (tuple(sorted(set(stages.design.linked_pair(name)).intersection(pulling))) for name in pulling)
     return tuple(dict.fromkeys(groups))
 
 
-def free_lines(stages: Stages, kept: Collection[str] = ()) -> tuple[Together, ...]:
-    """Return those of ``worn_lines`` that may change: none that are locked, and none of ``kept``."""
-    stay = {name for name in stages.design.worn() if stages.design.traits_of(name).locked} | set(kept)
-    return tuple(group for group in worn_lines(stages) if not stay.intersection(group))
+def free_lines(stages: Stages, kept: Collection[str] = ()) -> tuple[LineGroup, ...]:
+    """Return those of ``active_line_groups`` that may change: none that are locked, and none of ``kept``."""
+    stay = {name for name in stages.design.active_lines() if stages.design.line_settings(name).locked} | set(
+        kept
+    )
+    return tuple(group for group in active_line_groups(stages) if not stay.intersection(group))

@@ -14,11 +14,11 @@ from core.control_mesh.back_length import Back, back_of
 from core.control_mesh.fit import ControlMesh, fit_control_mesh
 from core.control_mesh.straps import Tail
 from core.control_mesh.template import read_template
-from core.deformation.blend_region import Patch, patch_fade
+from core.deformation.blend_region import BlendRegion, blend_weights
 from core.deformation.incremental_normals import MovingFaces, moving_faces
-from core.deformation.tffd import Binding, Weights, bind, uncollared
+from core.deformation.tffd import Binding, Weights, bind, movable_border_triangles
 from core.document.design import Design, ScanSource
-from core.document.line_notation import with_own_lines
+from core.document.line_notation import with_custom_lines
 from core.document.storage.project_file import ScanFile, read_scan_file
 from core.errors import FitError, LandmarkError, LineError, UserError
 from core.geometry.mesh import Floats, Mesh, Points
@@ -26,16 +26,16 @@ from core.landmarks.detect import FINDING, find_landmarks
 from core.landmarks.manual import PLACED, PlacedMark, in_mm
 from core.landmarks.types import Landmark, Landmarks
 from core.mechanics.gain_limit import gain_limit
-from core.mechanics.iteration import Marks, Targets
+from core.mechanics.iteration import LineTargets, Observables
 from core.mechanics.model import ConstrainedModel, constrained_model
-from core.mechanics.options import Mechanics
+from core.mechanics.options import ModelOptions
 from core.pipeline.build_shares import PARTS, SHARES, UNKNOWN
-from core.pipeline.elastic_model import elastic_model
-from core.pipeline.line_routes import Route, routes_of, tails_of
-from core.pipeline.observables import BodyWatch
+from core.pipeline.elastic_model import solve_elastic_model
+from core.pipeline.line_routes import LineRoute, line_routes, strap_tails
+from core.pipeline.observables import BodyObservables
 from core.progress import Progress, quiet
-from core.scan.body import Body, RefusedError, body_of
-from core.scan.edited_body import KEEP_MORE, NO_BUST, edited
+from core.scan.body import Body, ImplausibleScanError, body_of
+from core.scan.edited_body import KEEP_MORE, NO_BUST, apply_edits
 from core.scan.edits import UNEDITED
 
 GAIN_SHARE = 0.97
@@ -60,13 +60,13 @@ class Stages:
     body: Body
     landmarks: Landmarks
     control: ControlMesh
-    patch: Patch
+    patch: BlendRegion
     binding: Binding
     moving: MovingFaces
-    watch: BodyWatch
+    watch: BodyObservables
     backs: Mapping[str, Back]
     tails: Mapping[str, Tail]
-    routes: Mapping[str, Route]
+    routes: Mapping[str, LineRoute]
     model: ConstrainedModel
     gain_limit: float
     seconds: Mapping[str, float]
@@ -78,7 +78,7 @@ class Stages:
         return GAIN_SHARE * self.gain_limit if self.design.gain is None else self.design.gain
 
     @cached_property
-    def rest_marks(self) -> Marks:
+    def rest_marks(self) -> Observables:
         """What is watched, at rest."""
         return self.watch(self.control.mesh.vertices)
 
@@ -87,16 +87,16 @@ class Stages:
 
         ``control_points`` have shape (n, 3) [mm].
         """
-        places = self.binding.operator.added(self.binding.change(control_points), self.moving.rest)
+        places = self.binding.operator.apply(self.binding.change(control_points), self.moving.rest)
         return places, self.moving.normals(places)
 
     def body_change(self, control_points: Points) -> Floats:
         """Return the volumes that the body's left and right have gained since rest, shape (2,) [mm^3]."""
-        return BodyFollows(self.binding, self.moving)(control_points)
+        return DenseVolumeChange(self.binding, self.moving)(control_points)
 
 
 @dataclass(frozen=True, eq=False)
-class BodyFollows:
+class DenseVolumeChange:
     """Tells what the body's left and right have gained [mm^3], (2,), when it follows the control points."""
 
     binding: Binding
@@ -104,11 +104,11 @@ class BodyFollows:
 
     def __call__(self, control_points: Points) -> Floats:
         """Return it for control points, shape (n, 3) [mm]."""
-        places = self.binding.operator.added(self.binding.change(control_points), self.moving.rest)
+        places = self.binding.operator.apply(self.binding.change(control_points), self.moving.rest)
         return self.moving.side_volume_changes(places)
 
 
-class StuckError(UserError):
+class IncompleteBuildError(UserError):
     """A ``body`` was read, and no bust found on it or no control mesh laid: it can be shown and corrected.
 
     ``kind``: one that is "refused" is shown as it lies in its file, one that is "unsure" may stand otherwise,
@@ -123,16 +123,18 @@ class StuckError(UserError):
         self.landmarks = stage.landmarks(body, design)
         self.seconds: Mapping[str, float] = stage.seconds
         self.memo: Memo = stage.memo
-        told = body.pose.sure or (design.scan.up and design.scan.front)  # then asking again tells no more
+        told = body.pose.is_certain or (
+            design.scan.up and design.scan.front
+        )  # then asking again tells no more
         self.kind: Literal["refused", "unsure", "landmarks"] = "landmarks" if told else "unsure"
-        if isinstance(problem, RefusedError):
+        if isinstance(problem, ImplausibleScanError):
             self.kind = "refused"
 
 
 class _Stager:
     """Makes stages in order, taking each from the previous build if its inputs are the same."""
 
-    def __init__(self, previous: Stages | StuckError | None, progress: Progress) -> None:
+    def __init__(self, previous: Stages | IncompleteBuildError | None, progress: Progress) -> None:
         self._old: Memo = previous.memo if previous else {}
         self._old_seconds: Mapping[str, float] = previous.seconds if previous else {}
         self._progress = progress
@@ -172,7 +174,9 @@ def _same(old: tuple[Any, ...], new: tuple[Any, ...]) -> bool:
     return all(a is b or (not isinstance(a, np.ndarray) and a == b) for a, b in zip(old, new, strict=True))
 
 
-def build(design: Design, previous: Stages | StuckError | None = None, progress: Progress = quiet) -> Stages:
+def build(
+    design: Design, previous: Stages | IncompleteBuildError | None = None, progress: Progress = quiet
+) -> Stages:
     """Build everything that precedes solving ``design``; ``progress`` receives the name of each new stage.
 
     ``previous`` is the last result, whole or incomplete; stages with equal inputs are reused. Raises the
@@ -182,48 +186,50 @@ def build(design: Design, previous: Stages | StuckError | None = None, progress:
     try:
         source = replace(design.scan, edits=UNEDITED)
         scan, body = stage("read scan", partial(_read_upright, progress=stage.inside), source)
-    except RefusedError as refusal:
-        stuck = StuckError(refusal, refusal.body, design, stage)
+    except ImplausibleScanError as refusal:
+        stuck = IncompleteBuildError(refusal, refusal.body, design, stage)
     else:
         try:
-            body = stage("edit scan", partial(edited, progress=stage.inside), body, design.scan.edits)
+            body = stage("edit scan", partial(apply_edits, progress=stage.inside), body, design.scan.edits)
             return _stages(stage, design, scan, body)
         except (LandmarkError, FitError) as problem:
-            stuck = StuckError(problem, body, design, stage)
+            stuck = IncompleteBuildError(problem, body, design, stage)
     # Raised out here it has no context: what the window keeps would keep all that was read and tried.
     raise stuck
 
 
 def _stages(stage: _Stager, design: Design, scan: ScanFile, body: Body) -> Stages:
-    landmarks = stage(FINDING, partial(find, progress=stage.inside), body, design.placed)
+    landmarks = stage(FINDING, partial(detect_landmarks, progress=stage.inside), body, design.placed)
     template = stage("read template", read_template, design.template)
     control = stage("fit control mesh", fit_control_mesh, template, body, landmarks, design.line_height)
-    patch = stage("find patch", patch_fade, body.mesh, control)
+    patch = stage("find patch", blend_weights, body.mesh, control)
     weights = design.weights, design.scaled_normals
     binding = stage("bind body", _bind, body.mesh, control, patch.fade, *weights)
     middle = float(control.mesh.vertices[control.border, 0].mean())
     moving = stage("prepare normals", moving_faces, body.mesh, binding.moving, middle)
-    watch = stage("watch body", BodyWatch, binding, control, landmarks)
+    watch = stage("watch body", BodyObservables, binding, control, landmarks)
     backs = stage("measure bands", _backs, body, control)
-    laid = stage("lay own lines", with_own_lines, control, design.own_lines)
-    tails = stage("lead straps", tails_of, body.mesh, laid, design.own_lines, backs)
-    routes = stage("trace lines", routes_of, body.mesh, laid, backs, tails)
+    laid = stage("lay own lines", with_custom_lines, control, design.own_lines)
+    tails = stage("lead straps", strap_tails, body.mesh, laid, design.own_lines, backs)
+    routes = stage("trace lines", line_routes, body.mesh, laid, backs, tails)
     lengths = (*({name: part.length for name, part in each.items()} for each in (backs, tails)),)
-    chosen = design.worn(), design.mechanics, design.own_stiffness()
+    chosen = design.active_lines(), design.model_options, design.line_stiffnesses()
     model = stage("build model", _model, laid, *lengths, *chosen)
-    elastics = design.worn_elastics()
+    elastics = design.active_elastics()
     if elastics and design.line_hold == "spring":  # a held line has its length, whatever it is made of
-        change = stage("follow body", BodyFollows, binding, moving) if design.dense_volume else None
-        made = design.lines, elastics, design.tissue_stiffness, design.own_stiffness()
-        model = stage("fit elastics", elastic_model, model, *made, change)
+        change = stage("follow body", DenseVolumeChange, binding, moving) if design.dense_volume else None
+        made = design.lines, elastics, design.tissue_stiffness, design.line_stiffnesses()
+        model = stage("fit elastics", solve_elastic_model, model, *made, change)
     limit = stage("probe gain", gain_limit, model)
     fitted = scan, body, landmarks, control, patch, binding, moving, watch
     return Stages(design, *fitted, backs, tails, routes, model, limit, stage.seconds, stage.memo)
 
 
-def targets_of(design: Design, stages: Stages) -> Targets:
+def line_targets(design: Design, stages: Stages) -> LineTargets:
     """Return what the design asks of the solver."""
-    return Targets(tuple(design.ratio(line.name) for line in stages.model.lines), design.volume, stages.gain)
+    return LineTargets(
+        tuple(design.ratio(line.name) for line in stages.model.lines), design.volume, stages.gain
+    )
 
 
 def read_body(source: ScanSource, progress: Progress = quiet) -> tuple[ScanFile, Body]:
@@ -232,7 +238,7 @@ def read_body(source: ScanSource, progress: Progress = quiet) -> tuple[ScanFile,
     Raises ScanError, ProjectError, LandmarkError or Cancelled.
     """
     scan, body = _read_upright(source, progress)
-    return scan, edited(body, source.edits, progress)
+    return scan, apply_edits(body, source.edits, progress)
 
 
 def _read_upright(source: ScanSource, progress: Progress) -> tuple[ScanFile, Body]:
@@ -241,7 +247,7 @@ def _read_upright(source: ScanSource, progress: Progress) -> tuple[ScanFile, Bod
     return scan, body_of(scan.name, scan.data, **told, progress=progress)
 
 
-def find(body: Body, placed: tuple[PlacedMark, ...], progress: Progress = quiet) -> Landmarks:
+def detect_landmarks(body: Body, placed: tuple[PlacedMark, ...], progress: Progress = quiet) -> Landmarks:
     """Return the landmarks of a body, with those placed by hand. Raises LandmarkError, Cancelled."""
     try:
         return find_landmarks(body, in_mm(placed, body.pose.file_to_mm), progress)
@@ -252,7 +258,7 @@ def find(body: Body, placed: tuple[PlacedMark, ...], progress: Progress = quiet)
 
 
 def _bind(body: Mesh, control: ControlMesh, fade: Floats, weights: Weights, scaled_normals: bool) -> Binding:
-    loose = len(uncollared(control.mesh, control.fixed))
+    loose = len(movable_border_triangles(control.mesh, control.fixed))
     if loose:
         raise FitError(
             f"Triangles at the border of the control mesh can move: {loose}.",
@@ -271,7 +277,7 @@ def _bind(body: Mesh, control: ControlMesh, fade: Floats, weights: Weights, scal
 
 
 def _backs(body: Body, control: ControlMesh) -> dict[str, Back]:
-    return {name: back_of(body.calm, control, name) for name in control.paths}
+    return {name: back_of(body.smoothed, control, name) for name in control.paths}
 
 
 def _model(
@@ -279,7 +285,7 @@ def _model(
     backs: Mapping[str, float],
     tails: Mapping[str, float],
     worn: frozenset[str],
-    mechanics: Mechanics,
+    mechanics: ModelOptions,
     own_stiffness: Mapping[str, float],
 ) -> ConstrainedModel:
     unknown = sorted(worn - set(control.line_names))

@@ -5,13 +5,13 @@ from __future__ import annotations
 from threadpoolctl import threadpool_limits
 
 from core.document.design import Design
-from core.mechanics.solver_comparison import MOST_TURNS, Comparison
-from core.pipeline.build import Stages, build, targets_of
+from core.mechanics.solver_comparison import MOST_TURNS, SolverComparison
+from core.pipeline.build import Stages, build, line_targets
 from core.pipeline.frame import Frame, make_frame
 from core.progress import Progress, quiet
 
 
-def settled_frame(design: Design, near: Stages, progress: Progress = quiet) -> Frame:
+def converged_frame(design: Design, near: Stages, progress: Progress = quiet) -> Frame:
     """Return the frame at which the runs of a design rest; what it shares with ``near`` is not built again.
 
     Raises the UserError of the stage that fails, or Cancelled.
@@ -20,9 +20,9 @@ def settled_frame(design: Design, near: Stages, progress: Progress = quiet) -> F
     with threadpool_limits(1):
         stages = build(design, near, progress)
         change = stages.body_change if design.dense_volume else None
-        comparison = Comparison(stages.model, targets_of(design, stages), stages.watch, change)
+        comparison = SolverComparison(stages.model, line_targets(design, stages), stages.watch, change)
         turns = 0
-        while not comparison.resting:
+        while not comparison.is_finished:
             progress("turns", min(turns / MOST_TURNS, 1.0))
             comparison.advance()
             turns += 1

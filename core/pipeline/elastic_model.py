@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from core.document.elastic import Elastic
-from core.document.lines import WornLine
+from core.document.lines import ActiveLine
 from core.errors import LineError
 from core.mechanics.dense_volume import BodyChange, solve_body_exact
-from core.mechanics.elastic_lines import ElasticLines, Fitted, fit_elastics
+from core.mechanics.elastic_lines import ElasticLines, FittedModel, fit_elastics
 from core.mechanics.exact_solution import solve_exact
 from core.mechanics.force_units import newtons_per_unit
 from core.mechanics.model import ConstrainedModel
-from core.mechanics.newton import Balance
+from core.mechanics.newton import Equilibrium
 
 
-def elastic_model(
+def solve_elastic_model(
     model: ConstrainedModel,
-    lines: tuple[WornLine, ...],
+    lines: tuple[ActiveLine, ...],
     elastics: Mapping[str, Elastic],
     tissue_stiffness: float,
     own_stiffness: Mapping[str, float],
@@ -36,20 +36,22 @@ def elastic_model(
     wish = ElasticLines(model, ratios, elastics, newtons, own_stiffness)
     fitted = fit_elastics(wish, _solver(tuple(ratios.values()), body_change))
     for name, elongation in fitted.elongations.items():
-        if elongation > elastics[name].reach:
-            raise elastics[name].overstretched(elongation, name, worn.get(name))
+        if elongation > elastics[name].max_elongation:
+            raise elastics[name].overstretch_error(elongation, name, worn.get(name))
     if not fitted.agreed:
         raise _no_agreement(fitted)
     return fitted.model
 
 
-def _solver(ratios: tuple[float, ...], change: BodyChange | None) -> Callable[[ConstrainedModel], Balance]:
+def _solver(
+    ratios: tuple[float, ...], change: BodyChange | None
+) -> Callable[[ConstrainedModel], Equilibrium]:
     if change is None:
         return lambda model: solve_exact(model, ratios)
     return lambda model: solve_body_exact(model, ratios, change)
 
 
-def _no_agreement(fitted: Fitted) -> LineError:
+def _no_agreement(fitted: FittedModel) -> LineError:
     """Return what to say when the body and the elastics do not come to rest together."""
     return LineError(
         f"No balance was found with {', '.join(fitted.elongations)} made of elastic.",

@@ -8,17 +8,17 @@ from collections.abc import Callable
 import numpy as np
 
 from core.document.design import Design
-from core.document.lines import WornLine
+from core.document.lines import ActiveLine
 from core.errors import LineError
-from core.mechanics.dense_volume import body_kept, solve_body_exact
+from core.mechanics.dense_volume import rates_at_body_volume, solve_body_exact
 from core.mechanics.exact_solution import NEWTON_LIMIT, solve_exact
-from core.mechanics.newton import Balance
+from core.mechanics.newton import Equilibrium
 from core.mechanics.potential import Potential
-from core.mechanics.sensitivity import Answer, Rates
-from core.pipeline.build import Stages, targets_of
+from core.mechanics.sensitivity import Rates, Sensitivities
+from core.pipeline.build import Stages, line_targets
 
 
-class NoBalanceError(LineError):
+class NoEquilibriumError(LineError):
     """The lines of ``design`` find no balance at their lengths."""
 
     def __init__(self, design: Design) -> None:
@@ -33,7 +33,7 @@ _NOT_FOUND = (
 
 
 def _cannot_hold(design: Design) -> tuple[str, str]:
-    line = max(design.lines, key=lambda line: abs(math.log(line.ratio)), default=WornLine("The line", 1.0))
+    line = max(design.lines, key=lambda line: abs(math.log(line.ratio)), default=ActiveLine("The line", 1.0))
     late = design.line_force == "explicit"
     return (
         f"{line.name} cannot be held at {100 * line.ratio:.1f} % of its rest length.",
@@ -43,48 +43,48 @@ def _cannot_hold(design: Design) -> tuple[str, str]:
     )
 
 
-def balance_of(
+def exact_equilibrium(
     stages: Stages,
     ratios: tuple[float, ...] | None = None,
-    near: Balance | None = None,
+    near: Equilibrium | None = None,
     limit: int = NEWTON_LIMIT,
-) -> Balance:
+) -> Equilibrium:
     """Return the exact answer of a design, which may not be ``found``; from one ``near`` by it is quicker.
 
     ``ratios`` [1] are other lengths than the design's, one per line of the model. After ``limit`` steps it is
     given up.
     """
-    ratios = targets_of(stages.design, stages).ratios if ratios is None else ratios
+    ratios = line_targets(stages.design, stages).ratios if ratios is None else ratios
     if stages.design.dense_volume:
         return solve_body_exact(stages.model, ratios, stages.body_change, limit, near=near)
     return solve_exact(stages.model, ratios, limit, near=near)
 
 
-def answer_of(
+def exact_solution(
     stages: Stages,
     ratios: tuple[float, ...] | None = None,
-    near: Balance | None = None,
+    near: Equilibrium | None = None,
     limit: int = NEWTON_LIMIT,
-) -> Answer:
-    """Return the exact answer, ready to be asked what moves it. Raises NoBalanceError; see ``balance_of``."""
-    ratios = targets_of(stages.design, stages).ratios if ratios is None else ratios
-    balance = balance_of(stages, ratios, near, limit)
-    if not balance.found:
-        raise NoBalanceError(stages.design)
+) -> Sensitivities:
+    """Return the exact answer, ready to be asked what moves it. Raises NoBalanceError; see ``exact_equilibrium``."""
+    ratios = line_targets(stages.design, stages).ratios if ratios is None else ratios
+    balance = exact_equilibrium(stages, ratios, near, limit)
+    if not balance.is_converged:
+        raise NoEquilibriumError(stages.design)
     model, excess = stages.model, None
     if stages.design.dense_volume:
         points = model.tensegric.expand(balance.state.moved)
         excess = model.volume.side_volumes(points) - model.rest_sides
-    return Answer(Potential(model, ratios, excess), balance)
+    return Sensitivities(Potential(model, ratios, excess), balance)
 
 
-def volume_keeper(stages: Stages, answer: Answer) -> Callable[[Rates], Rates]:
+def body_volume_rates(stages: Stages, answer: Sensitivities) -> Callable[[Rates], Rates]:
     """Return what makes of rates those at which the body keeps its volume, where a design asks for that."""
     if not stages.design.dense_volume:
         return lambda rates: rates
     points, binding, moving = answer.place.points, stages.binding, stages.moving
     sides = moving.side_volume_slopes(stages.shape(points)[0])[:, : moving.count]
     free = stages.model.tensegric.free
-    slopes = np.stack([binding.pulled(points, side)[free].ravel() for side in sides])
-    each = stages.model.mechanics.volume_of == "each"
-    return lambda rates: body_kept(rates, answer.by_excess, slopes, each=each)
+    slopes = np.stack([binding.gradient(points, side)[free].ravel() for side in sides])
+    each = stages.model.options.volume_of == "each"
+    return lambda rates: rates_at_body_volume(rates, answer.by_excess, slopes, each=each)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from core.errors import UserError
 from core.geometry.mesh import Points
-from core.mechanics.convergence import Verdict
-from core.mechanics.iteration import Marks, Record
-from core.mechanics.solver_comparison import Comparison
+from core.mechanics.convergence import Convergence
+from core.mechanics.iteration import Observables, Record
+from core.mechanics.solver_comparison import SolverComparison
 from core.pipeline.build import Stages
 
 
@@ -19,7 +19,7 @@ class Frame:
 
     ``points`` and ``normals`` (r, 3) belong to the body's vertices ``stages.moving.vertices``;
     ``control_points`` (n, 3) [mm]; ``lengths`` [mm] of the lines' front parts; ``tracks`` the records of each
-    run so far; ``exact_marks`` what the exact answer ends at; ``at_work`` whether turns are still being made;
+    run so far; ``exact_marks`` what the exact answer ends at; ``is_running`` whether turns are still being made;
     ``seconds`` spent on them since the design last changed, at turn ``changed_at``.
     """
 
@@ -30,11 +30,11 @@ class Frame:
     control_points: Points
     lengths: Mapping[str, float]
     tracks: Mapping[str, tuple[Record, ...]]
-    exact_marks: Marks
-    verdict: Verdict
+    exact_marks: Observables
+    verdict: Convergence
     error_ml: float
-    marks: Marks
-    at_work: bool
+    marks: Observables
+    is_running: bool
     seconds: float
     changed_at: int
 
@@ -47,14 +47,14 @@ class Failure:
     error: Exception
 
     @property
-    def refuses(self) -> bool:
+    def is_rejection(self) -> bool:
         """Whether the design itself cannot be solved, for a reason that the user can change; else the fault
         is in the program or the machine.
         """
         return isinstance(self.error, UserError)
 
 
-def make_frame(revision: int, stages: Stages, comparison: Comparison, seconds: float = 0.0) -> Frame:
+def make_frame(revision: int, stages: Stages, comparison: SolverComparison, seconds: float = 0.0) -> Frame:
     """Shape the body after the comparison's shown state and read everything off it."""
     control_points = stages.model.tensegric.expand(comparison.shown.moved)
     change = stages.model.volume.volume(control_points) - stages.model.volume.rest_volume
@@ -70,7 +70,7 @@ def make_frame(revision: int, stages: Stages, comparison: Comparison, seconds: f
         comparison.verdict,
         change / 1000.0,
         stages.watch(control_points),
-        not comparison.resting,
+        not comparison.is_finished,
         seconds,
         shown.changed_at,
     )

@@ -7,16 +7,16 @@ from dataclasses import dataclass, field
 
 from core.control_mesh.back_length import Back
 from core.control_mesh.fit import ControlMesh
-from core.control_mesh.skin_projection import skin_places
-from core.control_mesh.straps import BAND, NO_TAIL, Tail, tail_of
-from core.document.lines import OwnLine
+from core.control_mesh.skin_projection import points_on_skin
+from core.control_mesh.straps import BAND, NO_TAIL, Tail, strap_tail
+from core.document.lines import CustomLine
 from core.geometry.mesh import Mesh, Points, frozen
 
 NO_BACK = NO_TAIL
 
 
 @dataclass(frozen=True, eq=False)
-class Route:
+class LineRoute:
     """The course of a line on the body at rest.
 
     ``path`` (k, 3) [mm] has a place for each vertex of the line. ``back`` (b, 3) [mm] goes on from its end:
@@ -29,8 +29,8 @@ class Route:
     drawn: bool = False
 
 
-def tails_of(
-    skin: Mesh, control: ControlMesh, own: tuple[OwnLine, ...], backs: Mapping[str, Back]
+def strap_tails(
+    skin: Mesh, control: ControlMesh, own: tuple[CustomLine, ...], backs: Mapping[str, Back]
 ) -> dict[str, Tail]:
     """Return the tails of those ``own`` lines that go over the shoulder, by line; see ``straps``."""
     tails = {}
@@ -41,19 +41,19 @@ def tails_of(
                 problem = "Its upper end can move: lead it up to the edge of the control mesh."
                 tails[line.name] = Tail(0.0, NO_TAIL, problem=problem)
             else:
-                tails[line.name] = tail_of(skin, end @ control.mesh.vertices, backs[BAND].path)
+                tails[line.name] = strap_tail(skin, end @ control.mesh.vertices, backs[BAND].path)
     return tails
 
 
-def routes_of(
+def line_routes(
     skin: Mesh, control: ControlMesh, backs: Mapping[str, Back], tails: Mapping[str, Tail]
-) -> dict[str, Route]:
+) -> dict[str, LineRoute]:
     """Return the routes of all lines on a ``skin`` at rest, by line."""
     beyond = {name: back.path for name, back in backs.items()} | {name: t.path for name, t in tails.items()}
     routes = {}
     for name, path in control.paths.items():
-        routes[name] = Route(frozen(control.mesh.vertices[list(path)]), beyond.get(name, NO_BACK))
+        routes[name] = LineRoute(frozen(control.mesh.vertices[list(path)]), beyond.get(name, NO_BACK))
     for name, embedded in control.embedded.items():
-        places = skin_places(skin, control.mesh, embedded.weights)
-        routes[name] = Route(frozen(places), beyond.get(name, NO_BACK), drawn=True)
+        places = points_on_skin(skin, control.mesh, embedded.weights)
+        routes[name] = LineRoute(frozen(places), beyond.get(name, NO_BACK), drawn=True)
     return routes

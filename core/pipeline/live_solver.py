@@ -18,9 +18,9 @@ from threadpoolctl import threadpool_limits
 from core.document.design import Design
 from core.errors import UserError, as_exception
 from core.geometry import kernels
-from core.mechanics.solver_comparison import Comparison
-from core.pipeline.build import Stages, StuckError, build, targets_of
-from core.pipeline.exact import NoBalanceError
+from core.mechanics.solver_comparison import SolverComparison
+from core.pipeline.build import IncompleteBuildError, Stages, build, line_targets
+from core.pipeline.exact import NoEquilibriumError
 from core.pipeline.frame import Failure, Frame, make_frame
 from core.progress import Cancelled, Progress, quiet
 
@@ -67,7 +67,7 @@ class LiveSolver:
         self,
         tell: Progress = quiet,
         ready: Callable[[], None] = lambda: None,
-        prepare: Callable[[Stages | StuckError, Progress], object] = lambda built, progress: None,
+        prepare: Callable[[Stages | IncompleteBuildError, Progress], object] = lambda built, progress: None,
     ) -> None:
         self._tell, self._ready, self._prepare = tell, ready, prepare
         self._at_work = 0
@@ -80,8 +80,8 @@ class LiveSolver:
         self._revision = self._asked = self._taken = 0
         self._stopping = False
         self._stages: Stages | None = None
-        self._stuck: StuckError | None = None
-        self._comparison: Comparison | None = None
+        self._stuck: IncompleteBuildError | None = None
+        self._comparison: SolverComparison | None = None
         self._seconds = 0.0
         self._held = False
         self._pace: float | None = None
@@ -110,10 +110,10 @@ class LiveSolver:
             self._request = self._failure = None
             self._unwanted = self._revision
 
-    def latest(self, hold: bool = False) -> Frame | Failure | None:
+    def poll(self, hold: bool = False) -> Frame | Failure | None:
         """Return what has not been fetched yet, if anything: a failure first, else the newest frame.
 
-        ``hold``: until ``release`` no turns are made after a frame, as who shows it would only wait for the
+        ``hold``: until ``resume`` no turns are made after a frame, as who shows it would only wait for the
         interpreter lock.
         """
         with self._wake:
@@ -133,7 +133,7 @@ class LiveSolver:
     def _hear_last(self, what: str, share: float) -> None:
         self._hear(what, 0.98 + 0.02 * share)
 
-    def release(self) -> None:
+    def resume(self) -> None:
         """Go on: the frame that was fetched is shown."""
         with self._wake:
             self._held, self._shown_at = False, time.perf_counter()
@@ -212,7 +212,7 @@ class LiveSolver:
             return rests_at - now
         if self._request is not None:
             return 0.0
-        if self._comparison is None or self._comparison.resting or (unseen and self._pace is not None):
+        if self._comparison is None or self._comparison.is_finished or (unseen and self._pace is not None):
             return None
         return max(min(self._shown_at + _NEXT_MOVE, rests_at) - now, self._pause, 0.0)
 
@@ -231,7 +231,7 @@ class LiveSolver:
             if self._stages is None or stages.body is not self._stages.body:
                 self._prepare(stages, self._hear_last)
             self._hear("", 1.0)
-        except StuckError as how_far:
+        except IncompleteBuildError as how_far:
             self._prepare(how_far, self._hear_last)
             # An edit of the scan that is open goes back to what stands.
             if self._stages is None or how_far.body is not self._stages.body:
@@ -242,16 +242,16 @@ class LiveSolver:
         old, self._stages, self._stuck = self._stages, stages, None
         if self._comparison is not None and old is not None and not request.fresh:
             before = old.design
-            if before != request.design and before.acts_as(request.design):
+            if before != request.design and before.is_equivalent(request.design):
                 return  # what is only called or treated otherwise lets the runs go on, or rest
-        targets = targets_of(request.design, stages)
+        targets = line_targets(request.design, stages)
         start = time.perf_counter()
         same_body = old is not None and old.control is stages.control and old.binding is stages.binding
         dense = stages.design.dense_volume
         same_answer = same_body and old is not None and old.design.dense_volume == dense
         if self._comparison is None or not same_answer:
             change = stages.body_change if dense else None
-            self._comparison = Comparison(stages.model, targets, stages.watch, change)
+            self._comparison = SolverComparison(stages.model, targets, stages.watch, change)
         else:
             self._comparison.retarget(stages.model, targets, request.fresh)
         self._seconds = time.perf_counter() - start
@@ -262,7 +262,7 @@ class LiveSolver:
         if comparison is None:
             return False
         end = time.perf_counter() + seconds
-        while not comparison.resting and (start := time.perf_counter()) < end:
+        while not comparison.is_finished and (start := time.perf_counter()) < end:
             if self._held and not (self._stopping or self._request):
                 time.sleep(_NAP)
                 end = max(end, time.perf_counter() + _NAP)
@@ -281,10 +281,10 @@ class LiveSolver:
         if comparison is None or stages is None:
             return
         held = stages.design.line_hold == "held"
-        lost = (held or comparison.main is None) and not comparison.exact.found
+        lost = (held or comparison.main is None) and not comparison.exact.is_converged
         if lost or (held and comparison.main and not comparison.main.sane):
             self._comparison = None
-            raise NoBalanceError(stages.design)
+            raise NoEquilibriumError(stages.design)
 
     def _publish(self, frame: Frame) -> None:
         with self._wake:

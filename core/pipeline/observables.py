@@ -15,7 +15,7 @@ from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points
 from core.geometry.plane_sections import cut, hull_corners, hull_perimeter, hull_slopes
 from core.landmarks.torso.cross_sections import trunk_levels
 from core.landmarks.types import Landmarks
-from core.mechanics.iteration import Marks
+from core.mechanics.iteration import Observables
 
 _SHARPNESS = 1.0  # [mm]
 _REACH = 30.0
@@ -25,7 +25,7 @@ _NEAR_LEVEL = 60.0
 """No vertex of a body under a garment moves so far up or down [mm]."""
 
 
-class BodyWatch:
+class BodyObservables:
     """Follows a few hundred body vertices through t-FFD, so that a turn is measured without moving them all.
 
     The bust points are the body vertices nearest to the landmarks. The apex of a breast is the mean of its
@@ -54,7 +54,7 @@ class BodyWatch:
 
     def bust_point_slopes(self, control_points: Points, weights: Points) -> Points:
         """Return slopes by the control points, (n, 3), of both bust points times ``weights``, summed."""
-        return self._binding.by_points(control_points, self._of_points.T @ weights)
+        return self._binding.gradient_by_points(control_points, self._of_points.T @ weights)
 
     def apexes(self, control_points: Points) -> Points:
         """Return y and z of the left and the right apex, shape (2, 2) [mm]."""
@@ -71,18 +71,18 @@ class BodyWatch:
         slopes = np.zeros_like(places)
         for side, weight in zip((self._left, self._right), weights, strict=True):
             slopes[side, 1:] = _apex_slopes(places[side], weight)
-        return self._binding.by_points(control_points, self._operator.T @ slopes)
+        return self._binding.gradient_by_points(control_points, self._operator.T @ slopes)
 
     def _places(self, control_points: Points) -> Points:
         return np.asarray(self._rest + self._operator @ self._binding.change(control_points))
 
-    def __call__(self, control_points: Points) -> Marks:
+    def __call__(self, control_points: Points) -> Observables:
         """Return the marks for control points, shape (n, 3) [mm]."""
         places = self._places(control_points)
         apex = np.mean([_apex(places[self._left])[1:], _apex(places[self._right])[1:]], axis=0)
         (left_y, left_z), (right_y, right_z) = (places[:2] + self._away)[:, 1:].tolist()
         apex_out, outs = self._back - float(apex[0]), (self._back - left_y, self._back - right_y)
-        return Marks(left_z, right_z, float(apex[1]), apex_out, *outs)
+        return Observables(left_z, right_z, float(apex[1]), apex_out, *outs)
 
 
 def _sides(rest: Points, control: ControlMesh) -> tuple[Flags, Flags]:

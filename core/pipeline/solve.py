@@ -10,12 +10,12 @@ from threadpoolctl import threadpool_limits
 
 from core.deformation.tffd import deform
 from core.geometry.mesh import Mesh, Points
-from core.mechanics.convergence import Verdict, judge
+from core.mechanics.convergence import Convergence, assess_convergence
 from core.mechanics.dense_volume import solve_body_exact
 from core.mechanics.exact_solution import NEWTON_LIMIT, newton
-from core.mechanics.iteration import Record, State, at_rest, iterate, record
-from core.mechanics.solver_comparison import judge_balance, shape_of
-from core.pipeline.build import Stages, targets_of
+from core.mechanics.iteration import Record, SolverState, initial_state, iterate, record
+from core.mechanics.solver_comparison import assess_equilibrium, shape_of
+from core.pipeline.build import Stages, line_targets
 from core.progress import Progress, quiet
 
 MOST_TURNS = 300
@@ -32,8 +32,8 @@ class Solution:
     stages: Stages
     rest: Record
     records: tuple[Record, ...]
-    state: State
-    verdict: Verdict
+    state: SolverState
+    verdict: Convergence
     seconds: float
 
     @property
@@ -57,45 +57,45 @@ class Solution:
         return float(self.stages.body_change(self.control_points).sum()) / 1000.0
 
 
-def run(stages: Stages, turns: int | None = None, progress: Progress = quiet) -> Solution:
+def solve(stages: Stages, turns: int | None = None, progress: Progress = quiet) -> Solution:
     """Solve the design of ``stages`` from the original shape.
 
     Makes exactly ``turns`` iterations, or until converged (at most MOST_TURNS) if None; exact volume control
     uses Newton steps instead. ``progress`` receives each step. Raises Cancelled.
     """
     start = time.perf_counter()
-    rest = record(stages.model, at_rest(stages.model), 0.0, stages.watch)
+    rest = record(stages.model, initial_state(stages.model), 0.0, stages.watch)
     solve = _run_exact if stages.design.volume == "exact" else _run_turns
     # Two BLAS threads make these small products many times slower.
     with threadpool_limits(1):
         records, state, verdict = solve(stages, rest, turns, progress)
-    condition = shape_of(stages.model).condition(stages.model.tensegric.expand(state.moved))
+    condition = shape_of(stages.model).quality(stages.model.tensegric.expand(state.moved))
     verdict = replace(verdict, condition=condition)
     return Solution(stages, rest, tuple(records), state, verdict, time.perf_counter() - start)
 
 
 def _run_turns(
     stages: Stages, rest: Record, turns: int | None, progress: Progress
-) -> tuple[list[Record], State, Verdict]:
-    targets = targets_of(stages.design, stages)
+) -> tuple[list[Record], SolverState, Convergence]:
+    targets = line_targets(stages.design, stages)
     records: list[Record] = []
-    state = at_rest(stages.model)
+    state = initial_state(stages.model)
     most = MOST_TURNS if turns is None else turns
     for now, measured in iterate(stages.model, lambda: targets, turns=most, watch=stages.watch):
         state = now
         records.append(measured)
         progress("solving", len(records) / most)
-        if turns is None and judge(records).motion in ("settled", "diverging"):
+        if turns is None and assess_convergence(records).motion in ("settled", "diverging"):
             break
-    return records, state, judge(records)
+    return records, state, assess_convergence(records)
 
 
 def _run_exact(
     stages: Stages, rest: Record, turns: int | None, progress: Progress
-) -> tuple[list[Record], State, Verdict]:
-    ratios = targets_of(stages.design, stages).ratios
+) -> tuple[list[Record], SolverState, Convergence]:
+    ratios = line_targets(stages.design, stages).ratios
     records: list[Record] = []
-    before = at_rest(stages.model)
+    before = initial_state(stages.model)
     limit = NEWTON_LIMIT if turns is None else turns
     if stages.design.dense_volume:
         balances = iter([solve_body_exact(stages.model, ratios, stages.body_change, limit)])
@@ -107,4 +107,4 @@ def _run_exact(
             step = float(((balance.state.moved - before.moved) ** 2).sum(axis=1).max() ** 0.5)
             records.append(record(stages.model, balance.state, step, stages.watch))
         before = balance.state
-    return records, balance.state, judge_balance(stages.model, balance)
+    return records, balance.state, assess_equilibrium(stages.model, balance)

@@ -13,7 +13,7 @@ from core.geometry.mesh import Floats, Indices, Mesh, Points
 from core.mechanics.model import ConstrainedModel
 
 
-def moved_outward(rest: Points, normals: Points, places: Points) -> Floats:
+def normal_displacement(rest: Points, normals: Points, places: Points) -> Floats:
     """Return how far places (k, 3) moved along the normals that they had at rest, shape (k,) [mm]."""
     return np.asarray(np.einsum("ij,ij->i", places - rest, normals))
 
@@ -81,13 +81,13 @@ def _between(control: Mesh, places: Points, fade: Floats) -> sparse.csr_array:
     )
 
 
-def pulls(model: ConstrainedModel, points: Points, ratios: tuple[float, ...]) -> Mapping[str, Floats]:
+def line_forces(model: ConstrainedModel, points: Points, ratios: tuple[float, ...]) -> Mapping[str, Floats]:
     """Return how each segment of the worn lines pulls, by line, as share of the strongest one, (k,) [1].
 
     The model has no newtons: its stiffness is that of the cables. Lines that are held have one tension that
     is no spring's: for them there is no answer.
     """
-    if model.mechanics.line_hold == "held" or not len(model.owner):
+    if model.options.line_hold == "held" or not len(model.owner):
         return {}
     longer = model.segments.lengths(points) - model.natural_lengths(ratios)
     force = model.segments.stiffness * longer

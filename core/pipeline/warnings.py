@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Protocol
 
 from core.geometry.mesh import Points
-from core.mechanics.convergence import Verdict
+from core.mechanics.convergence import Convergence
 from core.pipeline.build import Stages
 
 
-class Shown(Protocol):
+class ShownState(Protocol):
     """A body as it is shown, a ``Frame`` or a ``Solution``: control points (n, 3) [mm], and how it stands."""
 
     @property
@@ -21,11 +21,11 @@ class Shown(Protocol):
         """Where the control points are [mm]."""
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> Convergence:
         """How the run stands."""
 
 
-def kept_volume(shown: Shown) -> tuple[float, float]:
+def controlled_volume(shown: ShownState) -> tuple[float, float]:
     """Return how far the volume that is kept is from the one at rest, of that of the control mesh [%, ml].
 
     It is the body's own where the exact answer keeps that, else that of the control mesh; while it swings,
@@ -41,13 +41,13 @@ def kept_volume(shown: Shown) -> tuple[float, float]:
     return 100.0 * change / rest, change / 1000.0
 
 
-def shape_warnings(shown: Shown) -> list[str]:
+def shape_warnings(shown: ShownState) -> list[str]:
     """Return in a sentence what is wrong with a folded or overstrained shape."""
     condition, state = shown.verdict.condition, shown.verdict.state
     if condition is None or state not in ("folded", "overstrained"):
         return []
     if state == "folded":
-        turn = f"{condition.largest_turn:.0f}"
+        turn = f"{condition.largest_rotation:.0f}"
         said = f"The shape is folded: a triangle of the control mesh has turned by {turn} degrees."
     else:
         low, high = f"{100.0 * condition.shortest:.0f}", f"{100.0 * condition.longest:.0f}"
@@ -55,7 +55,7 @@ def shape_warnings(shown: Shown) -> list[str]:
     return [" ".join((said, "It does not tell how a body would look."))]
 
 
-def still_lines(stages: Stages) -> list[str]:
+def immovable_lines(stages: Stages) -> list[str]:
     """Return a sentence for each line that is worn where no length can move anything.
 
     One that is made of an elastic is there to be cut: of it there is nothing to be told.
@@ -67,7 +67,7 @@ def still_lines(stages: Stages) -> list[str]:
         if name in own
         else f"{name} lies on the rib cage: it is measured, and no length that is set moves it."
         for name in still
-        if name in stages.design.worn() and name not in stages.design.worn_elastics()
+        if name in stages.design.active_lines() and name not in stages.design.active_elastics()
     ]
 
 

@@ -12,15 +12,15 @@ from core.errors import ScanError
 from core.geometry.mesh import Faces, Indices, Mesh, Points
 from core.progress import Progress, quiet
 from core.scan.edits import UNEDITED, ScanEdits
-from core.scan.orientation.pose import STANDING, Pose, find_pose
+from core.scan.orientation.pose import STANDING, Pose, estimate_pose
 from core.scan.orientation.unit_detection import MILLIMETRES
-from core.scan.readers.colors import is_plain, laid_on
+from core.scan.readers.colors import is_plain, transfer_colors
 from core.scan.readers.raw_scan import Colours, RawScan
 from core.scan.readers.registry import no_memory, read_raw, scan_bytes
-from core.scan.reconstruction.point_cloud import FEWEST_POINTS, is_cloud, surface_of
-from core.scan.repair.denoise import calmed, noise_of
-from core.scan.repair.editable_mesh import Skin
-from core.scan.repair.hole_filling import mended
+from core.scan.reconstruction.point_cloud import FEWEST_POINTS, is_cloud, reconstruct_surface
+from core.scan.repair.denoise import denoise, estimate_noise
+from core.scan.repair.editable_mesh import EditableMesh
+from core.scan.repair.hole_filling import fill_holes
 from core.scan.repair.holes import Hole, find_holes
 from core.scan.repair.repair import repair
 
@@ -34,7 +34,7 @@ class Body:
 
     ``rebuilt``: the file held points only, and the skin was laid through them. ``edits`` are those of the
     scan that were applied, ``cut`` the heights of its crop [mm], ``estimated`` the vertices, shape (k,), that
-    fill holes, ``whole`` the lowest and the highest level before a crop, if there was one [mm]. ``colours``
+    fill holes, ``uncropped_range`` the lowest and the highest level before a crop, if there was one [mm]. ``colours``
     are those of the scan at the vertices, shape (n, 4), None without any.
     """
 
@@ -46,31 +46,31 @@ class Body:
     edits: ScanEdits = UNEDITED
     cut: tuple[float, ...] = ()
     estimated: Indices = field(default_factory=lambda: np.empty(0, dtype=np.int64))
-    whole: tuple[float, float] | None = None
+    uncropped_range: tuple[float, float] | None = None
     colours: Colours | None = None
 
     @property
     def heights(self) -> tuple[float, float]:
         """The lowest and the highest level of the whole scan, before a crop [mm]."""
-        if self.whole is not None:
-            return self.whole
+        if self.uncropped_range is not None:
+            return self.uncropped_range
         z = self.mesh.vertices[:, 2]
         return float(z.min()), float(z.max())
 
     @cached_property
-    def calm(self) -> Mesh:
+    def smoothed(self) -> Mesh:
         """The skin without the noise of the scanner: what is measured [mm]."""
-        return calmed(self.mesh)
+        return denoise(self.mesh)
 
-    def calm_down(self, progress: Progress) -> None:
-        """Work out ``calm`` now, telling how far it is: a large skin takes seconds. Raises Cancelled."""
+    def denoise(self, progress: Progress) -> None:
+        """Work out ``smoothed`` now, telling how far it is: a large skin takes seconds. Raises Cancelled."""
         if "calm" not in vars(self):
-            vars(self)["calm"] = calmed(self.mesh, progress)
+            vars(self)["calm"] = denoise(self.mesh, progress)
 
     @cached_property
     def noise(self) -> float:
         """The noise of the scanner, its standard deviation along each axis [mm]."""
-        return noise_of(self.mesh)
+        return estimate_noise(self.mesh)
 
     @cached_property
     def holes(self) -> tuple[Hole, ...]:
@@ -83,7 +83,7 @@ class Body:
         return any(float((np.abs(z - level) < 1e-6).mean()) > 0.5 for level in self.cut)
 
 
-class RefusedError(ScanError):
+class ImplausibleScanError(ScanError):
     """It cannot be told how a scan stands; ``body`` is what it holds as it lies in its file, z up."""
 
     def __init__(self, problem: ScanError, body: Body) -> None:
@@ -143,17 +143,17 @@ def _body_of(
         raise ScanError(f"{name} has no sound triangles.", "Export the scan again.")
     progress(STANDING, 0.0)
     try:
-        pose = find_pose(vertices, faces, unit=unit, up=up, front=front, progress=progress)
+        pose = estimate_pose(vertices, faces, unit=unit, up=up, front=front, progress=progress)
     except ScanError as refusal:
-        lies = as_it_lies(vertices, unit)
+        lies = raw_pose(vertices, unit)
         mesh = Mesh(vertices @ lies.file_to_mm[:3, :3].T, faces)
-        raise RefusedError(
+        raise ImplausibleScanError(
             refusal, Body(mesh, lies, (*said, *repairs), scan_name(name), rebuilt)
         ) from refusal
     progress(STANDING, 1.0)
     turn = pose.file_to_mm[:3, :3]
-    skin, cut = _off_the_stand(Skin(vertices @ turn.T, faces), pose.stand)
-    mesh, mendings = mended(Mesh(skin.vertices, skin.faces), progress)
+    skin, cut = _off_the_stand(EditableMesh(vertices @ turn.T, faces), pose.stand)
+    mesh, mendings = fill_holes(Mesh(skin.vertices, skin.faces), progress)
     colours = _colours(mesh, scan, pose)
     return Body(mesh, pose, (*said, *repairs, *cut, *mendings), scan_name(name), rebuilt, colours=colours)
 
@@ -162,10 +162,10 @@ def _colours(mesh: Mesh, scan: RawScan, pose: Pose) -> Colours | None:
     """Return the colours of a scan on the skin that was made of it, None where they show nothing."""
     if scan.colours is None or is_plain(scan.colours):
         return None
-    return laid_on(mesh.vertices, scan.vertices @ pose.file_to_mm[:3, :3].T, scan.colours)
+    return transfer_colors(mesh.vertices, scan.vertices @ pose.file_to_mm[:3, :3].T, scan.colours)
 
 
-def _off_the_stand(skin: Skin, level: float) -> tuple[Skin, tuple[str, ...]]:
+def _off_the_stand(skin: EditableMesh, level: float) -> tuple[EditableMesh, tuple[str, ...]]:
     """Cut away what lies under a level [mm], and say so."""
     body = skin.vertices[:, 2] > level
     if body.all():
@@ -173,7 +173,7 @@ def _off_the_stand(skin: Skin, level: float) -> tuple[Skin, tuple[str, ...]]:
     return skin.with_vertices(body).compact(), ("Cut away the stand that the body is mounted on.",)
 
 
-def as_it_lies(vertices: Points, unit: str | None) -> Pose:
+def raw_pose(vertices: Points, unit: str | None) -> Pose:
     """Return the pose of what is only looked at: z up, in the unit told or that which makes it a torso."""
     height = max(float(np.ptp(vertices[:, 2])), 1e-9)
     likely = min(MILLIMETRES, key=lambda each: abs(np.log(height * MILLIMETRES[each] / TORSO)))
@@ -195,7 +195,7 @@ def _surface(name: str, scan: RawScan, progress: Progress) -> tuple[Points, Face
             f"Scan with at least {FEWEST_POINTS:,} points, better 30,000.",
         )
     try:
-        return surface_of(scan.vertices, scan.normals, progress)
+        return reconstruct_surface(scan.vertices, scan.normals, progress)
     except (ArithmeticError, ValueError, IndexError) as problem:
         raise ScanError(
             f"No surface can be laid through the points of {name}.",

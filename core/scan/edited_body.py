@@ -13,12 +13,12 @@ from core.geometry.mesh import Flags, Mesh, Points
 from core.progress import Progress, quiet
 from core.scan.body import Body
 from core.scan.edits import LEAST_HEIGHT, UNEDITED, ScanEdits
-from core.scan.orientation.symmetry_planes import even_cloud, middle_of
-from core.scan.readers.colors import colourless, laid_on
-from core.scan.repair.clipping import above, mirrored_half
+from core.scan.orientation.symmetry_planes import middle_of, sample_uniformly
+from core.scan.readers.colors import transfer_colors, without_colors
+from core.scan.repair.clipping import clip_above, mirrored_half
 from core.scan.repair.holes import Hole, hole_sentences
-from core.scan.repair.large_holes import filled
-from core.scan.repair.repair import counted
+from core.scan.repair.large_holes import fill_large_holes
+from core.scan.repair.repair import count_text
 
 NEAR = 25.0
 """The centre of a hole is recognised within this distance, or half the hole's length [mm]."""
@@ -27,14 +27,14 @@ NO_BUST = "The edited scan shows no bust."
 KEEP_MORE = "Crop less: keep the body from the waist to the neck."
 
 
-def edited(body: Body, edits: ScanEdits, progress: Progress = quiet) -> Body:
+def apply_edits(body: Body, edits: ScanEdits, progress: Progress = quiet) -> Body:
     """Return an upright body with its scan edited, ready to be measured; itself without edits.
 
     Raises LandmarkError if a crop leaves no body, Cancelled.
     """
     if edits != UNEDITED:
         body = _edited(body, edits)
-    body.calm_down(progress)
+    body.denoise(progress)
     return body
 
 
@@ -46,21 +46,21 @@ def _edited(body: Body, edits: ScanEdits) -> Body:
     scanned = mesh.vertices
     if edits.kept:
         sign = 1.0 if edits.kept == "left" else -1.0
-        middle = middle_of(even_cloud(mesh.vertices, mesh.faces), np.array([1.0, 0.0, 0.0]))
+        middle = middle_of(sample_uniformly(mesh.vertices, mesh.faces), np.array([1.0, 0.0, 0.0]))
         mesh = mirrored_half(mesh, middle, sign)
         scanned = mesh.vertices.copy()  # where the vertices of the image come from
         scanned[:, 0] = middle + sign * np.abs(mesh.vertices[:, 0] - middle)
-    colours = None if body.colours is None else laid_on(scanned, body.mesh.vertices, body.colours)
-    last = replace(body, mesh=mesh, cut=levels, edits=edits, whole=body.heights, colours=colours)
+    colours = None if body.colours is None else transfer_colors(scanned, body.mesh.vertices, body.colours)
+    last = replace(body, mesh=mesh, cut=levels, edits=edits, uncropped_range=body.heights, colours=colours)
     if edits.filled or edits.fill_all:
         chosen = _chosen(last.holes, edits)
-        mesh, estimated, unfilled = filled(mesh, chosen)
+        mesh, estimated, unfilled = fill_large_holes(mesh, chosen)
         if done := len(chosen) - unfilled:
-            sentences.append(f"Filled {counted(done, 'hole')} by hand: the skin there is an estimate.")
+            sentences.append(f"Filled {count_text(done, 'hole')} by hand: the skin there is an estimate.")
         if unfilled:
             sentences.append(f"Holes whose border touches itself cannot be filled: {unfilled}.")
         if colours is not None:
-            colours = np.concatenate([colours, colourless(len(estimated))])
+            colours = np.concatenate([colours, without_colors(len(estimated))])
         last = replace(last, mesh=mesh, estimated=estimated, colours=colours)
     former = set(hole_sentences(body.mesh, body.holes))
     kept = [each for each in body.repairs if each not in former]
@@ -80,7 +80,7 @@ def _cropped(body: Body, edits: ScanEdits) -> tuple[Mesh, tuple[float, ...]]:
     for level, sign in ((edits.low, 1.0), (edits.high, -1.0)):
         if level is None:
             continue
-        mesh, cut = above(mesh, 2, floor + level, sign)
+        mesh, cut = clip_above(mesh, 2, floor + level, sign)
         if len(mesh.faces) == 0 or np.ptp(mesh.vertices[:, 2]) < LEAST_HEIGHT:
             raise LandmarkError(NO_BUST, KEEP_MORE)
         if cut.any():

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.errors import UserError
-from core.geometry.mesh import FARTHEST
+from core.geometry.mesh import MAX_COORDINATE
 
 SIDES = ("left", "right")
 """The sides of a body that can be kept and mirrored; left is +x."""
@@ -37,7 +37,7 @@ class ScanEdits:
 
     def __post_init__(self) -> None:
         levels = [level for level in (self.low, self.high) if level is not None]
-        if not all(0.0 <= level < FARTHEST for level in levels):
+        if not all(0.0 <= level < MAX_COORDINATE for level in levels):
             raise UserError("The height of a crop is out of range.", "Give a height of 0 mm or more.")
         if len(levels) == 2 and levels[1] - levels[0] < LEAST_HEIGHT:
             raise UserError("The crop leaves no body.", f"Keep at least {LEAST_HEIGHT:.0f} mm of its height.")
@@ -47,7 +47,9 @@ class ScanEdits:
             raise UserError(
                 f"Too many holes are filled one by one: {len(self.filled)}.", "Fill all of them at once."
             )
-        if not all(np.shape(place) == (3,) and (np.abs(place) < FARTHEST).all() for place in self.filled):
+        if not all(
+            np.shape(place) == (3,) and (np.abs(place) < MAX_COORDINATE).all() for place in self.filled
+        ):
             raise UserError("The centre of a hole needs three numbers.", "Give x, y and z in mm.")
 
     def with_filled(self, centre: tuple[float, float, float]) -> ScanEdits:

@@ -8,4 +8,6 @@ from core.document.document import Document
 from core.document.storage.project_file import ScanFile, save_project
 
 scan = sample_path("mannequin")
-save_project(Path(sys.argv[1]), Document.of(sample_design()), ScanFile(scan.name, scan.read_bytes()), None)
+save_project(
+    Path(sys.argv[1]), Document.single(sample_design()), ScanFile(scan.name, scan.read_bytes()), None
+)

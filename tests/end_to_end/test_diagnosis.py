@@ -14,7 +14,7 @@ from app.gui.features.diagnosis.controller import ABOUT
 from app.gui.main_window import MainWindow
 from app.gui.widgets.notification_bar import REFUSED, Notice
 from app.presenters.assessment import tone
-from core.garment.pressure_list import press_list
+from core.garment.pressure_list import pressure_list
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -60,7 +60,7 @@ def test_a_vibration_is_told_at_once_and_ended_by_one_button() -> None:
         yield settled(window)
         frame = window.session.frame
         assert frame is not None
-        assert frame.verdict.told == "settled"
+        assert frame.verdict.display_state == "settled"
         assert window.session.undo_stack.count() == steps + 1
         assert window.session.undo_stack.undoText() == "Use Adaptive"
         assert window.notices.notice() is None
@@ -77,7 +77,7 @@ def test_strain_is_told_calmly_once_and_never_again() -> None:
         undrawn(window)
         yield settled(window)
         window.session.preview_line("mid-bust", 0.9)
-        yield lambda: window.session.frame is not None and not window.session.frame.at_work
+        yield lambda: window.session.frame is not None and not window.session.frame.is_running
         assert not window.doctor_desk._later.isActive(), "while a hand drags nothing is said"
         window.lines_desk.commit_length("mid-bust", 0.9)
         yield settled(window)
@@ -100,7 +100,7 @@ def test_strain_is_told_calmly_once_and_never_again() -> None:
         yield settled(window)
         frame = window.session.frame
         assert frame is not None
-        assert frame.verdict.told == "settled"
+        assert frame.verdict.display_state == "settled"
 
     run_main([], script)
 
@@ -151,11 +151,11 @@ def test_asked_before_the_verdict_is_known_he_says_what_presses(monkeypatch: pyt
 
     def slow(*arguments: object) -> object:
         known.wait(60.0)
-        return press_list(*arguments)  # type: ignore[arg-type]
+        return pressure_list(*arguments)  # type: ignore[arg-type]
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        monkeypatch.setattr(app.gui.features.garment.pressure_controller, "press_list", slow)
+        monkeypatch.setattr(app.gui.features.garment.pressure_controller, "pressure_list", slow)
         window.lines_desk.commit_length("mid-bust", 0.93)
         yield settled(window)
         frame = window.session.frame
@@ -195,11 +195,11 @@ def test_what_was_closed_stays_away_until_something_else_is_wrong() -> None:
         yield settled(window)
         window.lines_desk.commit_length("mid-bust", 0.7)
         yield lambda: told(window)
-        state = window.session.frame.verdict.told  # type: ignore[union-attr]
+        state = window.session.frame.verdict.display_state  # type: ignore[union-attr]
         window.notices.close_notice()
         window.lines_desk.commit_length("mid-bust", 0.705)
         yield settled(window)
-        assert window.session.frame.verdict.told == state  # type: ignore[union-attr]
+        assert window.session.frame.verdict.display_state == state  # type: ignore[union-attr]
         yield lambda: window.doctor_desk._job is None
         assert window.notices.notice() is None
         window.doctor_desk.ask()

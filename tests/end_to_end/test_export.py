@@ -111,12 +111,12 @@ def test_choices_are_remembered_for_each_thing_and_each_format(tmp_path: Path) -
     ],
 )
 def test_settings_that_are_no_choices_are_forgotten(kept: str) -> None:
-    choices = app.gui.features.export.controller.Choices(kept)
+    choices = app.gui.features.export.controller.ExportSettings(kept)
     assert choices.export.what == "body"
     assert choices.values("body") == {"format": "glb", "shape": ""}
     assert choices.values("body", "ply") == {"format": "ply", "shape": "", "unit": "mm", "axes": "z-up"}
     choices.choose("turntable", "size", "480x540")
-    manner = app.gui.features.export.controller.Choices(choices.text).manner("turntable")
+    manner = app.gui.features.export.controller.ExportSettings(choices.text).manner("turntable")
     assert (manner.size, manner.frames, manner.seconds) == ((480, 540), 36, 6.0)
     assert json.loads(choices.text)["turntable/size"] == "480x540"
 

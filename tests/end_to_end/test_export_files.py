@@ -28,13 +28,17 @@ def test_a_turntable_is_drawn_between_events_and_can_be_left(
     saved_as(monkeypatch, path)
     monkeypatch.setattr(app.rendering.offscreen, "LONGEST", 300)
     made: list[Any] = []
-    studio_of = app.rendering.offscreen.Studio.__enter__
-    leave = app.rendering.offscreen.Studio.__exit__
+    studio_of = app.rendering.offscreen.OffscreenRenderer.__enter__
+    leave = app.rendering.offscreen.OffscreenRenderer.__exit__
     monkeypatch.setattr(
-        app.rendering.offscreen.Studio, "__enter__", lambda each: made.append(each) or studio_of(each)
+        app.rendering.offscreen.OffscreenRenderer,
+        "__enter__",
+        lambda each: made.append(each) or studio_of(each),
     )
     monkeypatch.setattr(
-        app.rendering.offscreen.Studio, "__exit__", lambda each, *how: made.remove(each) or leave(each, *how)
+        app.rendering.offscreen.OffscreenRenderer,
+        "__exit__",
+        lambda each, *how: made.remove(each) or leave(each, *how),
     )
 
     def script(window: MainWindow) -> Script:

@@ -16,9 +16,9 @@ from app.gui.features.garment.elastic_assignment import LIFT_TOLD
 from app.gui.main_window import MainWindow
 from app.gui.widgets import table_export as tables
 from app.i18n.catalog import number
-from app.presenters.bust_shift import bust_move
+from app.presenters.bust_shift import bust_shift
 from core.garment.elastic_options import FIRST_STRETCH, KEEP_CUT
-from core.pipeline.warnings import still_lines
+from core.pipeline.warnings import immovable_lines
 
 pytestmark = pytest.mark.usefixtures("empty_house", "own_data")
 
@@ -108,10 +108,10 @@ def test_a_lift_that_goes_with_the_elastic_is_told() -> None:
         window.navigation.show_panel("garment")
         yield at_rest(window)
         assert window.session.frame is not None
-        before = bust_move(window.session.frame).mean.up
+        before = bust_shift(window.session.frame).mean.up
         yield from choose(window, "strap left", "Strap 15 mm")
         yield made_of(window, "strap left", "strap right")
-        after, notice = bust_move(window.session.frame).mean.up, window.notices.notice()
+        after, notice = bust_shift(window.session.frame).mean.up, window.notices.notice()
         assert notice is not None
         assert abs(after - before) >= LIFT_TOLD
         assert notice.tone == "warn"
@@ -159,7 +159,7 @@ def test_a_band_on_the_rib_cage_is_cut_as_far_stretched_as_the_designer_says() -
         assert told.startswith("Made of Bra band, plush back 18 mm. It moves nothing")
         frame = window.session.frame
         assert frame is not None
-        assert still_lines(frame.stages) == [], "an elastic is there to be cut, not measured by mistake"
+        assert immovable_lines(frame.stages) == [], "an elastic is there to be cut, not measured by mistake"
         row.set_stretch.setFocus()
         row.set_stretch.selectAll()
         QTest.keyClicks(row.set_stretch, "30")
@@ -185,7 +185,7 @@ def test_a_band_on_the_rib_cage_is_cut_as_far_stretched_as_the_designer_says() -
         yield from choose(window, "under-bust", "No elastic")
         yield made_of(window)
         assert window.session.design is not None
-        assert not window.session.design.worn(), "what holds nothing is not worn"
+        assert not window.session.design.active_lines(), "what holds nothing is not worn"
 
     run_undrawn([], script)
 

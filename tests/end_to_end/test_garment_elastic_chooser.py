@@ -13,7 +13,7 @@ from window_tools import PATIENCE, Script, run_undrawn, settled
 from app.gui.features.garment import elastic_offer
 from app.gui.main_window import MainWindow
 from app.i18n.catalog import number
-from app.presenters.bust_shift import bust_move
+from app.presenters.bust_shift import bust_shift
 from core.document.elastic import Elastic
 from core.garment.elastic_library import save_elastic
 from core.garment.elastic_options import KEEP_CUT
@@ -87,7 +87,7 @@ def test_the_loss_of_lift_is_shown_before_it_is_chosen() -> None:
         chooser.use.click()
         yield made_of(window, "strap left", "strap right")
         assert window.session.frame is not None
-        assert bust_move(window.session.frame).mean.up == pytest.approx(float(view.lift), abs=0.15)
+        assert bust_shift(window.session.frame).mean.up == pytest.approx(float(view.lift), abs=0.15)
 
     run_undrawn([], script)
 

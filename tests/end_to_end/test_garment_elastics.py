@@ -16,7 +16,7 @@ from app.gui.features.garment import elastics_controller as elastics_desk
 from app.gui.main_window import MainWindow
 from core.document.elastic import Elastic
 from core.garment.elastic_csv import TEMPLATE
-from core.garment.elastic_library import own_elastics, own_folder, read_elastic, save_elastic
+from core.garment.elastic_library import read_elastic, save_elastic, user_elastics, user_folder
 
 pytestmark = pytest.mark.usefixtures("empty_house", "own_data")
 
@@ -44,7 +44,7 @@ def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(
         refusal = sheet.notices.notice()
         assert refusal is not None
         assert "Line 5 of the table Roll 8 has no two numbers" in refusal.sentence
-        assert not own_folder().exists()
+        assert not user_folder().exists()
         chosen[0] = good
         sheet.import_asked.emit()
         assert sheet.marked == "Roll 7"
@@ -67,7 +67,7 @@ def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(
         sheet.table.mark("Roll 7")
         sheet.delete.click()
         assert "Roll 7" not in sheet.views
-        assert own_elastics() == ([], [])
+        assert user_elastics() == ([], [])
         sheet.reject()
         yield lambda: window.elastics_desk.sheet is None
 
@@ -90,7 +90,7 @@ def test_an_own_elastic_travels_with_its_project_to_where_nobody_has_it(
         assert window.session.finish_saving()
 
     def reopen(window: MainWindow) -> Script:
-        assert not own_folder().exists()
+        assert not user_folder().exists()
         yield settled(window)
         window.navigation.show_panel("garment")
         yield at_rest(window)
@@ -172,7 +172,7 @@ def test_a_linked_pair_is_made_of_the_same_in_one_step() -> None:
         assert window.session.undo_stack.undoText() == "Straps made of Strap 12 mm"
         design = window.session.design
         assert design is not None
-        assert design.linked("strap left") == ("strap left", "strap right")
+        assert design.linked_pair("strap left") == ("strap left", "strap right")
         for name, row in cut_rows(window).items():
             assert row.reached_front_mm == pytest.approx(before[name].reached_front_mm, abs=0.2)
         assert window.garment.rows["strap left"].elastic.words == "Strap 12 mm"
@@ -205,7 +205,7 @@ def test_one_that_is_called_as_ours_gets_a_name_of_its_own_and_none_is_called_me
         yield from choose(window, "mid-bust", "Strap 15 mm, own")
         yield made_of(window, "mid-bust")
         # Another one of that name, as a newer table has it: the project keeps its own.
-        save_elastic(replace(own_elastics()[0][0], curve=((0.0, 0.0), (0.4, 5.0), (0.9, 12.0))))
+        save_elastic(replace(user_elastics()[0][0], curve=((0.0, 0.0), (0.4, 5.0), (0.9, 12.0))))
         window.garment.rows["mid-bust"].elastic.click()
         chooser = chooser_of(window)
         assert "Strap 15 mm, own" in [each.title for each in chooser.views()]

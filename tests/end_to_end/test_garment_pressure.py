@@ -17,8 +17,8 @@ from app.gui.main_window import MainWindow
 from app.presenters.maps import pressure_note
 from core.garment.elastic_library import find_elastic
 from core.garment.pressure import LEFT_OUT
-from core.garment.pressure_limits import comfort
-from core.garment.pressure_list import PressList, press_list
+from core.garment.pressure_limits import pressure_limits
+from core.garment.pressure_list import PressureList, pressure_list
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -28,11 +28,11 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """The lengths that the mid-bust line was pressed with, one for each time that it was worked out."""
     told: list[float] = []
 
-    def counted(stages: object, points: np.ndarray) -> PressList:
+    def counted(stages: object, points: np.ndarray) -> PressureList:
         told.append(stages.design.ratio("mid-bust"))  # type: ignore[attr-defined]
-        return press_list(stages, points)  # type: ignore[arg-type]
+        return pressure_list(stages, points)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(desk_module, "press_list", counted)
+    monkeypatch.setattr(desk_module, "pressure_list", counted)
     return told
 
 
@@ -44,10 +44,10 @@ def wear(window: MainWindow) -> None:
     )
 
 
-def known(window: MainWindow) -> PressList:
+def known(window: MainWindow) -> PressureList:
     frame = window.session.frame
     assert frame is not None
-    return press_list(frame.stages, frame.control_points)
+    return pressure_list(frame.stages, frame.control_points)
 
 
 def pressed(window: MainWindow) -> BandValues:
@@ -90,16 +90,16 @@ def test_the_map_of_pressure_is_worked_out_at_rest_and_where_it_is_seen(asked: l
     run_main([], script)
 
 
-def a_click_tells_the_value_there(window: MainWindow, listed: PressList) -> None:
+def a_click_tells_the_value_there(window: MainWindow, listed: PressureList) -> None:
     maps, bands, band = window.map_desk, window.view.viewport.scene.bands, listed.worn["mid-bust"]
     spine, _ = bands.spine("mid-bust")
     maps.pin(spine[band.peak], "mid-bust")
     (flag,) = maps.flags.flags
     assert flag.text == f"{band.largest:.1f} kPa"
     assert np.linalg.norm(flag.place - band.places[band.peak]) < 4.5
-    hollow = int(band.off.argmax())
+    hollow = int(band.gap.argmax())
     maps.pin(spine[hollow], "mid-bust")
-    assert maps.flags.flags[1].text == f"bridges, {band.off[hollow]:.0f} mm off"
+    assert maps.flags.flags[1].text == f"bridges, {band.gap[hollow]:.0f} mm off"
     maps.choose("pull")
     # Pull is that of the front: only what lies there has one.
     assert len(maps.flags.flags) == int(band.front[band.peak]) + int(band.front[hollow])
@@ -150,7 +150,7 @@ def test_variants_side_by_side_are_pressed_in_one_range(asked: list[float]) -> N
 
 
 def test_the_legend_says_why_nothing_presses() -> None:
-    nothing = PressList((), {})
+    nothing = PressureList((), {})
     assert pressure_note(nothing, stale=False) == "No worn line presses whose tension is known."
     assert pressure_note(None, stale=True).startswith("Worked out")
 
@@ -234,7 +234,7 @@ def the_copied_list_has_it_in_the_order_of_the_panel(window: MainWindow, kpa: fl
 
 
 def limits_and_what_is_left_out_are_told(card: PressureCard) -> None:
-    limits = comfort()
+    limits = pressure_limits()
     assert limits.sources[0].name in card.limits.text()
     assert "estimate" in card.sure.text()
     assert card.scale._limits.words == ("gentle", "snug", "too tight")
@@ -247,7 +247,7 @@ def limits_and_what_is_left_out_are_told(card: PressureCard) -> None:
         assert all(sentence in words for sentence in sentences)
 
 
-def a_click_turns_to_the_place(window: MainWindow, listed: PressList) -> Script:
+def a_click_turns_to_the_place(window: MainWindow, listed: PressureList) -> Script:
     view, (row,) = window.view.viewport, listed.rows
     view.set_view("back")
     place = np.array(row.place)
@@ -267,13 +267,13 @@ def a_click_turns_to_the_place(window: MainWindow, listed: PressList) -> Script:
 
 
 def test_pressures_that_cannot_be_computed_are_no_reason_to_wait(monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(*_: object) -> PressList:
+    def fail(*_: object) -> PressureList:
         raise MemoryError
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        pressing = desk_module.press_list
-        monkeypatch.setattr(desk_module, "press_list", fail)
+        pressing = desk_module.pressure_list
+        monkeypatch.setattr(desk_module, "pressure_list", fail)
         drag(window, "mid-bust", -10)
         yield settled(window)
         yield lambda: window.notices.notice() is not None
@@ -281,7 +281,7 @@ def test_pressures_that_cannot_be_computed_are_no_reason_to_wait(monkeypatch: py
         assert (view.level, view.waiting) == ("caution", "")
         assert view.first.startswith("The contact pressure was not computed.")
         assert window.rail.items["result"].state() == "look"
-        monkeypatch.setattr(desk_module, "press_list", pressing)
+        monkeypatch.setattr(desk_module, "pressure_list", pressing)
         drag(window, "mid-bust", -10)
         yield settled(window)
         yield lambda: window.verdict_desk.of(window.session.frame).level == "bad"

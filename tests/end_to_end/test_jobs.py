@@ -21,7 +21,7 @@ import app.presenters.export_preview
 import core.scan.body
 from app.gui.main_window import MainWindow
 from app.gui.session.jobs import Jobs
-from core.analysis.length_limits.zones import leeway_of
+from core.analysis.length_limits.zones import length_limits_of
 from core.progress import Pieces, Progress
 from tests.end_to_end.test_scan import doubtful
 
@@ -94,7 +94,7 @@ def test_an_export_is_named_and_can_be_left_by_card_key_and_status_bar(
 
 def test_limits_come_beside_the_window_and_are_those_of_the_core(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[str] = []
-    work_out = app.gui.features.lines.limits_controller.leeway_of
+    work_out = app.gui.features.lines.limits_controller.length_limits_of
 
     def counted(stages: Any, name: str, progress: Progress, **told: Any) -> Any:
         asked.append(name)
@@ -107,7 +107,7 @@ def test_limits_come_beside_the_window_and_are_those_of_the_core(monkeypatch: py
     def known(window: MainWindow) -> Callable[[], bool]:
         return lambda: settled(window)() and all(each and not stale for each, stale in shown(window).values())
 
-    monkeypatch.setattr(app.gui.features.lines.limits_controller, "leeway_of", counted)
+    monkeypatch.setattr(app.gui.features.lines.limits_controller, "length_limits_of", counted)
 
     def script(window: MainWindow) -> Script:
         yield known(window)
@@ -115,7 +115,7 @@ def test_limits_come_beside_the_window_and_are_those_of_the_core(monkeypatch: py
         assert frame is not None
         assert asked[0] == window.view.selected_line
         for name, (leeway, _) in before.items():
-            assert leeway == leeway_of(frame.stages, name)
+            assert leeway == length_limits_of(frame.stages, name)
         drag(window, "mid-bust", -10)
         assert not shown(window)["mid-bust"][1], "its limits hang on the other lines alone"
         yield settled(window)
@@ -134,7 +134,7 @@ def test_limits_come_beside_the_window_and_are_those_of_the_core(monkeypatch: py
 
 def test_an_edit_ends_what_was_worked_out_for_the_design_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
     left: list[str] = []
-    monkeypatch.setattr(app.gui.features.lines.limits_controller, "leeway_of", endless(left))
+    monkeypatch.setattr(app.gui.features.lines.limits_controller, "length_limits_of", endless(left))
     monkeypatch.setattr(app.gui.viewport.view_area, "bake_occlusion", endless(left))
 
     def script(window: MainWindow) -> Script:
@@ -216,14 +216,14 @@ def test_pictures_that_cannot_be_painted_leave_no_question(
     def fail(*_: Any) -> None:
         raise RuntimeError("no paint")
 
-    monkeypatch.setattr(core.scan.body, "find_pose", doubtful(0.0))
-    monkeypatch.setattr(app.gui.features.scan.controller, "pictures", fail)
+    monkeypatch.setattr(core.scan.body, "estimate_pose", doubtful(0.0))
+    monkeypatch.setattr(app.gui.features.scan.controller, "option_thumbnails", fail)
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
         yield lambda: "Scan step" in getattr(window.notices.notice(), "hint", "")
         assert not window.view.question.isVisible()
-        monkeypatch.setattr(app.gui.features.scan.controller, "pictures", endless([]))
+        monkeypatch.setattr(app.gui.features.scan.controller, "option_thumbnails", endless([]))
         window.scan_desk.ask()
         assert "picture below" in window.notices.notice().hint
         yield lambda: window.job_desk._shown_job() is window.scan_desk._painting

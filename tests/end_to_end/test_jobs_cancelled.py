@@ -116,8 +116,8 @@ def test_what_fails_is_told_and_waits_no_longer(monkeypatch: pytest.MonkeyPatch)
         raise ValueError("no")
 
     monkeypatch.setattr(measures_desk, "before_after", fail)
-    monkeypatch.setattr(pressure_desk, "press_list", fail)
-    monkeypatch.setattr(report_desk, "sheet_of", fail)
+    monkeypatch.setattr(pressure_desk, "pressure_list", fail)
+    monkeypatch.setattr(report_desk, "make_report", fail)
 
     def script(window: MainWindow) -> Script:
         undrawn(window)

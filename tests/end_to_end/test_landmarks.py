@@ -101,7 +101,7 @@ def test_linked_sides_are_placed_as_in_a_mirror_in_one_step_and_keys_move_a_pin(
         left, middle = mark(window, "bust_point_left"), frame.stages.moving.middle
         image = np.array([2.0 * middle - left[0], left[1], left[2]])
         placed = mark(window, "bust_point_right")
-        assert placed == pytest.approx(nearest_skin(frame.stages.body.calm, image), abs=0.01)
+        assert placed == pytest.approx(nearest_skin(frame.stages.body.smoothed, image), abs=0.01)
         assert placed[2] > right[2] + 2.0
         window.actions_.undo.trigger()
         yield settled(window)

@@ -17,15 +17,15 @@ from app.gui.features.lines.slider import LengthSlider
 from app.gui.features.lines.slider_groove import _zones, wall_of
 from app.gui.main_window import MainWindow
 from app.gui.widgets.tooltip import set_tip, shown_tip
-from app.presenters.length_limits import hint, key, placed, refusal, tone_at
-from core.analysis.length_limits.zones import Leeway, Reason, Zone
+from app.presenters.length_limits import hint, legend_entries, resistance_reason, short_reason, tone_at
+from core.analysis.length_limits.zones import LengthLimits, Reason, Zone
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
 STRAINED = Reason("strained", 0.5, 0.939)
 FOLDED = Reason("folded", 0.5, 0.86)
 SLACK = Reason("slack", 0.981, 1.3, others=True)
-LEEWAY = Leeway(
+LEEWAY = LengthLimits(
     "waist",
     (
         Zone("red", 0.5, 0.86, (FOLDED, STRAINED)),
@@ -59,7 +59,7 @@ def test_a_line_that_is_folded_is_told_so_and_its_slider_says_how_far_it_reaches
         yield settled(window)
         row = window.lines.rows["mid-bust"]
         yield lambda: row.view.leeway is not None and not row.view.stale
-        assert "folds" not in plain(key(row.view.leeway)["red"]), "its slider does not reach there"
+        assert "folds" not in plain(legend_entries(row.view.leeway)["red"]), "its slider does not reach there"
         assert row.slider.toolTip().startswith("Length of the front part, 80 to 112 % of its rest.")
         window.lines_desk.commit_length("mid-bust", 0.55)
         yield settled(window)
@@ -67,10 +67,15 @@ def test_a_line_that_is_folded_is_told_so_and_its_slider_says_how_far_it_reaches
         frame, leeway = window.session.frame, row.view.leeway
         assert frame is not None
         assert leeway is not None
-        assert frame.verdict.told == "folded"
+        assert frame.verdict.display_state == "folded"
         assert leeway.at(0.55).tone == "red"
-        assert "folds below 67.7 %".replace(" ", "\N{NO-BREAK SPACE}") in key(leeway)["red"], "kept together"
-        assert plain(key(leeway)["red"]) == "Overstrained below 85.8 % \N{MIDDLE DOT} folds below 67.7 %"
+        assert "folds below 67.7 %".replace(" ", "\N{NO-BREAK SPACE}") in legend_entries(leeway)["red"], (
+            "kept together"
+        )
+        assert (
+            plain(legend_entries(leeway)["red"])
+            == "Overstrained below 85.8 % \N{MIDDLE DOT} folds below 67.7 %"
+        )
         assert "Folds below 67.7 %: a triangle" in plain(hint(leeway, 0.55))
         assert row.slider.toolTip().startswith("Length of the front part, 50 to 112 % of its rest.")
 
@@ -79,7 +84,7 @@ def test_a_line_that_is_folded_is_told_so_and_its_slider_says_how_far_it_reaches
 
 def test_where_pressure_is_known_nothing_is_said_of_it_but_where_it_is_too_much() -> None:
     pressing = Zone("amber", 0.5, 0.78, (Reason("pressing", 0.5, 0.78),))
-    known = Leeway("waist", (pressing, Zone("green", 0.78, 1.3)), pressure_known=True)
+    known = LengthLimits("waist", (pressing, Zone("green", 0.78, 1.3)), pressure_known=True)
     assert plain(hint(known, 0.6)).endswith(
         "Presses too much below 78.0 %: its band presses with more than 4 kPa somewhere."
     )
@@ -87,22 +92,25 @@ def test_where_pressure_is_known_nothing_is_said_of_it_but_where_it_is_too_much(
 
 
 def test_what_the_other_lines_do_is_told_as_theirs() -> None:
-    assert placed(Reason("strained", 0.5, 1.3, others=True)) == (
+    assert short_reason(Reason("strained", 0.5, 1.3, others=True)) == (
         "strained by the other lines, whatever this one does"
     )
-    assert placed(Reason("strained", 0.95, 1.3, others=True)) == "strained above 95.0 % (by the other lines)"
-    assert placed(Reason("vibrating", 0.88, 0.92)) == "would vibrate from 88.0 to 92.0 %"
+    assert (
+        short_reason(Reason("strained", 0.95, 1.3, others=True))
+        == "strained above 95.0 % (by the other lines)"
+    )
+    assert short_reason(Reason("vibrating", 0.88, 0.92)) == "would vibrate from 88.0 to 92.0 %"
 
 
 def test_an_opened_row_has_a_key_to_its_zones(qtbot: QtBot) -> None:
-    assert {tone: plain(words) for tone, words in key(LEEWAY).items()} == {
+    assert {tone: plain(words) for tone, words in legend_entries(LEEWAY).items()} == {
         "green": "Valid shape (without pressure) from 93.9 to 98.1 %",
         "amber": "Strained below 93.9 %",
         "red": "Folds below 86.0 %",
         "slack": "Slack above 98.1 %",
     }
-    free = Leeway("waist", (Zone("green", 0.5, 1.3),))
-    assert key(free) == {"green": "Valid shape (without pressure) at any length"}
+    free = LengthLimits("waist", (Zone("green", 0.5, 1.3),))
+    assert legend_entries(free) == {"green": "Valid shape (without pressure) at any length"}
     shown = LeewayKey()
     qtbot.addWidget(shown)
     for leeway, ratio, lit in (
@@ -112,7 +120,7 @@ def test_an_opened_row_has_a_key_to_its_zones(qtbot: QtBot) -> None:
     ):
         shown.show_leeway(leeway, ratio, stale=False)
         seen = [tone for tone, (_, words) in shown.rows.items() if not words.isHidden()]
-        assert seen == list(key(leeway)), "a zone that the line does not have needs no words"
+        assert seen == list(legend_entries(leeway)), "a zone that the line does not have needs no words"
         tones = {tone: words.property("tone") for tone, (_, words) in shown.rows.items()}
         assert [(tone, value) for tone, value in tones.items() if value] == ([lit] if lit else [])
     shown.show_leeway(LEEWAY, 0.9, stale=True)
@@ -125,7 +133,7 @@ def test_the_key_says_where_green_is_no_word_on_pressure(qtbot: QtBot) -> None:
     green = Zone("green", 0.5, 1.3)
     words = shown.rows["green"][1]
     for known, told in ((False, "Valid shape (without pressure)"), (True, "Valid shape")):
-        shown.show_leeway(Leeway("waist", (green,), pressure_known=known), 0.9, stale=False)
+        shown.show_leeway(LengthLimits("waist", (green,), pressure_known=known), 0.9, stale=False)
         assert words.text() == f"{told} at any length"
         assert shown.pressure.isHidden()
     for pressed, tone, seen in (
@@ -133,7 +141,7 @@ def test_the_key_says_where_green_is_no_word_on_pressure(qtbot: QtBot) -> None:
         ("3.0 kPa", "warn", "warn"),
         ("47.7 kPa", "bad", "bad"),
     ):
-        shown.show_leeway(Leeway("waist", (green,)), 0.9, False, pressed, tone)
+        shown.show_leeway(LengthLimits("waist", (green,)), 0.9, False, pressed, tone)
         assert shown.pressure.text() == f"Pressure now: {pressed}"
         assert shown.pressure.property("tone") == tone
         assert words.property("tone") == seen, "a valid shape has no other colour than its pressure"
@@ -141,8 +149,8 @@ def test_the_key_says_where_green_is_no_word_on_pressure(qtbot: QtBot) -> None:
 
 def test_what_a_line_stands_in_and_why_a_hand_is_held_is_told() -> None:
     assert [tone_at(LEEWAY, ratio) for ratio in (0.8, 0.9, 0.95, 1.1)] == ["bad", "warn", "", ""]
-    assert refusal(LEEWAY) == "Not this short: folds below 86.0 %."
-    assert (refusal(None), tone_at(None, 0.9)) == ("", "")
+    assert resistance_reason(LEEWAY) == "Not this short: folds below 86.0 %."
+    assert (resistance_reason(None), tone_at(None, 0.9)) == ("", "")
 
 
 def test_the_groove_shows_what_lies_between_its_ends() -> None:
@@ -191,7 +199,7 @@ def test_a_slider_tells_the_zone_under_the_pointer_and_on_its_handle_the_set_one
 def test_zones_follow_an_edit_while_the_model_still_settles(monkeypatch: pytest.MonkeyPatch) -> None:
     """Turns are made so slowly that nothing settles; zones come all the same, the selected first."""
     order: list[str] = []
-    work_out = app.gui.features.lines.limits_controller.leeway_of
+    work_out = app.gui.features.lines.limits_controller.length_limits_of
     seen = threading.Event()  # the zones of before, faint: new ones may be too quick for a look
     seen.set()
 
@@ -200,7 +208,7 @@ def test_zones_follow_an_edit_while_the_model_still_settles(monkeypatch: pytest.
         seen.wait(20.0)
         return work_out(stages, name, progress, **how)
 
-    monkeypatch.setattr(app.gui.features.lines.limits_controller, "leeway_of", noted)
+    monkeypatch.setattr(app.gui.features.lines.limits_controller, "length_limits_of", noted)
 
     def script(window: MainWindow) -> Script:
         yield settled(window)

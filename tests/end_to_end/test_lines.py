@@ -12,13 +12,13 @@ from app.gui.main_window import MainWindow
 from app.gui.session.document_editor import Editing
 from app.gui.widgets.notification_bar import Notice
 from app.presenters.lines import titled
-from core.analysis.length_limits.zones import Leeway, Reason, Zone
+from core.analysis.length_limits.zones import LengthLimits, Reason, Zone
 from core.document.design import Design, ScanSource
 from core.document.document import Document
-from core.document.lines import LineTraits, OwnLine
+from core.document.lines import CustomLine, LineSettings
 from core.document.presets import built_in, preset_from
 
-FOLDS_BELOW_93 = Leeway(
+FOLDS_BELOW_93 = LengthLimits(
     "mid-bust", (Zone("red", 0.5, 0.93, (Reason("folded", 0.5, 0.93),)), Zone("green", 0.93, 1.3))
 )
 
@@ -139,7 +139,7 @@ def treated(window: MainWindow) -> Script:
     QTest.keyClick(row.title._editor, Qt.Key.Key_Return)
     yield lambda: row.title.text() == "Lift tape"
     assert last(window) == "Straps renamed"
-    assert session.design.traits_of("strap right").title == "Lift tape"
+    assert session.design.line_settings("strap right").title == "Lift tape"
     window.selection.select_line("strap right")
     assert window.view.viewport._labels.band[1].startswith("Lift tape, right 9")
     row.details._palette.chosen.emit("#C2571A")
@@ -171,7 +171,7 @@ def locked(window: MainWindow) -> Script:
     drag(window, "strap left", 40)
     window.actions_.reset.trigger()
     QTest.keyClick(window.lines, Qt.Key.Key_Delete)
-    assert session.design.worn() == {"strap left", "strap right"}
+    assert session.design.active_lines() == {"strap left", "strap right"}
     assert session.design.ratio("strap left") == ratio
     assert window.lines.isVisible()
     QTest.keyClick(window.lines, Qt.Key.Key_H)
@@ -191,7 +191,7 @@ def preset(window: MainWindow) -> Script:
     window.preset_desk._menu.actions()[0].trigger()
     assert window.session.undo_stack.count() == count + 1
     assert last(window) == "Preset Bra"
-    assert window.session.design.worn() == {"mid-bust", "strap left", "strap right"}
+    assert window.session.design.active_lines() == {"mid-bust", "strap left", "strap right"}
     yield settled(window)
     a_preset_that_leads_lines_otherwise_says_so_and_can_be_taken_back(window)
     row = window.lines.rows["mid-bust"]
@@ -209,8 +209,8 @@ def a_preset_that_leads_lines_otherwise_says_so_and_can_be_taken_back(window: Ma
     session = window.session
     ours = preset_from(session.design, "Ours")
     left = next(line for line in session.design.own_lines if line.name == "strap left")
-    by_hand = OwnLine(left.name, left.points[1:])
-    session.edit(lambda design: design.with_own_line(by_hand).with_line("full-bust", 0.98), "led by hand")
+    by_hand = CustomLine(left.name, left.points[1:])
+    session.edit(lambda design: design.with_custom_line(by_hand).with_line("full-bust", 0.98), "led by hand")
     led = session.design
     window.notices.clear()
     window.preset_desk.wear(built_in()[0])
@@ -240,7 +240,7 @@ class _Editing(Editing):
 
     def __init__(self, design: Design) -> None:
         super().__init__()
-        self.document = Document.of(design)
+        self.document = Document.single(design)
 
     def _submit(self, design: Design, fresh: bool = False) -> None:
         pass
@@ -250,7 +250,7 @@ class _Editing(Editing):
 
 
 def test_a_locked_line_is_not_dragged_and_says_so_when_it_is_let_go(qapp: QApplication) -> None:
-    editing = _Editing(Design(ScanSource("x")).with_traits(LineTraits("mid-bust", locked=True)))
+    editing = _Editing(Design(ScanSource("x")).with_line_settings(LineSettings("mid-bust", locked=True)))
     said: list[str] = []
     editing.failed.connect(lambda problem: said.append(problem.message))
     editing.preview_line("mid-bust", 0.9)
@@ -261,7 +261,7 @@ def test_a_locked_line_is_not_dragged_and_says_so_when_it_is_let_go(qapp: QAppli
 
 
 def test_a_sentence_names_a_line_by_the_title_that_it_was_given() -> None:
-    design = Design(ScanSource("x")).with_traits(LineTraits("strap left", title="lift tape"))
+    design = Design(ScanSource("x")).with_line_settings(LineSettings("strap left", title="lift tape"))
     said = "strap left cannot be held; the line strap left is locked, strap left-over is not."
     told = "Lift tape, left cannot be held; the line lift tape, left is locked, strap left-over is not."
     assert titled(said, design) == told

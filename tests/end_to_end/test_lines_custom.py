@@ -17,8 +17,8 @@ from app.gui.features.lines import add_lines as line_maker
 from app.gui.features.lines.path_dialog import LineDialog
 from app.gui.main_window import MainWindow
 from core.control_mesh.template import read_template
-from core.document.line_notation import own_line, ready_made
-from core.document.lines import OwnLine
+from core.document.line_notation import parse_line, ready_made_lines
+from core.document.lines import CustomLine
 from core.pipeline.build import build
 
 BIG = read_template("168")
@@ -38,7 +38,7 @@ def test_slings_are_listed_drawn_shortened_and_removed() -> None:
         assert window.session.undo_stack.undoText() == "Slings added"
         assert np.abs(points(window) - at_start).max() < 0.2, "at 100 % they do not pull"
         led = replace(window.session.design.own_lines[0], points=(35, 48))
-        window.session.edit(lambda design: design.with_own_line(led), "led elsewhere")
+        window.session.edit(lambda design: design.with_custom_line(led), "led elsewhere")
         window.actions_.add_lines["slings"].trigger()
         assert window.session.design.own_lines[0] == led, "what was led elsewhere is not added over"
         window.actions_.undo.trigger()
@@ -49,7 +49,7 @@ def test_slings_are_listed_drawn_shortened_and_removed() -> None:
         row = window.lines.rows["sling left"]
         assert row.view.own
         assert 0.94 * row.view.rest_mm < (row.view.reached_mm or 0.0) < 0.97 * row.view.rest_mm
-        assert frame.marks.nipple_left_z > frame.stages.rest_marks.nipple_left_z + 1.0
+        assert frame.marks.bust_point_left_z > frame.stages.rest_marks.bust_point_left_z + 1.0
         assert window.view.viewport._labels.band[1] == "Sling left 94.0 %"
         row.details._tools["remove"].click()
         yield lambda: "sling left" not in window.lines.rows and window.is_settled()
@@ -70,7 +70,7 @@ def test_slings_are_listed_drawn_shortened_and_removed() -> None:
 def test_a_line_goes_through_the_points_that_are_named(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    answers = [own_line("v=r6c-3,r3c0,r6c3", BIG), own_line("edge=r6c-2:r6c2", BIG), None]
+    answers = [parse_line("v=r6c-3,r3c0,r6c3", BIG), parse_line("edge=r6c-2:r6c2", BIG), None]
     monkeypatch.setattr(line_maker, "ask_own_line", lambda *_: answers.pop(0))
 
     def script(window: MainWindow) -> Script:
@@ -102,16 +102,16 @@ def test_a_line_is_drawn_from_point_to_point(qtbot: QtBot) -> None:
 
     def press(*places: str) -> None:
         for place in places:
-            at = dialog.map.place(own_line(f"x={place},0", BIG).points[0]).toPoint()
+            at = dialog.map.place(parse_line(f"x={place},0", BIG).points[0]).toPoint()
             QTest.mouseClick(dialog.map, Qt.MouseButton.LeftButton, pos=at)
 
     assert dialog.name.text() == "line 2"
     press("r2c3")
     assert dialog.line is None
     press("r3c3", "r4c2")
-    assert dialog.line == OwnLine("line 2", (35, 48, 60))
+    assert dialog.line == CustomLine("line 2", (35, 48, 60))
     dialog.ends.button("closed").click()
-    assert dialog.line == OwnLine("line 2", (35, 48, 60), closed=True)
+    assert dialog.line == CustomLine("line 2", (35, 48, 60), closed=True)
     press("r4c2", "r4c4", "r4c3")
     assert dialog.points.text() == "r2c3, r3c3, r4c4, r4c3"
     dialog.name.setText("")
@@ -144,7 +144,7 @@ def test_the_accumulating_force_can_be_chosen() -> None:
 @pytest.mark.parametrize("name", ["168", "120"])
 def test_ready_made_lines_pull_on_their_own_side_of_every_template(name: str, built) -> None:
     template = read_template(name)
-    for kind, pair in ready_made(template).items():
+    for kind, pair in ready_made_lines(template).items():
         for line, sign in zip(pair, (1, -1), strict=True):
             columns = template.column[list(line.points)] * sign
             assert columns.min() >= 0, kind
@@ -155,9 +155,9 @@ def test_ready_made_lines_pull_on_their_own_side_of_every_template(name: str, bu
         left, right = (template.column[list(line.points)] for line in pair)
         assert np.array_equal(left, -right)
     design = built("mannequin").design.with_template(name)
-    for pair in ready_made(template).values():
+    for pair in ready_made_lines(template).values():
         for line in pair:
-            design = design.with_own_line(line)
+            design = design.with_custom_line(line)
     assert len(build(design, built("mannequin")).model.lines) == 3 + 8
 
 

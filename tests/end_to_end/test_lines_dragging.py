@@ -14,7 +14,7 @@ from app.gui.features.lines.band_drag import STEP
 from app.gui.features.lines.slider_groove import RESISTANCE
 from app.gui.main_window import MainWindow
 from app.gui.widgets.tooltip import shown_tip
-from core.analysis.length_limits.zones import Leeway, Reason, Zone
+from core.analysis.length_limits.zones import LengthLimits, Reason, Zone
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -188,7 +188,7 @@ def the_red_resists_as_in_the_slider(window: MainWindow) -> None:
     ratio, start = ratio_of(window), on_band(window, "mid-bust")
     wall = ratio - 0.01
     red = Zone("red", 0.5, wall, (Reason("folded", 0.5, wall),))
-    leeway = Leeway("mid-bust", (red, Zone("green", wall, 1.3)))
+    leeway = LengthLimits("mid-bust", (red, Zone("green", wall, 1.3)))
     window.lines_desk.leeways = lambda _: {"mid-bust": (leeway, False)}
     window.lines_desk.show_rows()
     pull(window, start, QPoint(0, -10 - round(RESISTANCE) + 2))

@@ -28,7 +28,7 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 def spot(window: MainWindow, point: int) -> QPoint:
     """Where a control point is seen."""
     scene, overlay = window.view.viewport.scene, window.view.viewport.overlay
-    places = scene.carried(window.session.frame.stages.control.mesh.vertices[[point]])
+    places = scene.carried_points(window.session.frame.stages.control.mesh.vertices[[point]])
     x, y, _ = scene.view.to_picture(places, overlay.width(), overlay.height())[0]
     return QPoint(round(x), round(y))
 
@@ -111,12 +111,12 @@ def test_a_line_on_the_rib_cage_is_said_to_measure_only_and_can_move_to_where_it
         click(window, row[2], row[4])
         window.view.viewport.setFocus()
         press(window, Qt.Key.Key_Return)
-        assert not drawing._found.pulls
+        assert not drawing._found.is_movable
         assert "only measured" in card._what.text()
         assert isinstance(drawing._found, FreeCurve)
         card.move_.click()
         assert card.snap.isChecked()
-        assert drawing._found.pulls
+        assert drawing._found.is_movable
         assert "only measured" not in card._what.text()
         assert card.move_.isHidden()
         press(window, Qt.Key.Key_Return)
@@ -143,7 +143,7 @@ def test_a_diagonal_stays_what_was_drawn_and_can_be_drawn_anew() -> None:
         middle = shown.mesh.vertices.reshape(shown.rows, shown.columns, 3)[3:-3].mean(axis=1)
         away = np.linalg.norm(middle[:, None] - resample(drawn, 0.5), axis=2).min(axis=1)
         assert away.max() < 3.0, "its middle on the skin, a few mm under its cloth"
-        assert found.off < 1.0
+        assert found.deviation < 1.0
         assert window.lines.rows["line 1 left"].view.over_shoulder is None, "it ends on the breast"
         window.session.commit_line("line 1 left", "Line 1", 0.95)
         yield settled(window)
@@ -197,8 +197,8 @@ def led_elsewhere(window: MainWindow, path: tuple[int, ...]) -> Script:
 def let_go_of(window: MainWindow) -> Script:
     """What is drawn ends with its control mesh or its line, and never takes the place of another line."""
     session, drawing, routing = window.session, window.line_drawing, window.line_routing
-    session.edit(lambda design: design.without_own_line("line 1 left"), "one side away")
-    drawing._keep(Snapped((at(2, 2), at(3, 2)), closed=False, off=0.0, pulls=True))
+    session.edit(lambda design: design.without_custom_line("line 1 left"), "one side away")
+    drawing._keep(Snapped((at(2, 2), at(3, 2)), closed=False, deviation=0.0, is_movable=True))
     assert [line.name for line in session.design.own_lines] == ["line 1 right", "line 2 left", "line 2 right"]
     routing.begin("line 2 right")
     assert routing._sketching.at_work
@@ -244,7 +244,7 @@ def a_ring(window: MainWindow) -> Script:
     card.snap.setChecked(True)
     assert set(ring) <= set(drawing._found.path)
     card.snap.setChecked(False)
-    assert drawing._found.off < 1.0
+    assert drawing._found.deviation < 1.0
     press(window, Qt.Key.Key_Escape)
     assert not drawing._sketching.at_work
     assert window.session.design.own_lines == ()

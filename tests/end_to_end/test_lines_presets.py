@@ -10,7 +10,7 @@ from window_tools import Script, run_main, settled, undrawn
 from app.gui.features.lines import presets as preset_desk
 from app.gui.main_window import MainWindow
 from core.document.design import Design, ScanSource
-from core.document.presets import built_in, is_worn, own_file, with_preset
+from core.document.presets import built_in, is_active, user_file, with_preset
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -54,17 +54,17 @@ def test_a_preset_is_replaced_only_by_one_who_says_so(monkeypatch: pytest.Monkey
         undrawn(window)
         names[:] = ["Longline"]
         window.preset_desk.ask()
-        first = own_file("Longline").read_bytes()
+        first = user_file("Longline").read_bytes()
         assert not asked, "there is none of that name"
         window.lines_desk.commit_length("mid-bust", 0.9)
         names[:], answers[:] = ["Longline", ""], [""]
         window.preset_desk.ask()
         assert asked == ["Replace the preset Longline?"]
-        assert own_file("Longline").read_bytes() == first
+        assert user_file("Longline").read_bytes() == first
         assert not names, "the name was asked for again"
         names[:], answers[:] = ["Longline"], ["replace"]
         window.preset_desk.ask()
-        assert own_file("Longline").read_bytes() != first
+        assert user_file("Longline").read_bytes() != first
 
     run_main([], script)
 
@@ -94,5 +94,5 @@ def test_each_preset_is_told_from_the_others() -> None:
     bare = Design(ScanSource(""))
     for preset in built_in():
         worn = with_preset(bare, preset)
-        assert [each.title for each in built_in() if is_worn(worn, each)] == [preset.title]
-    assert not any(is_worn(bare, each) for each in built_in())
+        assert [each.title for each in built_in() if is_active(worn, each)] == [preset.title]
+    assert not any(is_active(bare, each) for each in built_in())

@@ -9,15 +9,15 @@ from window_tools import Script, run_main, undrawn
 from window_tools import settled as at_rest
 
 from app.gui.main_window import MainWindow
-from core.document.custom_measures import OwnMeasure
+from core.document.custom_measures import CustomMeasurement
 from core.document.design import Design, ScanSource
-from core.document.lines import LineTraits
+from core.document.lines import LineSettings
 from core.pipeline.live_solver import LiveSolver
 from tests.core.pipeline.test_live_solver import Built, settled, solver
 
 __all__ = ["solver"]
 
-RIBS = OwnMeasure("Ribs", "girth", ("fold_left",), -30.0)
+RIBS = CustomMeasurement("Ribs", "girth", ("fold_left",), -30.0)
 DESIGN = Design(ScanSource("a.ply")).with_line("mid-bust", 0.95)
 
 
@@ -25,18 +25,18 @@ DESIGN = Design(ScanSource("a.ply")).with_line("mid-bust", 0.95)
     "what", [{"title": "Mine"}, {"colour": "#e5536b"}, {"locked": True}, {"linked": False}]
 )
 def test_what_a_line_is_called_does_not_act_and_its_stiffness_does(what: dict[str, object]) -> None:
-    assert DESIGN.acts_as(DESIGN.with_traits(LineTraits("mid-bust", **what)))  # type: ignore[arg-type]
-    assert not DESIGN.acts_as(DESIGN.with_traits(LineTraits("mid-bust", stiffness=3.0)))
-    assert not DESIGN.acts_as(DESIGN.with_line("mid-bust", 0.94))
-    assert not DESIGN.acts_as(replace(DESIGN, volume="exact"))
+    assert DESIGN.is_equivalent(DESIGN.with_line_settings(LineSettings("mid-bust", **what)))  # type: ignore[arg-type]
+    assert not DESIGN.is_equivalent(DESIGN.with_line_settings(LineSettings("mid-bust", stiffness=3.0)))
+    assert not DESIGN.is_equivalent(DESIGN.with_line("mid-bust", 0.94))
+    assert not DESIGN.is_equivalent(replace(DESIGN, volume="exact"))
 
 
 def test_a_run_goes_on_over_a_new_name_and_a_measure(solver: LiveSolver, built: Built) -> None:
     design = built("mannequin").design.with_line("mid-bust", 0.95)
     before = settled(solver, solver.submit(design, fresh=True))
-    named = design.with_traits(LineTraits("mid-bust", "Mine"))
-    for alike in (named, named.with_own_measure(RIBS)):
-        assert design.acts_as(alike)
+    named = design.with_line_settings(LineSettings("mid-bust", "Mine"))
+    for alike in (named, named.with_custom_measurement(RIBS)):
+        assert design.is_equivalent(alike)
         after = settled(solver, solver.submit(alike))
         assert after.stages.design == alike
         for control, records in before.tracks.items():

@@ -13,7 +13,7 @@ from window_tools import Script, drag, run_main, settled
 
 import app.gui.features.sections.controller as section_module
 from app.gui.main_window import MainWindow
-from app.rendering.material import look_of
+from app.rendering.material import appearance_of
 from core.geometry.planar_curves import Curve, nearest
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -97,7 +97,7 @@ def what_is_pinned_stays_when_the_map_changes(window: MainWindow) -> None:
 def the_zero_of_a_map_is_the_material(window: MainWindow) -> None:
     window.view_desk.choose_material("graphite")
     stops = window.map_desk.legend.bar._stops
-    assert stops[len(stops) // 2] == look_of(window.view.viewport.scene.dark, "graphite").clay
+    assert stops[len(stops) // 2] == appearance_of(window.view.viewport.scene.dark, "graphite").clay
     window.view_desk.choose_material("clay")
 
 
@@ -106,8 +106,8 @@ def the_sides_at_rest_are_worked_out_once(window: MainWindow) -> None:
     maps.choose("sides")
     now, asked = maps.now, []
     assert now is not None
-    differ = now.sides.differ
-    now.sides.differ = lambda *told: asked.append(len(told)) or differ(*told)  # type: ignore[method-assign]
+    differ = now.sides.protrusion_difference
+    now.sides.protrusion_difference = lambda *told: asked.append(len(told)) or differ(*told)  # type: ignore[method-assign]
     maps.pin(window.view.viewport.scene.body.shown_points[0], "")
     maps.set_range(-7.0, 7.0)
     maps.refresh()
@@ -175,7 +175,7 @@ def test_the_section_plane_cuts_before_and_after(answered: Path) -> None:
         before, after = (
             np.concatenate([c.places for c in section.curves[role]]) for role in ("before", "after")
         )
-        lift = frame.marks.nipple_left_z - frame.stages.rest_marks.nipple_left_z
+        lift = frame.marks.bust_point_left_z - frame.stages.rest_marks.bust_point_left_z
         assert panel.readout.text().startswith(f"Bust point left {lift:.1f} mm up, ")
         ((at_rest, lifted),) = panel.plot._drawn.marks
         assert lifted[1] - at_rest[1] == pytest.approx(lift)

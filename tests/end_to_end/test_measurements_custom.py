@@ -16,13 +16,13 @@ from app.gui.features.measurements.table import MeasureTable
 from app.gui.main_window import MainWindow
 from app.gui.widgets import table_export as tables
 from app.gui.widgets.landmark_combo import MarkField
-from core.document.custom_measures import OwnMeasure
+from core.document.custom_measures import CustomMeasurement
 from core.measurements.table import before_after
 from tests.end_to_end.test_accessibility import shortcomings
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
-GORE = OwnMeasure("Gore", "straight", ("bust_point_left", "front_centre"))
+GORE = CustomMeasurement("Gore", "straight", ("bust_point_left", "front_centre"))
 KEY = Qt.Key
 
 
@@ -51,7 +51,7 @@ def click_pin(window: MainWindow, name: str) -> None:
     QTest.mouseClick(canvas(window), Qt.MouseButton.LeftButton, pos=QPoint(round(x), round(y)))
 
 
-def own(window: MainWindow) -> tuple[OwnMeasure, ...]:
+def own(window: MainWindow) -> tuple[CustomMeasurement, ...]:
     assert window.session.design is not None
     return window.session.design.own_measures
 
@@ -158,7 +158,7 @@ def test_a_girth_lies_where_the_skin_is_clicked_or_off_a_landmark() -> None:
         typed(form.level, "-30")
         yield form.keep.isEnabled
         form.kept.emit()
-        assert own(window)[1] == OwnMeasure(
+        assert own(window)[1] == CustomMeasurement(
             "Girth, Under-bust fold left −30 mm", "girth", ("fold_left",), -30.0
         )
 
@@ -176,7 +176,7 @@ def test_one_is_changed_renamed_and_deleted_by_keys_each_one_step() -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.session.edit(lambda design: design.with_own_measure(GORE), "Gore")
+        window.session.edit(lambda design: design.with_custom_measurement(GORE), "Gore")
         window.navigation.show_step("result")
         yield lambda: listed(window, "Gore")
         table, form = window.result.findChild(MeasureTable), window.result.editor
@@ -194,7 +194,7 @@ def test_one_is_changed_renamed_and_deleted_by_keys_each_one_step() -> None:
         QTest.keyClicks(form.name, "Arc")
         yield form.keep.isEnabled
         form.keep.click()
-        assert own(window) == (OwnMeasure("Arc", "skin", GORE.marks),)
+        assert own(window) == (CustomMeasurement("Arc", "skin", GORE.marks),)
         assert window.session.undo_stack.undoText() == "Measure changed: Arc"
         yield lambda: listed(window, "Arc")
         QTest.keyClick(table, KEY.Key_Delete)
@@ -210,7 +210,7 @@ def test_one_is_changed_renamed_and_deleted_by_keys_each_one_step() -> None:
 def test_a_name_that_is_taken_is_refused_and_another_body_ends_it() -> None:
     def script(window: MainWindow) -> Script:
         yield from begun(window)
-        window.session.edit(lambda design: design.with_own_measure(GORE), "Gore")
+        window.session.edit(lambda design: design.with_custom_measurement(GORE), "Gore")
         form = window.result.editor
         for name in GORE.marks:
             form.show_draft(form.draft.picked(name))
@@ -242,7 +242,9 @@ def test_one_is_made_by_keys_alone_and_all_of_the_form_has_a_name_and_room(langu
         yield from all_have_a_name_and_room(window)
         form.name.setFocus()
         QTest.keyClick(form.name, KEY.Key_Return)
-        assert own(window) == (OwnMeasure(suggested, "straight", ("bust_point_left", "bust_point_right")),)
+        assert own(window) == (
+            CustomMeasurement(suggested, "straight", ("bust_point_left", "bust_point_right")),
+        )
         yield lambda: listed(window, suggested)
         assert window.focusWidget() is window.result.findChild(MeasureTable)
         yield from all_have_a_name_and_room(window)
@@ -277,7 +279,7 @@ def test_own_measures_are_copied_and_written_with_all_others(
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.session.edit(lambda design: design.with_own_measure(GORE), "Gore")
+        window.session.edit(lambda design: design.with_custom_measurement(GORE), "Gore")
         window.navigation.show_step("result")
         yield lambda: listed(window, "Gore")
         window.result.table_asked.emit()

@@ -14,9 +14,9 @@ from app.gui.main_window import MainWindow
 from app.gui.widgets.option_field import AmountField, MenuField, SegmentField
 from app.presenters.model_options import consequences, defaults, groups, summary
 from core.document.design import Design, ScanSource
-from core.document.lines import OwnLine
+from core.document.lines import CustomLine
 from core.pipeline.live_solver import Frame
-from core.pipeline.warnings import kept_volume
+from core.pipeline.warnings import controlled_volume
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -44,7 +44,9 @@ def frame_of(window: MainWindow) -> Frame:
 def bust_points(window: MainWindow) -> float:
     """Return the mean height of the bust points over their rest [mm]."""
     now, rest = frame_of(window).marks, frame_of(window).stages.rest_marks
-    return 0.5 * (now.nipple_left_z + now.nipple_right_z - rest.nipple_left_z - rest.nipple_right_z)
+    return 0.5 * (
+        now.bust_point_left_z + now.bust_point_right_z - rest.bust_point_left_z - rest.bust_point_right_z
+    )
 
 
 def test_a_sliding_line_lifts_the_bust_points_and_undo_brings_the_old_result_back() -> None:
@@ -117,11 +119,11 @@ def test_the_volume_that_is_told_is_the_one_that_is_kept() -> None:
         choose(window, "dense_volume", True)
         yield settled(window)
         assert abs(frame_of(window).error_ml) > 0.1
-        assert kept_volume(frame_of(window)) == pytest.approx((0.0, 0.0), abs=1e-4)
+        assert controlled_volume(frame_of(window)) == pytest.approx((0.0, 0.0), abs=1e-4)
         assert window.status._volume.text() == "Volume 0.00 % (0.0 ml)"
         choose(window, "volume", "adaptive")
         yield settled(window)
-        assert kept_volume(frame_of(window))[1] == frame_of(window).error_ml
+        assert controlled_volume(frame_of(window))[1] == frame_of(window).error_ml
 
     run_undrawn([], script)
 
@@ -176,7 +178,7 @@ def test_what_cannot_be_is_refused_and_the_field_shows_what_is() -> None:
         assert window.model.fields["line_height"].edit.accessibleDescription() == "It goes from 25 to 75 %."
         assert window.notices.notice() is None
         assert window.session.undo_stack.count() == 0
-        window.session.add_own_lines((OwnLine("strap", (35, 48, 61)),), "Strap")
+        window.session.add_own_lines((CustomLine("strap", (35, 48, 61)),), "Strap")
         window.session.choose_template("120")
         assert window.session.design.template == "168"
         assert window.actions_.templates["168"].isChecked()

@@ -45,7 +45,7 @@ def each_turn_is_seen_while_they_are_slow(window: MainWindow) -> Script:
     window.session.frame_ready.connect(seen.append)
     yield lambda: len([frame for frame in seen if frame.stages.design is design]) > 8
     shown = [frame for frame in seen if frame.stages.design is design]
-    turns = [frame.tracks["adaptive"][-1].turn for frame in shown]
+    turns = [frame.tracks["adaptive"][-1].iteration for frame in shown]
     assert np.diff(turns).tolist() == [1] * (len(turns) - 1), "no turn is left out"
     moves = [np.abs(one.points - other.points).max() for one, other in pairwise(shown)]
     assert min(moves) > 0.0, "each is to be seen on the body"
@@ -62,7 +62,7 @@ def an_edit_is_marked_where_it_was_made(window: MainWindow) -> Script:
     assert mark.turn == 0.0
     assert "90.0 %" in mark.words
     drag(window, "mid-bust", -20, release=False)
-    yield lambda: (frame := window.session.frame) is not None and frame.tracks["adaptive"][-1].turn > 3
+    yield lambda: (frame := window.session.frame) is not None and frame.tracks["adaptive"][-1].iteration > 3
     drag(window, "mid-bust", -24)
     yield settled(window)
     window.throttled.flush()
@@ -83,8 +83,11 @@ def what_is_plotted_is_what_was_made(window: MainWindow) -> None:
         for place in (0, len(rows) // 2, -1):
             row, marks = rows[place], rows[place].marks
             assert marks is not None
-            left, right = marks.nipple_left_z - rest.nipple_left_z, marks.nipple_right_z - rest.nipple_right_z
-            said = (row.turn, 100.0 * row.error, row.error_ml, marks.apex_z - rest.apex_z)
+            left, right = (
+                marks.bust_point_left_z - rest.bust_point_left_z,
+                marks.bust_point_right_z - rest.bust_point_right_z,
+            )
+            said = (row.iteration, 100.0 * row.error, row.error_ml, marks.apex_z - rest.apex_z)
             drawn = (track.turns, track.error_percent, track.error_ml, track.apex_mm)
             assert tuple(each[place] for each in drawn) == said
             assert track.bust_mm[place] == 0.5 * (left + right)
@@ -109,7 +112,7 @@ def the_saved_table_holds_every_turn(window: MainWindow, folder: Path) -> None:
     assert heading[:4] == ["run", "turn", "volume error [%]", "volume error [ml]"]
     made = {control: [row for row in rows if row[0] == control] for control in frame.tracks}
     for control, records in frame.tracks.items():
-        assert [int(row[1]) for row in made[control]] == [record.turn for record in records]
+        assert [int(row[1]) for row in made[control]] == [record.iteration for record in records]
         assert [float(row[3]) for row in made[control]] == [record.error_ml for record in records]
         assert [float(row[7]) for row in made[control]] == [record.lengths[0] for record in records]
     rest = frame.stages.rest_marks.apex_z

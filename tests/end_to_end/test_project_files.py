@@ -61,7 +61,7 @@ def test_a_project_behind_a_link_is_saved_where_it_lies(tmp_path: Path) -> None:
     path.parent.mkdir()
     design = sample_design()
     scan = ScanFile("mannequin.ply", Path(design.scan.path).read_bytes())
-    save_project(path, Document.of(design), scan, None)
+    save_project(path, Document.single(design), scan, None)
     path.chmod(0o640)
     link.symlink_to("bodies/anna.busk")
 
@@ -183,7 +183,7 @@ def test_a_save_that_fails_elsewhere_leaves_what_is_saved_here_saved(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, mannequin: Path
 ) -> None:
     saved, scan = tmp_path / "customer.busk", ScanFile(mannequin.name, mannequin.read_bytes())
-    save_project(saved, Document.of(sample_design()), scan, None)
+    save_project(saved, Document.single(sample_design()), scan, None)
     monkeypatch.setattr(project_files, "ask_save", lambda *_: str(tmp_path / "nowhere" / "a.busk"))
     told: list[object] = []
 

@@ -23,7 +23,7 @@ def test_a_project_on_its_way_in_shows_its_picture_and_can_be_cancelled(tmp_path
     picture = QImage(480, 456, QImage.Format.Format_RGB32)
     picture.fill(QColor("#AA3366"))
     scan = ScanFile("body.ply", Path(sample_path("person")).read_bytes())
-    design = Document.of(Design(ScanSource(sample_path("person"))))
+    design = Document.single(Design(ScanSource(sample_path("person"))))
     save_project(path, design, scan, project_picture(picture, "settled"))
 
     def script(window: MainWindow) -> Script:

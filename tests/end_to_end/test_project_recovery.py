@@ -20,7 +20,7 @@ import app.gui.features.variants.controller
 from app.gui.main_window import MainWindow
 from core.document.storage.backups import backups
 from core.document.storage.project_file import open_project
-from core.document.storage.recovery import left_behind, recovery_folder
+from core.document.storage.recovery import find_unsaved, recovery_folder
 from tests.end_to_end.test_jobs import endless
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -30,7 +30,7 @@ def crash(window: MainWindow) -> None:
     """Leave behind what a window leaves that is killed: its folder, with nobody who holds it."""
     recovery = window.keeping_desk._recovery
     assert recovery is not None
-    recovery.let_go()
+    recovery.leave()
     window.keeping_desk._recovery = None
 
 
@@ -58,7 +58,7 @@ def test_a_crash_loses_nothing_and_the_next_start_offers_it(
         card = window.recovery_desk.card
         yield card.isVisible
         assert "anna" in card.accessibleName()
-        assert left_behind()[0] == [], "no other window may take what this one offers"
+        assert find_unsaved()[0] == [], "no other window may take what this one offers"
         card.take.click()
         yield lambda: window.session.name == "anna"
         yield settled(window)
@@ -270,7 +270,7 @@ def test_variants_are_chosen_undone_and_seen_side_by_side(
         assert area.beside.way == "after"
         window.variant_desk.choose("B")
         window.variant_desk.choose("A")
-        monkeypatch.setattr(app.gui.features.variants.controller, "settled_frame", endless([]))
+        monkeypatch.setattr(app.gui.features.variants.controller, "converged_frame", endless([]))
         window.variant_desk._solved.clear()
         window.variant_desk.show_side_by_side()
         assert len([job for job in window.jobs.at_work() if job.waited]) == 1

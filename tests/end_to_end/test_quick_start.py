@@ -16,14 +16,14 @@ from window_tools import Script, drag, run_main, settled, undrawn
 
 from app.gui.main_window import MainWindow
 from app.gui.widgets.elastic_button import ElasticPull
-from app.presenters.bust_shift import bust_move, move_between
+from app.presenters.bust_shift import bust_shift, shift_between
 from app.presenters.samples import lifted_sample
 from core.document.design import ScanSource
 from core.document.storage.project_file import open_project
 from core.garment.cut_list import cut_list
 from core.garment.match_shape import reached_points
-from core.garment.pressure_limits import comfort
-from core.garment.pressure_list import press_list
+from core.garment.pressure_limits import pressure_limits
+from core.garment.pressure_list import pressure_list
 from core.pipeline.build import Stages, build
 from tests.end_to_end.test_model_options import choose
 from tests.end_to_end.test_scan import pull
@@ -74,7 +74,7 @@ def opened(window: MainWindow) -> Script:
     assert frame is not None
     assert frame.stages.body.pose.unit == "mm"
     assert frame.stages.body.pose.front == "-y"
-    assert frame.stages.design.worn() == set(), "a scan is opened with no line set"
+    assert frame.stages.design.active_lines() == set(), "a scan is opened with no line set"
 
 
 def corrected(window: MainWindow) -> Script:
@@ -107,13 +107,13 @@ def banded(window: MainWindow) -> Script:
     yield settled(window)
     drag(window, "mid-bust", -40)
     yield settled(window)
-    assert window.session.design.worn_elastics().keys() == {"mid-bust"}
+    assert window.session.design.active_elastics().keys() == {"mid-bust"}
     assert window.session.frame is not None
-    lift = bust_move(window.session.frame).mean.up
+    lift = bust_shift(window.session.frame).mean.up
     assert lift > 0.2
     window.lines_desk.commit_length("mid-bust", 0.68)
     yield settled(window)
-    assert bust_move(window.session.frame).mean.up > lift + 1.0
+    assert bust_shift(window.session.frame).mean.up > lift + 1.0
     # The word stands a while before another takes its place.
     yield lambda: window.strip.chip.state() not in ("pending", "bad")
     for shown in (1.0, 0.0):
@@ -136,11 +136,11 @@ def pressed(window: MainWindow) -> Script:
     yield lambda: desk.shown is not None and at_rest(window)()
     assert window.session.frame is not None
     before = most(window)
-    assert before < comfort().red_kpa
-    lift = bust_move(window.session.frame).mean.up
+    assert before < pressure_limits().red_kpa
+    lift = bust_shift(window.session.frame).mean.up
     window.lines_desk.commit_length("mid-bust", 0.6)
-    yield lambda: at_rest(window)() and before < most(window) < comfort().red_kpa
-    assert bust_move(window.session.frame).mean.up > lift + 1.0
+    yield lambda: at_rest(window)() and before < most(window) < pressure_limits().red_kpa
+    assert bust_shift(window.session.frame).mean.up > lift + 1.0
 
 
 def most(window: MainWindow) -> float:
@@ -188,7 +188,7 @@ def test_the_figures_of_the_guide_are_those_of_its_steps(person: Path) -> None:
     shorter = build(design.with_line("mid-bust", 0.6), band)
     figures = [f"{row.cut_mm:.0f} mm", f"{100.0 * design.ratio('mid-bust'):.0f} %"]
     for each in (band, shorter):
-        (most,) = press_list(each, reached_points(each)).rows
+        (most,) = pressure_list(each, reached_points(each)).rows
         figures += [f"{lift(each):.1f} mm", f"{most.max_kpa:.1f} kPa"]
     for page in ("tutorial/quick-start.md", "ja/quick-start.md"):
         text = (DOCS / page).read_text("utf-8")
@@ -197,4 +197,4 @@ def test_the_figures_of_the_guide_are_those_of_its_steps(person: Path) -> None:
 
 def lift(stages: Stages) -> float:
     """How far the bust points stand above where they are at rest [mm]."""
-    return move_between(stages.rest_marks, stages.watch(reached_points(stages))).mean.up
+    return shift_between(stages.rest_marks, stages.watch(reached_points(stages))).mean.up

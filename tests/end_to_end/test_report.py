@@ -48,7 +48,7 @@ def test_the_sheet_takes_the_place_of_the_work_and_gives_it_back() -> None:
         frame = window.session.frame
         assert frame is not None
         told = measure_rows(*before_after(frame.stages, frame.control_points))
-        assert desk.handout.sheet.measures == tuple(told)
+        assert desk.handout.report.measures == tuple(told)
         leaf = desk.page.paper.leaves[0]
         shown, title = leaf.grab().toImage(), leaf.width() * 18.0 / A4[0]
         dark = sum(shown.pixelColor(x, round(title)).lightness() < 128 for x in range(shown.width() // 2))
@@ -75,30 +75,30 @@ def test_the_sheet_follows_and_a_former_one_is_not_given_away() -> None:
         yield made(window)
         former = window.report_desk.handout
         assert former is not None
-        assert former.sheet.cuts.rows == ()
+        assert former.report.cuts.rows == ()
         window.session.commit_line("mid-bust", "Mid-bust", 0.96)
         assert not any(press.isEnabled() for press in window.report_desk.page.does.values())
         assert window.report_desk.page.state.text() == "The sheet is made as soon as the run rests."
         yield made(window)
-        sheet = window.report_desk.handout.sheet
+        sheet = window.report_desk.handout.report
         assert [row.line for row in sheet.cuts.rows] == ["mid-bust"]
         assert sheet.lift is not None
         frame = window.session.frame
         assert frame is not None
-        lift = frame.marks.nipple_left_z - frame.stages.rest_marks.nipple_left_z
+        lift = frame.marks.bust_point_left_z - frame.stages.rest_marks.bust_point_left_z
         assert sheet.lift.left_up == pytest.approx(lift, abs=0.1)
         window.session.commit_line("mid-bust", "Mid-bust", 0.9)
         yield settled(window)
         window.session.commit_line("mid-bust", "Mid-bust", 0.96)
         yield lambda: settled(window)() and made(window)()
-        again = window.report_desk.handout.sheet
+        again = window.report_desk.handout.report
         assert again.turns == sheet.turns, "a garment is plotted from rest, not from the edit before"
         assert (again.lift, again.volume) == (sheet.lift, sheet.volume)
         for _ in range(2):
             window.actions_.undo.trigger()
         window.actions_.undo.trigger()
         yield made(window)
-        assert window.report_desk.handout.sheet.cuts.rows == ()
+        assert window.report_desk.handout.report.cuts.rows == ()
 
     assert run_main(["resources/samples/mannequin.ply"], script) == 0
 
@@ -136,14 +136,14 @@ def test_the_customer_is_one_step_and_measures_nothing_again(monkeypatch: pytest
         QTest.keyClick(page.customer, Qt.Key.Key_Return)
         assert window.session.design is not None
         assert window.session.design.customer == "Anna 0412"
-        yield lambda: made(window)() and desk.handout.sheet.heading.customer == "Anna 0412"
+        yield lambda: made(window)() and desk.handout.report.heading.customer == "Anna 0412"
         assert window.session.undo_stack.undoText() == "Customer Anna 0412"
         window.session.show_variant("B")
-        yield lambda: made(window)() and desk.handout.sheet.heading.variant == "B"
-        assert desk.handout.sheet.heading.customer == "Anna 0412", "it is of every variant"
+        yield lambda: made(window)() and desk.handout.report.heading.variant == "B"
+        assert desk.handout.report.heading.customer == "Anna 0412", "it is of every variant"
         for _ in range(2):
             window.actions_.undo.trigger()
-        yield lambda: made(window)() and desk.handout.sheet.heading.customer == ""
+        yield lambda: made(window)() and desk.handout.report.heading.customer == ""
         assert page.customer.text() == ""
         assert len(measured) == 1
 
@@ -167,7 +167,7 @@ def test_a_name_that_is_typed_goes_out_with_the_next_press(
         QTest.keyClicks(page.customer, "Anna")
         QTest.keyClick(page.customer, Qt.Key.Key_Return)
         yield made(window)
-        assert desk.handout.sheet.heading.customer == "Anna", "it was named while it was being made"
+        assert desk.handout.report.heading.customer == "Anna", "it was named while it was being made"
         page.customer.selectAll()
         QTest.keyClicks(page.customer, "Berta")
         for what in ("pdf", "json", "csv"):
@@ -204,7 +204,7 @@ def test_the_sheet_is_saved_in_another_language(tmp_path: Path, monkeypatch: pyt
         assert "補整シート" in pdf.text()
         assert len(pdf.sizes) == 2
         data = json.loads((tmp_path / "sheet.json").read_text("utf-8"))
-        assert data["measures"] == list(desk.handout.sheet.measures)
+        assert data["measures"] == list(desk.handout.report.measures)
         bust = next(row["before"] for row in data["measures"] if row["key"] == "bust_girth")
         assert f"{bust:.1f}" in pdf.text()
         assert (tmp_path / "sheet.csv").read_text("utf-8-sig").startswith("section,key,title")

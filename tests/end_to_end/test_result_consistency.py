@@ -15,7 +15,7 @@ import app.gui.widgets.table_export
 from app.gui.main_window import MainWindow
 from app.gui.widgets.thumbnail_list import VIEW, PictureRow
 from app.i18n.catalog import number
-from core.mechanics.mesh_quality import CALM_RANGE
+from core.mechanics.mesh_quality import STRAINED_RANGE
 from core.pipeline.frame import Frame
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -50,9 +50,11 @@ def test_the_whole_window_tells_one_lift_that_of_the_bust_points() -> None:
         window.lines_desk.commit_length("mid-bust", 0.9)
         yield settled(window)
         now, rest = frame_of(window).marks, frame_of(window).stages.rest_marks
-        up = 0.5 * (now.nipple_left_z - rest.nipple_left_z + now.nipple_right_z - rest.nipple_right_z)
-        forward = 0.5 * (now.nipple_left_out - rest.nipple_left_out)
-        forward += 0.5 * (now.nipple_right_out - rest.nipple_right_out)
+        up = 0.5 * (
+            now.bust_point_left_z - rest.bust_point_left_z + now.bust_point_right_z - rest.bust_point_right_z
+        )
+        forward = 0.5 * (now.bust_point_left_out - rest.bust_point_left_out)
+        forward += 0.5 * (now.bust_point_right_out - rest.bust_point_right_out)
         assert now.apex_z - rest.apex_z > up + 3.0, "the foremost place wandered up: that is no lift"
         said = f"{up:.1f} mm up, {-forward:.1f} mm back"
         assert strip_says(window)["Bust point"] == said
@@ -102,7 +104,7 @@ def test_a_settled_body_that_is_strained_says_so_in_one_voice() -> None:
         window.throttled.flush()
         condition = frame_of(window).verdict.condition
         assert condition is not None
-        assert condition.shortest < CALM_RANGE[0]
+        assert condition.shortest < STRAINED_RANGE[0]
         yield lambda: window.strip.chip.state() in ("caution", "bad")
         overall = window.verdict_desk.of(frame_of(window))
         said = [message for message, _ in overall.reasons]
@@ -217,7 +219,7 @@ def test_measures_say_from_where_they_count_and_leave_as_a_table(
         rows = {row.label: row for row in window.result.rows}
         assert all(row.reference for row in rows.values())
         above = rows["Bust point left, height"]
-        assert above.before == pytest.approx(marks.nipple_left_z - body[:, 2].min())
+        assert above.before == pytest.approx(marks.bust_point_left_z - body[:, 2].min())
         line = frame_of(window).stages.model.lines[1]
         whole = rows["Mid-bust, whole band"]
         assert (line.name, whole.before) == ("mid-bust", pytest.approx(line.whole_length))

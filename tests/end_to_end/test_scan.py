@@ -20,23 +20,25 @@ import core.scan.body
 from app.gui.main_window import MainWindow
 from core.progress import Progress
 from core.scan.body import Body
-from core.scan.orientation.pose import Pose, find_pose
+from core.scan.orientation.pose import Pose, estimate_pose
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
 
 def doubtful(turn: float) -> Any:
-    """A ``find_pose`` that is not sure unless it is told, and that then errs by ``turn`` degrees."""
+    """A ``estimate_pose`` that is not sure unless it is told, and that then errs by ``turn`` degrees."""
     c, s = np.cos(np.radians(turn)), np.sin(np.radians(turn))
     about = np.eye(4)
     about[:2, :2] = [[c, -s], [s, c]]
 
     def find(vertices: Any, faces: Any, **told: Any) -> Pose:
-        pose = find_pose(vertices, faces, **told)
+        pose = estimate_pose(vertices, faces, **told)
         if told.get("front") is not None:
             return pose
         fronts = {0.0: "-y", 180.0: "+y"}
-        return replace(pose, file_to_mm=about @ pose.file_to_mm, front=fronts[turn], sure=False, others=())
+        return replace(
+            pose, file_to_mm=about @ pose.file_to_mm, front=fronts[turn], is_certain=False, others=()
+        )
 
     return find
 
@@ -64,7 +66,7 @@ def pull(window: MainWindow, name: str, by: QPoint) -> None:
 def test_an_unsure_scan_asks_and_the_answer_is_one_undo_step(
     mannequin: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(core.scan.body, "find_pose", doubtful(0.0))
+    monkeypatch.setattr(core.scan.body, "estimate_pose", doubtful(0.0))
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -82,7 +84,7 @@ def test_an_unsure_scan_asks_and_the_answer_is_one_undo_step(
         assert design is not None
         assert frame is not None
         assert (design.scan.up, design.scan.front) == ("+z", "-y")
-        assert frame.stages.body.pose.sure
+        assert frame.stages.body.pose.is_certain
         assert stack.count() == 1
         window.actions_.undo.trigger()
         yield settled(window)
@@ -95,7 +97,7 @@ def test_an_unsure_scan_asks_and_the_answer_is_one_undo_step(
 def test_a_scan_that_shows_no_bust_is_turned_by_a_picture(
     mannequin: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(core.scan.body, "find_pose", doubtful(180.0))
+    monkeypatch.setattr(core.scan.body, "estimate_pose", doubtful(180.0))
 
     def script(window: MainWindow) -> Script:
         yield window.view.question.isVisible
@@ -196,7 +198,7 @@ def test_a_dragged_pin_is_a_correction_that_stays(tmp_path: Path, monkeypatch: p
         mark = session.frame.stages.landmarks.points["bust_point_left"]
         assert mark.by_hand
         assert mark.position[2] > found[2] + 2.0
-        assert session.frame.stages.rest_marks.nipple_left_z == pytest.approx(mark.position[2], abs=0.5)
+        assert session.frame.stages.rest_marks.bust_point_left_z == pytest.approx(mark.position[2], abs=0.5)
         assert session.frame.stages.body is frame.stages.body
         assert window.landmarks.reset.isVisible()
         window.actions_.undo.trigger()

@@ -18,12 +18,12 @@ from app.gui.features.scan_comparison.page import WornPage, WornView
 from app.gui.main_window import MainWindow
 from app.i18n.catalog import speaking
 from app.presenters.samples import sample_design
-from app.presenters.scan_comparison import bust_words, number_title
+from app.presenters.scan_comparison import bust_words, parameter_title
 from benchmarks.worn_pairs import scanned, worn_mesh, written
-from core.analysis.calibration.api import Difference, Figures, calibrate, compare
+from core.analysis.calibration.api import Residuals, ResidualSummary, calibrate, compare
 from core.control_mesh.template import read_template
 from core.document.document import Document
-from core.document.line_notation import ready_made
+from core.document.line_notation import ready_made_lines
 from core.document.storage.project_file import open_project, save_project
 from core.errors import UserError
 from core.pipeline.build import build
@@ -41,7 +41,7 @@ def pair(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, str, str]:
         worn_mesh(stages, truth), stages, np.random.default_rng(4), noise=0.2, resampled=False, hole=15.0
     )
     project = folder / "plan.busk"
-    save_project(project, Document.of(design), stages.scan, None)
+    save_project(project, Document.single(design), stages.scan, None)
     other = stages.body.mesh.moved(stages.body.mesh.vertices * (1.15, 1.0, 1.0))
     return str(project), written(mesh, folder / "worn.ply"), written(other, folder / "other.ply")
 
@@ -164,7 +164,7 @@ def test_a_shape_that_has_settled_is_compared_while_turns_beside_it_go_on(pair: 
         yield compared
         frame = window.session.frame
         assert frame is not None
-        assert frame.at_work, "the conventional force is still on its way"
+        assert frame.is_running, "the conventional force is still on its way"
         assert "out than real" in window.map_desk.legend._note.text()
         window.session.set_pace(None)
         window.session.undo_stack.setClean()
@@ -173,9 +173,9 @@ def test_a_shape_that_has_settled_is_compared_while_turns_beside_it_go_on(pair: 
 
 
 def test_where_the_bust_points_are_is_said_without_a_sign() -> None:
-    figures = Figures(0.0, 1.0, 2.0, 1.0)
+    figures = ResidualSummary(0.0, 1.0, 2.0, 1.0)
     way = {"left": np.array([0.0, 0.7, -0.3]), "right": np.array([0.0, -0.2, 0.04])}
-    words = bust_words(Difference(np.zeros(3), figures, {}, way, {"left": 5.66, "right": 10.8}))
+    words = bust_words(Residuals(np.zeros(3), figures, {}, way, {"left": 5.66, "right": 10.8}))
     assert words.startswith(
         "Left bust point: predicted 0.3 mm lower (±5.7 mm), 0.7 mm less far out. Right bust point: "
     )
@@ -192,14 +192,14 @@ def test_what_is_no_finding_is_not_offered_with_the_strongest_button(qapp: QAppl
 
 
 def test_a_number_that_linked_lines_share_is_called_as_their_row() -> None:
-    linked = replace(sample_design(), own_lines=ready_made(read_template("168"))["straps"])
-    apart = linked.with_traits(replace(linked.traits_of("strap left"), linked=False))
-    assert number_title("stiffness of strap left", linked) == "Stiffness of Straps"
-    assert number_title("length of strap left", linked) == "Length of Straps"
-    assert number_title("stiffness of strap right", apart) == "Stiffness of Strap (right)"
-    assert number_title("stiffness of mid-bust", linked) == "Stiffness of Mid-bust"
+    linked = replace(sample_design(), own_lines=ready_made_lines(read_template("168"))["straps"])
+    apart = linked.with_line_settings(replace(linked.line_settings("strap left"), linked=False))
+    assert parameter_title("stiffness of strap left", linked) == "Stiffness of Straps"
+    assert parameter_title("length of strap left", linked) == "Length of Straps"
+    assert parameter_title("stiffness of strap right", apart) == "Stiffness of Strap (right)"
+    assert parameter_title("stiffness of mid-bust", linked) == "Stiffness of Mid-bust"
     with speaking("ja"):
-        assert "左" not in number_title("stiffness of strap left", linked)
+        assert "左" not in parameter_title("stiffness of strap left", linked)
 
 
 def test_what_is_begun_with_another_thickness_is_never_shown(

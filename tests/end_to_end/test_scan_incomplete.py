@@ -25,16 +25,16 @@ from core.document.design import Design, ScanSource
 from core.errors import LandmarkError, ScanError
 from core.landmarks.detect import find_landmarks
 from core.landmarks.manual import in_mm
-from core.pipeline.build import StuckError
+from core.pipeline.build import IncompleteBuildError
 from core.scan.body import Body
-from core.scan.orientation.pose import find_pose
+from core.scan.orientation.pose import estimate_pose
 from tests.end_to_end.test_scan import doubtful, pull
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
 
 def nothing_unless_placed(body: Body, placed: Any, needed: int = 1, **_: Any) -> Any:
-    """A ``find`` that finds no bust before so many points are placed."""
+    """A ``detect_landmarks`` that finds no bust before so many points are placed."""
     if len(placed) < needed:
         raise LandmarkError("No bust is here.", "Place its points.")
     return find_landmarks(body)
@@ -49,7 +49,7 @@ def place(window: MainWindow, name: str, by: QPoint) -> None:
 
 
 def unpainted(*_: Any) -> Any:
-    """A ``portrait`` that takes no time."""
+    """A ``render_thumbnail`` that takes no time."""
     return np.zeros((8, 8, 4), np.uint8)
 
 
@@ -59,7 +59,7 @@ def leave(window: MainWindow) -> None:
 
 
 def no_waist(body: Body, placed: Any, **_: Any) -> Any:
-    """A ``find`` that never finds the waist."""
+    """A ``detect_landmarks`` that never finds the waist."""
     found = find_landmarks(body, in_mm(placed, body.pose.file_to_mm))
     kept = {name: mark for name, mark in found.points.items() if name != "waist_front" or mark.by_hand}
     return replace(found, points=kept)
@@ -68,7 +68,7 @@ def no_waist(body: Body, placed: Any, **_: Any) -> Any:
 def test_a_scan_that_cannot_go_on_is_shown_and_a_placed_point_lets_it_in(
     mannequin: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(core.pipeline.build, "find", nothing_unless_placed)
+    monkeypatch.setattr(core.pipeline.build, "detect_landmarks", nothing_unless_placed)
 
     def script(window: MainWindow) -> Script:
         yield lambda: window.scan_desk.stuck is not None and not window.view.busy.isVisible()
@@ -98,7 +98,7 @@ def test_a_scan_that_cannot_go_on_is_read_once_however_many_pins_it_takes(
 ) -> None:
     read: list[Any] = []
     reading = core.pipeline.build._read_upright
-    monkeypatch.setattr(core.pipeline.build, "find", partial(nothing_unless_placed, needed=2))
+    monkeypatch.setattr(core.pipeline.build, "detect_landmarks", partial(nothing_unless_placed, needed=2))
     monkeypatch.setattr(
         core.pipeline.build, "_read_upright", lambda *a, **b: (read.append(a), reading(*a, **b))[1]
     )
@@ -136,12 +136,12 @@ def test_a_scan_that_only_asks_leaves_the_open_one_alone(
         "ask_about_changes",
         lambda _, name: asked.append(name) or "cancel",
     )
-    monkeypatch.setattr(app.rendering.orientation_thumbnails, "portrait", unpainted)
+    monkeypatch.setattr(app.rendering.orientation_thumbnails, "render_thumbnail", unpainted)
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
         session, question = window.session, window.view.question
-        monkeypatch.setattr(core.scan.body, "find_pose", doubtful(180.0))
+        monkeypatch.setattr(core.scan.body, "estimate_pose", doubtful(180.0))
         session.open(str(person))
         yield question.isVisible
         leave(window)
@@ -165,8 +165,8 @@ def test_a_scan_that_only_asks_leaves_the_open_one_alone(
 def test_a_scan_whose_question_is_left_is_shown_and_can_be_told(
     mannequin: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(core.scan.body, "find_pose", doubtful(180.0))
-    monkeypatch.setattr(app.rendering.orientation_thumbnails, "portrait", unpainted)
+    monkeypatch.setattr(core.scan.body, "estimate_pose", doubtful(180.0))
+    monkeypatch.setattr(app.rendering.orientation_thumbnails, "render_thumbnail", unpainted)
 
     def script(window: MainWindow) -> Script:
         yield window.view.question.isVisible
@@ -226,8 +226,8 @@ def test_on_a_refused_scan_nothing_can_be_placed_and_what_was_stays_in_sight(
 def test_the_picture_of_a_scan_that_cannot_go_on_shows_it(
     mannequin: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(core.pipeline.build, "find", nothing_unless_placed)
-    with pytest.raises(StuckError, match="No bust is here"):
+    monkeypatch.setattr(core.pipeline.build, "detect_landmarks", nothing_unless_placed)
+    with pytest.raises(IncompleteBuildError, match="No bust is here"):
         draw_window(Design(ScanSource(str(mannequin))), tmp_path / "stuck.png", size=(1280, 800))
     assert (tmp_path / "stuck.png").stat().st_size > 100_000
 
@@ -238,9 +238,9 @@ def test_a_refused_scan_is_shown_as_it_lies_and_can_be_told_how_it_stands(
     def refuse(vertices: Any, faces: Any, **told: Any) -> Any:
         if told["up"] is None:
             raise ScanError("This is no body.", "Say which way is up.")
-        return find_pose(vertices, faces, **told)
+        return estimate_pose(vertices, faces, **told)
 
-    monkeypatch.setattr(core.scan.body, "find_pose", refuse)
+    monkeypatch.setattr(core.scan.body, "estimate_pose", refuse)
 
     def script(window: MainWindow) -> Script:
         yield lambda: window.scan_desk.stuck is not None and not window.view.busy.isVisible()
@@ -260,7 +260,7 @@ def test_a_refused_scan_is_shown_as_it_lies_and_can_be_told_how_it_stands(
 
 
 def test_a_landmark_that_was_not_found_can_be_placed_and_undone(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(core.pipeline.build, "find", no_waist)
+    monkeypatch.setattr(core.pipeline.build, "detect_landmarks", no_waist)
 
     def script(window: MainWindow) -> Script:
         yield settled(window)

@@ -13,7 +13,7 @@ from window_tools import Script, run_undrawn, settled
 from app.gui.main_window import MainWindow
 from core.scan.body import read_scan
 from core.scan.orientation.lean_angles import corrected_up, lean_angles
-from core.scan.repair.clipping import above
+from core.scan.repair.clipping import clip_above
 from tests.end_to_end.test_scan_edits import type_level
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -27,7 +27,7 @@ def leaning(tmp_path: Path, mannequin: Path) -> Path:
     mesh = read_scan(mannequin).mesh
     turn = Rotation.from_euler("x", LEAN, degrees=True).as_matrix()
     mesh = mesh.moved(mesh.vertices @ turn.T)
-    cut, _ = above(mesh, 2, float(np.percentile(mesh.vertices[:, 2], 15)))
+    cut, _ = clip_above(mesh, 2, float(np.percentile(mesh.vertices[:, 2], 15)))
     path = tmp_path / "leaning.ply"
     trimesh.Trimesh(cut.vertices, cut.faces, process=False).export(path)
     return path

@@ -13,7 +13,7 @@ from window_tools import Script, drag, run_undrawn, settled
 import app.gui.features.project.controller as project_files
 from app.gui.main_window import MainWindow
 from core.document.storage.project_file import open_project
-from core.document.storage.recovery import read_kept
+from core.document.storage.recovery import load_unsaved
 from tests.app.gui.test_solver_faults import Faults, edit
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -62,7 +62,7 @@ def test_a_solver_that_fails_for_long_loses_nothing(
         document = session.document
         assert (session.undo_stack.index(), session.unsaved) == (22, True)
         yield lambda: keeping._kept is document
-        kept = read_kept(keeping._recovery.folder)
+        kept = load_unsaved(keeping._recovery.folder)
         assert kept.document.design.lines == document.design.lines
         assert window.project_controller.save()
         assert session.finish_saving()

@@ -15,7 +15,7 @@ import app.gui.features.symmetry.controller as desk_module
 from app.gui.features.symmetry.card import SymmetryCard
 from app.gui.features.uncertainty.controller import UncertaintyController
 from app.gui.main_window import MainWindow
-from core.analysis.symmetry.compare import BeforeAfter, evenness
+from core.analysis.symmetry.compare import BeforeAfter, compare_sides
 from core.control_mesh.template import read_template
 from core.document.split_lines import split
 
@@ -56,7 +56,7 @@ def faint(card: SymmetryCard) -> bool:
 def told(window: MainWindow) -> BeforeAfter:
     frame = window.session.frame
     assert frame is not None
-    return evenness(frame.stages, frame.control_points)
+    return compare_sides(frame.stages, frame.control_points)
 
 
 def test_the_card_tells_what_differs_shows_where_and_makes_it_even(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -173,7 +173,7 @@ def makes_even(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
             yield lambda: is_fresh(window)
     after = window.session.design
     assert after is not None
-    assert after.worn() == {f"{line} {side}" for line in ("mid-bust", "full-bust") for side in SIDES}
+    assert after.active_lines() == {f"{line} {side}" for line in ("mid-bust", "full-bust") for side in SIDES}
     assert window.session.undo_stack.count() == count + 1
     asked = "Left and right apart: Full bust, Mid-bust · Asked for: Left higher than right 0.0 mm"
     assert window.session.undo_stack.undoText().startswith(asked)
@@ -252,7 +252,9 @@ def test_an_even_body_has_nothing_to_be_made_even_and_a_line_is_split_all_the_sa
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     asked: list[object] = []
-    monkeypatch.setattr(desk_module, "evenness", lambda *given: asked.append(given) or evenness(*given))
+    monkeypatch.setattr(
+        desk_module, "compare_sides", lambda *given: asked.append(given) or compare_sides(*given)
+    )
 
     def script(window: MainWindow) -> Script:
         undrawn(window)

@@ -61,7 +61,10 @@ def is_typed_seen_taken_and_undone_or_left(window: MainWindow) -> Script:
     assert window.session.undo_stack.count() == steps + 1
     assert window.session.undo_stack.undoText() == "Asked for: Bust point forward −4.0 mm"
     marks, rest = window.session.frame.exact_marks, window.session.frame.stages.rest_marks
-    outs = [marks.nipple_left_out - rest.nipple_left_out, marks.nipple_right_out - rest.nipple_right_out]
+    outs = [
+        marks.bust_point_left_out - rest.bust_point_left_out,
+        marks.bust_point_right_out - rest.bust_point_right_out,
+    ]
     assert np.mean(outs) == pytest.approx(-4.0, abs=0.06)
     window.session.undo_stack.undo()
     yield settled(window)
@@ -80,7 +83,7 @@ def is_typed_seen_taken_and_undone_or_left(window: MainWindow) -> Script:
 
 
 def lock(design: Design, name: str) -> Design:
-    return design.with_traits(replace(design.traits_of(name), locked=True))
+    return design.with_line_settings(replace(design.line_settings(name), locked=True))
 
 
 def made(design: Design) -> Design:

@@ -98,7 +98,7 @@ def is_taken_back_step_by_step(window: MainWindow) -> Script:
     drag(handles(window)[2], 3, 0)
     wished = desk.goals()
     do.undo.trigger()
-    assert desk.drawn["profile left"].by_hand == {1}, "the last drag is taken back"
+    assert desk.drawn["profile left"].manual_handles == {1}, "the last drag is taken back"
     do.undo.trigger()
     assert desk.goals() == (Goal("lift", 4.0),)
     do.undo.trigger()

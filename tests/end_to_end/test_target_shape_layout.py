@@ -10,7 +10,7 @@ from PySide6.QtCore import QCoreApplication, QEvent, QPoint
 from window_tools import Script, run_main, settled, undrawn
 
 from app.gui.main_window import MainWindow
-from core.garment.pressure_limits import comfort
+from core.garment.pressure_limits import pressure_limits
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -64,7 +64,7 @@ def leaves_the_bust_in_sight(window: MainWindow) -> Script:
 
 def keeps_to_the_limit_of_pressure(window: MainWindow) -> Script:
     """It holds from the beginning, what it costs is told, and off it stays off for this body."""
-    desk, card, red = window.ask_desk, window.ask_desk.card, comfort().red_kpa
+    desk, card, red = window.ask_desk, window.ask_desk.card, pressure_limits().red_kpa
     desk.all_wishes.limit = None
     desk.begin()
     yield answered(window)

@@ -46,11 +46,11 @@ def names_the_conflict_and_follows_priorities(window: MainWindow) -> Script:
     yield settled(window)
     desk.begin([Goal("girth", 858.0)])
     yield answered(window)
-    assert desk.answer.reply.design.worn() == {"mid-bust"}
+    assert desk.answer.reply.design.active_lines() == {"mid-bust"}
     assert "Full bust" in card.optional.toolTip()
     card.optional.click()
     yield answered(window)
-    assert "full-bust" in desk.answer.reply.design.worn()
+    assert "full-bust" in desk.answer.reply.design.active_lines()
     assert "Switched on: Full bust." in card.changes.text()
     desk.leave()
     yield settled(window)

@@ -15,7 +15,7 @@ from window_tools import Script, run_undrawn, settled
 
 from app.cli.main import main
 from app.gui.main_window import MainWindow
-from core.document.storage.recovery import left_behind, read_kept, recovery_folder
+from core.document.storage.recovery import find_unsaved, load_unsaved, recovery_folder
 
 FILE = Path(__file__)
 RATIO = 0.9
@@ -62,10 +62,10 @@ def test_a_signal_ends_the_program_and_the_last_edit_is_kept(
         finally:
             program.kill()
     assert code == 128 + getattr(signal, name)
-    (kept, recovery), *others = left_behind()[0]
+    (kept, recovery), *others = find_unsaved()[0]
     assert kept.document.design.ratio("mid-bust") == RATIO
     assert others == []
-    recovery.end()
+    recovery.remove()
 
 
 @pytest.mark.usefixtures("empty_house")
@@ -82,7 +82,7 @@ def test_the_end_of_a_desktop_session_keeps_the_document_aside() -> None:
         window.session.commit_line("mid-bust", "Mid-bust line", RATIO)
         app.commitDataRequest.emit(None)
         (folder,) = recovery_folder().iterdir()
-        assert read_kept(folder).document.design.lines == window.session.design.lines
+        assert load_unsaved(folder).document.design.lines == window.session.design.lines
 
     run_undrawn([], script)
     assert signal.getsignal(signal.SIGTERM) is former

@@ -15,11 +15,11 @@ from window_tools import Script, drag, run_main, settled
 from app.gui.features.report.controller import ReportDesk
 from app.gui.main_window import MainWindow
 from app.gui.widgets.coach_mark import CoachMark
-from app.presenters.bust_shift import bust_move, move_between, up_words
+from app.presenters.bust_shift import bust_shift, shift_between, up_words
 from app.presenters.samples import FIRST_SAMPLE, LIFTING_LINE, SAMPLES, lifted_sample
-from core.garment.assessment import BAD, assessed
+from core.garment.assessment import BAD, assess
 from core.pipeline.build import build
-from core.pipeline.solve import run
+from core.pipeline.solve import solve
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -29,10 +29,10 @@ SEEN = 2.5
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_the_band_of_a_sample_lifts_the_bust_and_can_be_worn(name: str) -> None:
-    solution = run(build(lifted_sample(name)))
+    solution = solve(build(lifted_sample(name)))
     stages = solution.stages
-    assert move_between(stages.rest_marks, stages.watch(solution.control_points)).mean.up > SEEN
-    assert assessed(solution).level != BAD
+    assert shift_between(stages.rest_marks, stages.watch(solution.control_points)).mean.up > SEEN
+    assert assess(solution).level != BAD
 
 
 @pytest.mark.usefixtures("opened_as_in_the_program")
@@ -112,7 +112,7 @@ def the_sheet(window: MainWindow) -> Script:
     assert desk.is_open
     yield desk.page.does["pdf"].isEnabled
     assert desk.handout is not None
-    (row,) = desk.handout.sheet.cuts.rows
+    (row,) = desk.handout.report.cuts.rows
     assert row.cut_mm, "what to cut is on it"
 
 
@@ -182,7 +182,7 @@ def the_samples_open_as_at_first(window: MainWindow) -> None:
 
 def lift(window: MainWindow) -> float:
     assert window.session.frame is not None
-    return bust_move(window.session.frame).mean.up
+    return bust_shift(window.session.frame).mean.up
 
 
 def pressure(window: MainWindow) -> float:

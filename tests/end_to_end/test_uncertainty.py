@@ -10,7 +10,7 @@ from window_tools import Script, run_main, settled, undrawn
 
 import core.analysis.uncertainty.estimate
 from app.gui.main_window import MainWindow
-from app.presenters.uncertainty import left_out_sentences
+from app.presenters.uncertainty import limitation_sentences
 from core.errors import UserError
 from core.measurements.uncertain_value import Spread
 from core.progress import Progress
@@ -49,7 +49,7 @@ def test_it_is_told_where_it_is_looked_at_and_fades_while_a_line_moves() -> None
         card.folds[1].click()
         assert all(
             any(sentence in words.text() for words in card.findChildren(type(card.meaning)))
-            for sentence in left_out_sentences()
+            for sentence in limitation_sentences()
         )
         window.section_desk.set_on(True)
         yield lambda: bool(window.section_desk.panel.plot._drawn.bands)
@@ -72,16 +72,16 @@ def test_nothing_is_shown_before_all_sources_are_in(monkeypatch: pytest.MonkeyPa
     reached, go, known = (
         threading.Event(),
         threading.Event(),
-        core.analysis.uncertainty.estimate.Spreading.whole,
+        core.analysis.uncertainty.estimate.UncertaintyEstimator.estimate,
     )
 
-    def waiting(self: core.analysis.uncertainty.estimate.Spreading, progress: Progress) -> Spread:
-        self.quick(progress)
+    def waiting(self: core.analysis.uncertainty.estimate.UncertaintyEstimator, progress: Progress) -> Spread:
+        self.estimate_partial(progress)
         reached.set()
         go.wait(60.0)
         return known(self, progress)
 
-    monkeypatch.setattr(core.analysis.uncertainty.estimate.Spreading, "whole", waiting)
+    monkeypatch.setattr(core.analysis.uncertainty.estimate.UncertaintyEstimator, "estimate", waiting)
 
     def script(window: MainWindow) -> Script:
         undrawn(window)
@@ -106,7 +106,7 @@ def test_where_it_is_given_up_there_is_none_and_the_reason_stands_there(
     def refused(*_: object) -> object:
         raise UserError("No balance was found with the lines at these lengths.", "Set them nearer to 100 %.")
 
-    monkeypatch.setattr(core.analysis.uncertainty.estimate.Spreading, "whole", refused)
+    monkeypatch.setattr(core.analysis.uncertainty.estimate.UncertaintyEstimator, "estimate", refused)
 
     def script(window: MainWindow) -> Script:
         undrawn(window)

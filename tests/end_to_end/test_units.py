@@ -20,7 +20,7 @@ from app.gui.main_window import MainWindow
 from app.gui.widgets.inline_edit import TypedField
 from app.i18n.catalog import LANGUAGES
 from core.analysis.uncertainty.input_uncertainty import origins
-from core.document.custom_measures import OwnMeasure
+from core.document.custom_measures import CustomMeasurement
 from core.document.document import Document
 from core.document.storage.project_file import open_project, save_project
 from core.garment.elastic_library import built_in
@@ -43,12 +43,15 @@ MEANT = re.compile(
 def design(tmp_path: Path) -> str:
     """A small body with two lines, one of an elastic, and a girth at a height."""
     small = open_project(Path(__file__).parents[1] / "releases/0.1.0/first.busk").design
-    own = (OwnMeasure("Ribs", "girth", ("waist_front",), 60.0), OwnMeasure("Chest", "girth", (), 250.0))
+    own = (
+        CustomMeasurement("Ribs", "girth", ("waist_front",), 60.0),
+        CustomMeasurement("Chest", "girth", (), 250.0),
+    )
     worn = replace(small, own_measures=own).with_line("mid-bust", 0.93).with_line("full-bust", 0.95)
     elastic = next(each for each in built_in() if each.width_mm == 12.0)
     worn = worn.with_elastic("mid-bust", elastic)
     path = tmp_path / "plan.busk"
-    save_project(path, Document.of(worn), build(worn).scan, None)
+    save_project(path, Document.single(worn), build(worn).scan, None)
     return str(path)
 
 

@@ -142,7 +142,7 @@ def what_cannot_be_solved_is_told_once(window: MainWindow, monkeypatch: pytest.M
         asked.append(1)
         raise LineError("No balance holds this.", "Set it longer.")
 
-    monkeypatch.setattr(app.gui.features.variants.controller, "settled_frame", refuse)
+    monkeypatch.setattr(app.gui.features.variants.controller, "converged_frame", refuse)
     window.variant_desk.choose("A")
     yield lambda: bool(asked)
     yield settled(window)
@@ -154,7 +154,9 @@ def what_cannot_be_solved_is_told_once(window: MainWindow, monkeypatch: pytest.M
 
 def lift_of(frame: Frame) -> float:
     now, rest = frame.marks, frame.stages.rest_marks
-    return (now.nipple_left_z + now.nipple_right_z - rest.nipple_left_z - rest.nipple_right_z) / 2
+    return (
+        now.bust_point_left_z + now.bust_point_right_z - rest.bust_point_left_z - rest.bust_point_right_z
+    ) / 2
 
 
 def show(window: MainWindow, way: str) -> None:

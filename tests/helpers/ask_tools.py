@@ -34,7 +34,7 @@ def answered(window: MainWindow) -> Callable[[], bool]:
         if answer is None or desk.work.at_work or desk._rest.isActive() or frame is None:
             return False
         wanted = answer.reply.design if answer.reply is not None else window.session.design
-        return frame.stages.design == wanted and not frame.at_work
+        return frame.stages.design == wanted and not frame.is_running
 
     return done
 

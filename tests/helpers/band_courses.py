@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from core.garment.band_path import Course
+from core.garment.band_path import BandPath
 from core.geometry.mesh import Points, unit
 from core.geometry.plane_sections import arc_length
 
@@ -15,7 +15,7 @@ STEP = 4.0
 Curve = Callable[[np.ndarray], np.ndarray]
 
 
-def course(curve: Curve, normal: Curve, end: float = 2.0 * np.pi, closed: bool = True) -> Course:
+def course(curve: Curve, normal: Curve, end: float = 2.0 * np.pi, closed: bool = True) -> BandPath:
     """A band with even tension on curve(t), t from 0 to ``end``, both curves (k,) -> (k, 3)."""
     t = np.linspace(0.0, end, 40_001)
     s = arc_length(curve(t))
@@ -23,25 +23,25 @@ def course(curve: Curve, normal: Curve, end: float = 2.0 * np.pi, closed: bool =
     at = np.interp(np.linspace(0.0, s[-1], count + 1), s, t)
     at = at[:-1] if closed else at
     even = np.ones(len(at))
-    return Course(curve(at), unit(normal(at)), NEWTONS * even, even > 0.0, closed)
+    return BandPath(curve(at), unit(normal(at)), NEWTONS * even, even > 0.0, closed)
 
 
-def polar(radius: Curve) -> Course:
+def polar(radius: Curve) -> BandPath:
     """A level band round a cylinder whose outline has ``radius`` (t) [mm]."""
     return course(lambda t: flat(radius(t) * np.cos(t), radius(t) * np.sin(t)), lambda t: _out(radius, t))
 
 
-def ellipse(a: float, b: float) -> Course:
+def ellipse(a: float, b: float) -> BandPath:
     """A level band round an elliptic cylinder with half axes a and b [mm]."""
     return course(lambda t: flat(a * np.cos(t), b * np.sin(t)), lambda t: flat(np.cos(t) / a, np.sin(t) / b))
 
 
-def arc(radius: float, angle: float) -> Course:
+def arc(radius: float, angle: float) -> BandPath:
     """A strap over a round shoulder, open, from the front up and over, through ``angle`` [rad]."""
     return course(lambda t: radius * _upright(t), _upright, angle, closed=False)
 
 
-def parallel(radius: float, latitude: float) -> Course:
+def parallel(radius: float, latitude: float) -> BandPath:
     """A band round a ball, a great circle at latitude 0 [rad]."""
 
     def out(t: np.ndarray) -> Points:
@@ -66,7 +66,7 @@ def _out(radius: Curve, t: np.ndarray) -> Points:
     return flat(r * np.cos(t) + slope * np.sin(t), r * np.sin(t) - slope * np.cos(t))
 
 
-def winding(waist: float, wave: float) -> Course:
+def winding(waist: float, wave: float) -> BandPath:
     """A band round a cylinder with two hollows that swings up and down by ``wave`` [mm] as it goes."""
 
     def radius(t: np.ndarray) -> np.ndarray:

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from core.geometry.mesh import Mesh, Points
-from core.geometry.plane_sections import chains, cut, hull_perimeter, resample
+from core.geometry.plane_sections import cut, hull_perimeter, join_segments, resample
 
 SIDES = ("left", "right")
 BUST_OFFSETS = tuple(range(-30, 31, 5))
@@ -104,7 +104,7 @@ def stable_offset(below: dict[int, float]) -> int:
 
 def trunk_outline(mesh: Mesh, z: float) -> tuple[float, float]:
     """Return tape and outline length of the curves at height ``z`` that cross or lie within the middle."""
-    curves = [curve for curve, _ in chains(cut(mesh, (0.0, 0.0, z), (0.0, 0.0, 1.0)))]
+    curves = [curve for curve, _ in join_segments(cut(mesh, (0.0, 0.0, z), (0.0, 0.0, 1.0)))]
     middle = float(np.median(mesh.vertices[:, 0]))
     trunk = [c for c in curves if c[:, 0].min() <= middle + 25.0 and c[:, 0].max() >= middle - 25.0]
     if not trunk:
@@ -127,7 +127,7 @@ def _girth(mesh: Mesh, z: float, around: dict[int, float] | None = None) -> dict
 
 def sagittal_profile(mesh: Mesh, nipple: Points) -> tuple[Points, int]:
     """Return the sagittal curve through ``nipple`` every millimetre, downward in front, and its place."""
-    curves = [curve for curve, _ in chains(cut(mesh, nipple, (1.0, 0.0, 0.0)))]
+    curves = [curve for curve, _ in join_segments(cut(mesh, nipple, (1.0, 0.0, 0.0)))]
     curve = min(curves, key=lambda c: float(np.linalg.norm(c - nipple, axis=1).min()))
     curve = resample(curve, 1.0)
     start = int(np.argmin(np.linalg.norm(curve - nipple, axis=1)))

@@ -9,7 +9,7 @@ import numpy as np
 from core.geometry.mesh import Mesh
 from core.landmarks.types import Landmark, Landmarks
 from core.measurements.breast_root import Root, Side, side_of
-from core.measurements.unrolled_torso import Chart
+from core.measurements.unrolled_torso import UnrolledTorso
 
 DEEP = 110.0
 """How far a chest lies before the axis of the trunk [mm]."""
@@ -45,7 +45,7 @@ def cap(
         volume = mesh.enclosed_volume() - mesh.moved(on_chest(x, z, 0.0 * out)).enclosed_volume()
     # The root runs from the inner end, which on the left side is that of lesser x, down and round.
     loop = np.roll(places[(rings - 1) * sectors : rings * sectors], -sectors // 2, axis=0)
-    chart = Chart(np.zeros(2), DEEP)
+    chart = UnrolledTorso(np.zeros(2), DEEP)
     side = side_of(mesh, _landmarks(places[-1], loop), "left", chart)
     assert side is not None
     return side, Root(loop, sectors // 2 + 1, chart, 1.0), volume

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from core.mechanics.convergence import judge
+from core.mechanics.convergence import assess_convergence
 from core.mechanics.iteration import Record
 
 
@@ -18,10 +18,10 @@ def course(errors, steps=1.0, lengths=None):
 def motions(errors, steps=1.0):
     """What was judged after each turn."""
     records = course(errors, steps)
-    return [judge(records[:turn]).motion for turn in range(1, len(records) + 1)]
+    return [assess_convergence(records[:turn]).motion for turn in range(1, len(records) + 1)]
 
 
 def motions_of(records):
     """The motions of a run in the order in which they were judged, each said once."""
-    words = [judge(records[:turn]).motion for turn in range(1, len(records) + 1)]
+    words = [assess_convergence(records[:turn]).motion for turn in range(1, len(records) + 1)]
     return [word for word, before in zip(words, ["", *words], strict=False) if word != before]

@@ -54,6 +54,6 @@ def made_of(window: MainWindow, *lines: str) -> Callable[[], bool]:
 
     def made() -> bool:
         design = window.session.design
-        return rests() and design is not None and set(design.worn_elastics()) == set(lines)
+        return rests() and design is not None and set(design.active_elastics()) == set(lines)
 
     return made

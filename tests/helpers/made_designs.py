@@ -5,12 +5,12 @@ from dataclasses import replace
 
 from hypothesis import strategies as st
 
-from core.document.calibration_record import Calibration, FoundNumber
-from core.document.custom_measures import WORN_TIGHT, OwnMeasure
+from core.document.calibration_record import Calibration, FittedParameter
+from core.document.custom_measures import WORN_TIGHT, CustomMeasurement
 from core.document.design import TEMPLATES, WEIGHTS, Design, ScanSource
 from core.document.document import VARIANTS, Document
 from core.document.elastic import TISSUE_LIMITS, Elastic
-from core.document.lines import LineTraits, OwnLine, WornLine
+from core.document.lines import ActiveLine, CustomLine, LineSettings
 from core.document.printable_name import is_blank, is_printable
 from core.document.serialization import to_json
 from core.landmarks.manual import PlacedMark
@@ -50,7 +50,7 @@ def unique(made, **limits):
 
 own_lines = unique(
     st.builds(
-        OwnLine,
+        CustomLine,
         seen_names,
         st.lists(st.integers(0, 103), min_size=3, max_size=6, unique=True).map(tuple),
         st.booleans(),
@@ -75,9 +75,9 @@ elastics = unique(
     max_size=3,
 )
 measures = unique(
-    st.builds(OwnMeasure, seen_names, st.just("girth"), st.just(()), st.floats(-2000.0, 2000.0))
+    st.builds(CustomMeasurement, seen_names, st.just("girth"), st.just(()), st.floats(-2000.0, 2000.0))
     | st.builds(
-        OwnMeasure,
+        CustomMeasurement,
         seen_names,
         st.sampled_from(["straight", "skin"]),
         st.lists(st.sampled_from(NAMES), min_size=2, max_size=2, unique=True).map(tuple),
@@ -89,9 +89,9 @@ calibrations = st.builds(
     seen_names,
     figures,
     figures,
-    st.lists(st.builds(FoundNumber, seen_names, figures, figures, figures, st.booleans()), max_size=3).map(
-        tuple
-    ),
+    st.lists(
+        st.builds(FittedParameter, seen_names, figures, figures, figures, st.booleans()), max_size=3
+    ).map(tuple),
     figures,
 )
 placed = unique(
@@ -106,7 +106,7 @@ def traits(draw, made_of):
     width = st.none() | st.floats(2.0, 100.0)
     elastic = st.sampled_from(["", *(each.name for each in made_of)])
     flags = st.booleans()
-    one = st.builds(LineTraits, seen_names, names, colour, flags, flags, number, width, elastic)
+    one = st.builds(LineSettings, seen_names, names, colour, flags, flags, number, width, elastic)
     return draw(unique(one, max_size=3))
 
 
@@ -119,7 +119,7 @@ def designs(draw):
             scan=sources,
             template=st.sampled_from(TEMPLATES),
             line_height=st.floats(0.25, 0.75),
-            lines=st.lists(st.builds(WornLine, names, st.floats(*RATIO_LIMITS)), max_size=4).map(tuple),
+            lines=st.lists(st.builds(ActiveLine, names, st.floats(*RATIO_LIMITS)), max_size=4).map(tuple),
             volume=st.sampled_from(CONTROLS),
             gain=st.none() | st.floats(0.0, 10.0),
             weights=st.sampled_from(WEIGHTS),
@@ -144,9 +144,9 @@ def designs(draw):
 @st.composite
 def documents(draw):
     """Documents of up to three variants on one body."""
-    document = Document.of(draw(designs()))
+    document = Document.single(draw(designs()))
     for name in VARIANTS[1 : draw(st.integers(1, 3))]:
-        document = document.showing(name).with_design(
+        document = document.with_shown(name).with_design(
             replace(draw(designs()), scan=document.design.scan, placed=document.design.placed)
         )
     return document

@@ -11,27 +11,27 @@ from scipy import sparse
 from shapes import central_difference, torso
 
 from core.mechanics.constraint_lines import Line
-from core.mechanics.iteration import State, Targets, iterate
+from core.mechanics.iteration import LineTargets, SolverState, iterate
 from core.mechanics.model import ConstrainedModel, constrained_model
-from core.mechanics.newton_sliding import Skin
-from core.mechanics.options import Mechanics
+from core.mechanics.newton_sliding import SlidingSurface
+from core.mechanics.options import ModelOptions
 from core.mechanics.potential import Potential
 
 LAWS = (
-    Mechanics(),
-    Mechanics(member_law="prestressed", prestress=0.5),
-    Mechanics(member_law="co-rotated"),
+    ModelOptions(),
+    ModelOptions(member_law="prestressed", prestress=0.5),
+    ModelOptions(member_law="co-rotated"),
 )
 """The three member laws, all else as by default."""
 
 
-def law_of(mechanics: Mechanics) -> str:
+def law_of(mechanics: ModelOptions) -> str:
     """The words that tell a choice of mechanics from the default one."""
-    return "-".join(str(v) for v in vars(mechanics).values() if v not in vars(Mechanics()).values()) or "A"
+    return "-".join(str(v) for v in vars(mechanics).values() if v not in vars(ModelOptions()).values()) or "A"
 
 
 @cache
-def small(mechanics: Mechanics | None = None, *, worn: tuple[str, ...] | None = None) -> ConstrainedModel:
+def small(mechanics: ModelOptions | None = None, *, worn: tuple[str, ...] | None = None) -> ConstrainedModel:
     """A skew torso of which two rows of seven points are free, with its mid-bust and full-bust lines."""
     control = torso(skew=0.3)
     few = (control.row >= 2) & (control.row <= 3) & (np.abs(control.column) <= 3)
@@ -40,7 +40,7 @@ def small(mechanics: Mechanics | None = None, *, worn: tuple[str, ...] | None = 
 
 def cable_force(model: ConstrainedModel, points: np.ndarray) -> np.ndarray:
     """The force of the cables on all points, cable by cable, for the two laws that know no cells."""
-    tensegric, mechanics = model.tensegric, model.mechanics
+    tensegric, mechanics = model.tensegric, model.options
     force = np.zeros_like(points)
     for (i, j), q in zip(tensegric.cables, tensegric.density, strict=True):
         span, rest = points[i] - points[j], tensegric.rest[i] - tensegric.rest[j]
@@ -97,7 +97,9 @@ def energy_of(potential: Potential, moved: np.ndarray) -> float:
     return potential.energy(potential.at(moved))
 
 
-def settled(model: ConstrainedModel, targets: Targets, turns: int = 4000, step: float = 1e-11) -> State:
+def settled(
+    model: ConstrainedModel, targets: LineTargets, turns: int = 4000, step: float = 1e-11
+) -> SolverState:
     """Where turns come to rest; they must, in so many turns."""
     for state, measured in iterate(model, lambda: targets, turns=turns):
         if measured.step < step and abs(measured.error) < 1e-3:
@@ -112,7 +114,7 @@ def check_sliding_derivative(
 
     Its error falls with the square of the step.
     """
-    potential, skin = Potential(model, ratios), Skin(model)
+    potential, skin = Potential(model, ratios), SlidingSurface(model)
     multipliers = np.array([*[3e4, 2e4][: len(potential.sides)], -40.0, -30.0])[: len(potential.wanted)]
 
     def balance(at: np.ndarray) -> np.ndarray:

@@ -48,7 +48,7 @@ def furnish(folder: Path) -> None:
     for name, sample in SCANS.items():
         shutil.copy(ROOT / "resources" / "samples" / f"{sample}.ply", folder / f"{name}.ply")
     design = replace(sample_design().with_line("mid-bust", 0.95), volume="exact")
-    save_project(folder / "design.busk", Document.of(design), read_scan_file(design.scan), b"")
+    save_project(folder / "design.busk", Document.single(design), read_scan_file(design.scan), b"")
 
 
 def run(command: str) -> tuple[int, str]:

@@ -12,10 +12,10 @@ from core.control_mesh.fit import ControlMesh
 from core.document.design import Design, ScanSource
 from core.geometry.mesh import Mesh, frozen
 from core.mechanics.constraint_lines import line_on
-from core.mechanics.iteration import Record, State, Targets, iterate
+from core.mechanics.iteration import LineTargets, Record, SolverState, iterate
 from core.mechanics.model import ConstrainedModel, assemble
-from core.mechanics.options import Mechanics
-from core.mechanics.tensegrity import TensegricModel, tensegric_model
+from core.mechanics.options import ModelOptions
+from core.mechanics.tensegrity import TensegrityModel, tensegrity_model
 from core.mechanics.volume import volume_measure
 from core.pipeline import build as pipeline
 
@@ -81,7 +81,7 @@ def mirrored(control: ControlMesh) -> tuple[ControlMesh, np.ndarray]:
 def fitted(sample: str, template: str = "168") -> ControlMesh:
     """The template on a sample body, fitted once for all tests, by the stages of a build."""
     _, body = pipeline.read_body(ScanSource(str(SAMPLES / f"{sample}.ply")))
-    landmarks = pipeline.find(body, ())
+    landmarks = pipeline.detect_landmarks(body, ())
     return pipeline.fit_control_mesh(pipeline.read_template(template), body, landmarks, Design.line_height)
 
 
@@ -95,16 +95,16 @@ def tent(height: float = 3.0) -> tuple[Mesh, np.ndarray]:
 def tent_model(stiffness: float = 16.0) -> ConstrainedModel:
     """The tent with a line over its ridge, from corner to corner."""
     mesh, fixed = tent()
-    tensegric = tensegric_model(mesh, fixed, Mechanics(line_stiffness=stiffness))
+    tensegric = tensegrity_model(mesh, fixed, ModelOptions(line_stiffness=stiffness))
     line = line_on("ridge", (2, 4, 0), mesh.vertices, tensegric.free)
     volume = volume_measure(mesh, tensegric.free)
     return assemble(tensegric, (line,), volume, ("ridge",))
 
 
-def string() -> TensegricModel:
+def string() -> TensegrityModel:
     """Two free points on a string of three cables between two walls, 1, 2 and 4 mm long."""
     rest = frozen([[0, 0, 0], [1, 0, 0], [3, 0, 0], [7, 0, 0]])
-    return TensegricModel(
+    return TensegrityModel(
         rest, np.array([1, 2]), np.array([[0, 1], [1, 2], [2, 3]]), frozen([1.0, 0.5, 0.25])
     )
 
@@ -132,15 +132,15 @@ def mid_bust(model: ConstrainedModel, ratio: float) -> tuple[float, ...]:
 
 
 def run(
-    model: ConstrainedModel, targets: Targets, turns: int, state: State | None = None
-) -> tuple[State, tuple[Record, ...]]:
+    model: ConstrainedModel, targets: LineTargets, turns: int, state: SolverState | None = None
+) -> tuple[SolverState, tuple[Record, ...]]:
     """The last state and all records of a run."""
     states, records = zip(*iterate(model, lambda: targets, state, turns=turns), strict=True)
     return states[-1], records
 
 
 def errors_of(
-    model: ConstrainedModel, targets: Targets, turns: int, state: State | None = None
+    model: ConstrainedModel, targets: LineTargets, turns: int, state: SolverState | None = None
 ) -> np.ndarray:
     """The volume error after each turn of a run."""
     return np.array([measured.error for measured in run(model, targets, turns, state)[1]])

@@ -9,7 +9,7 @@ import numpy as np
 
 from core.deformation.tffd import bind
 from core.pipeline.build import Stages
-from core.pipeline.observables import BodyWatch
+from core.pipeline.observables import BodyObservables
 
 
 def slope(values: Callable[[float], np.ndarray | float], step: float = 0.01) -> np.ndarray:
@@ -22,4 +22,4 @@ def doubled(stages: Stages) -> Stages:
     """The same stages with the body bound in double precision."""
     control = stages.control
     binding = bind(stages.body.mesh, control.mesh, stages.patch.fade, fixed=control.fixed)
-    return replace(stages, binding=binding, watch=BodyWatch(binding, control, stages.landmarks))
+    return replace(stages, binding=binding, watch=BodyObservables(binding, control, stages.landmarks))

@@ -11,5 +11,5 @@ PICTURE = b"\x89PNG not really"
 
 def write_project(folder):
     path = folder / "anna.busk"
-    save_project(path, Document.of(DESIGN), SCAN, PICTURE)
+    save_project(path, Document.single(DESIGN), SCAN, PICTURE)
     return path

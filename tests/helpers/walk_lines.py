@@ -15,9 +15,9 @@ from window_walk import WindowWalk
 from app.gui.features.lines.row import LineRow
 from core.control_mesh.template import read_template
 from core.document.design import Design
-from core.document.line_notation import ready_made
+from core.document.line_notation import ready_made_lines
 from core.document.lines import partner_of
-from core.mechanics.constraint_lines import typed_ratio
+from core.mechanics.constraint_lines import parse_ratio
 
 NO_KEY, SHIFT = Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.ShiftModifier
 TRAITS = ("locked", "linked", "title", "colour", "stiffness", "hide")
@@ -96,7 +96,7 @@ class LinesWalk(WindowWalk):
         before = field.text()
         self.say(text)
         unit = "%" if field is row.percent else "mm"
-        ratio = typed_ratio(text, rest, unit)
+        ratio = parse_ratio(text, rest, unit)
         type_in(field, text)
         if ratio is None or not 0.5 <= ratio <= 1.3:
             QTest.keyClick(field, Qt.Key.Key_Escape)
@@ -119,7 +119,7 @@ class LinesWalk(WindowWalk):
         elif what == "linked":
             self._link(name, row)
         else:
-            names, value = self.design.linked(name), self._trait(what, row)
+            names, value = self.design.linked_pair(name), self._trait(what, row)
             if value is not _NOTHING:
                 self.decide(lambda design: reduce(lambda d, n: treated(d, n, what, value), names, design))
 
@@ -132,7 +132,7 @@ class LinesWalk(WindowWalk):
             value = self.chance.choice(("", "Upper edge", "Zierband", "紐"))
             row.title.begin()
             type_in(row.title._editor, value)
-            if value == "" and not self.design.traits_of(row.view.name).title:
+            if value == "" and not self.design.line_settings(row.view.name).title:
                 return _NOTHING
         elif what == "colour":
             action = self.chance.choice([each for each in row.details._palette.actions() if each.text()])
@@ -161,18 +161,18 @@ class LinesWalk(WindowWalk):
         """Add a pair of ready-made lines from the menu."""
         kind = self.chance.choice(list(self.window.actions_.add_lines))
         self.window.actions_.add_lines[kind].trigger()
-        pair, present = ready_made(read_template(self.design.template))[kind], self.design.own_lines
+        pair, present = ready_made_lines(read_template(self.design.template))[kind], self.design.own_lines
         missing = [line for line in pair if line.name not in {each.name for each in present}]
-        self.decide(lambda design: reduce(Design.with_own_line, missing, design))
+        self.decide(lambda design: reduce(Design.with_custom_line, missing, design))
 
     def remove(self) -> None:
         """Remove a line as by its key, if it is an own one."""
         chosen = self.row()
         if chosen is None or not chosen[1].view.own:
             return
-        names = self.design.linked(chosen[0])
+        names = self.design.linked_pair(chosen[0])
         self.window.lines.do("remove")
-        self.decide(lambda design: reduce(Design.without_own_line, names, design))
+        self.decide(lambda design: reduce(Design.without_custom_line, names, design))
 
     def sketch(self) -> Script:
         """Draw a line over the skin, and keep it or leave it."""
@@ -193,7 +193,7 @@ class LinesWalk(WindowWalk):
             assert self.session.design is not None
             new = [line for line in self.session.design.own_lines if line not in before.own_lines]
             self.must(len(new) in (1, 2), new)
-            self.decide(lambda design: reduce(Design.with_own_line, new, design))
+            self.decide(lambda design: reduce(Design.with_custom_line, new, design))
         drawing.leave()
 
 
@@ -208,4 +208,4 @@ def type_in(field: QLineEdit, text: str) -> None:
 
 def treated(design: Design, name: str, trait: str, value: object) -> Design:
     """Return a design with one line treated otherwise."""
-    return design.with_traits(replace(design.traits_of(name), **{trait: value}))  # type: ignore[arg-type]
+    return design.with_line_settings(replace(design.line_settings(name), **{trait: value}))  # type: ignore[arg-type]

@@ -59,11 +59,11 @@ def differences_seen(window: MainWindow, document: Document) -> list[str]:
 def _lines_seen(window: MainWindow, design: Design) -> list[str]:
     rows, found = window.lines.rows, []
     names = {"mid-bust", "full-bust", "under-bust", *(line.name for line in design.own_lines)}
-    led = {name: min(design.linked(name)) for name in names}
+    led = {name: min(design.linked_pair(name)) for name in names}
     if set(rows) != set(led.values()):
         found.append(f"rows {sorted(rows)} for {sorted(set(led.values()))}")
     for name in set(rows) & set(led.values()):
-        row, traits, ratio = rows[name], design.traits_of(name), design.ratio(name)
+        row, traits, ratio = rows[name], design.line_settings(name), design.ratio(name)
         window.selection.select_line(name)  # what is in a closed row nobody sees
         # The slider ends where longer or shorter lines can still be typed.
         on_slider = min(max(ratio, row.slider.minimum() / 1e5), row.slider.maximum() / 1e5)

@@ -77,7 +77,7 @@ class Walker(LinesWalk):
             for _ in range(3):
                 place = frame.stages.landmarks.position(name)
                 off = np.array([self.chance.uniform(-6.0, 6.0) for _ in range(3)])
-                view.pin_moved.emit(name, nearest_skin(frame.stages.body.calm, place + off))
+                view.pin_moved.emit(name, nearest_skin(frame.stages.body.smoothed, place + off))
                 yield lambda: True
         self.must(self.window.landmark_desk.carries, "the pin is carried")
         carried = tuple(self.window.landmark_desk._carried)
@@ -175,7 +175,7 @@ class Walker(LinesWalk):
     def reset(self) -> None:
         """Take all lines off."""
         self.window.actions_.reset.trigger()
-        self.decide(Design.at_rest)
+        self.decide(Design.with_lines_reset)
 
     # -- what was, what might be
 
@@ -211,7 +211,7 @@ class Walker(LinesWalk):
         else:
             self.window.variant_desk.segment.button(name).click()
             if name != self.document.shown:
-                self.note(self.document.showing(name))
+                self.note(self.document.with_shown(name))
 
     def cancel(self) -> None:
         """Press Esc: an edit that is being worked out goes, an undoing too; so does a line in the making."""

@@ -17,10 +17,10 @@ from app.gui.main_window import MainWindow
 from core.document.design import Design
 from core.document.document import Document
 from core.document.storage.project_file import open_project, with_scan
-from core.document.storage.recovery import read_kept
+from core.document.storage.recovery import load_unsaved
 from core.errors import UserError
 from core.pipeline.build import build
-from core.pipeline.converged import settled_frame
+from core.pipeline.converged import converged_frame
 from core.pipeline.live_solver import Failure
 
 Edit = Callable[[Design], Design]
@@ -146,13 +146,13 @@ class WindowWalk:
         self.must(not fault, fault)
         shown = self.session.frame
         assert shown is not None
-        alone = settled_frame(self.design, build(self.design))
+        alone = converged_frame(self.design, build(self.design))
         exact = np.subtract(astuple(shown.exact_marks), astuple(alone.exact_marks))
         run = shown.control_points - alone.control_points
         self.far = max(self.far[0], float(np.abs(exact).max())), max(self.far[1], float(np.abs(run).max()))
         recovery = self.window.keeping_desk._recovery
         if self.session.unsaved and recovery is not None:
-            kept = read_kept(recovery.folder).document
+            kept = load_unsaved(recovery.folder).document
             self.must(with_scan(kept, "", "") == with_scan(self.document, "", ""), "another one is kept")
 
     def back_to_the_beginning(self) -> Script:

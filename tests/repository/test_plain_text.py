@@ -18,11 +18,11 @@ from app.gui.main_window import MainWindow
 from app.gui.widgets.menu import Menu
 from app.gui.widgets.tooltip import set_tip, shown_tip
 from app.presenters.samples import sample_path
-from core.document.custom_measures import OwnMeasure
+from core.document.custom_measures import CustomMeasurement
 from core.document.design import Design, ScanSource
 from core.document.document import Document
 from core.document.elastic import Elastic
-from core.document.lines import LineTraits, OwnLine
+from core.document.lines import CustomLine, LineSettings
 from core.document.storage.project_file import ScanFile, save_project
 
 HOSTILE = '<img src="//127.0.0.1/a.png"><h1>A</h1>'
@@ -36,16 +36,16 @@ def hostile_project(tmp_path: Path) -> Path:
     design = (
         Design(ScanSource(sample_path("mannequin")), customer=HOSTILE)
         .with_line("mid-bust", 0.97)
-        .with_own_measure(OwnMeasure(HOSTILE, "girth", (), 200.0))
+        .with_custom_measurement(CustomMeasurement(HOSTILE, "girth", (), 200.0))
     )
-    traits = LineTraits("mid-bust", title=HOSTILE, elastic=HOSTILE)
-    own = OwnLine(HOSTILE, (40, 41, 42, 43), closed=False)
+    traits = LineSettings("mid-bust", title=HOSTILE, elastic=HOSTILE)
+    own = CustomLine(HOSTILE, (40, 41, 42, 43), closed=False)
     design = replace(design, traits=(traits,), own_lines=(own,), elastics=(elastic,)).with_line(HOSTILE, 0.95)
     folder = tmp_path / "<img src=x>"
     folder.mkdir()
     path = folder / "<b>A.busk"
     scan = ScanFile("<img src=x>.ply", Path(sample_path("mannequin")).read_bytes())
-    save_project(path, Document.of(design), scan, b"")
+    save_project(path, Document.single(design), scan, b"")
     return path
 
 

@@ -15,22 +15,22 @@ from app.cli.options import add_forms, add_lines, add_project_output
 from app.cli.output import finish, table_lines
 from app.presenters.scan_comparison import (
     aligned_words,
-    better_words,
-    figure_rows,
-    kept_words,
-    number_rows,
-    surely_words,
-    told_words,
+    determination_text,
+    fixed_parameters_text,
+    improvement_text,
+    parameter_rows,
+    residual_rows,
+    summary_text,
 )
 from core import __version__
 from core.analysis.calibration.api import (
     THICKEST,
     CalibrationResult,
-    Difference,
-    Worn,
+    FittingScan,
+    Residuals,
     calibrate,
-    read_worn,
-    refuse_bare,
+    read_fitting_scan,
+    require_active_line,
 )
 from core.document.design import ScanSource
 from core.errors import UserError
@@ -43,7 +43,7 @@ class Calibrated:
     """The result for a fitting scan; ``out`` is the project it was saved to, or empty."""
 
     stages: Stages
-    worn: Worn
+    worn: FittingScan
     found: CalibrationResult
     out: str
 
@@ -78,9 +78,9 @@ def run(options: Namespace) -> int:
             f"Enter a thickness from 0 to {THICKEST:g} mm.",
         )
     stages = stages_of(options)
-    refuse_bare(stages)  # before half a minute is spent on reading
+    require_active_line(stages)  # before half a minute is spent on reading
     axes = {"unit": options.worn_unit, "up": options.worn_up, "front": options.worn_front}
-    worn = read_worn(stages, ScanSource(options.worn, **axes))
+    worn = read_fitting_scan(stages, ScanSource(options.worn, **axes))
     how = {"lengths": options.lengths, "one_roll": options.one_roll}
     found = calibrate(stages, worn, thickness=options.thickness, **how)
     save_design(options.input, options.out, found.design if found.helped else stages.design, stages)
@@ -93,12 +93,18 @@ def _text(done: Calibrated) -> Iterator[str]:
     found, design = done.found, done.stages.design
     yield from (aligned_words(done.worn), "")
     for when, difference in (("before", found.before), ("after", found.after)):
-        rows = [(row.title, row.mean, row.rms, row.most) for row in figure_rows(difference)]
+        rows = [(row.title, row.mean, row.rms, row.most) for row in residual_rows(difference)]
         yield from table_lines([(f"residual {when} [mm]", "mean", "RMS", "95 %"), *rows])
-        yield from (told_words(difference), "")
-    numbers = [(each.title, each.before, each.after, each.plus_minus) for each in number_rows(found, design)]
+        yield from (summary_text(difference), "")
+    numbers = [
+        (each.title, each.before, each.after, each.plus_minus) for each in parameter_rows(found, design)
+    ]
     yield from table_lines([("parameter", "before", "after", "±"), *numbers])
-    words = surely_words(found, design), kept_words(found, design), better_words(found, design)
+    words = (
+        determination_text(found, design),
+        fixed_parameters_text(found, design),
+        improvement_text(found, design),
+    )
     yield from filter(None, words)
     yield "± covers 95 % of the scan noise; differences in posture or breathing are not included."
     yield "The values apply to this person and this garment."
@@ -117,8 +123,8 @@ def calibration_data(done: Calibrated) -> dict[str, Any]:
             "at_95_percent_mm": laid.most,
             "met": laid.met,
             "shown": laid.seen,
-            "unsure_degrees": laid.turns.tolist(),
-            "unsure_mm": laid.shifts.tolist(),
+            "unsure_degrees": laid.rotation_deviations.tolist(),
+            "unsure_mm": laid.translation_deviations.tolist(),
         },
         "before": _difference(found.before),
         "after": _difference(found.after),
@@ -129,25 +135,25 @@ def calibration_data(done: Calibrated) -> dict[str, Any]:
                 "after": number.after,
                 "plus_minus": number.plus_minus,
                 "kept": number.kept,
-                "told": number.told,
-                "cannot_be_told_from": found.confused.get(number.name) or None,
+                "told": number.is_well_determined,
+                "cannot_be_told_from": found.confounded.get(number.name) or None,
             }
             for number in found.calibration.numbers
         ],
         "points": found.met,
         "singular_values": list(found.singular),
         "thickness_mm": found.calibration.thickness,
-        "helped": found.helped,
+        "helped": found.is_improved,
         "at_end": list(found.at_end),
-        "explains_little": found.explains_little,
-        "weak": found.weak,
+        "explains_little": found.has_large_residual,
+        "weak": found.is_poorly_determined,
         "written_to": done.out or None,
         "versions": {"busk": __version__},
     }
 
 
-def _difference(difference: Difference) -> dict[str, Any]:
-    every = {"all": difference.all_of_it, **difference.sides}
+def _difference(difference: Residuals) -> dict[str, Any]:
+    every = {"all": difference.total, **difference.sides}
     values: dict[str, Any] = {
         name: {
             "mean_mm": _plain_number(each.mean),

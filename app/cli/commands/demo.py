@@ -11,7 +11,7 @@ from app.cli.output import DONE, make_folder
 from app.presenters.samples import lifted_sample
 from core.export.solution_report import write_solution
 from core.pipeline.build import build
-from core.pipeline.solve import run as solve
+from core.pipeline.solve import solve as solve
 
 
 def add_options(parser: ArgumentParser) -> None:

@@ -13,7 +13,7 @@ from app.cli.design import design_of
 from app.cli.options import add_forms, add_scan
 from app.cli.output import finish, table_lines
 from core.landmarks.as_dict import detection
-from core.pipeline.build import find, read_body
+from core.pipeline.build import detect_landmarks, read_body
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -26,7 +26,7 @@ def run(options: Namespace) -> int:
     """Detect the landmarks and print them."""
     design = design_of(options)
     _, body = read_body(design.scan)
-    found = detection(body, find(body, design.placed))
+    found = detection(body, detect_landmarks(body, design.placed))
     text = json.dumps(found, indent=1) if options.json else landmarks_text(found)
     return finish(text, True, found["warnings"])
 

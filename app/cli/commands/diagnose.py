@@ -15,9 +15,9 @@ from app.presenters.diagnosis import change_words, details, hint, sentence
 from core import __version__
 from core.analysis.diagnosis.candidate_changes import Change
 from core.analysis.diagnosis.diagnose import Diagnosis, diagnose
-from core.analysis.diagnosis.fix import Cure
-from core.analysis.diagnosis.opposing_constraints import Fight
-from core.garment.assessment import Assessment, assessed
+from core.analysis.diagnosis.fix import Fix
+from core.analysis.diagnosis.opposing_constraints import ConstraintForces
+from core.garment.assessment import Assessment, assess
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -34,16 +34,16 @@ def run(options: Namespace) -> int:
     check_project_name(options.out)
     stages = stages_of(options)
     found = diagnose(stages)
-    out = options.out if found.cure is not None else ""
-    if found.cure is not None:
-        save_design(options.input, out, found.cure.change.design, stages)
+    out = options.out if found.best_fix is not None else ""
+    if found.best_fix is not None:
+        save_design(options.input, out, found.best_fix.change.design, stages)
     data = diagnosis_data(found, out)
     text = json.dumps(data, indent=1) if options.json else "\n".join(_text(found, out))
-    return finish(text, not found.complaint or found.cure is not None)
+    return finish(text, not found.complaint or found.best_fix is not None)
 
 
 def _text(found: Diagnosis, out: str) -> Iterator[str]:
-    yield from assessment_lines(assessed(found.standing), found.stages.design)
+    yield from assessment_lines(assess(found.trial), found.stages.design)
     if found.complaint:
         yield sentence(found, 0.0)
         if not found.fixes:
@@ -59,17 +59,17 @@ def diagnosis_data(found: Diagnosis, out: str) -> dict[str, Any]:
     """Return a diagnosis as plain values, ready for JSON."""
     verdict = found.verdict
     return {
-        "assessment": assessed(found.standing).as_data(),
-        "complaint": found.complaint or None,
-        "state": verdict.told,
-        "turns": verdict.turns,
+        "assessment": assess(found.trial).as_data(),
+        "complaint": found.problem or None,
+        "state": verdict.display_state,
+        "turns": verdict.iterations,
         "period_turns": verdict.period or None,
         "amplitude_percent": 100.0 * verdict.amplitude if verdict.period else None,
         "growth_per_turn": verdict.growth if verdict.period else None,
         "growth_at_first": found.onset if found.onset and found.onset < float("inf") else None,
         "gain": found.stages.gain,
-        "gain_borne": found.bears,
-        **_forces(found.fight),
+        "gain_borne": found.gain_limit,
+        **_forces(found.forces),
         **_treatment(found),
         "locked": list(found.locked),
         "written_to": out or None,
@@ -83,7 +83,7 @@ def diagnosis_data(found: Diagnosis, out: str) -> dict[str, Any]:
     }
 
 
-def _forces(fight: Fight) -> dict[str, Any]:
+def _forces(fight: ConstraintForces) -> dict[str, Any]:
     worst = fight.worst
     named = worst and {
         "between": [list(worst.one.lines) or "volume", list(worst.other.lines) or "volume"],
@@ -97,26 +97,26 @@ def _forces(fight: Fight) -> dict[str, Any]:
             "to_volume_degrees": pull.to_volume,
             "left_right_newtons": list(pull.sides) if pull.sides else None,
         }
-        for pull in fight.pulls
+        for pull in fight.forces
     ]
     return {"fight": named, "balance_share": fight.share, "forces": forces, "skin_newtons": fight.skin}
 
 
 def _treatment(found: Diagnosis) -> dict[str, Any]:
-    cure, nearest = found.cure, found.nearest
+    cure, nearest = found.best_fix, found.nearest
     return {
         "cure": None if cure is None else _change(found, cure.change),
-        "state_with_cure": None if cure is None else cure.standing.verdict.told,
-        "ended_by_choice": (cure and cure.choice_ends) or None,
-        "ended_by_lengths": (cure and cure.lengths_end) or None,
+        "state_with_cure": None if cure is None else cure.trial.verdict.display_state,
+        "ended_by_choice": (cure and cure.option_result) or None,
+        "ended_by_lengths": (cure and cure.lengths_result) or None,
         "fixes": [{**_change(found, each.change), **_left(each)} for each in found.fixes],
         "nearest": None if nearest is None else _change(found, nearest.change),
-        "state_with_nearest": None if nearest is None else nearest.left,
+        "state_with_nearest": None if nearest is None else nearest.remaining_problem,
     }
 
 
-def _left(cure: Cure) -> dict[str, Any]:
-    return {"state": cure.standing.verdict.told, "remains": Assessment(cure.remains).as_data()}
+def _left(cure: Fix) -> dict[str, Any]:
+    return {"state": cure.trial.verdict.display_state, "remains": Assessment(cure.remains).as_data()}
 
 
 def _change(found: Diagnosis, change: Change) -> dict[str, Any]:

@@ -11,11 +11,11 @@ from app.cli.options import add_lines, picture_size
 from app.cli.output import finish
 from app.cli.solved_design import is_converged, solve_valid
 from app.presenters.assessment import assessment_lines
-from app.presenters.export import Manner, Outcome
-from app.presenters.export_preview import check, make_ready
+from app.presenters.export import ExportOptions, ExportSource
+from app.presenters.export_preview import check, prepare_export
 from app.presenters.scan import KINDS as SCANS
 from core.errors import UserError
-from core.garment.assessment import assessed
+from core.garment.assessment import assess
 from core.pipeline.build import build
 from core.pipeline.warnings import shape_warnings
 from core.progress import in_one_go, quiet
@@ -61,19 +61,19 @@ def run(options: Namespace) -> int:
     Names that are not valid are refused before anything is solved.
     """
     named = ("axes", "before", "frames", "seconds", "size", "dark", "beside")
-    manner = Manner(options.file_unit, **{name: getattr(options, name) for name in named})
+    manner = ExportOptions(options.file_unit, **{name: getattr(options, name) for name in named})
     files = {kind: getattr(options, kind) for kind in KINDS if getattr(options, kind)}
     _check(files, manner)
     stages = with_lines_and_elastics(build(design_of(options)), options.line or [], options.elastic or [])
     solution = solve_valid(stages)
-    outcome = Outcome(solution.stages, solution.control_points, solution.records)
+    outcome = ExportSource(solution.stages, solution.control_points, solution.records)
     for kind, name in files.items():
         print(_write(kind, name, outcome, manner))
-    text = "\n".join(assessment_lines(assessed(solution), solution.stages.design))
+    text = "\n".join(assessment_lines(assess(solution), solution.stages.design))
     return finish(text, is_converged(solution), shape_warnings(solution))
 
 
-def _check(files: Mapping[str, str], manner: Manner) -> None:
+def _check(files: Mapping[str, str], manner: ExportOptions) -> None:
     """Raise UserError if a file cannot be written."""
     if not files:
         raise UserError("No output specified.", "Specify a file, for example --body anna.glb.")
@@ -85,9 +85,9 @@ def _check(files: Mapping[str, str], manner: Manner) -> None:
         check(kind, name, manner)
 
 
-def _write(kind: str, name: str, outcome: Outcome, manner: Manner) -> str:
+def _write(kind: str, name: str, outcome: ExportSource, manner: ExportOptions) -> str:
     """Write a file, and return its name with its contents."""
-    ready = make_ready(kind, name, outcome, manner)
+    ready = prepare_export(kind, name, outcome, manner)
     target = Path(name)
     try:
         target.parent.mkdir(parents=True, exist_ok=True)

@@ -11,15 +11,15 @@ from app.cli.design import stages_of
 from app.cli.options import add_forms, add_lines, add_scan
 from app.cli.output import finish
 from app.presenters.assessment import assessment_lines
-from app.presenters.length_limits import key
+from app.presenters.length_limits import legend_entries
 from app.presenters.lines import line_title
 from core.analysis.length_limits.limits import Length, Limits, all_limits
-from core.analysis.length_limits.zones import Leeway, leeway
-from core.garment.assessment import Assessment, assessed
-from core.garment.pressure_limits import comfort
+from core.analysis.length_limits.zones import LengthLimits, to_length_limits
+from core.garment.assessment import Assessment, assess
+from core.garment.pressure_limits import pressure_limits
 from core.pipeline.build import Stages
-from core.pipeline.solve import run as solve
-from core.pipeline.warnings import still_lines
+from core.pipeline.solve import solve as solve
+from core.pipeline.warnings import immovable_lines
 
 MEANING = {
     "strained": "edges outside 80 to 120 %",
@@ -50,7 +50,7 @@ def add_options(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Print the verdict on the design as it is set, and the length limits of each line."""
     stages = stages_of(options)
-    assessment, found = assessed(solve(stages)), list(all_limits(stages))
+    assessment, found = assess(solve(stages)), list(all_limits(stages))
     if options.json:
         data = {"assessment": assessment.as_data(), **limits_data(found, stages)}
         return finish(json.dumps(data, indent=1), True)
@@ -62,16 +62,18 @@ def _text(found: Sequence[Limits], stages: Stages, assessment: Assessment) -> It
     for limits in found:
         title = line_title(limits.line.name, stages.design)
         yield f"{title}, original length {limits.line.rest_length:.1f} mm; {_present(limits, stages)}"
-        zones = leeway(limits)
+        zones = to_length_limits(limits)
         if zones is None:
             yield "  no equilibrium at any length: the other lines are too short"
             continue
-        yield from (f"  {tone}: {words.replace(_NO_BREAK, ' ')}" for tone, words in key(zones).items())
-    yield from still_lines(stages)
+        yield from (
+            f"  {tone}: {words.replace(_NO_BREAK, ' ')}" for tone, words in legend_entries(zones).items()
+        )
+    yield from immovable_lines(stages)
 
 
 def _present(limits: Limits, stages: Stages) -> str:
-    if limits.line.name not in stages.design.worn():
+    if limits.line.name not in stages.design.active_lines():
         return "inactive"
     if limits.present is None:
         return "no equilibrium found at the set length"
@@ -83,31 +85,31 @@ def _present(limits: Limits, stages: Stages) -> str:
 def limits_data(found: Sequence[Limits], stages: Stages) -> dict[str, Any]:
     """Return length limits as plain values, ready for JSON."""
     criteria = [f"{sign}: {meaning}" for sign, meaning in MEANING.items()]
-    others = [f"{sign}: {meaning.format(kpa=comfort().red_kpa)}" for sign, meaning in OTHERS.items()]
+    others = [f"{sign}: {meaning.format(kpa=pressure_limits().red_kpa)}" for sign, meaning in OTHERS.items()]
     return {
         "lines": {
             limits.line.name: {
-                "worn": limits.line.name in stages.design.worn(),
+                "worn": limits.line.name in stages.design.active_lines(),
                 "rest_mm": limits.line.rest_length,
                 "present": _length(limits.present, limits),
                 "beyond": list(limits.beyond),
-                "begins": {sign: _length(limits.begins[sign], limits) for sign in MEANING},
+                "begins": {sign: _length(limits.onsets[sign], limits) for sign in MEANING},
                 "found": limits.found,
                 "no_balance_below": _length(limits.last, limits),
                 "elastic_ends": _length(limits.stretched, limits),
                 "pressure_known": limits.pressure_known,
-                "zones": _zones(leeway(limits)),
+                "zones": _zones(to_length_limits(limits)),
             }
             for limits in found
         },
-        "notes": still_lines(stages),
+        "notes": immovable_lines(stages),
         "definition": "each line and its linked partner, shorter and longer than 100 %, other lines as set; "
         f"% of rest_mm. On the control mesh: {'; '.join(criteria)}. Further limits: {'; '.join(others)}. "
         "Limits caused by other lines also apply at 100 %",
     }
 
 
-def _zones(found: Leeway | None) -> list[dict[str, Any]] | None:
+def _zones(found: LengthLimits | None) -> list[dict[str, Any]] | None:
     if found is None:
         return None
     return [

@@ -15,14 +15,14 @@ from app.presenters.assessment import assessment_lines
 from app.presenters.measurements import MeasureView, measured_views
 from core import __version__
 from core.document.custom_measures import HELP as CUSTOM_HELP
-from core.document.custom_measures import own_measure
+from core.document.custom_measures import parse_measurement
 from core.document.design import Design
 from core.document.storage.project_file import is_project
 from core.export.csv_cells import csv_text
-from core.garment.assessment import assessed
-from core.landmarks.warnings import doubts
+from core.garment.assessment import assess
+from core.landmarks.warnings import collect_warnings
 from core.measurements.table import before_after, measure_rows, measures
-from core.pipeline.build import build, find, read_body
+from core.pipeline.build import build, detect_landmarks, read_body
 from core.pipeline.warnings import shape_warnings
 
 COLUMNS = (
@@ -52,8 +52,8 @@ def add_options(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Print or write the measurements of a scan, or of a project before and after."""
     design = design_of(options)
-    for custom in map(own_measure, options.custom or []):
-        design = design.with_own_measure(custom)
+    for custom in map(parse_measurement, options.custom or []):
+        design = design.with_custom_measurement(custom)
     found = _measured(design) if is_project(options.input) else _measured_scan(design)
     text = write_output(_FORMS, found, form_of(options), options.out)
     return finish(text, found.converged, found.warnings)
@@ -61,18 +61,18 @@ def run(options: Namespace) -> int:
 
 def _measured_scan(design: Design) -> Measured:
     _, body = read_body(design.scan)
-    landmarks = find(body, design.placed)
-    before = measures(body.calm, landmarks, design.own_measures)
+    landmarks = detect_landmarks(body, design.placed)
+    before = measures(body.smoothed, landmarks, design.own_measures)
     rows, views = measure_rows(before), measured_views(before, None, design.own_measures)
-    return Measured(rows, views, True, doubts(body, landmarks))
+    return Measured(rows, views, True, collect_warnings(body, landmarks))
 
 
 def _measured(design: Design) -> Measured:
     solution = solve_valid(build(design))
     stages = solution.stages
     both = before_after(stages, solution.control_points)
-    warnings = [*doubts(stages.body, stages.landmarks), *shape_warnings(solution)]
-    verdict = tuple(assessment_lines(assessed(solution), stages.design))
+    warnings = [*collect_warnings(stages.body, stages.landmarks), *shape_warnings(solution)]
+    verdict = tuple(assessment_lines(assess(solution), stages.design))
     views = measured_views(*both, stages.design.own_measures)
     return Measured(measure_rows(*both), views, is_converged(solution), warnings, verdict)
 

@@ -15,7 +15,7 @@ from app.cli.output import DONE
 from app.rendering.display import off_screen
 from core.document.design import Design
 from core.errors import UserError
-from core.files.atomic_write import whole_file
+from core.files.atomic_write import atomic_path
 from core.progress import in_one_go, quiet
 
 if TYPE_CHECKING:
@@ -62,18 +62,18 @@ def draw_picture(
 ) -> None:
     """Write a PNG of the reshaped body from one side. Raises UserError."""
     _check_name(out)
-    from app.presenters.export import Manner, Outcome
-    from app.presenters.export_preview import make_ready
+    from app.presenters.export import ExportOptions, ExportSource
+    from app.presenters.export_preview import prepare_export
     from app.rendering.camera import VIEWS
     from core.pipeline.build import build
-    from core.pipeline.solve import run
+    from core.pipeline.solve import solve
 
     side = {"side": "left"}.get(view, view)
     if side not in VIEWS:
         raise UserError(f"There is no view '{view}'.", f"Choose one of: {', '.join(VIEWS)}, side.")
-    solution = run(build(design))
-    outcome = Outcome(solution.stages, solution.control_points)
-    ready = make_ready("picture", out, outcome, Manner(view=side, size=size, dark=dark))
+    solution = solve(build(design))
+    outcome = ExportSource(solution.stages, solution.control_points)
+    ready = prepare_export("picture", out, outcome, ExportOptions(view=side, size=size, dark=dark))
     assert ready.draw is not None
     ready.write(out, in_one_go(ready.draw()), quiet)
 
@@ -140,7 +140,7 @@ def save_window(window: MainWindow, out: Path) -> None:
     # The view smooths its outlines once it has been still for a while.
     still = time.monotonic() + 0.6
     wait_until(lambda: time.monotonic() > still, QApplication.processEvents)
-    with whole_file(out) as partial:
+    with atomic_path(out) as partial:
         partial.write_bytes(png_of(window.grab().toImage()))
 
 

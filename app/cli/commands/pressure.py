@@ -12,12 +12,12 @@ from app.cli.options import add_forms, add_lines, add_scan, form_of
 from app.cli.output import csv_text, finish, table_lines, write_output
 from app.cli.solved_design import SolvedDesign, solve_design
 from app.presenters.lines import line_title
-from app.presenters.pressure import light_limits, light_word, place_words, total_words
+from app.presenters.pressure import place_words, rating_limits, rating_text, total_words
 from core import __version__
 from core.document.design import Design
-from core.garment.pressure_list import PressList, PressRow, press_list
+from core.garment.pressure_list import PressureList, PressureRow, pressure_list
 
-COLUMNS = tuple(field.name for field in fields(PressRow))
+COLUMNS = tuple(field.name for field in fields(PressureRow))
 _HEADING = ("", "mean kPa", "mmHg", "max kPa", "mmHg", "rating", "force N", "bridged mm", "maximum at")
 
 
@@ -25,7 +25,7 @@ _HEADING = ("", "mean kPa", "mmHg", "max kPa", "mmHg", "rating", "force N", "bri
 class Pressures:
     """The contact pressures of lines, and the solved design that they belong to."""
 
-    listed: PressList
+    listed: PressureList
     solved: SolvedDesign
 
 
@@ -39,7 +39,7 @@ def add_options(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Print or write the contact pressures."""
     solved = solve_design(design_of(options), options.line or [], options.elastic or [])
-    listed = press_list(solved.solution.stages, solved.solution.control_points)
+    listed = pressure_list(solved.solution.stages, solved.solution.control_points)
     text = write_output(_FORMS, Pressures(listed, solved), form_of(options), options.out)
     return finish(text, solved.converged, solved.warnings)
 
@@ -53,13 +53,13 @@ def _text(found: Pressures) -> str:
     return "\n".join([*found.solved.verdict, *found.solved.effect, "", *lines])
 
 
-def _cells(row: PressRow, design: Design) -> tuple[str, ...]:
+def _cells(row: PressureRow, design: Design) -> tuple[str, ...]:
     pressures = (row.mean_kpa, 2), (row.mean_mmhg, 1), (row.max_kpa, 2), (row.max_mmhg, 1)
     others = (row.force_n, 1), (row.bridged_mm, 0)
     return (
         line_title(row.line, design),
         *_written(pressures),
-        light_word(row.light) if row.light else "-",
+        rating_text(row.light) if row.light else "-",
         *_written(others),
         place_words(row) if row.where else "",
     )
@@ -70,7 +70,7 @@ def _written(values: tuple[tuple[float | None, int], ...]) -> Iterator[str]:
 
 
 def _limits() -> Iterator[str]:
-    limits = light_limits()
+    limits = rating_limits()
     gentle, snug, tight = limits.words
     amber, red = f"{limits.amber_kpa:g} kPa", f"{limits.red_kpa:g} kPa"
     rating = f"{gentle} below {amber}, {snug} from {amber}, {tight} from {red}"

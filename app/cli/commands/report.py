@@ -16,13 +16,13 @@ from app.cli.options import add_lines, add_scan
 from app.cli.output import finish
 from app.cli.solved_design import SolvedDesign, solve_design
 from app.rendering.display import off_screen
-from core.analysis.uncertainty.estimate import spread_of
+from core.analysis.uncertainty.estimate import estimate_uncertainty
 from core.document.design import Design
 from core.document.storage.project_file import is_project, open_project
 from core.errors import ProjectError, UserError
 from core.export.csv_cells import ENCODING
-from core.export.report_data import Heading, Sheet, sheet_of, with_spread
-from core.export.report_data_file import sheet_csv, sheet_json
+from core.export.report_data import Heading, Report, make_report, with_uncertainty
+from core.export.report_data_file import report_csv, report_json
 from core.files.atomic_write import write_text
 from core.measurements.sizes import sizes
 from core.pipeline.solve import Solution
@@ -99,10 +99,12 @@ def write_report(
         design = replace(design, customer=how.customer)
     solved = solve_design(design, lines, elastics, bare=True)
     solution = solved.solution
-    sheet = sheet_of(solution, solution.records, _heading(source, design, how))
+    sheet = make_report(solution, solution.records, _heading(source, design, how))
     if how.uncertainty:
-        sheet = with_spread(sheet, solution.stages, solution.control_points, spread_of(solution.stages))
-    for name, text, code in ((how.json, sheet_json, "utf-8"), (how.csv, sheet_csv, ENCODING)):
+        sheet = with_uncertainty(
+            sheet, solution.stages, solution.control_points, estimate_uncertainty(solution.stages)
+        )
+    for name, text, code in ((how.json, report_json, "utf-8"), (how.csv, report_csv, ENCODING)):
         if name:
             write_text(Path(name), text(sheet), code)
     faults = _write(solution, sheet, how)
@@ -137,19 +139,19 @@ def _heading(source: str, design: Design, how: ReportOptions) -> Heading:
     )
 
 
-def _write(solution: Solution, sheet: Sheet, how: ReportOptions) -> list[str]:
+def _write(solution: Solution, sheet: Report, how: ReportOptions) -> list[str]:
     """Write the PDF, and return its faults."""
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")  # a report needs no screen
     off_screen()
     from app.gui.application import application  # noqa: PLC0415 (brings Qt along)
     from app.presenters.lines import line_colours  # noqa: PLC0415
-    from app.report.document import Handout  # noqa: PLC0415
+    from app.report.document import ReportDocument  # noqa: PLC0415
     from app.report.pages import pages_of  # noqa: PLC0415
     from app.report.pdf import write_pdf  # noqa: PLC0415
 
     application(unit=how.length_unit)
     names = [line.name for line in solution.stages.model.lines]
-    handout = Handout(sheet, {}, line_colours(names, solution.stages.design))
+    handout = ReportDocument(sheet, {}, line_colours(names, solution.stages.design))
     title = " ".join(filter(None, (sheet.heading.customer, sheet.heading.project)))
     fresh = not Path(how.out).exists()
     if fresh:
@@ -171,9 +173,9 @@ def _pictures(solution: Solution) -> Mapping[str, QImage]:
     """Return the pictures of a report, or none where they cannot be rendered."""
     try:
         from app.rendering.ambient_occlusion import bake_occlusion  # noqa: PLC0415
-        from app.report.images import shots  # noqa: PLC0415 (brings VTK along)
+        from app.report.images import render_images  # noqa: PLC0415 (brings VTK along)
 
-        return in_one_go(shots(solution, bake_occlusion(solution.stages.body.mesh)))
+        return in_one_go(render_images(solution, bake_occlusion(solution.stages.body.mesh)))
     except Exception:
         logging.exception("no pictures for the report")
         return {}

@@ -14,12 +14,12 @@ from app.cli.output import finish, make_folder
 from app.cli.solved_design import is_converged
 from app.presenters.assessment import assessment_lines
 from core.export.solution_report import write_solution
-from core.garment.assessment import assessed
-from core.landmarks.warnings import doubts
-from core.pipeline.exact import NoBalanceError
+from core.garment.assessment import assess
+from core.landmarks.warnings import collect_warnings
+from core.pipeline.exact import NoEquilibriumError
 from core.pipeline.solve import Solution
-from core.pipeline.solve import run as solve
-from core.pipeline.warnings import shape_warnings, still_lines
+from core.pipeline.solve import solve as solve
+from core.pipeline.warnings import immovable_lines, shape_warnings
 
 DIVERGED = (
     "The solver diverged: the written shape is not valid. Reduce line_stiffness, or use --volume exact."
@@ -49,12 +49,12 @@ def run(options: Namespace) -> int:
     motion = solution.verdict.motion
     lost = ("diverging", "settling") if design.volume == "exact" else ("diverging",)
     if design.line_hold == "held" and motion in lost:
-        raise NoBalanceError(design)
-    out, assessment = make_folder(options.out), assessed(solution)
+        raise NoEquilibriumError(design)
+    out, assessment = make_folder(options.out), assess(solution)
     values = write_solution(solution, out, {"assessment": assessment.as_data()})
     text = [*assessment_lines(assessment, design), *_lines(values), _end(values, solution, out)]
-    unclear = doubts(stages.body, stages.landmarks)
-    warnings = [*unclear, *still_lines(stages), *shape_warnings(solution)]
+    unclear = collect_warnings(stages.body, stages.landmarks)
+    warnings = [*unclear, *immovable_lines(stages), *shape_warnings(solution)]
     warnings += [DIVERGED] * (motion == "diverging")
     return finish("\n".join(text), is_converged(solution), warnings)
 

@@ -13,20 +13,20 @@ from app.cli.options import add_forms, add_lines, add_project_output, add_scan
 from app.cli.output import finish, table_lines
 from app.cli.solved_design import is_converged, solve_valid
 from app.presenters.assessment import assessment_lines
-from app.presenters.symmetry import even_summary, evened_words, left_as_it_is, parted_titles
+from app.presenters.symmetry import balance_result_texts, not_balanced_reason, split_titles, symmetry_view
 from app.presenters.target_shape import change_words, reasons
 from core import __version__
 from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER
-from core.analysis.symmetry.balance import EVEN, Evened, make_even
-from core.analysis.symmetry.compare import BeforeAfter, Evenness, even_rows, evenness
-from core.analysis.symmetry.split_sides import ENOUGH, parted
+from core.analysis.symmetry.balance import EVEN, BalanceResult, make_even
+from core.analysis.symmetry.compare import BeforeAfter, Evenness, compare_sides, symmetry_rows
+from core.analysis.symmetry.split_sides import ENOUGH, split_sides
 from core.control_mesh.template import read_template
 from core.document.design import Design
 from core.errors import UserError
-from core.garment.assessment import Assessment, assessed
-from core.landmarks.warnings import edit_doubts
+from core.garment.assessment import Assessment, assess
+from core.landmarks.warnings import edit_warnings
 from core.pipeline.build import Stages, build
-from core.pipeline.solve import run as solve
+from core.pipeline.solve import solve as solve
 from core.pipeline.warnings import shape_warnings
 
 TITLES = {
@@ -56,7 +56,7 @@ class Symmetry:
     converged: bool
     warnings: list[str]
     assessment: Assessment
-    made: Evened | None = None
+    made: BalanceResult | None = None
     as_set: Evenness | None = None
     out: str = ""
 
@@ -64,12 +64,12 @@ class Symmetry:
     def balanced(self) -> bool:
         """Whether left and right are equal enough."""
         after = self.compared.after if self.made is None else self.made.after
-        return after.furthest < ENOUGH
+        return after.largest_difference < ENOUGH
 
     @property
     def design(self) -> Design:
         """The balanced design, or the given one if no balance is worth its changes."""
-        return self.made.reply.design if self.made and self.made.worth else self.stages.design
+        return self.made.result.design if self.made and self.made.is_worthwhile else self.stages.design
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -97,28 +97,28 @@ def run(options: Namespace) -> int:
 def compare(stages: Stages, *, balance: bool) -> Symmetry:
     """Compare left and right of a solved design; ``balance`` computes lengths unless they are equal."""
     solution = solve_valid(stages)
-    compared = evenness(stages, solution.control_points)
-    warnings = [*edit_doubts(stages.body), *shape_warnings(solution)]
-    found = Symmetry(stages, compared, is_converged(solution), warnings, assessed(solution))
+    compared = compare_sides(stages, solution.control_points)
+    warnings = [*edit_warnings(stages.body), *shape_warnings(solution)]
+    found = Symmetry(stages, compared, is_converged(solution), warnings, assess(solution))
     if not balance or found.balanced:
         return found
     made = make_even(stages)
     # Adaptive control keeps both volumes together and the exact solution each: they are not comparable.
     found = replace(found, compared=replace(compared, after=made.before), made=made)
     again = solve(build(found.design, stages))
-    after = evenness(again.stages, again.control_points).after if is_converged(again) else None
-    return replace(found, as_set=after, assessment=assessed(again))
+    after = compare_sides(again.stages, again.control_points).after if is_converged(again) else None
+    return replace(found, as_set=after, assessment=assess(again))
 
 
 def _text(found: Symmetry) -> Iterator[str]:
     yield from (*assessment_lines(found.assessment, found.design), "")
-    summary, made = even_summary(found.compared, found.stages), found.made
+    summary, made = symmetry_view(found.compared, found.stages), found.made
     rows = [[view.title, view.before, view.after] for view in summary.views]
     heading = ["", "before", "after"]
     if made is not None:
-        balanced = even_summary(BeforeAfter(made.rest, made.after, ()), found.stages)
+        balanced = symmetry_view(BeforeAfter(made.rest, made.after, ()), found.stages)
         rows = [[*row, view.after] for row, view in zip(rows, balanced.views, strict=True)]
-        heading.append("balanced" if made.even else "nearest")
+        heading.append("balanced" if made.is_balanced else "nearest")
     yield from (*table_lines([heading, *rows]), "", summary.says, *found.compared.notes)
     if made is not None:
         yield from ("", *_balance(found, made))
@@ -126,15 +126,15 @@ def _text(found: Symmetry) -> Iterator[str]:
         yield f"written to {found.out}{', unchanged' if found.design is found.stages.design else ''}"
 
 
-def _balance(found: Symmetry, made: Evened) -> Iterator[str]:
+def _balance(found: Symmetry, made: BalanceResult) -> Iterator[str]:
     """Yield the changes that balance left and right, their price, and what remains."""
     before = found.stages.design
-    if not made.worth:
-        yield from left_as_it_is(made.gained, made.lost)
+    if not made.is_worthwhile:
+        yield from not_balanced_reason(made.gain, made.lost)
         return
     if made.parted:
-        yield f"Left and right unlinked: {', '.join(parted_titles(before, made.parted))}."
-        before = parted(before, read_template(before.template))
+        yield f"Left and right unlinked: {', '.join(split_titles(before, made.parted))}."
+        before = split_sides(before, read_template(before.template))
     yield from change_words(before, made.reply)
     values = [
         {
@@ -144,29 +144,29 @@ def _balance(found: Symmetry, made: Evened) -> Iterator[str]:
         }
         for at, each in enumerate((made.before, made.after))
     ]
-    yield from filter(None, evened_words(made.reply, made.goals, *values))
+    yield from filter(None, balance_result_texts(made.reply, made.goals, *values))
     if before.volume != "exact":
-        as_set = found.as_set and even_summary(BeforeAfter(made.rest, found.as_set, ()), found.stages).says
+        as_set = found.as_set and symmetry_view(BeforeAfter(made.rest, found.as_set, ()), found.stages).says
         yield f"With the volume control of the design: {as_set or 'the solver does not converge.'}"
 
 
-def _because(made: Evened) -> list[str]:
+def _because(made: BalanceResult) -> list[str]:
     """Return why no better balance was found: lift and protrusion are kept if nothing else hinders."""
-    reply = made.reply
-    hindered = reply.at_end or reply.strained or reply.pressing
+    reply = made.result
+    hindered = reply.at_limit or reply.strained or reply.at_pressure_limit
     if hindered or len(made.goals) == len(EVEN):
         return reasons(reply)
     return ["a further gain would reduce lift or protrusion"]
 
 
 def _after(after: Evenness) -> dict[str, float | None]:
-    return {row.key: row.after for row in even_rows(after, after)}
+    return {row.key: row.after for row in symmetry_rows(after, after)}
 
 
 def symmetry_data(found: Symmetry) -> dict[str, Any]:
     """Return a comparison of left and right as plain values, ready for JSON."""
     made = found.made
-    rows = even_rows(found.compared.before, found.compared.after)
+    rows = symmetry_rows(found.compared.before, found.compared.after)
     return {
         "assessment": found.assessment.as_data(),
         "rows": {row.key: {**asdict(row), "title": TITLES[row.key]} for row in rows},
@@ -177,15 +177,15 @@ def symmetry_data(found: Symmetry) -> dict[str, Any]:
         if made is None
         else {
             "rows": _after(made.after),
-            "even": made.even,
-            "worth": made.worth,
-            "lines": {line.name: 100.0 * line.ratio for line in made.reply.design.lines},
-            "parted": list(made.parted),
+            "even": made.is_balanced,
+            "worth": made.is_worthwhile,
+            "lines": {line.name: 100.0 * line.ratio for line in made.result.design.lines},
+            "parted": list(made.split),
             "goals": {goal.name: goal.value for goal in made.goals},
             "remain_mm": {"height": made.after.higher, "out": made.after.further_out},
             "kept_mm": {name: {"before": was, "after": now} for name, (was, now) in made.kept.items()},
             "as_solved": None if found.as_set is None else _after(found.as_set),
-            "because": [] if made.even else _because(made),
+            "because": [] if made.is_balanced else _because(made),
         },
         "definition": (
             "signed rows: positive if the left side is higher, further or protrudes more [mm, ml]; "

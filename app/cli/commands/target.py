@@ -20,28 +20,28 @@ from app.cli.output import finish, table_lines
 from app.i18n.lengths import length
 from app.presenters.assessment import assessment_lines
 from app.presenters.target_shape import (
-    answer_words,
+    activated_text,
     change_words,
     conflict_words,
-    figure_title,
+    deviation_text,
     is_signed,
-    off_words,
     reasons,
-    switched_words,
+    result_text,
+    target_title,
 )
 from core import __version__
 from core.analysis.inverse_design.conflicts import Conflict
-from core.analysis.inverse_design.line_selection import LineSelection, optional_lines, switched_on
+from core.analysis.inverse_design.line_selection import LineSelection, activated, optional_lines
 from core.analysis.inverse_design.profile_csv import profile_goals, read_profile
 from core.analysis.inverse_design.quantities import NAMES, Goal, section_of
 from core.analysis.inverse_design.search import Bounds
-from core.analysis.inverse_design.solve import Reply
+from core.analysis.inverse_design.solve import InverseResult
 from core.errors import LineError, UserError
-from core.garment.assessment import Assessment, assessed
+from core.garment.assessment import Assessment, assess
 from core.geometry.mesh import Floats
 from core.mechanics.constraint_lines import Line, length_ratio
 from core.pipeline.build import Stages, build
-from core.pipeline.solve import run as solve
+from core.pipeline.solve import solve as solve
 
 TARGET_HELP = (
     "target value in mm (also cm, in); may be repeated. If targets conflict, append @high or @low "
@@ -81,7 +81,7 @@ class TargetResult:
 
     stages: Stages
     goals: tuple[Goal, ...]
-    reply: Reply
+    reply: InverseResult
     assessment: Assessment
     conflicts: tuple[Conflict, ...] = ()
 
@@ -134,7 +134,7 @@ def find_lengths(options: Namespace) -> TargetResult:
     shortest = dict(_shortest(active, each) for each in options.shortest or [])
     solver = LineSelection(stages, _inactive(stages, options.optional or []), Bounds(shortest, locked), limit)
     reply = solver.reply(goals)
-    assessment = assessed(solve(build(reply.design, stages)))
+    assessment = assess(solve(build(reply.design, stages)))
     return TargetResult(stages, goals, reply, assessment, solver.conflicts(reply, goals))
 
 
@@ -202,18 +202,18 @@ def _text(found: TargetResult, out: str) -> Iterator[str]:
     reply, before = found.reply, found.stages.design
     yield from (*assessment_lines(found.assessment, reply.design), "")
     rows = [
-        (figure_title(goal.name), _value(goal, goal.value), _value(goal, reply.reached[goal.name]))
+        (target_title(goal.name), _value(goal, goal.value), _value(goal, reply.reached[goal.name]))
         for goal in found.goals
         if not section_of(goal.name)
     ]
     yield from table_lines([("", "target", "reached"), *rows]) if rows else ()
     sections = dict.fromkeys(section_of(goal.name) for goal in found.goals)
     for section in filter(None, sections):
-        yield f"{figure_title(section)}: {off_words(found.goals, reply.reached, section)}"
-    yield answer_words(reply, found.goals)
-    yield from filter(None, (*change_words(before, reply), switched_words(before, reply.design)))
+        yield f"{target_title(section)}: {deviation_text(found.goals, reply.reached, section)}"
+    yield result_text(reply, found.goals)
+    yield from filter(None, (*change_words(before, reply), activated_text(before, reply.design)))
     yield from conflict_words(found.conflicts)
-    yield f"Total tension of all lines: {reply.tension:.1f} N{', an estimate' if reply.unseen else ''}."
+    yield f"Total tension of all lines: {reply.tension:.1f} N{', an estimate' if reply.unchecked else ''}."
     if out:
         yield f"written to {out}"
 
@@ -246,13 +246,13 @@ def target_data(found: TargetResult, out: str) -> dict[str, Any]:
         },
         "reached": reply.reachable,
         "agreed": reply.agreed,
-        "switched_on": list(switched_on(before, reply.design)),
+        "switched_on": list(activated(before, reply.design)),
         "conflicts": [_conflict_data(conflict) for conflict in found.conflicts],
         "because": [] if reply.reachable else reasons(reply),
         "tension_n": reply.tension,
         "max_kpa": dict(reply.pressure),
         "limit_kpa": reply.limit if np.isfinite(reply.limit) else None,
-        "not_looked_at_for_pressure": list(reply.unseen),
+        "not_looked_at_for_pressure": list(reply.unchecked),
         "written_to": out or None,
         "versions": {"busk": __version__},
     }

@@ -12,11 +12,11 @@ from app.cli.design import design_of
 from app.cli.options import add_forms, add_lines, add_scan, form_of
 from app.cli.output import finish, table_lines, write_output
 from app.cli.solved_design import SolvedDesign, solve_design
-from app.presenters.uncertainty import left_out_sentences
+from app.presenters.uncertainty import limitation_sentences
 from core import __version__
-from core.analysis.uncertainty.estimate import spread_of
-from core.analysis.uncertainty.input_uncertainty import NUMBERS, assumed, assuming, origins
-from core.analysis.uncertainty.outputs import figures_of
+from core.analysis.uncertainty.estimate import estimate_uncertainty
+from core.analysis.uncertainty.input_uncertainty import NUMBERS, default_uncertainty, origins, with_overrides
+from core.analysis.uncertainty.outputs import output_values
 from core.export.csv_cells import csv_text
 from core.export.report_data import NOT_MODELLED
 from core.garment.pressure import LEFT_OUT
@@ -30,8 +30,8 @@ from core.measurements.uncertain_value import (
     SCAN,
     SOURCES,
     Spread,
-    told_between,
-    told_off,
+    format_range,
+    format_uncertainty,
 )
 
 COLUMNS = ("key", "title", "unit", "value", "plus_minus", "low", "high", *SOURCES, "other_contact")
@@ -76,13 +76,13 @@ def add_options(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Print or write the results with their uncertainties. Raises UserError."""
-    wanted = assuming(options.assume or [], assumed())
+    wanted = with_overrides(options.assume or [], default_uncertainty())
     solved = solve_design(design_of(options), options.line or [], options.elastic or [], bare=True)
     stages, points = solved.solution.stages, solved.solution.control_points
     values = [*_of_measures(measure_rows(*before_after(stages, points)))]
     if stages.design.worn():
-        values += _of_lines(figures_of(stages, points))
-    found = Uncertainties(spread_of(stages, wanted), values, solved)
+        values += _of_lines(output_values(stages, points))
+    found = Uncertainties(estimate_uncertainty(stages, wanted), values, solved)
     text = write_output(_FORMS, found, form_of(options), options.out)
     return finish(text, solved.converged, solved.warnings)
 
@@ -143,8 +143,8 @@ def _cell(spread: Spread, result: Value) -> str:
     value = format(result.value, f"{sign}z.1f")
     off, between = spread.plus_minus(result.key), spread.between(result.key, result.value)
     if off is not None:
-        return f"{value} ± {told_off(off):>4}"
-    return f"{value} ({told_between(*between)})" if between else value
+        return f"{value} ± {format_uncertainty(off):>4}"
+    return f"{value} ({format_range(*between)})" if between else value
 
 
 def _meaning(found: Uncertainties) -> Iterator[str]:
@@ -160,7 +160,7 @@ def _meaning(found: Uncertainties) -> Iterator[str]:
     if spread.failed:
         yield f"Excluded, no solution: {spread.failed} samples."
     yield "Not included:"
-    yield from (f"  {each}" for each in (NOT_MODELLED if spread.bare else left_out_sentences()))
+    yield from (f"  {each}" for each in (NOT_MODELLED if spread.bare else limitation_sentences()))
 
 
 def _json(found: Uncertainties) -> str:

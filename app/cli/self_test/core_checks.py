@@ -15,7 +15,7 @@ from core.errors import ProjectError
 from core.geometry import kernels
 from core.geometry.mesh import Mesh
 from core.pipeline.build import build
-from core.pipeline.solve import run
+from core.pipeline.solve import solve
 from core.scan.readers.registry import read_raw
 
 BUST_POINT, FOLD = (107.25, -229.14, 346.95), (107.25, -178.96, 299.02)
@@ -43,11 +43,11 @@ def scan_formats(bench: Bench) -> str:
 def _files(bench: Bench, body: Mesh) -> Iterator[tuple[str, bytes]]:
     """Give the kind and the content of a file of every format."""
     from core.export.mesh import FORMATS, write_mesh  # noqa: PLC0415 (brings trimesh along)
-    from core.export.units_and_axes import Space  # noqa: PLC0415
+    from core.export.units_and_axes import FileSpace  # noqa: PLC0415
 
     for kind in FORMATS:
         path = bench.folder / f"scan.{kind}"
-        write_mesh(path, body, space=Space("mm", "z-up"))
+        write_mesh(path, body, space=FileSpace("mm", "z-up"))
         yield kind, path.read_bytes()
     corners, triangles = _rows(body.vertices), _rows(body.faces)
     counts = f"{len(body.vertices)} {len(body.faces)} 0"
@@ -87,11 +87,11 @@ def solver(bench: Bench) -> str:
     check(abs(turns.last.error_ml) < 1.0, f"the volume error is {turns.last.error_ml:.2f} ml")
     moved = np.abs(turns.control_points - bench.stages.control.mesh.vertices).max()
     check(bool(moved > 1.0), "the body did not follow the line")
-    exact = run(build(replace(bench.design, volume="exact"), bench.stages))
+    exact = solve(build(replace(bench.design, volume="exact"), bench.stages))
     check(exact.verdict.motion == "settled", f"the exact solution has status {exact.verdict.words}")
     apart = float(np.abs(exact.control_points - turns.control_points).max())
     check(apart < 0.3, f"iterations and exact solution differ by {apart:.3f} mm")
-    count, off = turns.last.turn, abs(turns.last.error_ml)
+    count, off = turns.last.iteration, abs(turns.last.error_ml)
     return (
         f"converged in {count} iterations, volume error {off:.3f} ml, {apart:.2f} mm from the exact solution"
     )
@@ -116,7 +116,7 @@ def projects(bench: Bench) -> str:
     document = open_project(bench.project)
     check(document.design.ratio(MOVED) == bench.design.ratio(MOVED), "the reloaded line differs")
     check(read_scan_file(document.design.scan).data == bench.stages.scan.data, "the reloaded scan differs")
-    again = run(build(document.design)).control_points
+    again = solve(build(document.design)).control_points
     apart = float(np.abs(again - bench.solution.control_points).max())
     check(apart < 1e-9, f"the reopened body differs by {apart:.3g} mm")
     size = bench.project.stat().st_size / 1e6

@@ -14,7 +14,7 @@ from core.document.document import Document
 
 if TYPE_CHECKING:
     from app.gui.main_window import MainWindow
-    from app.presenters.export import Outcome
+    from app.presenters.export import ExportSource
     from core.pipeline.build import Stages
     from core.pipeline.solve import Solution
 
@@ -46,16 +46,16 @@ class Bench:
     @cached_property
     def solution(self) -> Solution:
         """The design, solved by the adaptive control."""
-        from core.pipeline.solve import run  # noqa: PLC0415
+        from core.pipeline.solve import solve  # noqa: PLC0415
 
-        return run(self.stages)
+        return solve(self.stages)
 
     @cached_property
-    def outcome(self) -> Outcome:
+    def outcome(self) -> ExportSource:
         """What files are written of."""
-        from app.presenters.export import Outcome  # noqa: PLC0415
+        from app.presenters.export import ExportSource  # noqa: PLC0415
 
-        return Outcome(self.solution.stages, self.solution.control_points, self.solution.records)
+        return ExportSource(self.solution.stages, self.solution.control_points, self.solution.records)
 
     @cached_property
     def project(self) -> Path:
@@ -63,7 +63,7 @@ class Bench:
         from core.document.storage.project_file import save_project  # noqa: PLC0415
 
         path = self.folder / "self-test \N{LATIN SMALL LETTER E WITH ACUTE} 試し.busk"
-        save_project(path, Document.of(self.design), self.stages.scan, None)
+        save_project(path, Document.single(self.design), self.stages.scan, None)
         return path
 
     def check_silence(self) -> None:

@@ -61,7 +61,7 @@ def shipped_files(bench: Bench) -> str:
     from core.control_mesh.template import TEMPLATES, read_template  # noqa: PLC0415
     from core.document.presets import built_in as presets  # noqa: PLC0415
     from core.garment.elastic_library import built_in as elastics  # noqa: PLC0415
-    from core.garment.pressure_limits import comfort  # noqa: PLC0415
+    from core.garment.pressure_limits import pressure_limits  # noqa: PLC0415
     from core.measurements.letter_sizes import letter_sizes  # noqa: PLC0415
     from core.measurements.sizes import built_in as sizes  # noqa: PLC0415
 
@@ -76,7 +76,7 @@ def shipped_files(bench: Bench) -> str:
     }
     _counted("letter sizes", lambda: letter_sizes().tables, 1)
     _counted("measurement names", lambda: json.loads(_text("measure_names.json")), 1)
-    _counted("contact pressure limits", lambda: [comfort()], 1)
+    _counted("contact pressure limits", lambda: [pressure_limits()], 1)
     _counted("style", lambda: _text("style.qss"), 100)
     missing = [title for title, text in licences() if len(text) < 500]
     check(not missing, f"missing text: {', '.join(missing)}")

@@ -27,9 +27,9 @@ _FRAMES = 4
 
 def drawing(bench: Bench) -> str:
     """Draw the reshaped body off-screen: there must be a body in the picture; tell what has drawn it."""
-    from app.presenters.export import Manner  # noqa: PLC0415
+    from app.presenters.export import ExportOptions  # noqa: PLC0415
 
-    pixels = _exported(bench, "picture", "body.png", Manner(size=(400, 480)))
+    pixels = _exported(bench, "picture", "body.png", ExportOptions(size=(400, 480)))
     covered = float((pixels[..., 3] > 250).mean())
     check(0.1 < covered < 0.9, f"the body covers {100 * covered:.0f} % of the picture")
     shown = pixels[pixels[..., 3] > 250][:, :3]
@@ -57,18 +57,18 @@ def exports(bench: Bench) -> str:
     """Write drawings, a body and measures for other programs, and open them again."""
     import ezdxf  # noqa: PLC0415
 
-    from app.presenters.export import Manner  # noqa: PLC0415
+    from app.presenters.export import ExportOptions  # noqa: PLC0415
 
-    _exported(bench, "lines", "lines.dxf", Manner())
+    _exported(bench, "lines", "lines.dxf", ExportOptions())
     drawn = len(ezdxf.readfile(bench.folder / "lines.dxf").modelspace())
     check(drawn > 0, "lines.dxf contains no lines")
-    _exported(bench, "flat", "strips.svg", Manner())
+    _exported(bench, "flat", "strips.svg", ExportOptions())
     marks = len(list(ElementTree.parse(bench.folder / "strips.svg").getroot().iter()))
     check(marks > 5, "strips.svg is empty")
-    _exported(bench, "body", "body.glb", Manner())
+    _exported(bench, "body", "body.glb", ExportOptions())
     triangles = len(read_raw("body.glb", (bench.folder / "body.glb").read_bytes()).faces)
     check(triangles == len(bench.stages.body.mesh.faces), f"body.glb contains {triangles} triangles")
-    _exported(bench, "measures", "measures.smis", Manner())
+    _exported(bench, "measures", "measures.smis", ExportOptions())
     measures = len(list(ElementTree.parse(bench.folder / "measures.smis").getroot().iter("m")))
     check(measures > 5, f"measures.smis contains {measures} measurements")
     return f"DXF with {drawn} curves, SVG, GLB with {triangles:,} triangles, {measures} measurements"
@@ -78,9 +78,11 @@ def turntable(bench: Bench) -> str:
     """Write a GIF of a few pictures, and open it again."""
     from PIL import Image, ImageSequence  # noqa: PLC0415
 
-    from app.presenters.export import Manner  # noqa: PLC0415
+    from app.presenters.export import ExportOptions  # noqa: PLC0415
 
-    _exported(bench, "turntable", "turntable.gif", Manner(frames=_FRAMES, seconds=1.0, size=(160, 200)))
+    _exported(
+        bench, "turntable", "turntable.gif", ExportOptions(frames=_FRAMES, seconds=1.0, size=(160, 200))
+    )
     with Image.open(bench.folder / "turntable.gif") as moving:
         pictures = [np.asarray(each.convert("L"), dtype=float) for each in ImageSequence.Iterator(moving)]
     count = len(pictures)
@@ -92,10 +94,10 @@ def turntable(bench: Bench) -> str:
 
 def _exported(bench: Bench, what: str, name: str, manner: Any) -> Any:
     """Write a file of the outcome, and return what was drawn for it, if anything."""
-    from app.presenters.export_preview import make_ready  # noqa: PLC0415
+    from app.presenters.export_preview import prepare_export  # noqa: PLC0415
 
     path = bench.folder / name
-    ready = make_ready(what, path, bench.outcome, manner)
+    ready = prepare_export(what, path, bench.outcome, manner)
     drawn = in_one_go(ready.draw()) if ready.draw else None
     ready.write(path, drawn, quiet)
     return drawn
@@ -104,17 +106,17 @@ def _exported(bench: Bench, what: str, name: str, manner: Any) -> Any:
 def report(bench: Bench) -> str:
     """Write the sheet to work from in both languages: its pages, its type, ink on each."""
     from app.presenters.lines import line_colours  # noqa: PLC0415 (brings Qt along)
-    from app.report.document import Handout  # noqa: PLC0415
-    from app.report.images import shots  # noqa: PLC0415
+    from app.report.document import ReportDocument  # noqa: PLC0415
+    from app.report.images import render_images  # noqa: PLC0415
     from app.report.pages import pages_of  # noqa: PLC0415
     from app.report.pdf import write_pdf  # noqa: PLC0415
-    from core.export.report_data import Heading, sheet_of  # noqa: PLC0415
+    from core.export.report_data import Heading, make_report  # noqa: PLC0415
 
     solution = bench.solution
-    sheet = sheet_of(solution, solution.records, Heading("self-test", "2000-01-01"))
+    sheet = make_report(solution, solution.records, Heading("self-test", "2000-01-01"))
     names = [line.name for line in solution.stages.model.lines]
-    pictures = in_one_go(shots(solution, bench.outcome.occlusion))
-    handout = Handout(sheet, pictures, line_colours(names, solution.stages.design))
+    pictures = in_one_go(render_images(solution, bench.outcome.occlusion))
+    handout = ReportDocument(sheet, pictures, line_colours(names, solution.stages.design))
     told = []
     for language, family in (("en", "Inter"), ("ja", "NotoSansJP")):
         path = bench.folder / f"sheet-{language}.pdf"

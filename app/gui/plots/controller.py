@@ -15,7 +15,7 @@ from app.i18n.catalog import tr
 from app.presenters.plots import Event, exact_answer, table_of, tracks
 from core.document.design import Design
 from core.errors import UserError
-from core.files.atomic_write import whole_file
+from core.files.atomic_write import atomic_path
 from core.pipeline.live_solver import Frame
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ class PlotDesk(QObject):
         if design is not self._window.session.design or (design is self._marked and not fresh):
             return
         former, self._marked = self._marked, design
-        if fresh or former is None or not design.acts_as(former):
+        if fresh or former is None or not design.is_equivalent(former):
             self._events.append(Event(float(frame.changed_at), self._last_edit()))
             self._window.strip.set_events(self._events)
 
@@ -90,7 +90,7 @@ class PlotDesk(QObject):
                 _write_table(Path(path), frame)
             else:
                 figure = figure_bytes(kind, window.strip.plots, window.strip.legend)
-                with whole_file(Path(path).absolute()) as partial:
+                with atomic_path(Path(path).absolute()) as partial:
                     partial.write_bytes(figure)
         except UserError as error:
             window.notifications.error(error, title)
@@ -104,7 +104,10 @@ class PlotDesk(QObject):
 def _write_table(path: Path, frame: Frame) -> None:
     heading, rows = table_of(frame)
     # With the mark that tells spreadsheets that letters beyond English follow.
-    with whole_file(path.absolute()) as partial, open(partial, "w", newline="", encoding="utf-8-sig") as file:
+    with (
+        atomic_path(path.absolute()) as partial,
+        open(partial, "w", newline="", encoding="utf-8-sig") as file,
+    ):
         writer = csv.writer(file)
         writer.writerow(heading)
         writer.writerows(rows)

@@ -10,7 +10,7 @@ from PySide6.QtCore import QSettings
 from app.gui.application import log_folder
 from app.gui.session.open_external import open_outside
 from app.i18n.catalog import tr
-from core.document.presets import own_folder
+from core.document.presets import user_folder
 from core.document.storage.backups import backups_folder
 from core.document.storage.recovery import recovery_folder
 
@@ -21,7 +21,7 @@ def folders() -> list[tuple[str, Path]]:
         (tr("Log"), log_folder()),
         (tr("Unsaved work"), recovery_folder()),
         (tr("Backups"), backups_folder()),
-        (tr("Presets"), own_folder()),
+        (tr("Presets"), user_folder()),
         (tr("Settings"), Path(QSettings().fileName()).parent),
     ]
 

@@ -16,7 +16,7 @@ from app.i18n.catalog import number, tr
 from app.presenters.model_options import control_words
 from core.document.design import Design
 from core.document.document import Document
-from core.document.lines import OwnLine
+from core.document.lines import CustomLine
 from core.errors import UserError
 
 
@@ -81,7 +81,7 @@ class Editing(QObject):
 
     def reset_lines(self) -> None:
         """Take every line off: the body as scanned."""
-        self.edit(Design.at_rest, tr("Reset to scan"))
+        self.edit(Design.with_lines_reset, tr("Reset to scan"))
 
     def choose_control(self, control: str) -> None:
         """Choose the volume control."""
@@ -99,9 +99,9 @@ class Editing(QObject):
         what = f"values of {sorted(changes)}" if turned else ""
         self.edit(lambda design: replace(design, **changes), text, what)
 
-    def add_own_lines(self, lines: Sequence[OwnLine], text: str) -> None:
+    def add_own_lines(self, lines: Sequence[CustomLine], text: str) -> None:
         """Add lines of the designer's own."""
-        self.edit(lambda design: reduce(Design.with_own_line, lines, design), text)
+        self.edit(lambda design: reduce(Design.with_custom_line, lines, design), text)
 
     def reset_landmarks(self, names: Sequence[str], text: str) -> None:
         """Let landmarks that were placed by hand be found again, as one undo step."""
@@ -143,7 +143,7 @@ class Editing(QObject):
     def show_variant(self, name: str) -> None:
         """Show another variant of the design; one that is not there yet begins as the shown one is."""
         if self.document is not None and name != self.document.shown:
-            self._push(self.document.showing(name), tr("Variant {name}").format(name=name))
+            self._push(self.document.with_shown(name), tr("Variant {name}").format(name=name))
 
     def go_back(self, document: Document, text: str) -> None:
         """Go back to a document that was worked out from this one, as one undo step."""
@@ -157,7 +157,7 @@ class Editing(QObject):
     def _replace(self, document: Document) -> None:
         self._preview, before = None, self.design
         self.document = document
-        alike = before is not None and before.acts_as(document.design)
+        alike = before is not None and before.is_equivalent(document.design)
         self._submit(document.design, fresh=not alike)
 
     def _last_edit(self) -> Edit | None:

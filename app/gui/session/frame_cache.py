@@ -124,7 +124,7 @@ class FrameCache(QObject, Generic[T]):
     def _may_begin(self, frame: Frame) -> bool:
         key = self._key(frame)
         moves = frame is self._session.frame and not self._session.is_at_rest
-        return not (frame.at_work or moves or key in self._running or key in self._given_up)
+        return not (frame.is_running or moves or key in self._running or key in self._given_up)
 
     def _begin_waiting(self) -> None:
         frame, self._waiting = self._waiting, None

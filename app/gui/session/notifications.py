@@ -15,7 +15,7 @@ from app.gui.session.session import Session
 from app.gui.widgets.notification_bar import FAULT, REFUSED, Action, NoticeBar
 from app.i18n.catalog import tr
 from app.presenters.lines import titled
-from app.presenters.status import fault_words, solver_fault_words
+from app.presenters.status import error_text, solver_error_text
 from core.document.design import Design
 from core.errors import UserError
 from core.pipeline.live_solver import Frame
@@ -86,9 +86,9 @@ class Notifications(QObject):
         failure = self._session.failure
         self._faulty = failure is not None and failure.error is error
         if self._faulty:
-            text, topic = solver_fault_words(error), FAULT
+            text, topic = solver_error_text(error), FAULT
         else:
-            text, topic = fault_words(error), topic or REFUSED
+            text, topic = error_text(error), topic or REFUSED
         again = [(tr("Try again"), self._session.go_on)] if self._faulty else []
         self.show("bad", *text, again, lasting=True, details=trace, topic=topic)
 

@@ -15,18 +15,18 @@ from app.gui.session.solver_bridge import Solving
 from app.i18n.catalog import tr
 from core.document.design import Design, ScanSource
 from core.document.document import Document
-from core.document.storage.backups import backed_up
+from core.document.storage.backups import backup_before_write
 from core.document.storage.project_file import (
     ScanFile,
     Stamp,
+    file_stamp,
     is_project,
     open_project,
     save_project,
-    stamp_of,
 )
-from core.document.storage.recovery import Kept
+from core.document.storage.recovery import RecoveredDocument
 from core.errors import UserError
-from core.pipeline.build import StuckError
+from core.pipeline.build import IncompleteBuildError
 from core.pipeline.live_solver import Failure, Frame
 
 
@@ -94,7 +94,7 @@ class Session(Editing):
             self.open_document(
                 open_project(path)
                 if is_project(path)
-                else Document.of(Design(ScanSource(str(Path(path).absolute()))))
+                else Document.single(Design(ScanSource(str(Path(path).absolute()))))
             )
         except UserError as error:
             # At start nobody listens yet: the window hears it once the event loop runs.
@@ -102,7 +102,7 @@ class Session(Editing):
 
     def open_design(self, design: Design) -> None:
         """Open a design that has no file of its own yet, such as the sample."""
-        self.open_document(Document.of(design))
+        self.open_document(Document.single(design))
 
     def open_document(self, document: Document, path: Path | None = None, unsaved: bool = False) -> None:
         """Open a document; the present one stays until the new one has a first frame.
@@ -112,9 +112,9 @@ class Session(Editing):
         """
         scan = document.design.scan
         path = path or (Path(scan.path) if scan.member and not unsaved else None)
-        self._open(document, path, stamp_of(path), unsaved)
+        self._open(document, path, file_stamp(path), unsaved)
 
-    def restore(self, kept: Kept) -> None:
+    def restore(self, kept: RecoveredDocument) -> None:
         """Open what was kept of a window that did not close in order, unsaved; its project counts as changed
         if it was saved since.
         """
@@ -133,7 +133,7 @@ class Session(Editing):
             frame is not None
             and frame.stages.design is self.design
             and self.is_answered
-            and not frame.at_work
+            and not frame.is_running
         )
 
     @property
@@ -141,7 +141,7 @@ class Session(Editing):
         """Whether what is shown is solved to the end: the present design, or the proposal."""
         frame, trial = self.frame, self.trial
         on_trial = frame is not None and trial is not None and frame.stages.design is trial
-        return self.is_converged or (on_trial and frame is not None and not frame.at_work)
+        return self.is_converged or (on_trial and frame is not None and not frame.is_running)
 
     @property
     def unsaved(self) -> bool:
@@ -151,7 +151,7 @@ class Session(Editing):
     @property
     def changed_elsewhere(self) -> bool:
         """Whether the project's file is no longer what was opened or saved here last."""
-        return self.path is not None and stamp_of(self.path) not in (None, self.stamp)
+        return self.path is not None and file_stamp(self.path) not in (None, self.stamp)
 
     def save(self, path: str, picture: bytes | None) -> bool:
         """Begin to save the project; returns whether it begins. ``saved`` or ``not_saved`` follows."""
@@ -187,7 +187,7 @@ class Session(Editing):
             self.saving.emit(False)
             self.not_saved.emit(fault)
             return
-        self.path, self.stamp = path, stamp_of(path)
+        self.path, self.stamp = path, file_stamp(path)
         self.saved.emit(str(path))
 
     def cancel(self) -> None:
@@ -275,12 +275,12 @@ class Session(Editing):
             if self.design is not None:
                 self._submit(self.design)
             stuck = failure.error
-            if isinstance(stuck, StuckError) and (self.design is None or stuck.kind == "unsure"):
+            if isinstance(stuck, IncompleteBuildError) and (self.design is None or stuck.kind == "unsure"):
                 self.asked.emit(stuck)
                 return
         elif failure.revision < self._revision:
             return  # of what was tried before the last decision, which has an answer of its own
-        elif not failure.refuses:
+        elif not failure.is_rejection:
             self.failure = failure  # nothing that was decided is to blame: all of it stays
         elif failure.revision > self._revision and self._preview is not None:
             # One notice for a drag is enough, however far it goes on.
@@ -289,7 +289,7 @@ class Session(Editing):
                 return
         elif failure.revision == self._revision:
             # What is added to a design that cannot be solved is not to blame for it.
-            lost = self.failure is not None and self.failure.refuses
+            lost = self.failure is not None and self.failure.is_rejection
             if lost or not self._take_back():
                 self.failure = failure
             told, self._told = self._told, False
@@ -299,5 +299,5 @@ class Session(Editing):
 
 
 def _write(path: Path, document: Document, scan: ScanFile, picture: bytes | None) -> None:
-    with backed_up(path):
+    with backup_before_write(path):
         save_project(path, document, scan, picture)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from core.document.design import Design
-from core.pipeline.build import Stages, StuckError
+from core.pipeline.build import IncompleteBuildError, Stages
 from core.pipeline.live_solver import Failure, LiveSolver
 from core.progress import Progress
 
@@ -33,7 +33,7 @@ class Solving(QObject):
         # Paint first: it comes before what is due at once.
         self._shown = QTimer(self, interval=0, singleShot=True)
         self._solver = LiveSolver(self._hear, self._ready.emit, _prepare)
-        self._shown.timeout.connect(self._solver.release)
+        self._shown.timeout.connect(self._solver.resume)
         self._clock = QTimer(self, interval=FRAME_INTERVAL)
         self._clock.timeout.connect(self._look)
         self._clock.start()
@@ -71,7 +71,7 @@ class Solving(QObject):
         if self._work != self._work_told:
             self._work_told = self._work
             self.working.emit(*self._work_told)
-        answer = self._solver.latest(hold=True)
+        answer = self._solver.poll(hold=True)
         if isinstance(answer, Failure):
             self.refused.emit(answer)
         elif answer is not None:
@@ -79,8 +79,8 @@ class Solving(QObject):
             self.answered.emit(answer)
 
 
-def _prepare(built: Stages | StuckError, progress: Progress) -> None:
+def _prepare(built: Stages | IncompleteBuildError, progress: Progress) -> None:
     # The first to come imports the 3D libraries: the window needs them too, and may be at it already.
-    from app.rendering.prepare import make_ready  # noqa: PLC0415
+    from app.rendering.prepare import prepare_scene  # noqa: PLC0415
 
-    make_ready(built, progress)
+    prepare_scene(built, progress)

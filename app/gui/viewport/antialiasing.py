@@ -6,7 +6,7 @@ import math
 
 from app.gui.viewport.canvas import Canvas
 from app.rendering.scene import Scene
-from app.rendering.vertex_lighting import QuickLight
+from app.rendering.vertex_lighting import VertexLighting
 
 FINEST = 2.5
 """Details of a large body that are smaller than so many pixels are not drawn without a graphics card."""
@@ -17,7 +17,7 @@ class Smoothing:
 
     def __init__(self, canvas: Canvas, scene: Scene) -> None:
         self._canvas, self._scene = canvas, scene
-        self._light, self._filter = QuickLight(scene.plotter), ""
+        self._light, self._filter = VertexLighting(scene.plotter), ""
 
     def use(self, kind: str) -> None:
         """Let outlines be smoothed by one of VTK's filters, or by none while things move."""

@@ -27,7 +27,7 @@ from PySide6.QtWidgets import QWidget
 from app.gui.theme.stylesheet import tokens_of
 from app.gui.viewport.opengl import is_safe_mode
 from app.i18n.catalog import tr
-from app.rendering.appearance import LOOKS
+from app.rendering.appearance import APPEARANCES
 from core.errors import UserError
 
 if TYPE_CHECKING:
@@ -184,7 +184,7 @@ class Canvas(QWidget):
 
     def _paint_ground(self, painter: QPainter) -> None:
         """Paint the background of the scene to come."""
-        look, middle = LOOKS[tokens_of(self).dark], self.rect().toRectF().center()
+        look, middle = APPEARANCES[tokens_of(self).dark], self.rect().toRectF().center()
         ground = QRadialGradient(middle, QLineF(middle, QPointF()).length())
         ground.setColorAt(0.0, QColor(look.centre))
         ground.setColorAt(1.0, QColor(look.edge))

@@ -13,7 +13,7 @@ from app.gui.session.project_thumbnail import png_of
 from app.gui.widgets.file_dialogs import ask_save
 from app.i18n.catalog import tr
 from core.errors import ProjectError, UserError
-from core.files.atomic_write import whole_file
+from core.files.atomic_write import atomic_path
 
 if TYPE_CHECKING:
     from app.gui.main_window import MainWindow
@@ -43,7 +43,7 @@ class PictureDesk(QObject):
         if not path:
             return
         try:
-            with whole_file(Path(path).absolute()) as partial:
+            with atomic_path(Path(path).absolute()) as partial:
                 partial.write_bytes(png_of(self._picture()))
         except UserError as problem:
             window.notifications.error(problem, "picture")

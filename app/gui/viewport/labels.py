@@ -35,7 +35,7 @@ class Labels:
         """Let the pins ride on the skin, tell those behind the body, and keep the label at its line."""
         pins = self._pins
         if pins:
-            places = scene.carried(np.array([pin.position for pin in pins]))
+            places = scene.carried_points(np.array([pin.position for pin in pins]))
             pins = tuple(replace(pin, position=place) for pin, place in zip(pins, places, strict=True))
         self._overlay.set_pins(pins, self._selected)
         self._overlay.follow(scene.view, [pin.name for pin in pins if scene.hidden(pin.position)])

@@ -11,7 +11,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 from vtkmodules.vtkRenderingCore import vtkProp
 
-from app.rendering.layer_cache import StillPicture
+from app.rendering.layer_cache import StaticLayerCache
 
 
 class Pictures:
@@ -26,11 +26,11 @@ class Pictures:
         self.plotter = pv.Plotter(off_screen=True, lighting="none")
         self.plotter.ren_win.SetMultiSamples(0)
         self.quick = False
-        self._picture = StillPicture(self.plotter)
+        self._picture = StaticLayerCache(self.plotter)
 
     def let_go(self) -> None:
         """Give back what is kept of the graphics, before the plotter is closed."""
-        self._picture.forget()
+        self._picture.clear()
         del self.still
 
     def draw(self, width: int, height: int) -> QImage | None:

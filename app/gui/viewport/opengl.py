@@ -8,12 +8,12 @@ from contextlib import suppress
 from PySide6.QtCore import QCoreApplication
 from PySide6.QtGui import QOffscreenSurface, QOpenGLContext
 
-from core.document.storage.crash_counter import Start, failed_starts, forget_failed_starts
+from core.document.storage.crash_counter import StartMarker, failed_starts, forget_failed_starts
 
 _SAFE = "safe mode"
 _OFTEN = 2
 _STRINGS = (("OpenGL", 0x1F02), ("Renderer", 0x1F01), ("Vendor", 0x1F00))
-_trying: list[Start] = []
+_trying: list[StartMarker] = []
 
 
 def is_safe_mode() -> bool:
@@ -44,13 +44,13 @@ def try_graphics() -> None:
     """Remember, right before the driver is asked for something, that it may end the program."""
     spare_graphics()
     with suppress(OSError):
-        _trying.append(Start())
+        _trying.append(StartMarker())
 
 
 def spare_graphics() -> None:
     """Forget the last ``try_graphics``: nothing is asked of the driver for now. Former ends still count."""
     while _trying:
-        _trying.pop().end()
+        _trying.pop().remove()
 
 
 def graphics_work() -> None:

@@ -100,9 +100,9 @@ class Viewport(QWidget):
         from app.rendering.scene import Scene  # noqa: PLC0415 (brings VTK along)
 
         self._scene = scene = Scene(plotter, tokens_of(self).dark, self.devicePixelRatioF())
-        scene.look_from(self._view)
+        scene.set_camera(self._view)
         scene.set_material(self._material)
-        self._canvas.draw_still(scene.still)
+        self._canvas.draw_still(scene.static_actors)
         self._smoothing = Smoothing(self._canvas, scene)
         self._pointer.look_at(scene)
         self.request_draw()
@@ -265,7 +265,7 @@ class Viewport(QWidget):
         if self._scene is None:
             self._view = view
         else:
-            self._scene.look_from(view)
+            self._scene.set_camera(view)
         self._moved()
 
     def _moved(self) -> None:
@@ -290,7 +290,7 @@ class Viewport(QWidget):
         super().resizeEvent(event)
         self.overlay.setGeometry(self._canvas.rect())
         if self._fit is not None and self._open:
-            self.scene.look_from(self._fit(self._aspect()))
+            self.scene.set_camera(self._fit(self._aspect()))
         self.request_draw()
 
     def changeEvent(self, event: QEvent) -> None:  # noqa: N802

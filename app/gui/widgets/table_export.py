@@ -13,7 +13,7 @@ from app.gui.widgets.file_dialogs import ask_save
 from app.i18n.catalog import tr
 from core.errors import UserError
 from core.export.csv_cells import ENCODING, cell
-from core.files.atomic_write import whole_file
+from core.files.atomic_write import atomic_path
 
 if TYPE_CHECKING:
     from app.gui.main_window import MainWindow
@@ -37,7 +37,7 @@ def save_table(window: MainWindow, table: Table, title: str, ending: str) -> Non
     about = f"table of {ending}"
     try:
         with (
-            whole_file(Path(path).absolute()) as partial,
+            atomic_path(Path(path).absolute()) as partial,
             open(partial, "w", newline="", encoding=ENCODING) as file,
         ):
             csv.writer(file).writerows([cell(each) for each in row] for row in table)

@@ -18,8 +18,8 @@ from app.presenters.samples import SAMPLES, sample_design
 from app.research.control_study import CONTROLS, LONGEST, RIPPLE_TURNS, TURNS, Subject, Trial, trials
 from app.research.sphere import sphere_control
 from core import __version__
-from core.files.atomic_write import whole_file, write_text
-from core.mechanics.options import LAWS, Mechanics
+from core.files.atomic_write import atomic_path, write_text
+from core.mechanics.options import LAWS, ModelOptions
 from core.pipeline.build import GAIN_SHARE, build
 
 LENGTHS = (1.10, 1.03, 0.97, 0.9, 0.8, 0.7, 0.6, 0.5)
@@ -82,7 +82,7 @@ def run_trials(out: Path, quick: bool = False) -> list[Trial]:
             left = (time.perf_counter() - start) * (count / len(made) - 1.0)
             print(f"\r{len(made)} of {count} cases, {left:.0f} s left ", end="", file=sys.stderr, flush=True)
     print(file=sys.stderr)
-    with whole_file(out / "sweep.csv") as partial:
+    with atomic_path(out / "sweep.csv") as partial:
         _write_rows(partial, made)
     write_text(out / "sweep.md", "\n".join(page(made, quick)) + "\n")
     return made
@@ -96,7 +96,7 @@ def subjects(quick: bool) -> Iterator[Subject]:
     choices = [("force-density", "explicit", EXPLICIT_STIFFNESS)]
     choices += [(law, "implicit", k) for law, k in product(LAWS, STIFFNESSES[1:2] if quick else STIFFNESSES)]
     for body, (law, force, stiffness) in product(bodies, choices):
-        mechanics = Mechanics(law, line_stiffness=stiffness, line_force=force, volume_of="both")
+        mechanics = ModelOptions(law, line_stiffness=stiffness, line_force=force, volume_of="both")
         yield Subject(*body, mechanics)
 
 

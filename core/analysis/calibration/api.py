@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from core.analysis.calibration.calibrate import CalibrationResult, calibrate, refuse_bare
-from core.analysis.calibration.fit import exact_answer
+from core.analysis.calibration.calibrate import CalibrationResult, calibrate, require_active_line
+from core.analysis.calibration.fit import solve_from
 from core.analysis.calibration.registration import Alignment, align
 from core.analysis.calibration.residuals import (
     THICKEST,
-    Difference,
-    Figures,
-    Worn,
+    FittingScan,
+    Residuals,
+    ResidualSummary,
+    aligned_fitting_scan,
     compare,
-    laid_on,
-    refuse_mirrored,
+    require_not_mirrored,
 )
 from core.document.design import ScanSource
 from core.geometry.mesh import Points
@@ -23,31 +23,31 @@ __all__ = [
     "THICKEST",
     "Alignment",
     "CalibrationResult",
-    "Difference",
-    "Figures",
-    "Worn",
+    "FittingScan",
+    "ResidualSummary",
+    "Residuals",
     "calibrate",
     "compare",
-    "predicted",
-    "read_worn",
-    "refuse_bare",
+    "predicted_points",
+    "read_fitting_scan",
+    "require_active_line",
 ]
 
 _READ = 0.7  # what part of the time reading takes, roughly
 
 
-def read_worn(stages: Stages, source: ScanSource, progress: Progress = quiet) -> Worn:
+def read_fitting_scan(stages: Stages, source: ScanSource, progress: Progress = quiet) -> FittingScan:
     """Read a scan with the garment on and lay it on the body of ``stages``.
 
     Raises ScanError if it cannot be read, or is not of the same person in the same posture; Cancelled.
     """
     scan, body = read_body(source, lambda what, share: progress(what, _READ * share))
     alignment = align(stages, body, lambda what, share: progress(what, _READ + (1.0 - _READ) * share))
-    worn = laid_on(scan.name, body, alignment)
-    refuse_mirrored(stages, worn)
+    worn = aligned_fitting_scan(scan.name, body, alignment)
+    require_not_mirrored(stages, worn)
     return worn
 
 
-def predicted(stages: Stages) -> Points:
+def predicted_points(stages: Stages) -> Points:
     """Return the control points that a design predicts, its exact answer, (n, 3) [mm]. Raises LineError."""
-    return exact_answer(stages).place.points
+    return solve_from(stages).place.points

@@ -11,13 +11,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.analysis.calibration.fit import Fit, Look
-from core.analysis.calibration.identifiability import confused_with, not_told, singular_values, unsure_of
-from core.analysis.calibration.parameters import Number, candidates
-from core.analysis.calibration.residuals import Difference, Worn, compare
-from core.analysis.calibration.robust_least_squares import Normal
-from core.analysis.calibration.surface_distance import known
-from core.document.calibration_record import Calibration, FoundNumber
+from core.analysis.calibration.fit import Fit, FitState
+from core.analysis.calibration.identifiability import (
+    confounded_with,
+    singular_values,
+    standard_deviations,
+    unidentifiable,
+)
+from core.analysis.calibration.parameters import Parameter, candidate_parameters
+from core.analysis.calibration.residuals import FittingScan, Residuals, compare
+from core.analysis.calibration.robust_least_squares import NormalEquations
+from core.analysis.calibration.surface_distance import is_valid
+from core.document.calibration_record import Calibration, FittedParameter
 from core.document.design import Design
 from core.errors import UserError
 from core.geometry.mesh import Points
@@ -40,7 +45,7 @@ class CalibrationResult:
     """What was found: ``design`` with its numbers and record, compared ``before`` and ``after``.
 
     ``points`` (n, 3) [mm] are the control points that it predicts; ``met`` points of the worn scan were on
-    the moving skin. ``confused`` tells for numbers that stayed what they cannot be told from. ``singular``
+    the moving skin. ``confounded`` tells for numbers that stayed what they cannot be told from. ``singular``
     are the singular values of the slopes in units of what is known before: below 1 that tells more of a
     combination of numbers than the scans. ``solves`` exact answers were needed. ``at_end`` names numbers that
     went as far as they may: what the scan shows is not what these lines do. ``noise`` [mm] is the scan's.
@@ -48,9 +53,9 @@ class CalibrationResult:
 
     design: Design
     points: Points
-    before: Difference
-    after: Difference
-    confused: Mapping[str, str]
+    before: Residuals
+    after: Residuals
+    confounded: Mapping[str, str]
     met: int
     singular: tuple[float, ...]
     solves: int
@@ -64,36 +69,36 @@ class CalibrationResult:
         return self.design.calibration
 
     @property
-    def helped(self) -> bool:
+    def is_improved(self) -> bool:
         """Whether a number moved by more than its ±, none to its end, and the prediction came nearer."""
         moved = any(
             abs(number.after - number.before) > number.plus_minus
             for number in self.calibration.numbers
             if not number.kept
         )
-        return moved and not self.at_end and self.after.all_of_it.rms < self.before.all_of_it.rms
+        return moved and not self.at_end and self.after.total.rms < self.before.total.rms
 
     @property
-    def weak(self) -> bool:
+    def is_poorly_determined(self) -> bool:
         """Whether none of the numbers is told well."""
-        return not any(number.told for number in self.calibration.numbers)
+        return not any(number.is_well_determined for number in self.calibration.numbers)
 
     @property
-    def explains_little(self) -> bool:
+    def has_large_residual(self) -> bool:
         """Whether more than ``MUCH_LEFT`` of predicted less real remains, beyond the scan's noise."""
-        before, after = (each.all_of_it.rms**2 - self.noise**2 for each in (self.before, self.after))
+        before, after = (each.total.rms**2 - self.noise**2 for each in (self.before, self.after))
         return after > (MUCH_LEFT**2) * max(before, 0.0)
 
 
-def refuse_bare(stages: Stages) -> None:
+def require_active_line(stages: Stages) -> None:
     """Raise UserError if no line that moves the body is worn."""
-    if not len(stages.model.pulling):
+    if not len(stages.model.acting_lines):
         raise UserError("No line that moves the body is worn.", "Wear the lines of the garment first.")
 
 
 def calibrate(
     stages: Stages,
-    worn: Worn,
+    worn: FittingScan,
     *,
     thickness: float = 0.0,
     lengths: bool = False,
@@ -107,38 +112,42 @@ def calibrate(
     roll, and share one stiffness. Raises UserError if nothing is worn that moves the body, or too little is
     seen.
     """
-    refuse_bare(stages)
-    numbers = candidates(stages, lengths=lengths, each=not one_roll)
+    require_active_line(stages)
+    numbers = candidate_parameters(stages, lengths=lengths, each=not one_roll)
     fit = Fit(stages, worn, thickness, numbers, progress)
-    first = fit.look(stages.design)
-    seen = known(first.gaps)
+    first = fit.evaluate(stages.design)
+    seen = is_valid(first.gaps)
     if seen.sum() < FEWEST:
         raise UserError(
             f"The worn scan shows {seen.sum():.0f} places of the skin that moves; {FEWEST} are needed.",
             "Scan the front of the body too.",
         )
-    here = fit.least(stages.design, np.ones(len(numbers), dtype=bool))
-    stays = not_told(_sure(fit, here), numbers)
+    here = fit.minimize(stages.design, np.ones(len(numbers), dtype=bool))
+    stays = unidentifiable(_sure(fit, here), numbers)
     if stays.any():
-        here = fit.least(stages.design, ~stays)
+        here = fit.minimize(stages.design, ~stays)
     # What stays is the answer from rest, as everywhere.
-    last = fit.look(here.stages.design, beside=here.beside)
+    last = fit.evaluate(here.stages.design, beside=here.beside)
     return _result(fit, first, last, stays.tolist(), worn)
 
 
-def _result(fit: Fit, first: Look, last: Look, stays: list[bool], worn: Worn) -> CalibrationResult:
+def _result(
+    fit: Fit, first: FitState, last: FitState, stays: list[bool], worn: FittingScan
+) -> CalibrationResult:
     """Return what was found between the ``first`` look and the ``last``; ``stays`` tells what was not."""
     numbers, thickness = fit.numbers, fit.thickness
-    sure, seen = _sure(fit, last), known(first.gaps)
+    sure, seen = _sure(fit, last), is_valid(first.gaps)
     before = compare(fit.start, first.points, worn, thickness)
     after = compare(last.stages, last.points, worn, thickness)
     found = tuple(_found(sure, numbers, stays, fit.start.design, last.stages.design))
-    record = Calibration(worn.name, before.all_of_it.rms, after.all_of_it.rms, found, thickness)
+    record = Calibration(worn.name, before.total.rms, after.total.rms, found, thickness)
     design = replace(last.stages.design, calibration=record)
-    confused = {numbers[at].name: confused_with(sure, numbers, at) for at in np.flatnonzero(stays).tolist()}
+    confused = {numbers[at].name: confounded_with(sure, numbers, at) for at in np.flatnonzero(stays).tolist()}
     singular = singular_values(first.slopes[seen, : len(numbers)], numbers)
     at_end = tuple(
-        number.name for number, kept in zip(numbers, stays, strict=True) if not kept and number.at_end(design)
+        number.name
+        for number, kept in zip(numbers, stays, strict=True)
+        if not kept and number.is_at_limit(design)
     )
     return CalibrationResult(
         design,
@@ -154,24 +163,24 @@ def _result(fit: Fit, first: Look, last: Look, stays: list[bool], worn: Worn) ->
     )
 
 
-def _sure(fit: Fit, look: Look) -> Normal:
+def _sure(fit: Fit, look: FitState) -> NormalEquations:
     """Return how sure the numbers are of which a fit is, those that stay among them."""
-    equations = fit.normal(look)
+    equations = fit.normal_equations(look)
     count = len(fit.numbers)
-    return equations.of(np.arange(len(equations.slope)) < count)
+    return equations.subset(np.arange(len(equations.slope)) < count)
 
 
 def _found(
-    sure: Normal, numbers: tuple[Number, ...], stays: list[bool], before: Design, after: Design
-) -> Iterator[FoundNumber]:
+    sure: NormalEquations, numbers: tuple[Parameter, ...], stays: list[bool], before: Design, after: Design
+) -> Iterator[FittedParameter]:
     """Yield the numbers as they were found, then those that stay."""
-    unsure = (SURE * unsure_of(sure)).tolist()
+    unsure = (SURE * standard_deviations(sure)).tolist()
     for number, one, kept in zip(numbers, unsure, stays, strict=True):
-        value = number.of(after)
+        value = number.value_in(after)
         if not kept:
             plus_minus = value * one if number.logarithmic else one
-            yield FoundNumber(number.name, number.of(before), value, plus_minus)
+            yield FittedParameter(number.name, number.value_in(before), value, plus_minus)
     for number, kept in zip(numbers, stays, strict=True):
         if kept:
-            value = number.of(before)
-            yield FoundNumber(number.name, value, value, 0.0, kept=True)
+            value = number.value_in(before)
+            yield FittedParameter(number.name, value, value, 0.0, kept=True)

@@ -12,25 +12,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.analysis.calibration.parameters import Number, precision_before, rates_by
-from core.analysis.calibration.point_to_surface import Ground
-from core.analysis.calibration.residuals import Worn
+from core.analysis.calibration.parameters import Parameter, point_sensitivities, prior_precision
+from core.analysis.calibration.point_to_surface import Surface
+from core.analysis.calibration.residuals import FittingScan
 from core.analysis.calibration.robust_least_squares import (
     PATCHES,
-    Beforehand,
-    Normal,
+    NormalEquations,
+    Prior,
     cost,
-    normal,
-    spread_of,
+    normal_equations,
+    robust_deviation,
 )
-from core.analysis.calibration.surface_distance import REACH, cells, known
+from core.analysis.calibration.surface_distance import REACH, grid_cells, is_valid
 from core.document.design import Design
 from core.errors import LineError, UserError
 from core.geometry.mesh import Flags, Floats, Points
-from core.mechanics.newton import Balance
-from core.mechanics.sensitivity import Answer
+from core.mechanics.newton import Equilibrium
+from core.mechanics.sensitivity import Sensitivities
 from core.pipeline.build import Stages, build
-from core.pipeline.exact import NoBalanceError, answer_of
+from core.pipeline.exact import NoEquilibriumError, exact_solution
 from core.progress import Progress
 
 BESIDE = 7
@@ -45,7 +45,7 @@ _FARTHEST = np.log(4.0)  # no stiffness changes more than this in one step
 
 
 @dataclass(frozen=True, eq=False)
-class Look:
+class FitState:
     """An exact answer of a design: its ``gaps`` (n,) [mm] to the points, none where a point stands elsewhere.
 
     ``beside`` (7,) are the unknowns beside the numbers, which the gaps hold already; ``slopes`` (n, p + 7).
@@ -53,7 +53,7 @@ class Look:
     """
 
     stages: Stages
-    answer: Answer
+    answer: Sensitivities
     rest: Points
     beside: Floats
     gaps: Floats
@@ -71,9 +71,9 @@ class Fit:
     def __init__(
         self,
         stages: Stages,
-        worn: Worn,
+        worn: FittingScan,
         thickness: float,
-        numbers: tuple[Number, ...],
+        numbers: tuple[Parameter, ...],
         progress: Progress,
     ) -> None:
         self.start, self.numbers, self.solves = stages, numbers, 0
@@ -82,51 +82,59 @@ class Fit:
         every = worn.skin.mesh.vertices
         near = np.flatnonzero(((every > low) & (every < high)).all(axis=1))
         near = near[:: -(-len(near) // MOST_POINTS) or 1]  # each, or each second, third ...
-        self._points, self._facing, self._noise = every[near], worn.skin.facing[near], worn.skin.noise
+        self._points, self._facing, self._noise = (
+            every[near],
+            worn.skin.vertex_directions[near],
+            worn.skin.noise,
+        )
         self._sought = self._sought_by(stages.design)
         precision = np.zeros((len(numbers) + BESIDE, len(numbers) + BESIDE))
-        precision[: len(numbers), : len(numbers)] = precision_before(numbers)
+        precision[: len(numbers), : len(numbers)] = prior_precision(numbers)
         laid = worn.alignment.covariance + np.diag(np.repeat(_SUREST, 3) ** 2)
         precision[len(numbers) : -1, len(numbers) : -1] = np.linalg.inv(laid)
         self._precision = precision
 
-    def look(self, design: Design, near: Look | None = None, beside: Floats | None = None) -> Look:
+    def evaluate(
+        self, design: Design, near: FitState | None = None, beside: Floats | None = None
+    ) -> FitState:
         """Return the exact answer of a design. Raises UserError if there is none, Cancelled."""
         self._progress("calibrating", min(self.solves / _STEPS, 0.95))
         self.solves += 1
         stages = build(design, near.stages if near else self.start)
-        answer = exact_answer(stages, near.answer.balance if near else None)
+        answer = solve_from(stages, near.answer.balance if near else None)
         places, normals = stages.shape(answer.place.points)
-        feet = Ground(places, normals, stages.moving.corners).feet(self._points, self._facing, self._noise)
+        feet = Surface(places, normals, stages.moving.corners).project(
+            self._points, self._facing, self._noise
+        )
         moved = np.zeros((len(places), len(self.numbers)))
-        moved[: stages.moving.count] = slopes_of(stages, answer, self.numbers, normals)
+        moved[: stages.moving.count] = residual_jacobian(stages, answer, self.numbers, normals)
         turned = np.cross(self._points[feet.rows] - self._laid.middle, feet.normals)
         common = np.ones((len(feet.rows), 1))
         slopes = np.zeros((len(self._points), len(self.numbers) + BESIDE))
-        slopes[feet.rows] = np.concatenate([feet.of(moved), -turned, -feet.normals, common], axis=1)
+        slopes[feet.rows] = np.concatenate([feet.interpolate(moved), -turned, -feet.normals, common], axis=1)
         beside = np.zeros(BESIDE) if beside is None else beside
         gaps = np.full(len(self._points), np.nan)
         gaps[feet.rows] = feet.gaps + self.thickness + slopes[feet.rows, len(self.numbers) :] @ beside
         rest = np.zeros_like(self._points)
-        rest[feet.rows] = feet.of(stages.moving.rest)
-        return Look(stages, answer, rest, beside, gaps, slopes)
+        rest[feet.rows] = feet.interpolate(stages.moving.rest)
+        return FitState(stages, answer, rest, beside, gaps, slopes)
 
-    def normal(self, look: Look, spread: float | None = None) -> Normal:
+    def normal_equations(self, look: FitState, spread: float | None = None) -> NormalEquations:
         """Return the normal equations of a look; with covariances if no ``spread`` [mm] is told."""
-        seen = known(look.gaps)
+        seen = is_valid(look.gaps)
         gaps, slopes, before = look.gaps[seen], look.slopes[seen], self._beforehand(look)
         if spread is not None:
-            return normal(gaps, slopes, spread, known=before)
+            return normal_equations(gaps, slopes, spread, known=before)
         # Patches by feet: noise would part points of one place, those outside from those inside.
-        patches = [cells(look.rest[seen], size) for size in PATCHES]
-        return normal(gaps, slopes, spread_of(gaps), patches, before)
+        patches = [grid_cells(look.rest[seen], size) for size in PATCHES]
+        return normal_equations(gaps, slopes, robust_deviation(gaps), patches, before)
 
-    def least(self, design: Design, free: Flags) -> Look:
+    def minimize(self, design: Design, free: Flags) -> FitState:
         """Return where steps of the ``free`` (p,) numbers lead from ``design``, which lessen the cost."""
-        here, damping = self.look(design), 0.0
+        here, damping = self.evaluate(design), 0.0
         open_ = np.concatenate([free, np.ones(BESIDE, dtype=bool)])
         for _ in range(_STEPS):
-            spread = spread_of(here.gaps[known(here.gaps)])
+            spread = robust_deviation(here.gaps[is_valid(here.gaps)])
             taken, step = self._taken(here, open_, damping, spread)
             if taken is None:
                 break
@@ -135,22 +143,24 @@ class Fit:
                 break
         return here
 
-    def _taken(self, here: Look, open_: Flags, damping: float, spread: float) -> tuple[Look | None, Floats]:
+    def _taken(
+        self, here: FitState, open_: Flags, damping: float, spread: float
+    ) -> tuple[FitState | None, Floats]:
         """Return the look after one step that lessens the cost, None if there is none, and the step."""
-        equations = self.normal(here, spread).of(open_)
+        equations = self.normal_equations(here, spread).subset(open_)
         count = len(self.numbers)
         step = np.zeros(count + BESIDE)
         for _ in range(_TRIED):
             step[open_] = equations.step(damping)
             step[:count] = np.clip(step[:count], -_FARTHEST, _FARTHEST)
-            design = moved_by(here.stages.design, self.numbers, step[:count])
+            design = with_parameter_step(here.stages.design, self.numbers, step[:count])
             step[:count] = self._sought_by(design) - self._sought_by(here.stages.design)  # within what may be
             try:
-                there = self.look(design, here, here.beside + step[count:])
+                there = self.evaluate(design, here, here.beside + step[count:])
             except UserError:
                 there = None
             if there is not None:
-                both = known(here.gaps) & known(there.gaps)
+                both = is_valid(here.gaps) & is_valid(there.gaps)
                 if self._cost(there, both, spread) < self._cost(here, both, spread):
                     return there, step
             if (np.abs(step) < _DONE).all():
@@ -158,18 +168,20 @@ class Fit:
             damping = max(10.0 * damping, 1e-3)
         return None, step
 
-    def _cost(self, look: Look, seen: Flags, spread: float) -> float:
+    def _cost(self, look: FitState, seen: Flags, spread: float) -> float:
         return cost(look.gaps[seen], spread) + self._beforehand(look).cost(spread)
 
-    def _beforehand(self, look: Look) -> Beforehand:
+    def _beforehand(self, look: FitState) -> Prior:
         off = self._sought_by(look.stages.design) - self._sought
-        return Beforehand(self._precision, np.concatenate([off, look.beside]))
+        return Prior(self._precision, np.concatenate([off, look.beside]))
 
     def _sought_by(self, design: Design) -> Floats:
-        return np.array([number.sought(design) for number in self.numbers])
+        return np.array([number.to_unknown(design) for number in self.numbers])
 
 
-def slopes_of(stages: Stages, answer: Answer, numbers: tuple[Number, ...], normals: Points) -> Floats:
+def residual_jacobian(
+    stages: Stages, answer: Sensitivities, numbers: tuple[Parameter, ...], normals: Points
+) -> Floats:
     """Return how fast the moving vertices rise along ``normals`` (r, 3) with ``numbers``, (k, p) [mm].
 
     Raises LineError where they do without bound.
@@ -179,30 +191,30 @@ def slopes_of(stages: Stages, answer: Answer, numbers: tuple[Number, ...], norma
     if not numbers:
         return slopes
     try:
-        moved = rates_by(stages, answer, numbers)
+        moved = point_sensitivities(stages, answer, numbers)
     except ValueError as unbounded:
         raise LineError("The body moves without bound there.", "Set the lines longer.") from unbounded
     for column, free in enumerate(moved.T):
         way = np.zeros_like(points)
         way[stages.model.tensegric.free] = free.reshape(-1, 3)
-        follow = binding.operator.added(binding.pushed(points, way), np.zeros((count, 3)))
+        follow = binding.operator.apply(binding.directional_derivative(points, way), np.zeros((count, 3)))
         slopes[:, column] = np.einsum("ij,ij->i", follow, normals[:count])
     return slopes
 
 
-def moved_by(design: Design, numbers: tuple[Number, ...], step: Floats) -> Design:
+def with_parameter_step(design: Design, numbers: tuple[Parameter, ...], step: Floats) -> Design:
     """Return the design with its numbers moved by a ``step`` (p,), as they are sought."""
     for number, change in zip(numbers, step.tolist(), strict=True):
         if change:
-            design = number.found(design, number.sought(design) + change)
+            design = number.from_unknown(design, number.to_unknown(design) + change)
     return design
 
 
-def exact_answer(stages: Stages, near: Balance | None = None) -> Answer:
+def solve_from(stages: Stages, near: Equilibrium | None = None) -> Sensitivities:
     """Return the exact answer of a design; if not from ``near`` by then from rest. Raises NoBalanceError."""
     try:
-        return answer_of(stages, near=near)
-    except NoBalanceError:
+        return exact_solution(stages, near=near)
+    except NoEquilibriumError:
         if near is None:
             raise
-        return answer_of(stages)
+        return exact_solution(stages)

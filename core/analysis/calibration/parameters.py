@@ -14,13 +14,13 @@ from core.document.elastic import TISSUE_LIMITS
 from core.geometry.mesh import Floats
 from core.mechanics.constraint_lines import RATIO_LIMITS
 from core.mechanics.options import RANGES
-from core.mechanics.parameter_sensitivity import by_ground, by_net, by_prestress
-from core.mechanics.sensitivity import Answer
-from core.mechanics.stiffness_sensitivity import Changes, answers_to
+from core.mechanics.parameter_sensitivity import d_ground, d_prestress, d_tissue
+from core.mechanics.sensitivity import Sensitivities
+from core.mechanics.stiffness_sensitivity import Changes, stiffness_rates
 from core.mechanics.tensegrity import firm_ground
-from core.pipeline.active_lines import worn_lines
+from core.pipeline.active_lines import active_line_groups
 from core.pipeline.build import Stages
-from core.pipeline.exact import volume_keeper
+from core.pipeline.exact import body_volume_rates
 
 LINE_STIFFNESS, FIRM_CHEST, PRESTRESS, TISSUE = (
     "line_stiffness",
@@ -52,7 +52,7 @@ _OWN = 0.5
 
 
 @dataclass(frozen=True)
-class Number:
+class Parameter:
     """One number that may be found: its ``kind`` and the ``lines`` it is of, where it is a line's."""
 
     kind: str
@@ -69,7 +69,7 @@ class Number:
         return self.kind in (LINE_STIFFNESS, STIFFNESS, TISSUE)
 
     @property
-    def before(self) -> float:
+    def prior_deviation(self) -> float:
         """How far off it may be before any scan tells it: a standard deviation, as it is sought."""
         return _BEFORE[self.kind]
 
@@ -82,22 +82,22 @@ class Number:
             return TISSUE_LIMITS
         return RANGES[LINE_STIFFNESS if self.kind == STIFFNESS else self.kind]
 
-    def of(self, design: Design) -> float:
+    def value_in(self, design: Design) -> float:
         """Return it as the design has it."""
         if self.kind == LENGTH:
             return design.ratio(self.lines[0])
         if self.kind == STIFFNESS:
-            own = design.traits_of(self.lines[0]).stiffness
+            own = design.line_settings(self.lines[0]).stiffness
             return design.line_stiffness if own is None else own
         return float(getattr(design, self.kind))
 
-    def at_end(self, design: Design) -> bool:
+    def is_at_limit(self, design: Design) -> bool:
         """Tell whether it is as small or large as a design allows; a chest that is not firm may be true."""
         low, high = self.range
-        value = self.of(design)
+        value = self.value_in(design)
         return value > _END * high or (value < low / _END and self.kind != FIRM_CHEST)
 
-    def put(self, design: Design, value: float) -> Design:
+    def with_value(self, design: Design, value: float) -> Design:
         """Return the design with another one."""
         if self.kind == LENGTH:
             lines = tuple(
@@ -106,22 +106,22 @@ class Number:
             return replace(design, lines=lines)
         if self.kind == STIFFNESS:
             for line in self.lines:
-                design = design.with_traits(replace(design.traits_of(line), stiffness=value))
+                design = design.with_line_settings(replace(design.line_settings(line), stiffness=value))
             return design
         setting: dict[str, Any] = {self.kind: value}
         return replace(design, **setting)
 
-    def sought(self, design: Design) -> float:
+    def to_unknown(self, design: Design) -> float:
         """Return it as it is sought: its logarithm if it is ``logarithmic``."""
-        return math.log(self.of(design)) if self.logarithmic else self.of(design)
+        return math.log(self.value_in(design)) if self.logarithmic else self.value_in(design)
 
-    def found(self, design: Design, sought: float) -> Design:
-        """Return the design with what was ``sought``, within what is allowed."""
+    def from_unknown(self, design: Design, sought: float) -> Design:
+        """Return the design with what was ``to_unknown``, within what is allowed."""
         low, high = self.range
-        return self.put(design, min(max(math.exp(sought) if self.logarithmic else sought, low), high))
+        return self.with_value(design, min(max(math.exp(sought) if self.logarithmic else sought, low), high))
 
 
-def candidates(stages: Stages, *, lengths: bool, each: bool = True) -> tuple[Number, ...]:
+def candidate_parameters(stages: Stages, *, lengths: bool, each: bool = True) -> tuple[Parameter, ...]:
     """Return the numbers that a second scan may tell of a design, at most ``MOST``, the likeliest first.
 
     ``each`` line has a stiffness of its own unless these are too many, or one does for all that have none of
@@ -131,42 +131,42 @@ def candidates(stages: Stages, *, lengths: bool, each: bool = True) -> tuple[Num
     return several if len(several) <= MOST else tuple(_candidates(stages, lengths, False))[:MOST]
 
 
-def _candidates(stages: Stages, lengths: bool, each: bool) -> Iterator[Number]:
+def _candidates(stages: Stages, lengths: bool, each: bool) -> Iterator[Parameter]:
     design = stages.design
-    groups = worn_lines(stages)
-    elastic, own = design.worn_elastics(), design.own_stiffness()
+    groups = active_line_groups(stages)
+    elastic, own = design.active_elastics(), design.line_stiffnesses()
     springy = [group for group in groups if group[0] not in elastic]
     if design.line_hold == "spring":
         usual = tuple(group for group in springy if group[0] not in own)
         if usual and (not each or (springy == [*usual] and len(usual) == 1)):
-            yield Number(LINE_STIFFNESS, tuple(name for group in usual for name in group))
+            yield Parameter(LINE_STIFFNESS, tuple(name for group in usual for name in group))
         for group in springy:
             if group[0] in own or (each and len(springy) > 1):
-                yield Number(STIFFNESS, group)
+                yield Parameter(STIFFNESS, group)
         if len(springy) < len(groups):
-            yield Number(TISSUE, tuple(name for group in groups if group[0] in elastic for name in group))
-    yield Number(FIRM_CHEST)
+            yield Parameter(TISSUE, tuple(name for group in groups if group[0] in elastic for name in group))
+    yield Parameter(FIRM_CHEST)
     if design.member_law == "prestressed":
-        yield Number(PRESTRESS)
+        yield Parameter(PRESTRESS)
     if lengths:
-        yield from (Number(LENGTH, group) for group in groups)
+        yield from (Parameter(LENGTH, group) for group in groups)
 
 
-def precision_before(numbers: tuple[Number, ...]) -> Floats:
+def prior_precision(numbers: tuple[Parameter, ...]) -> Floats:
     """Return the precision (p, p) of ``numbers`` as they are sought, before any scan tells them."""
-    size = np.array([number.before for number in numbers])
+    size = np.array([number.prior_deviation for number in numbers])
     lines = np.array([number.kind in (LINE_STIFFNESS, STIFFNESS) for number in numbers])
     together = np.outer(size * lines, size * lines)
     alone = np.diag(np.where(lines, _OWN, size) ** 2)
     return np.asarray(np.linalg.inv(together + alone)) if len(numbers) else np.zeros((0, 0))
 
 
-def rates_by(stages: Stages, answer: Answer, numbers: tuple[Number, ...]) -> Floats:
+def point_sensitivities(stages: Stages, answer: Sensitivities, numbers: tuple[Parameter, ...]) -> Floats:
     """Return how the free points of an ``answer`` move with ``numbers`` as they are sought, (3 f, p) [mm]."""
     model, design = stages.model, stages.design
     names = [line.name for line in model.lines]
     ratios = np.array([design.ratio(name) for name in names])
-    elastics = {names.index(name): elastic for name, elastic in design.worn_elastics().items()}
+    elastics = {names.index(name): elastic for name, elastic in design.active_elastics().items()}
     if design.line_hold == "held":
         elastics = {}
     stiffer, shares = np.zeros((len(names), len(numbers))), np.zeros((len(names), len(numbers)))
@@ -179,16 +179,16 @@ def rates_by(stages: Stages, answer: Answer, numbers: tuple[Number, ...]) -> Flo
         elif number.kind == LENGTH:
             shares[rows, column] = 1.0
         elif number.kind == PRESTRESS:
-            stiffer[list(elastics), column] = by_net(design.prestress)
+            stiffer[list(elastics), column] = d_tissue(design.prestress)
 
-    kept = volume_keeper(stages, answer)
+    kept = body_volume_rates(stages, answer)
     beside = np.zeros((answer.place.gradient.size, len(numbers)))
     for column, number in enumerate(numbers):
         if number.kind == FIRM_CHEST:
-            beside[:, column] = kept(by_ground(answer, _ground(stages))).moved[:, 0]
+            beside[:, column] = kept(d_ground(answer, _ground(stages))).moved[:, 0]
         elif number.kind == PRESTRESS:
-            beside[:, column] = kept(by_prestress(answer)).moved[:, 0]
-    return answers_to(answer, Changes(stiffer, shares), elastics, ratios, kept, beside).moved
+            beside[:, column] = kept(d_prestress(answer)).moved[:, 0]
+    return stiffness_rates(answer, Changes(stiffer, shares), elastics, ratios, kept, beside).moved
 
 
 def _ground(stages: Stages) -> Floats:

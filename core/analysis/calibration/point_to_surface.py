@@ -14,14 +14,14 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from core.analysis.calibration.surface_distance import CANDIDATES, REACH, curvature, heights_over_chords
-from core.geometry.closest_point import centroid_tree, nearest_faces, shares
+from core.geometry.closest_point import barycentric, centroid_tree, nearest_faces
 from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points
 
 _BESIDE, _SLANT = 1.0, 0.5  # a foot this far from below a point [mm], and by the way to it, is no foot [1]
 
 
 @dataclass(frozen=True, eq=False)
-class Feet:
+class Projection:
     """Where points stand over a skin, and how far it stands before them, ``gaps`` (k,) [mm].
 
     ``rows`` (k,) number the points that stand over it at all. Their feet lie between the skin's vertices
@@ -34,12 +34,12 @@ class Feet:
     normals: Points
     gaps: Floats
 
-    def of(self, values: Floats) -> Floats:
+    def interpolate(self, values: Floats) -> Floats:
         """Return what has ``values`` (r, ...) at the skin's vertices at the feet, shape (k, ...)."""
         return np.asarray(np.einsum("ks,ks...->k...", self.parts, values[self.corners]))
 
 
-class Ground:
+class Surface:
     """A skin to stand over: ``places`` (r, 3) [mm], unit ``normals`` (r, 3), triangles ``corners`` (3, a)."""
 
     def __init__(self, places: Points, normals: Points, corners: Faces) -> None:
@@ -50,7 +50,7 @@ class Ground:
     def _middles(self) -> cKDTree:
         return centroid_tree(self._mesh)
 
-    def feet(self, points: Points, facing: Points, noise: float = 0.0) -> Feet:
+    def project(self, points: Points, facing: Points, noise: float = 0.0) -> Projection:
         """Return where ``points`` (n, 3) [mm] of a skin that looks along ``facing`` (n, 3) stand.
 
         ``noise`` [mm] is the standard deviation of the points along each axis: what it moves along a round
@@ -60,7 +60,7 @@ class Ground:
         asked = points[rows]
         face, foot = nearest_faces(self._mesh, asked, self._middles, CANDIDATES)
         corners = self._mesh.faces[face]
-        parts = shares(self.places[corners], foot)
+        parts = barycentric(self.places[corners], foot)
         normals = np.einsum("ks,ksj->kj", parts, self._normals[corners])
         normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-12)[:, None]
         way = asked - foot
@@ -72,7 +72,7 @@ class Ground:
         gaps = heights_over_chords(self.places, self._normals, corners, parts) - ahead[stands]
         if noise > 0.0:
             gaps = gaps + noise**2 * np.einsum("ks,ks->k", parts, self._curved[corners])
-        return Feet(rows, corners, parts, normals, gaps)
+        return Projection(rows, corners, parts, normals, gaps)
 
     @cached_property
     def _curved(self) -> Floats:

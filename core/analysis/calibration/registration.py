@@ -14,10 +14,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from core.analysis.calibration.point_to_surface import Ground
-from core.analysis.calibration.robust_least_squares import PATCHES, normal, spread_of
-from core.analysis.calibration.static_region import ground_of, still_faces, strewn_on
-from core.analysis.calibration.surface_distance import WornSkin, cells, known
+from core.analysis.calibration.point_to_surface import Surface
+from core.analysis.calibration.robust_least_squares import PATCHES, normal_equations, robust_deviation
+from core.analysis.calibration.static_region import sample_surface_with_normals, static_faces, static_surface
+from core.analysis.calibration.surface_distance import ScanSurface, grid_cells, is_valid
 from core.errors import LandmarkError, ScanError
 from core.geometry.mesh import Floats, Mesh, Points
 from core.landmarks.detect import find_landmarks
@@ -64,31 +64,31 @@ class Alignment:
     middle: Points
 
     @property
-    def turns(self) -> Floats:
+    def rotation_deviations(self) -> Floats:
         """How unsure the rotation about x, y and z is, standard deviations (3,) [degrees]."""
         return np.asarray(np.degrees(np.sqrt(np.maximum(np.diag(self.covariance)[:3], 0.0))))
 
     @property
-    def shifts(self) -> Floats:
+    def translation_deviations(self) -> Floats:
         """How unsure the place along x, y and z is, standard deviations (3,) [mm]."""
         return np.asarray(np.sqrt(np.maximum(np.diag(self.covariance)[3:], 0.0)))
 
-    def laid(self, mesh: Mesh) -> Mesh:
+    def transform(self, mesh: Mesh) -> Mesh:
         """Return a mesh of the second scan's frame in that of the first."""
-        return mesh.moved(moved(self.matrix, mesh.vertices))
+        return mesh.moved(transform_points(self.matrix, mesh.vertices))
 
 
-def moved(matrix: Floats, points: Points) -> Points:
+def transform_points(matrix: Floats, points: Points) -> Points:
     """Return points (k, 3) where a ``matrix`` (4, 4) takes them."""
     return np.asarray(points @ matrix[:3, :3].T + matrix[:3, 3])
 
 
 def align(stages: Stages, worn: Body, progress: Progress = quiet) -> Alignment:
     """Lay ``worn`` on the body of ``stages``. Raises ScanError if it is no scan of the same still skin."""
-    faces = still_faces(stages)
-    places, normals = strewn_on(stages.body.mesh, faces)
+    faces = static_faces(stages)
+    places, normals = sample_surface_with_normals(stages.body.mesh, faces)
     _refuse_other_size(stages.body, worn)
-    skin = WornSkin(worn.mesh, worn.noise)
+    skin = ScanSurface(worn.mesh, worn.noise)
     progress("aligning", 0.1)
     there = _coarse(places, worn, _starts(stages, worn))
     progress("aligning", 0.5)
@@ -96,7 +96,7 @@ def align(stages: Stages, worn: Body, progress: Progress = quiet) -> Alignment:
     progress("aligning", 0.7)
     found = _judged(skin, places, normals, there)
     _refuse_other_body(found)
-    return by_all_points(found, skin, ground_of(stages.body.mesh, faces))
+    return refine_with_all_points(found, skin, static_surface(stages.body.mesh, faces))
 
 
 def _starts(stages: Stages, worn: Body) -> Iterator[Floats]:
@@ -105,7 +105,7 @@ def _starts(stages: Stages, worn: Body) -> Iterator[Floats]:
     middle = stages.control.mesh.vertices.mean(axis=0)
     for height in _HEIGHTS:
         for turn in _TURNS:
-            matrix = turned(np.array([0.0, 0.0, turn]), middle)
+            matrix = rotation_about(np.array([0.0, 0.0, turn]), middle)
             matrix[:3, 3] += shift + np.array([0.0, 0.0, height])
             yield matrix
 
@@ -127,7 +127,7 @@ def _between(first: Landmarks, second: Landmarks | None, body: Mesh, worn: Mesh)
     return np.asarray(np.median(worn.vertices, axis=0) - np.median(body.vertices, axis=0))
 
 
-def turned(angles: Floats, middle: Points) -> Floats:
+def rotation_about(angles: Floats, middle: Points) -> Floats:
     """Return the matrix (4, 4) that turns by the vector ``angles`` (3,) [rad] about a ``middle`` (3,)."""
     angle = float(np.linalg.norm(angles))
     x, y, z = angles / angle if angle > 0.0 else angles
@@ -147,7 +147,7 @@ def _coarse(places: Points, worn: Body, starts: Iterator[Floats]) -> Floats:
     for start in starts:
         matrix = start
         for _ in range(_COARSE_ROUNDS):
-            here = moved(matrix, few)
+            here = transform_points(matrix, few)
             at = tree.query(here)[1]
             facing = normals[at]
             ahead = np.einsum("ij,ij->i", here - vertices[at], facing)
@@ -168,21 +168,21 @@ def _slopes(places: Points, normals: Points) -> Floats:
 
 
 def _stepped(step: Floats, places: Points) -> Floats:
-    matrix = turned(step[:3], places.mean(axis=0))
+    matrix = rotation_about(step[:3], places.mean(axis=0))
     matrix[:3, 3] += step[3:]
     return matrix
 
 
-def _fine(skin: WornSkin, places: Points, normals: Points, matrix: Floats) -> Floats:
+def _fine(skin: ScanSurface, places: Points, normals: Points, matrix: Floats) -> Floats:
     """Return the matrix at which the gaps of the still skin, each by its weight, are least."""
     for _ in range(_ROUNDS):
-        here, facing = moved(matrix, places), normals @ matrix[:3, :3].T
+        here, facing = transform_points(matrix, places), normals @ matrix[:3, :3].T
         gaps = skin.gaps(here, facing)
-        seen = known(gaps)
+        seen = is_valid(gaps)
         if seen.sum() < _FEWEST:
             return matrix
         gaps, here, facing = gaps[seen], here[seen], facing[seen]
-        equations = normal(gaps, _slopes(here, facing), spread_of(gaps))
+        equations = normal_equations(gaps, _slopes(here, facing), robust_deviation(gaps))
         step = equations.step()
         matrix = _stepped(step, here) @ matrix
         if _is_still(step, 10.0 * _STILL_STEP):  # all points set it right
@@ -195,41 +195,41 @@ def _is_still(step: Floats, turn: float) -> bool:
     return bool(np.abs(step[:3]).max() < turn and np.abs(step[3:]).max() < 100.0 * turn)
 
 
-def by_all_points(found: Alignment, skin: WornSkin, ground: Ground) -> Alignment:
+def refine_with_all_points(found: Alignment, skin: ScanSurface, ground: Surface) -> Alignment:
     """Return an alignment set right by the points of the second scan over the still ``ground``.
 
     Each of them counts, or each of very many: a scanner that gives more of them tells better where it stood.
     """
     every = max(1, int(np.ceil(len(skin.mesh.vertices) / _MOST_POINTS)))
-    points, facing, matrix = skin.mesh.vertices[::every], skin.facing[::every], found.matrix
+    points, facing, matrix = skin.mesh.vertices[::every], skin.vertex_directions[::every], found.matrix
     for _ in range(_POINT_ROUNDS):
-        here = moved(matrix, points)
-        feet = ground.feet(here, facing @ matrix[:3, :3].T, skin.noise)
+        here = transform_points(matrix, points)
+        feet = ground.project(here, facing @ matrix[:3, :3].T, skin.noise)
         if len(feet.gaps) < _FEWEST:
             return found
         here = here[feet.rows]
-        slopes, spread = -_slopes(here, feet.normals), spread_of(feet.gaps)
-        step = normal(feet.gaps, slopes, spread).step()
+        slopes, spread = -_slopes(here, feet.normals), robust_deviation(feet.gaps)
+        step = normal_equations(feet.gaps, slopes, spread).step()
         matrix = _stepped(step, here) @ matrix
         if _is_still(step, _STILL_STEP):
             break
     # By their feet: noise would part points of one place, those outside from those inside.
-    patches = [cells(feet.of(ground.places), size) for size in PATCHES]
-    covariance = normal(feet.gaps, slopes, spread, patches).covariance
+    patches = [grid_cells(feet.interpolate(ground.places), size) for size in PATCHES]
+    covariance = normal_equations(feet.gaps, slopes, spread, patches).covariance
     return replace(found, matrix=matrix, covariance=covariance, middle=here.mean(axis=0))
 
 
-def _judged(skin: WornSkin, places: Points, normals: Points, matrix: Floats) -> Alignment:
-    here, facing = moved(matrix, places), normals @ matrix[:3, :3].T
+def _judged(skin: ScanSurface, places: Points, normals: Points, matrix: Floats) -> Alignment:
+    here, facing = transform_points(matrix, places), normals @ matrix[:3, :3].T
     gaps = skin.gaps(here, facing)
-    seen = known(gaps)
+    seen = is_valid(gaps)
     gaps, here, facing = gaps[seen], here[seen], facing[seen]
     if len(gaps) < _FEWEST:
         unsure = np.diag(np.full(6, np.inf))
         return Alignment(_back(matrix), np.inf, np.inf, 0.0, len(gaps) / len(seen), unsure, np.zeros(3))
     near = np.abs(gaps) < MET
-    patches = [cells(here, size) for size in PATCHES]
-    equations = normal(gaps, _slopes(here, facing), spread_of(gaps), patches)
+    patches = [grid_cells(here, size) for size in PATCHES]
+    equations = normal_equations(gaps, _slopes(here, facing), robust_deviation(gaps), patches)
     return Alignment(
         _back(matrix),
         float(np.sqrt(np.mean(gaps[near] ** 2))) if near.any() else np.inf,
@@ -237,7 +237,7 @@ def _judged(skin: WornSkin, places: Points, normals: Points, matrix: Floats) -> 
         float(near.mean()),
         float(seen.mean()),
         equations.covariance,
-        moved(_back(matrix), here).mean(axis=0),
+        transform_points(_back(matrix), here).mean(axis=0),
     )
 
 

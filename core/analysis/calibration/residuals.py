@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.analysis.calibration.point_to_surface import Ground
-from core.analysis.calibration.registration import Alignment, moved
-from core.analysis.calibration.surface_distance import WornSkin, curvature, known
-from core.analysis.uncertainty.input_uncertainty import assumed
+from core.analysis.calibration.point_to_surface import Surface
+from core.analysis.calibration.registration import Alignment, transform_points
+from core.analysis.calibration.surface_distance import ScanSurface, curvature, is_valid
+from core.analysis.uncertainty.input_uncertainty import default_uncertainty
 from core.errors import LandmarkError, ScanError
 from core.geometry.mesh import Floats, Mesh, Points
 from core.geometry.mirror_plane import mirror
@@ -32,7 +32,7 @@ _ANY = 0.25  # and where no triangle is met
 
 
 @dataclass(frozen=True, eq=False)
-class Worn:
+class FittingScan:
     """A scan with the garment on, ``name`` its file, laid on the first: its ``skin`` in that frame [mm].
 
     ``bust_points`` by side are (3,) [mm], and ``sure`` how sure they are (0..1); both empty where none show.
@@ -41,13 +41,13 @@ class Worn:
     name: str
     body: Body
     alignment: Alignment
-    skin: WornSkin
+    skin: ScanSurface
     bust_points: Mapping[str, Points]
     sure: Mapping[str, float]
 
 
 @dataclass(frozen=True)
-class Figures:
+class ResidualSummary:
     """Predicted less real [mm] of some skin: the mean, the root of the mean square, 95 % of all sizes.
 
     ``seen`` [1] is the share of it that the worn scan shows.
@@ -60,22 +60,22 @@ class Figures:
 
 
 @dataclass(frozen=True, eq=False)
-class Difference:
+class Residuals:
     """Predicted less real at each of the moving vertices, ``values`` (k,) [mm] along the predicted normal.
 
     Positive where the predicted skin stands before the real one; not a number where the worn scan shows none.
-    ``all_of_it`` and ``sides`` sum it up; ``bust_points`` (3,) [mm] by side, where they are sure on the scan,
+    ``total`` and ``sides`` sum it up; ``bust_points`` (3,) [mm] by side, where they are sure on the scan,
     and the ± of each along the skin, ``bust_unsure`` [mm], as both scans tell where it is.
     """
 
     values: Floats
-    all_of_it: Figures
-    sides: Mapping[str, Figures]
+    total: ResidualSummary
+    sides: Mapping[str, ResidualSummary]
     bust_points: Mapping[str, Points]
     bust_unsure: Mapping[str, float]
 
 
-def laid_on(name: str, body: Body, alignment: Alignment) -> Worn:
+def aligned_fitting_scan(name: str, body: Body, alignment: Alignment) -> FittingScan:
     """Return the body of a worn scan, ``name`` its file, laid on the first by an alignment."""
     points: dict[str, Points] = {}
     sure: dict[str, float] = {}
@@ -85,17 +85,19 @@ def laid_on(name: str, body: Body, alignment: Alignment) -> Worn:
         found = {}
     for side in SIDES:
         if mark := found.get(f"bust_point_{side}"):
-            points[side] = moved(alignment.matrix, mark.position[None])[0]
+            points[side] = transform_points(alignment.matrix, mark.position[None])[0]
             sure[side] = mark.confidence
-    return Worn(name, body, alignment, WornSkin(alignment.laid(body.mesh), body.noise), points, sure)
+    return FittingScan(
+        name, body, alignment, ScanSurface(alignment.transform(body.mesh), body.noise), points, sure
+    )
 
 
-def refuse_mirrored(stages: Stages, worn: Worn) -> None:
+def require_not_mirrored(stages: Stages, worn: FittingScan) -> None:
     """Raise ScanError for a scan that fits far better left for right: still skin may be too even to tell."""
     points, mesh = stages.control.mesh.vertices, worn.skin.mesh
     other = Mesh(mirror(mesh.vertices, stages.moving.middle), mesh.faces[:, ::-1])
-    skins = worn.skin, WornSkin(other, worn.skin.noise)
-    off, mirrored = (figures(gaps_at(stages, points, skin, 0.0)).rms for skin in skins)
+    skins = worn.skin, ScanSurface(other, worn.skin.noise)
+    off, mirrored = (summarize(residuals_at(stages, points, skin, 0.0)).rms for skin in skins)
     if off > max(_OFF, _MIRRORED * mirrored):
         raise ScanError(
             "The worn scan looks like the mirror image of the first: its left lies on her right.",
@@ -103,7 +105,7 @@ def refuse_mirrored(stages: Stages, worn: Worn) -> None:
         )
 
 
-def gaps_at(stages: Stages, points: Points, skin: WornSkin, thickness: float) -> Floats:
+def residuals_at(stages: Stages, points: Points, skin: ScanSurface, thickness: float) -> Floats:
     """Return predicted less real of the moving vertices for control ``points`` (n, 3) [mm], shape (k,) [mm].
 
     The real skin is taken to lie ``thickness`` [mm] under the scanned one. Where the scan is finer than the
@@ -113,43 +115,43 @@ def gaps_at(stages: Stages, points: Points, skin: WornSkin, thickness: float) ->
     places, normals = stages.shape(points)
     curved = curvature(places, normals, stages.moving.corners)[:count]
     met = skin.gaps(places[:count], normals[:count], curved)
-    ground = Ground(places, normals, stages.moving.corners)
-    feet = ground.feet(skin.mesh.vertices, skin.facing, skin.noise)
+    ground = Surface(places, normals, stages.moving.corners)
+    feet = ground.project(skin.mesh.vertices, skin.vertex_directions, skin.noise)
     many = np.bincount(feet.corners.ravel(), feet.parts.ravel(), len(places))[:count]
     sums = np.bincount(feet.corners.ravel(), (feet.parts * feet.gaps[:, None]).ravel(), len(places))[:count]
-    several = many >= np.where(known(met), _SEVERAL, _ANY)
+    several = many >= np.where(is_valid(met), _SEVERAL, _ANY)
     return np.asarray(np.where(several, sums / np.where(several, many, 1.0), met) + thickness)
 
 
-def compare(stages: Stages, points: Points, worn: Worn, thickness: float = 0.0) -> Difference:
+def compare(stages: Stages, points: Points, worn: FittingScan, thickness: float = 0.0) -> Residuals:
     """Compare what control ``points`` (n, 3) [mm] predict with a worn scan."""
-    values = gaps_at(stages, points, worn.skin, thickness)
+    values = residuals_at(stages, points, worn.skin, thickness)
     left = stages.moving.rest[: len(values), 0] > stages.moving.middle
     marks = dict(zip(SIDES, stages.watch.bust_points(points), strict=True))
     inward = np.array([0.0, thickness, 0.0])
     shown = [side for side in worn.bust_points if worn.sure[side] >= CERTAIN]
-    return Difference(
+    return Residuals(
         values,
-        figures(values),
-        {"left": figures(values[left]), "right": figures(values[~left])},
+        summarize(values),
+        {"left": summarize(values[left]), "right": summarize(values[~left])},
         {side: marks[side] - (worn.bust_points[side] + inward) for side in shown},
-        {side: bust_unsure(stages.landmarks.points[f"bust_point_{side}"]) for side in shown},
+        {side: bust_point_uncertainty(stages.landmarks.points[f"bust_point_{side}"]) for side in shown},
     )
 
 
-def bust_unsure(first: Landmark) -> float:
+def bust_point_uncertainty(first: Landmark) -> float:
     """Return the ± along the skin of a bust point of both scans, ``first`` that of the first [mm]."""
-    told = assumed()
+    told = default_uncertainty()
     return told.sds * math.hypot(told.of_landmark(first), told.landmark_mm)
 
 
-def figures(values: Floats) -> Figures:
+def summarize(values: Floats) -> ResidualSummary:
     """Return what sums up ``values`` (k,) [mm], of which some may be no number."""
-    seen = known(values)
+    seen = is_valid(values)
     real = values[seen]
     if not len(real):
-        return Figures(np.nan, np.nan, np.nan, 0.0)
-    return Figures(
+        return ResidualSummary(np.nan, np.nan, np.nan, 0.0)
+    return ResidualSummary(
         float(real.mean()),
         float(np.sqrt(np.mean(real**2))),
         float(np.quantile(np.abs(real), 0.95)),

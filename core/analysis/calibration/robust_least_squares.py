@@ -17,7 +17,7 @@ _BLIND = 1e-9
 _LEAST = 0.1  # as if no scanner were better than this [mm]
 
 
-def spread_of(gaps: Floats) -> float:
+def robust_deviation(gaps: Floats) -> float:
     """Return the standard deviation of ``gaps`` (k,) [mm] after their median, at least a tenth of a mm."""
     return max(1.4826 * float(np.median(np.abs(gaps - np.median(gaps)))), _LEAST) if len(gaps) else _LEAST
 
@@ -35,7 +35,7 @@ def cost(gaps: Floats, spread: float) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class Beforehand:
+class Prior:
     """What is known of p unknowns without any gap: ``precision`` (p, p), how far they are ``off`` (p,)."""
 
     precision: Floats
@@ -47,7 +47,7 @@ class Beforehand:
 
 
 @dataclass(frozen=True, eq=False)
-class Normal:
+class NormalEquations:
     """The normal equations of gaps that go with p unknowns: ``matrix`` (p, p), ``slope`` (p,).
 
     ``covariance`` (p, p) is that of the unknowns.
@@ -57,10 +57,10 @@ class Normal:
     slope: Floats
     covariance: Floats
 
-    def of(self, some: Flags) -> Normal:
+    def subset(self, some: Flags) -> NormalEquations:
         """Return the equations of ``some`` (p,) of the unknowns, the others held."""
         both = np.ix_(some, some)
-        return Normal(self.matrix[both], self.slope[some], self.covariance[both])
+        return NormalEquations(self.matrix[both], self.slope[some], self.covariance[both])
 
     def step(self, damping: float = 0.0) -> Floats:
         """Return the step of Gauss and Newton, damped after Levenberg and Marquardt, shape (p,)."""
@@ -68,13 +68,13 @@ class Normal:
         return -np.asarray(np.linalg.lstsq(damped, self.slope, rcond=1e-14)[0])
 
 
-def normal(
+def normal_equations(
     gaps: Floats,
     slopes: Floats,
     spread: float,
     patches: Sequence[Indices] = (),
-    known: Beforehand | None = None,
-) -> Normal:
+    known: Prior | None = None,
+) -> NormalEquations:
     """Return the normal equations of ``gaps`` (k,) with ``slopes`` (k, p), and of what is ``known`` before.
 
     Each of ``patches`` (k,) numbers places that may be off together: so the covariance is honest where
@@ -93,7 +93,7 @@ def normal(
     before = spread**2 * inverse @ tied @ inverse
     every = [inverse @ pulls.T @ pulls @ inverse]
     every += [_left_out(weighted, slopes, pulls, inverse, patch) for patch in patches]
-    return Normal(matrix, slope, _widest(every) + before)
+    return NormalEquations(matrix, slope, _widest(every) + before)
 
 
 def _left_out(weighted: Floats, slopes: Floats, pulls: Floats, inverse: Floats, patch: Indices) -> Floats:

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.analysis.calibration.point_to_surface import Ground
-from core.geometry.mesh import Faces, Flags, Mesh, Points, strewn
+from core.analysis.calibration.point_to_surface import Surface
+from core.geometry.mesh import Faces, Flags, Mesh, Points, sample_surface
 from core.pipeline.build import Stages
 
 _SAMPLE = 4000  # places at most that are strewn over it
 _BELOW, _ABOVE, _BESIDE = 160.0, 60.0, 15.0  # how far the still skin reaches beyond the control mesh [mm]
 
 
-def still_faces(stages: Stages) -> Faces:
+def static_faces(stages: Stages) -> Faces:
     """Return the triangles (m, 3) of the trunk's skin that no line moves."""
     mesh, control = stages.body.mesh, stages.control.mesh.vertices
     low, high = control.min(axis=0), control.max(axis=0)
@@ -22,10 +22,10 @@ def still_faces(stages: Stages) -> Faces:
     return np.asarray(mesh.faces[beside & level & ~_moves(stages)[mesh.faces].any(axis=1)])
 
 
-def strewn_on(mesh: Mesh, faces: Faces) -> tuple[Points, Points]:
+def sample_surface_with_normals(mesh: Mesh, faces: Faces) -> tuple[Points, Points]:
     """Return places (k, 3) [mm] strewn over ``faces`` of a mesh, and the normals there."""
     areas = Mesh(mesh.vertices, faces).face_areas
-    places, face = strewn(mesh.vertices, faces, areas, min(_SAMPLE, 4 * len(faces)))
+    places, face = sample_surface(mesh.vertices, faces, areas, min(_SAMPLE, 4 * len(faces)))
     corners = mesh.vertex_normals[faces[face]].sum(axis=1)
     return places, corners / np.maximum(np.linalg.norm(corners, axis=1), 1e-12)[:, None]
 
@@ -36,7 +36,7 @@ def _moves(stages: Stages) -> Flags:
     return moves
 
 
-def ground_of(mesh: Mesh, faces: Faces) -> Ground:
+def static_surface(mesh: Mesh, faces: Faces) -> Surface:
     """Return the skin of ``faces`` (m, 3) of a mesh, for points to stand over."""
     used, corners = np.unique(faces, return_inverse=True)
-    return Ground(mesh.vertices[used], mesh.vertex_normals[used], corners.reshape(-1, 3).T)
+    return Surface(mesh.vertices[used], mesh.vertex_normals[used], corners.reshape(-1, 3).T)

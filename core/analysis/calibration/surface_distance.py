@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial import cKDTree
 
-from core.geometry.closest_point import centroid_tree, nearest_faces, shares
+from core.geometry.closest_point import barycentric, centroid_tree, nearest_faces
 from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points
 
 REACH = 40.0
@@ -27,7 +27,7 @@ _EASED = 3  # rounds in which normals are taken together with their neighbours
 _MET = 0.3  # how far from the skin the place that was found may lie [mm]
 
 
-class WornSkin:
+class ScanSurface:
     """The skin of a scan [mm], to be asked how far places lie before it.
 
     ``noise`` [mm] is the standard deviation of its vertices along each axis.
@@ -37,7 +37,7 @@ class WornSkin:
         self.mesh, self.noise = mesh, noise
 
     @cached_property
-    def facing(self) -> Points:
+    def vertex_directions(self) -> Points:
         """Where it looks at its vertices, as roughly as matters to tell front from back, (n, 3) [1].
 
         A fine skin with noise has normals of all sorts: those of neighbours are taken together.
@@ -79,7 +79,7 @@ class WornSkin:
         away = np.linalg.norm(self._nearest(hit)[1] - hit, axis=1)
         if curved is not None:
             vertices, corners = self.mesh.vertices, self.mesh.faces[face]
-            parts = shares(vertices[corners], hit)
+            parts = barycentric(vertices[corners], hit)
             # The normals of a skin of curvature 1 turn by as much as its places are apart.
             gap = gap - curved * heights_over_chords(vertices, vertices, corners, parts)
         return np.where(unknown | (away > _MET) | (facing < _SLANT), np.nan, gap)
@@ -116,12 +116,12 @@ def curvature(places: Points, normals: Points, corners: Faces) -> Floats:
     return turned / np.maximum(squares, 1e-12)
 
 
-def cells(places: Points, size: float) -> Indices:
+def grid_cells(places: Points, size: float) -> Indices:
     """Return the number of the cube of a ``size`` [mm] in which each place (k, 3) lies, shape (k,)."""
     at = np.floor(places / size).astype(np.int64)
     return np.asarray(np.unique(at, axis=0, return_inverse=True)[1]).ravel()
 
 
-def known(gaps: Floats) -> Flags:
+def is_valid(gaps: Floats) -> Flags:
     """Tell where there is a skin, shape (k,)."""
     return np.asarray(~np.isnan(gaps))

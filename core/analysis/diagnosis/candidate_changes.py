@@ -11,7 +11,7 @@ from typing import Any
 from core.document.design import Design
 from core.garment.curve_smoothing import USUAL_WIDTH
 from core.mechanics.constraint_lines import RATIO_LIMITS
-from core.pipeline.active_lines import Together, free_lines
+from core.pipeline.active_lines import LineGroup, free_lines
 from core.pipeline.build import Stages
 
 LENGTH_STEP = 0.001
@@ -45,23 +45,25 @@ class Change:
 
 
 @dataclass(frozen=True)
-class Way:
+class ChangePath:
     """A way of changing a design in up to ``most`` steps; ``at`` returns the change of so many."""
 
     at: Callable[[int], Change]
     most: int
 
 
-def single_ways(stages: Stages, complaint: str) -> Iterator[Way]:
+def single_paths(stages: Stages, complaint: str) -> Iterator[ChangePath]:
     """Yield the ways to change one line, or the gain, which helps no lengths without a balance."""
     turns = stages.design.volume == "conventional" and complaint != "unreachable"
     if turns:
         first = math.ceil(stages.gain / GAIN_STEP - 1e-6) - 1
-        yield Way(partial(_gain, stages, first), first - math.ceil(_least_gain(stages) / GAIN_STEP) + 1)
-    yield from line_ways(stages)
+        yield ChangePath(
+            partial(_gain, stages, first), first - math.ceil(_least_gain(stages) / GAIN_STEP) + 1
+        )
+    yield from line_paths(stages)
 
 
-def line_ways(stages: Stages) -> Iterator[Way]:
+def line_paths(stages: Stages) -> Iterator[ChangePath]:
     """Yield the ways to make one line longer or shorter; at its rest length it would be off."""
     for names in free_lines(stages):
         ratio = stages.design.ratio(names[0])
@@ -71,7 +73,7 @@ def line_ways(stages: Stages) -> Iterator[Way]:
             grid = math.floor(sign * ratio / LENGTH_STEP + 1e-6)
             most = math.floor(sign * end / LENGTH_STEP + 1e-6) - grid
             if most > 0:  # a line that is worn at its rest length has one way only
-                yield Way(partial(_length, stages.design, names, sign, grid), most)
+                yield ChangePath(partial(_length, stages.design, names, sign, grid), most)
 
 
 def _least_gain(stages: Stages) -> float:
@@ -104,7 +106,7 @@ def lower_gains(stages: Stages, bears: float | None) -> Iterator[Change]:
             yield _set(stages.design, "gain", gain)
 
 
-def settings(design: Design, complaint: str) -> Iterator[Change]:
+def option_changes(design: Design, complaint: str) -> Iterator[Change]:
     """Yield other choices of the model that may end a complaint, the least far-reaching first."""
     moving = complaint in ("vibrating", "diverging", "settling")
     in_step = [_set(design, "line_force", "implicit")]
@@ -121,39 +123,39 @@ def _set(design: Design, key: str, value: str | float) -> Change:
     return Change("setting", replace(design, **{key: value}), setting=(key, value))  # type: ignore[arg-type]
 
 
-def with_setting(setting: Change, ways: Iterator[Way]) -> Iterator[Way]:
+def with_option(setting: Change, ways: Iterator[ChangePath]) -> Iterator[ChangePath]:
     """Yield ways that start from another choice of the model as the changes of both at once."""
 
-    def both(way: Way, steps: int) -> Change:
+    def both(way: ChangePath, steps: int) -> Change:
         return replace(way.at(steps), setting=setting.setting)
 
     for way in ways:
-        yield Way(partial(both, way), way.most)
+        yield ChangePath(partial(both, way), way.most)
 
 
-def off_changes(stages: Stages) -> Iterator[Change]:
+def deactivations(stages: Stages) -> Iterator[Change]:
     """Yield the ways to take one line off."""
     for names in free_lines(stages):
         size = 100.0 * abs(stages.design.ratio(names[0]) - 1.0)
         yield Change("off", stages.design.with_linked(names[0], None), size, names)
 
 
-def wider(design: Design, names: Together, width: float) -> Change:
+def wider_bands(design: Design, names: LineGroup, width: float) -> Change:
     """Return the change to bands ``width`` [mm] wide: they press less, and the shape stays."""
-    widths = [design.traits_of(name).width or USUAL_WIDTH for name in names]
+    widths = [design.line_settings(name).width or USUAL_WIDTH for name in names]
     for name in names:
-        design = design.with_traits(replace(design.traits_of(name), width=width))
+        design = design.with_line_settings(replace(design.line_settings(name), width=width))
     return Change("width", design, 100.0 * (width / min(widths) - 1.0), tuple(names))
 
 
-def together_ways(stages: Stages) -> Iterator[Way]:
+def common_paths(stages: Stages) -> Iterator[ChangePath]:
     """Yield the way of all lines nearer to rest, a hundredth of how far they are a step, if there are two."""
     groups = free_lines(stages)
     if len(groups) > 1:
-        yield Way(partial(_together, stages.design, groups), _MOST_TOGETHER)
+        yield ChangePath(partial(_together, stages.design, groups), _MOST_TOGETHER)
 
 
-def _together(design: Design, groups: Sequence[Together], steps: int) -> Change:
+def _together(design: Design, groups: Sequence[LineGroup], steps: int) -> Change:
     size = 0.0
     for names in groups:
         before = design.ratio(names[0])

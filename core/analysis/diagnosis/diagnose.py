@@ -13,29 +13,29 @@ from threadpoolctl import threadpool_limits
 
 from core.analysis.diagnosis.candidate_changes import (
     Change,
-    Way,
-    line_ways,
+    ChangePath,
+    common_paths,
+    deactivations,
+    line_paths,
     lower_gains,
-    off_changes,
-    settings,
-    single_ways,
-    together_ways,
-    with_setting,
+    option_changes,
+    single_paths,
+    with_option,
 )
-from core.analysis.diagnosis.fix import Cure, findings
-from core.analysis.diagnosis.opposing_constraints import Fight, fight_of
-from core.analysis.diagnosis.pressure_fixes import cleaner, eased, ranked
+from core.analysis.diagnosis.fix import Fix, fixable_findings
+from core.analysis.diagnosis.opposing_constraints import ConstraintForces, analyse
+from core.analysis.diagnosis.pressure_fixes import complete_fix, pressure_changes, rank_fixes
 from core.analysis.diagnosis.search import Search
-from core.analysis.diagnosis.stability import Outlook, outlook
-from core.analysis.diagnosis.trial_run import Standing, rank_of, standing
+from core.analysis.diagnosis.stability import StabilityForecast, forecast
+from core.analysis.diagnosis.trial_run import TrialResult, run_trial, severity_rank
 from core.garment.assessment import Finding
 from core.mechanics.constraint_lines import Line
-from core.mechanics.convergence import Verdict
+from core.mechanics.convergence import Convergence
 from core.pipeline.active_lines import free_lines
 from core.pipeline.build import Stages
 from core.progress import Progress, quiet
 
-__all__ = ["Change", "Cure", "Diagnosis", "diagnose"]
+__all__ = ["Change", "Diagnosis", "Fix", "diagnose"]
 
 _OTHERS = 2  # changes of other lines that look good, and are run too
 _MOST_GAIN = 10.0
@@ -48,48 +48,48 @@ class Diagnosis:
 
     ``findings`` are those of the overall verdict that a change can end.
 
-    ``complaint`` is one of ``standing.COMPLAINTS``, empty if the design is well. ``fight`` tells what pulls
-    against what. ``bears`` is the conventional gain at which the shape that the lines make begins to vibrate
+    ``problem`` is one of ``standing.COMPLAINTS``, empty if the design is well. ``forces`` tells what pulls
+    against what. ``gain_limit`` is the conventional gain at which the shape that the lines make begins to vibrate
     (probe units [1]), and ``onset`` the growth per turn with which a small swing begins, None where that is
     not asked or not known. ``fixes`` were run and end it, the best first. If there are none, ``nearest`` is
     the mildest of what was run, and ``locked`` names worn lines that may not be changed.
     """
 
-    standing: Standing
-    fight: Fight
-    bears: float | None = None
+    trial: TrialResult
+    forces: ConstraintForces
+    gain_limit: float | None = None
     onset: float | None = None
-    fixes: tuple[Cure, ...] = ()
+    fixes: tuple[Fix, ...] = ()
     findings: tuple[Finding, ...] = ()
-    nearest: Cure | None = None
+    nearest: Fix | None = None
     locked: tuple[str, ...] = ()
 
     @property
     def stages(self) -> Stages:
         """What was looked at."""
-        return self.standing.stages
+        return self.trial.stages
 
     @property
-    def cure(self) -> Cure | None:
+    def best_fix(self) -> Fix | None:
         """The best of the fixes, if there is any."""
         return self.fixes[0] if self.fixes else None
 
     @property
-    def complaint(self) -> str:
+    def problem(self) -> str:
         """What is wrong, or nothing."""
-        return self.standing.complaint
+        return self.trial.problem
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> Convergence:
         """How its run ended, with period and growth if it swings."""
-        return self.standing.verdict
+        return self.trial.verdict
 
-    def seen(self, verdict: Verdict) -> Diagnosis:
+    def with_convergence(self, verdict: Convergence) -> Diagnosis:
         """Return the same as told of a run that ended by ``verdict``: one that did not begin at rest."""
-        if self.complaint == "unreachable" or verdict.told == "settled":
+        if self.problem == "unreachable" or verdict.display_state == "settled":
             return self
-        ran = replace(self.standing.ran, verdict=verdict)
-        return replace(self, standing=replace(self.standing, ran=ran, complaint=verdict.told))
+        ran = replace(self.trial.run, verdict=verdict)
+        return replace(self, trial=replace(self.trial, run=ran, problem=verdict.display_state))
 
     def line(self, name: str) -> Line:
         """Return a line of the design by name."""
@@ -117,78 +117,82 @@ def diagnose(stages: Stages, progress: Progress = quiet) -> Diagnosis:
     # Two BLAS threads make these small products many times slower.
     with threadpool_limits(1):
         progress("diagnosing", 0.0)
-        found = Diagnosis(standing(stages, progress), fight_of(stages, progress))
-        if found.complaint != "unreachable":
-            found = replace(found, findings=findings(found.standing))
-        if not found.complaint:
-            search = Search(found.standing, progress)
-            return replace(found, fixes=eased(search, found.findings)) if found.findings else found
-        if found.complaint in ("vibrating", "diverging"):
-            seen = outlook(stages)
-            bears = borne_gain(stages, progress) if stages.design.volume == "conventional" else None
-            found = replace(found, bears=bears, onset=None if seen is None else seen.growth)
-        return _treated(found, Search(found.standing, progress))
+        found = Diagnosis(run_trial(stages, progress), analyse(stages, progress))
+        if found.problem != "unreachable":
+            found = replace(found, findings=fixable_findings(found.trial))
+        if not found.problem:
+            search = Search(found.trial, progress)
+            return replace(found, fixes=pressure_changes(search, found.findings)) if found.findings else found
+        if found.problem in ("vibrating", "diverging"):
+            seen = forecast(stages)
+            bears = gain_limit_of(stages, progress) if stages.design.volume == "conventional" else None
+            found = replace(found, gain_limit=bears, onset=None if seen is None else seen.growth)
+        return _treated(found, Search(found.trial, progress))
 
 
 def _treated(found: Diagnosis, search: Search) -> Diagnosis:
     """Return the diagnosis with the changes that end its complaint, each run, the best first."""
     fixes = _ending(found, search)
-    if fixes and found.complaint != "unreachable" and all(fix.remains for fix in fixes):
-        fixes += cleaner(search, ranked(fixes)[0])
+    if fixes and found.problem != "unreachable" and all(fix.remains for fix in fixes):
+        fixes += complete_fix(search, rank_fixes(fixes)[0])
     if fixes:
-        return replace(found, fixes=ranked(fixes))
+        return replace(found, fixes=rank_fixes(fixes))
     stages = found.stages
     if not search.tried:
-        list(search.tried_all(settings(stages.design, found.complaint)))  # to know the nearest
+        list(search.run_changes(option_changes(stages.design, found.problem)))  # to know the nearest
     worn = (line.name for line in stages.model.lines if line.constrains)
     free = set(chain.from_iterable(free_lines(stages)))
-    locked = tuple(name for name in worn if name in stages.design.worn() and name not in free)
-    milder = [each for each in search.tried if rank_of(each.left) < found.standing.rank]
-    nearest = min(milder, key=lambda each: (rank_of(each.left), each.change.size), default=None)
+    locked = tuple(name for name in worn if name in stages.design.active_lines() and name not in free)
+    milder = [each for each in search.tried if severity_rank(each.remaining_problem) < found.trial.rank]
+    nearest = min(
+        milder, key=lambda each: (severity_rank(each.remaining_problem), each.change.size), default=None
+    )
     return replace(found, nearest=nearest, locked=locked)
 
 
-def _ending(found: Diagnosis, search: Search) -> list[Cure]:
+def _ending(found: Diagnosis, search: Search) -> list[Fix]:
     """Return changes that end a complaint: another control if this one vibrates, and the smallest others."""
-    stages, swings = found.stages, found.complaint in ("vibrating", "diverging")
+    stages, swings = found.stages, found.problem in ("vibrating", "diverging")
     tame = swings and stages.design.volume == "conventional"
-    gains = list(lower_gains(stages, found.bears)) if tame else []
-    choices = list(settings(stages.design, found.complaint))
+    gains = list(lower_gains(stages, found.gain_limit)) if tame else []
+    choices = list(option_changes(stages.design, found.problem))
     adaptive = [each for each in choices if tame and each.setting == ("volume", "adaptive")]
-    calmed = search.first_of(iter(adaptive))
-    cure, others = search.smallest(single_ways(stages, found.complaint))
+    calmed = search.first_verified(iter(adaptive))
+    cure, others = search.smallest_fix(single_paths(stages, found.problem))
     fixes = [each for each in (calmed, cure) if each is not None]
-    fixes += [each for each in search.tried_all(others[:_OTHERS]) if each.ends]
+    fixes += [each for each in search.run_changes(others[:_OTHERS]) if each.ends]
     if fixes:
         return fixes
-    cure = search.smallest(_chosen(stages, gains, line_ways))[0]
-    cure = cure or search.first_of(iter(choices))
-    cure = cure or search.smallest(_chosen(stages, choices, line_ways))[0]
-    cure = cure or search.smallest(together_ways(stages))[0]
-    cure = cure or search.smallest(_chosen(stages, gains, together_ways))[0]
-    cure = cure or search.smallest(_chosen(stages, choices, together_ways))[0]
-    cure = cure or search.first_of(off_changes(stages))
-    return [] if cure is None else [search.plainer(cure)]
+    cure = search.smallest_fix(_chosen(stages, gains, line_paths))[0]
+    cure = cure or search.first_verified(iter(choices))
+    cure = cure or search.smallest_fix(_chosen(stages, choices, line_paths))[0]
+    cure = cure or search.smallest_fix(common_paths(stages))[0]
+    cure = cure or search.smallest_fix(_chosen(stages, gains, common_paths))[0]
+    cure = cure or search.smallest_fix(_chosen(stages, choices, common_paths))[0]
+    cure = cure or search.first_verified(deactivations(stages))
+    return [] if cure is None else [search.simplify(cure)]
 
 
-def _chosen(stages: Stages, choices: list[Change], ways: Callable[[Stages], Iterator[Way]]) -> Iterator[Way]:
+def _chosen(
+    stages: Stages, choices: list[Change], ways: Callable[[Stages], Iterator[ChangePath]]
+) -> Iterator[ChangePath]:
     """Yield the ways to change lines with each of other choices of the model."""
     for choice in choices:
-        yield from with_setting(choice, ways(replace(stages, design=choice.design)))
+        yield from with_option(choice, ways(replace(stages, design=choice.design)))
 
 
-def borne_gain(stages: Stages, progress: Progress = quiet) -> float | None:
+def gain_limit_of(stages: Stages, progress: Progress = quiet) -> float | None:
     """Return the conventional gain at which the shape that the lines make begins to vibrate, None if unknown.
 
     Where the turns of a gain come to rest is worked out anew for each that is tried.
     """
 
-    seen: Outlook | None = None
+    seen: StabilityForecast | None = None
 
     def grows(gain: float) -> bool:
         nonlocal seen
         progress("diagnosing", 0.0)
-        seen = outlook(replace(stages, design=replace(stages.design, gain=gain)), seen)
+        seen = forecast(replace(stages, design=replace(stages.design, gain=gain)), seen)
         return seen is None or seen.growth > 1.0
 
     low, high = 0.0, min(2.0 * stages.gain_limit, _MOST_GAIN)

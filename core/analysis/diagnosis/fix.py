@@ -5,28 +5,28 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from core.analysis.diagnosis.candidate_changes import Change
-from core.analysis.diagnosis.trial_run import Standing
-from core.garment.assessment import GOOD, LEVELS, Finding, assessed
+from core.analysis.diagnosis.trial_run import TrialResult
+from core.garment.assessment import GOOD, LEVELS, Finding, assess
 
-CURABLE = ("convergence", "shape", "band", "pressure")
+FIXABLE = ("convergence", "shape", "band", "pressure")
 """Topics of findings that a change of lines or model can end."""
 
 
 @dataclass(frozen=True, eq=False)
-class Cure:
+class Fix:
     """A change, and how the design stands with it: run from rest, and on from where it was.
 
-    ``left`` is the worse of what is wrong with the run then, empty if nothing is; ``remains`` are all
+    ``remaining_problem`` is the worse of what is wrong with the run then, empty if nothing is; ``remains`` are all
     findings on the changed design that a change can end, the worst first. Of a change that is two,
-    ``choice_ends`` is what would be wrong without the other choice, ``lengths_end`` without the lengths.
+    ``option_result`` is what would be wrong without the other choice, ``lengths_result`` without the lengths.
     """
 
     change: Change
-    standing: Standing
+    trial: TrialResult
     ends: bool
-    left: str = ""
-    choice_ends: str = ""
-    lengths_end: str = ""
+    remaining_problem: str = ""
+    option_result: str = ""
+    lengths_result: str = ""
     remains: tuple[Finding, ...] = ()
 
     @property
@@ -44,8 +44,8 @@ class Cure:
         return LEVELS.index(self.level), of_lines + bool(change.setting[0]), change.size
 
 
-def findings(standing: Standing) -> tuple[Finding, ...]:
+def fixable_findings(standing: TrialResult) -> tuple[Finding, ...]:
     """Return what is found on a design that was run and that a change of it can end, the worst first."""
-    found = (each for each in assessed(standing).findings if each.topic in CURABLE)
+    found = (each for each in assess(standing).findings if each.topic in FIXABLE)
     # No length, width or choice makes a pressure known.
     return tuple(each for each in found if each.topic != "pressure" or each.value)

@@ -16,16 +16,16 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse import linalg as sparse_linalg
 
-from core.analysis.diagnosis.stability import resting
+from core.analysis.diagnosis.stability import equilibrium_for
 from core.geometry.mesh import Floats, Points
 from core.mechanics.force_units import newtons_per_unit
-from core.mechanics.iteration import Targets
+from core.mechanics.iteration import LineTargets
 from core.mechanics.model import ConstrainedModel
-from core.mechanics.newton import Balance
-from core.mechanics.newton_sliding import Skin
-from core.mechanics.potential import Place, Potential
-from core.pipeline.active_lines import Together, worn_lines
-from core.pipeline.build import Stages, targets_of
+from core.mechanics.newton import Equilibrium
+from core.mechanics.newton_sliding import SlidingSurface
+from core.mechanics.potential import Evaluation, Potential
+from core.pipeline.active_lines import LineGroup, active_line_groups
+from core.pipeline.build import Stages, line_targets
 from core.progress import Progress, quiet
 
 OPPOSED = 100.0
@@ -39,7 +39,7 @@ _NOTHING = 1e-6  # N
 
 
 @dataclass(frozen=True, eq=False)
-class Pull:
+class ConstraintForce:
     """What one constraint does to the free points: that of ``lines``, linked ones together, or the volume.
 
     ``lines`` is empty for the volume. ``force`` (f, 3) [N]; ``newtons`` its sizes at all points, added up;
@@ -55,45 +55,47 @@ class Pull:
 
 
 @dataclass(frozen=True, eq=False)
-class Clash:
+class Opposition:
     """Two constraints that pull against each other.
 
-    ``angle`` [degrees] between what they do to the skin; ``taken`` [N mm] is the work that one undoes of the
+    ``angle`` [degrees] between what they do to the skin; ``cancelled`` [N mm] is the work that one undoes of the
     other's.
     """
 
-    one: Pull
-    other: Pull
+    one: ConstraintForce
+    other: ConstraintForce
     angle: float
-    taken: float
+    cancelled: float
 
 
 @dataclass(frozen=True, eq=False)
-class Fight:
+class ConstraintForces:
     """All constraints in a balance.
 
     ``share`` [1] is how far on the way from rest to the lengths that are set it lies: 1 where these can be
-    balanced. ``clashes`` begin with those that take most from each other; ``worst`` is the first if it stands
+    balanced. ``oppositions`` begin with those that take most from each other; ``worst`` is the first if it stands
     out. ``skin`` [N] is what the skin answers with. Newtons rest on the design's tissue, an estimate.
     """
 
     share: float
-    pulls: tuple[Pull, ...]
-    clashes: tuple[Clash, ...]
+    forces: tuple[ConstraintForce, ...]
+    oppositions: tuple[Opposition, ...]
     skin: float
 
     @property
-    def worst(self) -> Clash | None:
+    def worst(self) -> Opposition | None:
         """The two that fight, or None if no pair stands out."""
-        first, *others = self.clashes or (None,)
+        first, *others = self.oppositions or (None,)
         if first is None or first.angle < OPPOSED:
             return None
-        return first if all(first.taken >= OUTSTANDING * each.taken for each in others if each) else None
+        return (
+            first if all(first.cancelled >= OUTSTANDING * each.cancelled for each in others if each) else None
+        )
 
 
-def fight_of(stages: Stages, progress: Progress = quiet) -> Fight:
+def analyse(stages: Stages, progress: Progress = quiet) -> ConstraintForces:
     """Return what fights in a design, where its run comes to rest or at the last balance on the way there."""
-    targets = targets_of(stages.design, stages)
+    targets = line_targets(stages.design, stages)
     balance, share = _last_balance(stages, targets, progress)
     potential = Potential(stages.model, _between(targets, share).ratios)
     place = potential.at(balance.state.moved)
@@ -105,27 +107,27 @@ def fight_of(stages: Stages, progress: Progress = quiet) -> Fight:
     volume = _volume(passed_on, place, newtons * balance.pressures)
     pulls += [volume] if stages.design.volume != "none" and volume.newtons > _NOTHING else []
     clashes = [passed_on.clash(one, other) for one, other in combinations(pulls, 2)]
-    clashes = sorted((each for each in clashes if each.taken > 0.0), key=lambda each: -each.taken)
-    return Fight(share, tuple(pulls), tuple(clashes), newtons * _added(place.inner))
+    clashes = sorted((each for each in clashes if each.cancelled > 0.0), key=lambda each: -each.cancelled)
+    return ConstraintForces(share, tuple(pulls), tuple(clashes), newtons * _added(place.inner))
 
 
 class _Skin:
     """How the skin of a model passes forces on, in one place; ``newtons`` [N/mm] is a unit of stiffness."""
 
-    def __init__(self, model: ConstrainedModel, place: Place, newtons: float) -> None:
+    def __init__(self, model: ConstrainedModel, place: Evaluation, newtons: float) -> None:
         self.model = model
         stiffness = sparse.csc_array(sparse.csr_array(model.tensegric.stiffness))
         self._moves = sparse_linalg.splu(newtons * stiffness).solve
         self._outward = model.volume.gradient(place.points)
 
-    def pull(self, lines: tuple[str, ...], force: Points) -> Pull:
+    def pull(self, lines: tuple[str, ...], force: Points) -> ConstraintForce:
         """Return what a constraint with ``force`` (f, 3) [N] does."""
-        return Pull(lines, force, _added(force), self._angle(force, self._outward))
+        return ConstraintForce(lines, force, _added(force), self._angle(force, self._outward))
 
-    def clash(self, one: Pull, other: Pull) -> Clash:
+    def clash(self, one: ConstraintForce, other: ConstraintForce) -> Opposition:
         """Return how two constraints stand to each other."""
         undone = -float(np.vdot(one.force, self._moves(other.force)))
-        return Clash(one, other, self._angle(one.force, other.force), undone)
+        return Opposition(one, other, self._angle(one.force, other.force), undone)
 
     def _angle(self, one: Points, other: Points) -> float:
         """Return the angle between what two forces do to the skin [degrees], 90 where one is nothing."""
@@ -136,39 +138,39 @@ class _Skin:
         return float(np.degrees(np.arccos(np.clip(np.vdot(one, others) / sizes, -1.0, 1.0))))
 
 
-def _last_balance(stages: Stages, targets: Targets, progress: Progress) -> tuple[Balance, float]:
+def _last_balance(stages: Stages, targets: LineTargets, progress: Progress) -> tuple[Equilibrium, float]:
     """Return where a run rests, or the last balance on the way from rest, and its share of the way."""
-    balance = resting(stages, targets)
-    if balance.found:
+    balance = equilibrium_for(stages, targets)
+    if balance.is_converged:
         return balance, 1.0
-    last, share, stride = resting(stages, _between(targets, 0.0)), 0.0, _STRIDE
+    last, share, stride = equilibrium_for(stages, _between(targets, 0.0)), 0.0, _STRIDE
     while stride > _PRECISION and share < 1.0:
         progress("diagnosing", 0.0)
         further = min(share + stride, 1.0)
-        there = resting(stages, _between(targets, further), last)
-        if there.found:
+        there = equilibrium_for(stages, _between(targets, further), last)
+        if there.is_converged:
             last, share = there, further
         else:
             stride /= 2.0
     return last, share
 
 
-def _between(targets: Targets, share: float) -> Targets:
+def _between(targets: LineTargets, share: float) -> LineTargets:
     return replace(targets, ratios=tuple(1.0 + share * (ratio - 1.0) for ratio in targets.ratios))
 
 
 def _lines(
-    stages: Stages, potential: Potential, place: Place, balance: Balance
-) -> Iterator[tuple[Together, Points]]:
+    stages: Stages, potential: Potential, place: Evaluation, balance: Equilibrium
+) -> Iterator[tuple[LineGroup, Points]]:
     """Yield the force of each worn line that acts, linked ones together, in units of the model."""
     model = potential.model
     tension = potential.tape * (place.lengths - potential.natural)
     if len(balance.tensions):
         tension = tension + balance.tensions[model.owner]
     along = (tension / place.lengths)[:, None] * place.spans
-    acts = Skin(model).across(place) if _slides(model) else None
+    acts = SlidingSurface(model).across(place) if _slides(model) else None
     names = [line.name for line in model.lines]
-    for together in worn_lines(stages):
+    for together in active_line_groups(stages):
         owners = [names.index(name) for name in together]
         mine = np.isin(model.owner, owners)[:, None]
         force = -model.segments.sum(np.where(mine, along, 0.0))
@@ -176,14 +178,14 @@ def _lines(
 
 
 def _slides(model: ConstrainedModel) -> bool:
-    return model.mechanics.line_contact == "sliding" and len(model.owner) > 0
+    return model.options.line_contact == "sliding" and len(model.owner) > 0
 
 
-def _volume(skin: _Skin, place: Place, pressures: Floats) -> Pull:
+def _volume(skin: _Skin, place: Evaluation, pressures: Floats) -> ConstraintForce:
     model = skin.model
     sides = pressures[:, None, None] * model.volume.side_gradients(place.points)
     pull = skin.pull((), sides.sum(axis=0))
-    if model.volume.closed or model.mechanics.volume_of == "both":
+    if model.volume.closed or model.options.volume_of == "both":
         return pull
     # A point in the middle is pushed by both: its force goes to each by what it adds.
     left, right = np.linalg.norm(sides, axis=2)

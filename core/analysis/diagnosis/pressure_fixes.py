@@ -9,18 +9,18 @@ from itertools import chain
 
 from core.analysis.diagnosis.candidate_changes import (
     Change,
-    Way,
-    line_ways,
-    off_changes,
-    together_ways,
-    wider,
-    with_setting,
+    ChangePath,
+    common_paths,
+    deactivations,
+    line_paths,
+    wider_bands,
+    with_option,
 )
-from core.analysis.diagnosis.fix import Cure
+from core.analysis.diagnosis.fix import Fix
 from core.analysis.diagnosis.search import Search
 from core.garment.assessment import BAD, CAUTION, GOOD, Finding
 from core.garment.curve_smoothing import USUAL_WIDTH
-from core.garment.pressure_limits import comfort
+from core.garment.pressure_limits import pressure_limits
 from core.pipeline.build import Stages
 
 MOST = 3
@@ -36,7 +36,7 @@ _WIDTH_STEP, _ROOMY = 5.0, 1.1  # mm; a wider band takes another course on the s
 _FIRST = {"length": 10, "together": 25}  # steps that are tried first: 1 %, and a quarter of the way to rest
 
 
-def ranked(fixes: Iterable[Cure]) -> tuple[Cure, ...]:
+def rank_fixes(fixes: Iterable[Fix]) -> tuple[Fix, ...]:
     """Return the best of some fixes, the best first; of those that set the same design one is enough.
 
     Another way to compute the same garment comes before all others.
@@ -45,11 +45,11 @@ def ranked(fixes: Iterable[Cure]) -> tuple[Cure, ...]:
     return tuple(sorted(by_design.values(), key=lambda cure: (not _is_control(cure), cure.rank))[:MOST])
 
 
-def _is_control(cure: Cure) -> bool:
+def _is_control(cure: Fix) -> bool:
     return cure.change.kind == "setting" and cure.change.setting in NUMERICAL
 
 
-def eased(search: Search, findings: tuple[Finding, ...]) -> tuple[Cure, ...]:
+def pressure_changes(search: Search, findings: tuple[Finding, ...]) -> tuple[Fix, ...]:
     """Return changes that end the findings on a design whose run is well, the best first.
 
     Those that end all of them come first, then those that end the worst.
@@ -57,51 +57,51 @@ def eased(search: Search, findings: tuple[Finding, ...]) -> tuple[Cure, ...]:
     stages, worst = search.stages, findings[0].level
     known = chain(_offs(stages, findings), _widths(stages, findings))
     fixes = [
-        cure for cure in search.tried_all(known) if cure.level != worst or len(cure.remains) < len(findings)
+        cure for cure in search.run_changes(known) if cure.level != worst or len(cure.remains) < len(findings)
     ]
     for way in _ways(stages, findings):
-        cure = search.clean(way, _FIRST[way.at(1).kind])
+        cure = search.fewest_steps(way, _FIRST[way.at(1).kind])
         if cure is None and worst == BAD:
-            cure = search.clean(way, _FIRST[way.at(1).kind], CAUTION)
+            cure = search.fewest_steps(way, _FIRST[way.at(1).kind], CAUTION)
         fixes += [] if cure is None else [cure]
-    return ranked(fixes)
+    return rank_fixes(fixes)
 
 
-def cleaner(search: Search, fix: Cure) -> list[Cure]:
+def complete_fix(search: Search, fix: Fix) -> list[Fix]:
     """Return what ends a complaint like ``fix`` and leaves nothing behind, if a few runs find it."""
     change, stages = fix.change, search.stages
     chosen = bool(change.setting[0]) and change.kind != "length"
     base = replace(stages, design=replace(stages.design, **dict([change.setting]))) if chosen else stages
     ways = _ways(base, fix.remains)
     if chosen:
-        ways = with_setting(replace(change, design=base.design), ways)
-    found = (search.clean(way, _FIRST[way.at(1).kind]) for way in ways)
+        ways = with_option(replace(change, design=base.design), ways)
+    found = (search.fewest_steps(way, _FIRST[way.at(1).kind]) for way in ways)
     return [cure for cure in found if cure is not None and cure.level == GOOD][:1]
 
 
-def _ways(stages: Stages, findings: tuple[Finding, ...]) -> Iterator[Way]:
+def _ways(stages: Stages, findings: tuple[Finding, ...]) -> Iterator[ChangePath]:
     """Yield ways that may end findings: a tight line longer, a slack one shorter, all nearer to rest."""
     tight = {name for each in findings if each.topic == "pressure" or _is_far(each) for name in each.lines}
     slack = _slack(findings)
-    for way in line_ways(stages):
+    for way in line_paths(stages):
         (name, *_), longer = way.at(1).lines, _is_longer(stages, way.at(1))
         if (longer and name in tight) or (not longer and name in slack):
             yield way
     if any(each.topic in ("shape", "pressure") for each in findings):
-        yield from together_ways(stages)
+        yield from common_paths(stages)
 
 
 def _widths(stages: Stages, findings: tuple[Finding, ...]) -> Iterator[Change]:
     """Yield wider bands for lines of no elastic: as wide as the limits of pressure require."""
-    design, limits = stages.design, comfort()
+    design, limits = stages.design, pressure_limits()
     for each in findings:
-        if each.topic != "pressure" or each.lines[0] in design.worn_elastics():
+        if each.topic != "pressure" or each.lines[0] in design.active_elastics():
             continue
-        width = design.traits_of(each.lines[0]).width or USUAL_WIDTH
+        width = design.line_settings(each.lines[0]).width or USUAL_WIDTH
         for kpa in (limits.amber_kpa, limits.red_kpa):
             needed = math.ceil(_ROOMY * width * each.value / kpa / _WIDTH_STEP) * _WIDTH_STEP
             if width < needed <= WIDEST:
-                yield wider(design, tuple(sorted(design.linked(each.lines[0]))), needed)
+                yield wider_bands(design, tuple(sorted(design.linked_pair(each.lines[0]))), needed)
 
 
 def _is_longer(stages: Stages, change: Change) -> bool:
@@ -111,7 +111,7 @@ def _is_longer(stages: Stages, change: Change) -> bool:
 def _offs(stages: Stages, findings: tuple[Finding, ...]) -> Iterator[Change]:
     """Yield the changes that take slack lines off."""
     slack = _slack(findings)
-    return (change for change in off_changes(stages) if slack & set(change.lines))
+    return (change for change in deactivations(stages) if slack & set(change.lines))
 
 
 def _slack(findings: tuple[Finding, ...]) -> set[str]:

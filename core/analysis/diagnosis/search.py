@@ -13,15 +13,15 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeGuard
 
-from core.analysis.diagnosis.candidate_changes import Change, Way
-from core.analysis.diagnosis.fix import Cure, findings
-from core.analysis.diagnosis.stability import Outlook, apart, outlook, outlook_about
-from core.analysis.diagnosis.trial_run import Ran, Standing, gone_on, rank_of, standing
+from core.analysis.diagnosis.candidate_changes import Change, ChangePath
+from core.analysis.diagnosis.fix import Fix, fixable_findings
+from core.analysis.diagnosis.stability import StabilityForecast, forecast, forecast_about, length_difference
+from core.analysis.diagnosis.trial_run import RunResult, TrialResult, continue_run, run_trial, severity_rank
 from core.document.design import Design
 from core.errors import UserError
 from core.garment.assessment import GOOD, LEVELS
-from core.mechanics.mesh_quality import CALM_RANGE, STRAIN_RANGE
-from core.pipeline.build import Stages, build, targets_of
+from core.mechanics.mesh_quality import STRAIN_RANGE, STRAINED_RANGE
+from core.pipeline.build import Stages, build, line_targets
 from core.progress import Progress
 
 _LOOKS = 80  # outlooks that a search on one kind of way may take
@@ -45,7 +45,7 @@ class _Hope:
 
     size: float
     number: int
-    way: Way = field(compare=False)
+    way: ChangePath = field(compare=False)
     steps: int = field(compare=False)
     known: int = field(compare=False)
     failed: int = field(default=0, compare=False)
@@ -60,52 +60,52 @@ class _Hope:
 class Search:
     """Looks for what ends the complaint of a design that was run, by as many more ``looks`` ahead."""
 
-    def __init__(self, sick: Standing, progress: Progress) -> None:
+    def __init__(self, sick: TrialResult, progress: Progress) -> None:
         self._sick, self._progress = sick, progress
-        self._good: Outlook | None = None
-        self._stood: list[Outlook] = []
+        self._good: StabilityForecast | None = None
+        self._stood: list[StabilityForecast] = []
         self._built: dict[tuple[Any, ...], Stages] = {}
         self.looks = _LOOKS
-        self.tried: list[Cure] = []
+        self.tried: list[Fix] = []
         design = sick.stages.design
         steady = design.volume in ("adaptive", "accumulating", "none") and design.line_hold == "spring"
-        self._swings = not steady or design.line_force == "explicit" or sick.complaint == "vibrating"
-        self._learn(sick.stages, sick.ran)
+        self._swings = not steady or design.line_force == "explicit" or sick.problem == "vibrating"
+        self._learn(sick.stages, sick.run)
 
     @property
     def stages(self) -> Stages:
         """The design that is looked at."""
         return self._sick.stages
 
-    def _learn(self, stages: Stages, ran: Ran) -> None:
+    def _learn(self, stages: Stages, ran: RunResult) -> None:
         """Keep where a run came to: another place than the outlook's where there is more than one."""
-        if ran.verdict.turns and ran.verdict.motion != "diverging" and stages.design.volume != "exact":
-            seen = outlook_about(stages, ran.middle)
+        if ran.verdict.iterations and ran.verdict.motion != "diverging" and stages.design.volume != "exact":
+            seen = forecast_about(stages, ran.middle)
             self._stood += [seen] if seen else []
 
     def _build(self, design: Design) -> Stages:
         """Build a changed design; what was made for others of the same model is not made again."""
-        alike = design.mechanics, design.worn()
+        alike = design.model_options, design.active_lines()
         self._built[alike] = build(design, self._built.get(alike, self._sick.stages))
         return self._built[alike]
 
-    def _near(self, stages: Stages) -> Outlook | None:
+    def _near(self, stages: Stages) -> StabilityForecast | None:
         """Return what to look from: of where runs stood and the last good outlook, the nearest."""
-        model, targets = stages.model, targets_of(stages.design, stages)
+        model, targets = stages.model, line_targets(stages.design, stages)
         known = [*reversed(self._stood), *([self._good] if self._good else [])]
-        return min(known, key=lambda each: apart(each, model, targets), default=None)
+        return min(known, key=lambda each: length_difference(each, model, targets), default=None)
 
     def _bears(self, stages: Stages) -> bool:
         """Return whether the outlook of a changed design is good."""
-        if _too_far(stages, CALM_RANGE if self._sick.complaint == "strained" else STRAIN_RANGE):
+        if _too_far(stages, STRAINED_RANGE if self._sick.problem == "strained" else STRAIN_RANGE):
             return False
-        seen = outlook(stages, self._near(stages))
+        seen = forecast(stages, self._near(stages))
         if seen is None or seen.condition.folded or seen.condition.overstrained:
             return False
         self._good = seen
-        if self._sick.complaint == "strained" and seen.condition.strained:
+        if self._sick.problem == "strained" and seen.condition.strained:
             return False
-        return seen.stays if self._swings else True
+        return seen.is_stable if self._swings else True
 
     def _hopeful(self, change: Change) -> bool:
         if not self.looks:
@@ -117,7 +117,7 @@ class Search:
         except UserError:
             return False  # an elastic beyond its curve, for example
 
-    def first_good(self, way: Way, largest: float = math.inf, after: int = 0) -> int | None:
+    def first_good(self, way: ChangePath, largest: float = math.inf, after: int = 0) -> int | None:
         """Return the fewest steps beyond ``after`` with which a way's outlook is good, if more are no worse.
 
         Changes of more than the ``largest`` size [%] are not looked for.
@@ -136,36 +136,38 @@ class Search:
             none, steps = (none, middle) if self._hopeful(way.at(middle)) else (middle, steps)
         return steps
 
-    def tried_out(self, change: Change) -> Cure:
+    def run_change(self, change: Change) -> Fix:
         """Run a changed design, from rest and on from where the run stands, and keep what came out."""
         self._progress("diagnosing", 0.0)
         stages = self._build(change.design)
-        after = standing(stages, self._progress, trial=True)
-        left, ran = after.complaint, after.ran
+        after = run_trial(stages, self._progress, trial=True)
+        left, ran = after.problem, after.run
         if self._well(left):
-            warm = gone_on(self._sick, stages, self._progress)
-            told = "" if warm is None or warm.verdict.told == "settled" else warm.verdict.told
-            left, ran = max(left, told, key=rank_of), warm or ran
+            warm = continue_run(self._sick, stages, self._progress)
+            told = (
+                "" if warm is None or warm.verdict.display_state == "settled" else warm.verdict.display_state
+            )
+            left, ran = max(left, told, key=severity_rank), warm or ran
         well = self._well(left)
-        cure = Cure(change, after, well, left, remains=findings(after) if well else ())
+        cure = Fix(change, after, well, left, remains=fixable_findings(after) if well else ())
         self.tried.append(cure)
         if not cure.ends:
             self._learn(stages, ran)
         return cure
 
-    def tried_all(self, changes: Iterable[Change]) -> Iterator[Cure]:
+    def run_changes(self, changes: Iterable[Change]) -> Iterator[Fix]:
         """Run changes; those that are refused, such as an elastic beyond its curve, are left out."""
         for change in changes:
             try:
-                cure = self.tried_out(change)
+                cure = self.run_change(change)
             except UserError:
                 continue
             yield cure
 
     def _well(self, complaint: str) -> bool:
-        return not complaint or (complaint == "strained" and self._sick.complaint != "strained")
+        return not complaint or (complaint == "strained" and self._sick.problem != "strained")
 
-    def smallest(self, ways: Iterator[Way]) -> tuple[Cure | None, list[Change]]:
+    def smallest_fix(self, ways: Iterator[ChangePath]) -> tuple[Fix | None, list[Change]]:
         """Return the smallest change on any way that a run bears out, and those that looked good besides."""
         self.looks = _LOOKS
         hopes, runs = self._hopes(ways), 0
@@ -175,7 +177,7 @@ class Search:
                 self._further(hopes, hope, hope.steps - 1)
                 continue
             runs += 1
-            cure = self.tried_out(hope.change)
+            cure = self.run_change(hope.change)
             if cure.ends:
                 return self._closed_in(hope, cure), [each.change for each in sorted(hopes)]
             failed = replace(hope, failed=hope.failed + 1, short=hope.steps)
@@ -183,18 +185,18 @@ class Search:
             self._further(hopes, failed, min(hope.steps + more, hope.way.most) - 1)
         return None, []
 
-    def _closed_in(self, hope: _Hope, cure: Cure) -> Cure:
+    def _closed_in(self, hope: _Hope, cure: Fix) -> Fix:
         """Return a smaller change that ends it too, between one that did not and one that did."""
         short, steps = hope.short or hope.steps, hope.steps
         for _ in range(_CLOSER):
             middle = (short + steps) // 2
             if middle - short < _FURTHER * steps:
                 break
-            closer = self.tried_out(hope.way.at(middle))
+            closer = self.run_change(hope.way.at(middle))
             short, steps, cure = (short, middle, closer) if closer.ends else (middle, steps, cure)
         return cure
 
-    def _hopes(self, ways: Iterator[Way]) -> list[_Hope]:
+    def _hopes(self, ways: Iterator[ChangePath]) -> list[_Hope]:
         hopes: list[_Hope] = []
         for number, way in enumerate(ways):
             smallest = min((hope.size for hope in hopes), default=math.inf)
@@ -211,19 +213,19 @@ class Search:
             known = len(self._stood)
             heapq.heappush(hopes, replace(hope, size=hope.way.at(steps).size, steps=steps, known=known))
 
-    def first_of(self, changes: Iterator[Change]) -> Cure | None:
+    def first_verified(self, changes: Iterator[Change]) -> Fix | None:
         """Return the first of some changes that a run bears out.
 
         Where lines slide as springs a run tells more than an outlook: it is made to know where it comes to.
         """
         for change in changes:
             loose = change.design.line_contact == "sliding" and change.design.line_hold == "spring"
-            tried = self.tried_all([change]) if self._hopeful(change) or loose else iter(())
+            tried = self.run_changes([change]) if self._hopeful(change) or loose else iter(())
             if (cure := next(tried, None)) is not None and cure.ends:
                 return cure
         return None
 
-    def plainer(self, cure: Cure) -> Cure:
+    def simplify(self, cure: Fix) -> Fix:
         """Return one part of a double change if a run bears it out alone, else both with what each ends."""
         change, key = cure.change, cure.change.setting[0]
         if change.kind == "setting" or not key:
@@ -238,15 +240,21 @@ class Search:
             gain = alone.design.gain or 0.0
             alone = Change("gain", alone.design, 100.0 * (1.0 - gain / self._sick.stages.gain))
         choice = self._once(alone)
-        return choice if choice.ends else replace(cure, choice_ends=lengths.left, lengths_end=choice.left)
+        return (
+            choice
+            if choice.ends
+            else replace(
+                cure, option_result=lengths.remaining_problem, lengths_result=choice.remaining_problem
+            )
+        )
 
-    def clean(self, way: Way, first: int, level: str = GOOD) -> Cure | None:
+    def fewest_steps(self, way: ChangePath, first: int, level: str = GOOD) -> Fix | None:
         """Return about the fewest steps on a way that leave nothing worse than ``level``, None if none do.
 
         Steps are doubled from the ``first`` on, then closed in on: a few runs.
         """
 
-        def does(cure: Cure | None) -> TypeGuard[Cure]:
+        def does(cure: Fix | None) -> TypeGuard[Fix]:
             return cure is not None and cure.ends and LEVELS.index(cure.level) <= LEVELS.index(level)
 
         short, steps, found = 0, min(first, way.most), None
@@ -266,17 +274,17 @@ class Search:
             short, steps, found = (short, middle, closer) if does(closer) else (middle, steps, found)
         return found
 
-    def _allowed(self, change: Change) -> Cure | None:
+    def _allowed(self, change: Change) -> Fix | None:
         """Run a change unless its design was run already; None if it is refused."""
         try:
             return self._once(change)
         except UserError:
             return None  # an elastic beyond its curve, for example
 
-    def _once(self, change: Change) -> Cure:
+    def _once(self, change: Change) -> Fix:
         """Run a change unless its design was run already."""
         known = (cure for cure in self.tried if cure.change.design == change.design)
-        return next(known, None) or self.tried_out(change)
+        return next(known, None) or self.run_change(change)
 
 
 def _too_far(stages: Stages, bounds: tuple[float, float]) -> bool:

@@ -14,14 +14,14 @@ import numpy as np
 from core.geometry.mesh import Floats, Points
 from core.mechanics.dense_volume import solve_body_exact
 from core.mechanics.exact_solution import solve_exact
-from core.mechanics.iteration import Record, State, Targets, iterate
-from core.mechanics.mesh_quality import Condition
+from core.mechanics.iteration import LineTargets, Record, SolverState, iterate
+from core.mechanics.mesh_quality import MeshQuality
 from core.mechanics.model import ConstrainedModel
-from core.mechanics.newton import Balance, balance_at
+from core.mechanics.newton import Equilibrium, equilibrium_at
 from core.mechanics.potential import Potential
 from core.mechanics.solver_comparison import shape_of
 from core.mechanics.volume import Pressure
-from core.pipeline.build import Stages, targets_of
+from core.pipeline.build import Stages, line_targets
 
 FADES = 0.975
 """Growth of a swing per turn below which it is gone within the turns that a run is watched [1]; ours."""
@@ -38,91 +38,93 @@ _NEAR = 1e-7  # volume errors this far apart are the same [1]
 
 
 @dataclass(frozen=True, eq=False)
-class Outlook:
+class StabilityForecast:
     """Where the turns of a design come to rest, and in what ``condition`` the control mesh is there."""
 
     model: ConstrainedModel
-    targets: Targets
-    balance: Balance
-    condition: Condition
+    targets: LineTargets
+    balance: Equilibrium
+    condition: MeshQuality
 
     @cached_property
     def growth(self) -> float:
         """By how much a small swing about it grows in a turn [1]; 0 where nothing swings."""
         if self.targets.control == "exact":
             return 0.0
-        return swing_growth(self.model, self.targets, self.balance)
+        return oscillation_growth(self.model, self.targets, self.balance)
 
     @cached_property
-    def stays(self) -> bool:
+    def is_stable(self) -> bool:
         """Whether the run comes to rest there: a few turns tell, unless it is close."""
         if self.targets.control == "exact":
             return True
-        growth = swing_growth(self.model, self.targets, self.balance, _SHORT_SPAN)
+        growth = oscillation_growth(self.model, self.targets, self.balance, _SHORT_SPAN)
         return (self.growth if _CLOSE[0] < growth < _CLOSE[1] else growth) < FADES
 
 
-def outlook(stages: Stages, near: Outlook | None = None) -> Outlook | None:
+def forecast(stages: Stages, near: StabilityForecast | None = None) -> StabilityForecast | None:
     """Return how the run of a design will end, None where there is nothing for it to rest at.
 
     From an outlook ``near`` by it is found quickly or held not to be there.
     """
-    model, targets = stages.model, targets_of(stages.design, stages)
-    return _seen(model, targets, resting(stages, targets, _start(near, model, targets)))
+    model, targets = stages.model, line_targets(stages.design, stages)
+    return _seen(model, targets, equilibrium_for(stages, targets, _start(near, model, targets)))
 
 
-def outlook_about(stages: Stages, moved: Points) -> Outlook | None:
+def forecast_about(stages: Stages, moved: Points) -> StabilityForecast | None:
     """Return where turns rest that stand about ``moved``, (f, 3) [mm], None if nothing is there.
 
     Where lines slide there may be more than one balance, and turns come to another than a walk from rest.
     """
-    model, targets = stages.model, targets_of(stages.design, stages)
+    model, targets = stages.model, line_targets(stages.design, stages)
     if targets.control == "exact":
-        return outlook(stages)
+        return forecast(stages)
     if not np.isfinite(moved).all():
         return None
-    start = balance_at(Potential(together(model), targets.ratios), moved)
-    return _seen(model, targets, resting(stages, targets, start))
+    start = equilibrium_at(Potential(combined_volume_model(model), targets.ratios), moved)
+    return _seen(model, targets, equilibrium_for(stages, targets, start))
 
 
-def _seen(model: ConstrainedModel, targets: Targets, balance: Balance) -> Outlook | None:
-    if not balance.found:
+def _seen(model: ConstrainedModel, targets: LineTargets, balance: Equilibrium) -> StabilityForecast | None:
+    if not balance.is_converged:
         return None
-    condition = shape_of(model).condition(model.tensegric.expand(balance.state.moved))
-    return Outlook(model, targets, balance, condition)
+    condition = shape_of(model).quality(model.tensegric.expand(balance.state.moved))
+    return StabilityForecast(model, targets, balance, condition)
 
 
-def _start(near: Outlook | None, model: ConstrainedModel, targets: Targets) -> Balance | None:
+def _start(
+    near: StabilityForecast | None, model: ConstrainedModel, targets: LineTargets
+) -> Equilibrium | None:
     """Return the balance of ``near`` if a search can start there; exact answers are found from rest."""
-    if near is None or targets.control == "exact" or apart(near, model, targets) > _FAR:
+    if near is None or targets.control == "exact" or length_difference(near, model, targets) > _FAR:
         return None
     return near.balance
 
 
-def apart(near: Outlook, model: ConstrainedModel, targets: Targets) -> float:
+def length_difference(near: StabilityForecast, model: ConstrainedModel, targets: LineTargets) -> float:
     """Return how far the lengths of two outlooks are apart [1], inf for those that share no model."""
     if near.model is not model or near.targets.control == "exact":
         return np.inf
     return float(np.abs(np.subtract(near.targets.ratios, targets.ratios)).max(initial=0.0))
 
 
-def resting(stages: Stages, targets: Targets, near: Balance | None = None) -> Balance:
+def equilibrium_for(stages: Stages, targets: LineTargets, near: Equilibrium | None = None) -> Equilibrium:
     """Return the balance that a design comes to rest at with other ``targets``; see ``solve_exact``."""
     model = stages.model
     if targets.control == "exact":
         if stages.design.dense_volume:
             return solve_body_exact(model, targets.ratios, stages.body_change, near=near)
         return solve_exact(model, targets.ratios, _most_steps(near), near=near, turns=False)
-    return _kept(together(model), targets, near)
+    return _kept(combined_volume_model(model), targets, near)
 
 
-def together(model: ConstrainedModel) -> ConstrainedModel:
+def combined_volume_model(model: ConstrainedModel) -> ConstrainedModel:
     """Return a model as turns measure it: both breasts together, whatever the exact answer holds."""
-    both = replace(model.tensegric, mechanics=replace(model.mechanics, volume_of="both"))
+    both = replace(model.tensegric, mechanics=replace(model.options, volume_of="both"))
     return replace(model, tensegric=both)
 
 
-def _kept(model: ConstrainedModel, targets: Targets, near: Balance | None) -> Balance:
+def _kept(model: ConstrainedModel, targets: LineTargets, near: Equilibrium | None) -> Equilibrium:
     """Return the balance at the volume that a control keeps: another than at rest where it has no memory.
 
     There the pressure is the gain times what is missing; that is closed in on by secants.
@@ -130,16 +132,16 @@ def _kept(model: ConstrainedModel, targets: Targets, near: Balance | None) -> Ba
     keeps = targets.control in ("adaptive", "accumulating")
     excess = 0.0 if keeps or near is None else _excess(model, near)
 
-    def at(excess: float, steps: int, near: Balance | None) -> Balance:
+    def at(excess: float, steps: int, near: Equilibrium | None) -> Equilibrium:
         kept = np.full(2, 0.5 * excess * model.volume.rest_volume)
         return solve_exact(model, targets.ratios, steps, excess=kept, near=near, turns=False)
 
     here = at(excess, _most_steps(near), near)
-    if keeps or not here.found:
+    if keeps or not here.is_converged:
         return here
     gain = targets.gain if targets.control == "conventional" else 0.0
 
-    def missing(balance: Balance, excess: float) -> float:
+    def missing(balance: Equilibrium, excess: float) -> float:
         return float(balance.pressures[0]) / model.pressure_unit + gain * excess
 
     before, amiss_before = excess, missing(here, excess)
@@ -147,23 +149,25 @@ def _kept(model: ConstrainedModel, targets: Targets, near: Balance | None) -> Ba
     for _ in range(_ROUNDS):
         here = at(excess, _QUICK, here)
         amiss = missing(here, excess)
-        if not here.found or abs(excess - before) < _NEAR or amiss == amiss_before:
+        if not here.is_converged or abs(excess - before) < _NEAR or amiss == amiss_before:
             return here
         slope = (amiss - amiss_before) / (excess - before)
         before, amiss_before, excess = excess, amiss, excess - amiss / slope
     return here
 
 
-def _excess(model: ConstrainedModel, near: Balance) -> float:
+def _excess(model: ConstrainedModel, near: Equilibrium) -> float:
     """Return what the volume has there beyond rest, in parts of it [1]."""
     return model.volume.volume(model.tensegric.expand(near.state.moved)) / model.volume.rest_volume - 1.0
 
 
-def _most_steps(near: Balance | None) -> int:
+def _most_steps(near: Equilibrium | None) -> int:
     return _FROM_REST if near is None else _QUICK
 
 
-def swing_growth(model: ConstrainedModel, targets: Targets, balance: Balance, span: int = _SPAN) -> float:
+def oscillation_growth(
+    model: ConstrainedModel, targets: LineTargets, balance: Equilibrium, span: int = _SPAN
+) -> float:
     """Return by how much a small swing about ``balance`` grows in a turn [1]; 0 if there is none.
 
     That is what it does between one ``span`` of turns and the next.
@@ -173,7 +177,7 @@ def swing_growth(model: ConstrainedModel, targets: Targets, balance: Balance, sp
     pressure = Pressure(float(balance.pressures[0]) / model.pressure_unit)
     error = float(model.volume.volume(model.tensegric.expand(balance.state.moved)))
     error = (model.volume.rest_volume - error) / model.volume.rest_volume
-    start = State(balance.state.moved + push, replace(pressure, error=error), 0, balance.tensions)
+    start = SolverState(balance.state.moved + push, replace(pressure, error=error), 0, balance.tensions)
     records = [measured for _, measured in iterate(model, lambda: targets, start, turns=2 * span + 2)]
     course = _course(records)
     if len(course) < 2 * span + 2 or not np.isfinite(course).all():

@@ -41,11 +41,13 @@ def conflicts_of(search: Search, goals: Sequence[Goal]) -> tuple[Conflict, ...]:
     for at, goal in enumerate(goals):
         members.setdefault(section_of(goal.name) or goal.name, []).append(at)
     targets = np.array([goal.value for goal in goals])
-    here = search.at(search.start).values
+    here = search.solve_at(search.start).values
     missed = [name for name, rows in members.items() if np.abs(here - targets)[rows].max() >= NEAR]
     if len(members) < 2 or not missed:
         return ()
-    return tuple(_conflict(name, members, goals, here, search.alone(members[name]).values) for name in missed)
+    return tuple(
+        _conflict(name, members, goals, here, search.minimize_single(members[name]).values) for name in missed
+    )
 
 
 def _conflict(

@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection, Sequence
 from core.analysis.inverse_design.conflicts import Conflict
 from core.analysis.inverse_design.quantities import Goal
 from core.analysis.inverse_design.search import Bounds
-from core.analysis.inverse_design.solve import Asking, Reply
+from core.analysis.inverse_design.solve import InverseResult, InverseSolver
 from core.document.design import Design
 from core.errors import UserError
 from core.geometry.mesh import Points
@@ -24,13 +24,15 @@ Chosen = tuple[str, ...]
 def optional_lines(stages: Stages) -> tuple[Chosen, ...]:
     """Return the inactive lines that could move the body, linked ones together."""
     design, moving = stages.design, [line.name for line in stages.model.lines if line.constrains]
-    off = [name for name in moving if name not in design.worn() and not design.traits_of(name).locked]
-    groups = (tuple(sorted(set(design.linked(name)).intersection(off))) for name in off)
+    off = [
+        name for name in moving if name not in design.active_lines() and not design.line_settings(name).locked
+    ]
+    groups = (tuple(sorted(set(design.linked_pair(name)).intersection(off))) for name in off)
     return tuple(dict.fromkeys(groups))
 
 
 class LineSelection:
-    """One design whose targets may switch on ``optional`` lines; used as ``Asking`` is.
+    """One design whose targets may switch on ``optional`` lines; used as ``InverseSolver`` is.
 
     Without an optional line, with each alone and with all of them: the nearest answer counts, and of those
     that are about as near the one with the fewest lines.
@@ -45,17 +47,17 @@ class LineSelection:
     ) -> None:
         self._stages, self._bounds, self._most_kpa = stages, bounds or Bounds({}), most_kpa
         self._groups = [group for group in optional_lines(stages) if set(group) <= set(optional)]
-        self._solvers: dict[Chosen, Asking] = {(): Asking(stages, self._bounds, most_kpa)}
+        self._solvers: dict[Chosen, InverseSolver] = {(): InverseSolver(stages, self._bounds, most_kpa)}
         self._chosen: Chosen = ()
         self.nearer: Callable[[Design], object] = lambda design: None
 
-    def reply(self, goals: Sequence[Goal], progress: Progress = quiet) -> Reply:
+    def solve(self, goals: Sequence[Goal], progress: Progress = quiet) -> InverseResult:
         """Return the answer to ``goals``, which depends on them and the design alone; see ``ask``."""
-        found: dict[Chosen, Reply] = {}
+        found: dict[Chosen, InverseResult] = {}
         problem: UserError | None = None
         for chosen in self._candidates():
             try:
-                found[chosen] = self._solver(chosen).reply(goals, progress)
+                found[chosen] = self._solver(chosen).solve(goals, progress)
             except UserError as why:
                 problem = problem or why
                 continue
@@ -72,51 +74,53 @@ class LineSelection:
                 self._chosen = chosen
         return found[self._chosen]
 
-    def hurried(self, goals: Sequence[Goal], progress: Progress = quiet) -> Reply:
-        """Return an answer near the last one, with the lines of that; see ``Asking.hurried``."""
-        return self._solver(self._chosen).hurried(goals, progress)
+    def solve_quickly(self, goals: Sequence[Goal], progress: Progress = quiet) -> InverseResult:
+        """Return an answer near the last one, with the lines of that; see ``InverseSolver.solve_quickly``."""
+        return self._solver(self._chosen).solve_quickly(goals, progress)
 
     def conflicts(
-        self, reply: Reply, goals: Sequence[Goal], progress: Progress = quiet
+        self, reply: InverseResult, goals: Sequence[Goal], progress: Progress = quiet
     ) -> tuple[Conflict, ...]:
         """Return which of the ``goals`` conflict in the last reply; see ``Asking.conflicts``."""
         return self._solver(self._chosen).conflicts(reply, goals, progress)
 
-    def unlimited(self, reply: Reply, goals: Sequence[Goal], progress: Progress = quiet) -> Reply | None:
+    def unlimited(
+        self, reply: InverseResult, goals: Sequence[Goal], progress: Progress = quiet
+    ) -> InverseResult | None:
         """Return the answer without a limit of pressure where that is what keeps ``goals`` from being met.
 
         Else there is none. Raises UserError, Cancelled.
         """
-        if reply.reachable or not reply.pressing:
+        if reply.reachable or not reply.at_pressure_limit:
             return None
-        chosen = [name for name in self._chosen if name in reply.design.worn()]
+        chosen = [name for name in self._chosen if name in reply.design.active_lines()]
         free = LineSelection(self._stages, chosen, self._bounds, math.inf)
-        return free.reply(goals, progress)
+        return free.solve(goals, progress)
 
-    def now(self, names: Collection[str]) -> tuple[dict[str, float], dict[str, float]]:
-        """Return what quantities and pressures are in the design as it is; see ``Asking.now``."""
-        return self._solver(()).now(names)
+    def current_values(self, names: Collection[str]) -> tuple[dict[str, float], dict[str, float]]:
+        """Return what quantities and pressures are in the design as it is; see ``InverseSolver.current_values``."""
+        return self._solver(()).current_values(names)
 
-    def figures(self, names: Collection[str], points: Points) -> dict[str, float]:
+    def values_at(self, names: Collection[str], points: Points) -> dict[str, float]:
         """Return the quantities ``names`` where the control points are at ``points`` (n, 3) [mm]."""
-        return self._solver(()).figures(names, points)
+        return self._solver(()).values_at(names, points)
 
     def _candidates(self) -> Sequence[Chosen]:
         every = tuple(name for group in self._groups for name in group)
         singles = self._groups if 1 < len(self._groups) <= _MOST else []
         return list(dict.fromkeys(((), *singles, every)))
 
-    def _solver(self, chosen: Chosen) -> Asking:
+    def _solver(self, chosen: Chosen) -> InverseSolver:
         if chosen not in self._solvers:
             design = self._stages.design
             for name in chosen:
                 design = design.with_line(name, self._bounds.longest)
-            self._solvers[chosen] = Asking(build(design, self._stages), self._bounds, self._most_kpa)
+            self._solvers[chosen] = InverseSolver(build(design, self._stages), self._bounds, self._most_kpa)
         solver = self._solvers[chosen]
         solver.nearer = self.nearer
         return solver
 
 
-def switched_on(before: Design, after: Design) -> tuple[str, ...]:
+def activated(before: Design, after: Design) -> tuple[str, ...]:
     """Return the lines that are active ``after`` and were not ``before``."""
-    return tuple(sorted(after.worn() - before.worn()))
+    return tuple(sorted(after.active_lines() - before.active_lines()))

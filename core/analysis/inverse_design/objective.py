@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from core.analysis.inverse_design.quadratic_model import Curved, amiss
+from core.analysis.inverse_design.quadratic_model import QuadraticModel, violation
 from core.analysis.inverse_design.quantities import PRIORITIES, Goal, section_of, tolerance
-from core.analysis.inverse_design.sensitivities import Look
+from core.analysis.inverse_design.sensitivities import LinearizedSolution
 from core.geometry.mesh import Floats
 
 NEAR = 0.05
@@ -27,7 +27,7 @@ Slopes = tuple[float, Floats]
 
 
 @dataclass
-class Wanted:
+class Objective:
     """Figures that are to have ``values`` (m,) [mm], with ``low`` and ``high`` ends of lengths (p,) [%].
 
     ``weights`` (m,) are what figures count for; those of no weight are read and not wanted. ``lines`` names
@@ -44,65 +44,67 @@ class Wanted:
     loosest: Mapping[str, float] = field(default_factory=dict)
     newton: float = 1.0
 
-    def rooms(self, look: Look) -> tuple[Floats, Floats]:
+    def margins(self, look: LinearizedSolution) -> tuple[Floats, Floats]:
         """Return the room to the most and least tensions and to strain of the edges, (k,) [1], and slopes."""
         pulls, by_pulls = self._pulls(look)
         return np.append(pulls, look.margins - INSIDE), np.concatenate([by_pulls, look.by_margins])
 
-    def smooth_room(self, look: Look) -> tuple[Floats, Floats]:
+    def smooth_margins(self, look: LinearizedSolution) -> tuple[Floats, Floats]:
         """Return the room to the most and least tensions and to strain in all, (k,) [1], and slopes."""
         pulls, by_pulls = self._pulls(look)
         margin, by_margin = look.least_margin()
         return np.append(pulls, margin - INSIDE), np.concatenate([by_pulls, by_margin[None]])
 
-    def _pulls(self, look: Look) -> tuple[Floats, Floats]:
+    def _pulls(self, look: LinearizedSolution) -> tuple[Floats, Floats]:
         hard, loose = ([self.lines.index(name) for name in each] for each in (self.hardest, self.loosest))
         most, least = (np.array(list(each.values())) for each in (self.hardest, self.loosest))
         firm = _FIRM * self.newton
-        room = np.append(1.0 - look.pulls[hard] / most, (look.pulls[loose] - least) / firm)
-        return room, np.concatenate([-look.by_pulls[hard] / most[:, None], look.by_pulls[loose] / firm])
+        room = np.append(1.0 - look.tensions[hard] / most, (look.tensions[loose] - least) / firm)
+        return room, np.concatenate([-look.by_tensions[hard] / most[:, None], look.by_tensions[loose] / firm])
 
-    def is_met(self, look: Look) -> bool:
+    def is_met(self, look: LinearizedSolution) -> bool:
         """Tell whether a look is what is wanted, with no limit broken."""
         near = np.abs(look.values - self.values)[self.weights > 0.0].max() < NEAR
-        return bool(near and self.rooms(look)[0].min() > _BROKEN)
+        return bool(near and self.margins(look)[0].min() > _BROKEN)
 
-    def amiss(self, look: Look) -> float:
+    def violation(self, look: LinearizedSolution) -> float:
         """Return how far a look is from what is wanted, and how far it breaks limits besides [mm^2]."""
-        return amiss(self.rows(look)[0], len(self.values))
+        return violation(self.residual_rows(look)[0], len(self.values))
 
-    def rows(self, look: Look) -> tuple[Floats, Floats]:
-        """Return what figures lack, as they count [mm], then the rooms [1], and slopes: see ``Curved``."""
-        room, by_room = self.rooms(look)
+    def residual_rows(self, look: LinearizedSolution) -> tuple[Floats, Floats]:
+        """Return what figures lack, as they count [mm], then the rooms [1], and slopes: see ``QuadraticModel``."""
+        room, by_room = self.margins(look)
         lack, by_lack = look.values - self.values, look.by_values
         return (
             np.append(self.weights * lack, room),
             np.concatenate([self.weights[:, None] * by_lack, by_room]),
         )
 
-    def towards(self, here: Floats, look: Look, reach: float, bends: Floats) -> tuple[Floats, float]:
+    def next_lengths(
+        self, here: Floats, look: LinearizedSolution, reach: float, bends: Floats
+    ) -> tuple[Floats, float]:
         """Return the lengths, within ``reach`` [%], that leave least amiss by what is known, and how much.
 
         ``bends`` (r, p, p) are those of the rows.
         """
         low, high = (np.clip(end - here, -reach, reach) for end in (self.low, self.high))
-        step, left = Curved(*self.rows(look), bends, len(self.values)).nearest(low, high)
+        step, left = QuadraticModel(*self.residual_rows(look), bends, len(self.values)).minimize(low, high)
         return np.clip(here + step, self.low, self.high), left
 
-    def of(self, chosen: Collection[int]) -> Wanted:
+    def subset(self, chosen: Collection[int]) -> Objective:
         """Return these targets with those of the ``chosen`` rows alone wanted."""
         weights = np.zeros_like(self.weights)
         weights[list(chosen)] = self.weights[list(chosen)]
         return replace(self, weights=weights / weights.max())
 
     @property
-    def finest(self) -> float:
+    def smallest_weight_ratio(self) -> float:
         """What the figure counts for that counts least, over what the one counts for that counts most [1]."""
         wanted = self.weights[self.weights > 0.0]
         return float(wanted.min() / wanted.max())
 
 
-def weights_of(goals: Sequence[Goal]) -> Floats:
+def goal_weights(goals: Sequence[Goal]) -> Floats:
     """Return what each figure counts for: its priority over its tolerance, that of the first being 1.
 
     All heights of one section count together as much as another figure.
@@ -113,11 +115,11 @@ def weights_of(goals: Sequence[Goal]) -> Floats:
     return np.asarray(scale / scale.max() / np.sqrt(count))
 
 
-def tension_of(look: Look, unit: float) -> Slopes:
+def total_tension(look: LinearizedSolution, unit: float) -> Slopes:
     """Return the sum of all tensions over ``unit`` and its slopes, shape (p,).
 
     A line that pushes counts as slack; the transition is smooth.
     """
-    pulls, by_pulls = look.pulls / unit, look.by_pulls / unit
+    pulls, by_pulls = look.tensions / unit, look.by_tensions / unit
     size = np.hypot(pulls, _SLACK)
     return 0.5 * float((pulls + size).sum()), 0.5 * np.asarray((1.0 + pulls / size) @ by_pulls)

@@ -6,11 +6,11 @@ from collections.abc import Collection
 
 import numpy as np
 
-from core.analysis.inverse_design.sensitivities import Look
+from core.analysis.inverse_design.sensitivities import LinearizedSolution
 from core.document.design import Design
 from core.garment.cut_list import is_strap
 from core.garment.pressure import pressures
-from core.garment.pressure_limits import comfort
+from core.garment.pressure_limits import pressure_limits
 from core.garment.tension import line_tensions
 from core.geometry.mesh import Points
 from core.pipeline.build import Stages
@@ -33,29 +33,31 @@ class PressureLimit:
     """
 
     def __init__(self, design: Design, most_kpa: float | None) -> None:
-        self.kpa = comfort().red_kpa if most_kpa is None else most_kpa
-        self._elastics = () if design.line_hold == "held" else tuple(design.worn_elastics())
+        self.kpa = pressure_limits().red_kpa if most_kpa is None else most_kpa
+        self._elastics = () if design.line_hold == "held" else tuple(design.active_elastics())
         self._every = most_kpa is not None
         self.hardest: dict[str, float] = {}
         self._seen: dict[str, tuple[float, float]] = {}
         self.pressure: dict[str, float] = {}
 
-    def forget(self) -> None:
+    def clear(self) -> None:
         """Forget what was computed for another question."""
         self.hardest, self._seen, self.pressure = {}, {}, {}
 
     @property
-    def concerns(self) -> bool:
+    def applies(self) -> bool:
         """Whether any line has to keep to the limit."""
         return self._every or bool(self._elastics)
 
-    def is_kept(self, stages: Stages, look: Look, free: Collection[str], *, firm: bool = False) -> bool:
+    def is_satisfied(
+        self, stages: Stages, look: LinearizedSolution, free: Collection[str], *, firm: bool = False
+    ) -> bool:
         """Compute what lines press with; limit what those of the ``free`` ones may pull that press too much.
 
         Tell whether none of them does. Unless ``firm``, a limit of before may turn out to have been too low.
         """
         self.pressure = self._limited(stages, look.points)
-        pulls = {line.name: float(pull) for line, pull in zip(stages.model.lines, look.pulls, strict=True)}
+        pulls = {line.name: float(pull) for line, pull in zip(stages.model.lines, look.tensions, strict=True)}
         for name in self.pressure.keys() & set(free):
             kpa, before = self.pressure[name], self.hardest.get(name, np.inf)
             if pulls[name] > 0.0 and (kpa >= self.kpa / _KEPT or name in self.hardest):
@@ -77,7 +79,7 @@ class PressureLimit:
             return even
         return max(min(pull - (kpa - aim) / slope, even), _LEAST * pull)
 
-    def pressing(self, pulled: Collection[str]) -> tuple[str, ...]:
+    def lines_at_limit(self, pulled: Collection[str]) -> tuple[str, ...]:
         """Return the lines that press as hard as they may; ``pulled`` are those with the most tension."""
         most = self.kpa / _AIM**1.5
         return tuple(name for name, kpa in self.pressure.items() if kpa > most or name in pulled)

@@ -65,7 +65,7 @@ def profile_goals(stages: Stages, section: str, curve: Floats) -> tuple[Goal, ..
     heights = stages.control.mesh.vertices[~stages.control.fixed, 2]
     low, high = float(heights.min()), float(heights.max())
     inside = curve[(curve[:, 0] >= low) & (curve[:, 0] <= high)]
-    inside = inside[inside[:, 0] > overhang(stages, section, inside)]
+    inside = inside[inside[:, 0] > overhang_height(stages, section, inside)]
     if not len(inside):
         raise UserError(
             f"No height of the profile lies where the body can be reshaped, {low:.0f} to {high:.0f} mm.",
@@ -75,14 +75,14 @@ def profile_goals(stages: Stages, section: str, curve: Floats) -> tuple[Goal, ..
     return tuple(Goal(profile_name(section, height), out) for height, out in chosen.tolist())
 
 
-def overhang(stages: Stages, section: str, curve: Floats) -> float:
+def overhang_height(stages: Stages, section: str, curve: Floats) -> float:
     """Return the height [mm] below which a breast hangs over, at rest or as wished; -inf if it does not.
 
     The ``curve`` (k, 2) [mm] is what is wished: heights, upwards, and how far out. From there down the
     foremost place jumps from the breast to the chest: no slope leads over that.
     """
     points, top = stages.control.mesh.vertices, stages.rest_marks
-    below = curve[curve[:, 0] < min(top.nipple_left_z, top.nipple_right_z)]
+    below = curve[curve[:, 0] < min(top.bust_point_left_z, top.bust_point_right_z)]
     rest, _ = skin_of(stages, section, below[:, 0])(points)
     found = -np.inf
     for outs in (below[:, 1], rest):
@@ -91,7 +91,7 @@ def overhang(stages: Stages, section: str, curve: Floats) -> float:
     return found
 
 
-def foremost(curve: Floats, step: float) -> Floats:
+def profile_maximum(curve: Floats, step: float) -> Floats:
     """Return how far a ``curve`` (k, 2) [mm] of heights and outs stands out at heights a ``step`` apart."""
     return _foremost(curve[:-1], curve[1:], step)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.analysis.inverse_design.profile_csv import foremost, overhang, profile_goals
+from core.analysis.inverse_design.profile_csv import overhang_height, profile_goals, profile_maximum
 from core.analysis.inverse_design.quantities import Goal, section_at, skin_of
 from core.geometry.mesh import Floats, Indices, Points
 from core.geometry.plane_sections import arc_length
@@ -25,11 +25,11 @@ _ALONG = 0.5  # of a step that the handles beside one take along with it [1]
 
 
 @dataclass(frozen=True, eq=False)
-class Drawn:
+class ProfileCurve:
     """The profile of a section, "left" or "right" or its x [mm], with ``handles`` (h,) on it.
 
     ``base`` (k, 2) [mm] are heights, upwards, and how far the skin stood out there; ``handles`` are places
-    along it and ``steps`` (h, 2) [mm] how far each has gone up and out; those ``by_hand`` were pulled
+    along it and ``steps`` (h, 2) [mm] how far each has gone up and out; those ``manual_handles`` were pulled
     themselves. Both ends stay where the control mesh is fixed; where a breast hangs over, the lower end is a
     handle. One that is ``given`` by a table is asked for as it is; else nothing is as long as no handle was
     pulled.
@@ -40,10 +40,10 @@ class Drawn:
     handles: Indices
     steps: Floats
     given: bool = False
-    by_hand: frozenset[int] = frozenset()
+    manual_handles: frozenset[int] = frozenset()
 
     @property
-    def is_free(self) -> bool:
+    def is_unchanged(self) -> bool:
         """Whether nothing is asked for: it is the skin as it stood."""
         return not self.given and not self.steps.any()
 
@@ -59,46 +59,48 @@ class Drawn:
         return np.asarray(self.base + _between(along[knots], ways, along))
 
     @property
-    def spots(self) -> Floats:
+    def handle_positions(self) -> Floats:
         """Where the handles stand, heights and how far out, (h, 2) [mm]."""
         return self.base[self.handles] + self.steps
 
-    def pulled(self, handle: int, up: float, out: float) -> Drawn:
+    def with_moved_handle(self, handle: int, up: float, out: float) -> ProfileCurve:
         """Return it with one handle pulled further [mm]; those beside it come along if no hand set them."""
-        ways, by_hand = np.zeros_like(self.steps), self.by_hand | {handle}
+        ways, by_hand = np.zeros_like(self.steps), self.manual_handles | {handle}
         ways[handle] = up, out
         for beside in {handle - 1, handle + 1} & (set(range(len(ways))) - by_hand):
             ways[beside] = _ALONG * ways[handle]
-        return replace(self, steps=np.clip(self.steps + ways, -FARTHEST, FARTHEST), by_hand=by_hand)
+        return replace(self, steps=np.clip(self.steps + ways, -FARTHEST, FARTHEST), manual_handles=by_hand)
 
     def goals(self, stages: Stages) -> tuple[Goal, ...]:
         """Return what is asked for. Raises UserError if it lies nowhere where the body can be reshaped."""
         if not self.steps.any():
-            return () if self.is_free else profile_goals(stages, self.section, self.base)
-        return profile_goals(stages, self.section, foremost(self.curve, STEP))
+            return () if self.is_unchanged else profile_goals(stages, self.section, self.base)
+        return profile_goals(stages, self.section, profile_maximum(self.curve, STEP))
 
 
-def drawn(stages: Stages, section: str, control_points: Points) -> Drawn:
+def profile_at(stages: Stages, section: str, control_points: Points) -> ProfileCurve:
     """Return the profile of a section as it is at control points, (n, 3) [mm], with handles, none pulled."""
     heights = stages.control.mesh.vertices[~stages.control.fixed, 2]
     grid = np.arange(heights.min(), heights.max(), _FINE)
     base = np.stack([grid, skin_of(stages, section, grid)(control_points)[0]], axis=1)
     base = base[np.isfinite(base[:, 1])]
-    hangs = overhang(stages, section, base)
+    hangs = overhang_height(stages, section, base)
     base = base[base[:, 0] > hangs]
-    return Drawn(section, base, handles := _handles(base, np.isfinite(hangs)), np.zeros((len(handles), 2)))
+    return ProfileCurve(
+        section, base, handles := _handles(base, np.isfinite(hangs)), np.zeros((len(handles), 2))
+    )
 
 
-def from_table(stages: Stages, section: str, curve: Floats) -> Drawn:
+def profile_from_table(stages: Stages, section: str, curve: Floats) -> ProfileCurve:
     """Return the profile of a ``curve`` (k, 2) [mm] of heights and outs, with handles if it is long."""
     heights = stages.control.mesh.vertices[~stages.control.fixed, 2]
     inside = curve[(curve[:, 0] >= heights.min()) & (curve[:, 0] <= heights.max())]
     long = len(inside) >= _ENOUGH
     handles = _handles(inside, False) if long else np.zeros(0, dtype=np.int64)
-    return Drawn(section, inside if long else curve, handles, np.zeros((len(handles), 2)), given=True)
+    return ProfileCurve(section, inside if long else curve, handles, np.zeros((len(handles), 2)), given=True)
 
 
-def outline(stages: Stages, profile: Drawn, control_points: Points) -> Points:
+def profile_points(stages: Stages, profile: ProfileCurve, control_points: Points) -> Points:
     """Return the skin's outline at the heights of a profile, (k, 3) [mm], at control points (n, 3) [mm].
 
     It ends where a breast hangs over.
@@ -106,10 +108,12 @@ def outline(stages: Stages, profile: Drawn, control_points: Points) -> Points:
     heights = profile.base[:, 0]
     outs, _ = skin_of(stages, profile.section, heights)(control_points)
     curve = np.stack([heights, outs], axis=1)[np.isfinite(outs)]
-    return in_space(stages, profile.section, curve[curve[:, 0] > overhang(stages, profile.section, curve)])
+    return section_to_space(
+        stages, profile.section, curve[curve[:, 0] > overhang_height(stages, profile.section, curve)]
+    )
 
 
-def in_space(stages: Stages, section: str, curve: Floats) -> Points:
+def section_to_space(stages: Stages, section: str, curve: Floats) -> Points:
     """Return heights and how far out, (k, 2) [mm], of a section as places, (k, 3) [mm]."""
     at = np.full(len(curve), section_at(stages, section))
     return np.stack([at, -curve[:, 1], curve[:, 0]], axis=1)

@@ -24,7 +24,7 @@ _DONE = 0.01  # a part of the way that is not worth another
 _AS_TOLD, _MOSTLY, _HARDLY = 0.01, 0.5, 0.1  # how near, and what part, of what a step promised [1]
 
 
-def learnt(bends: Floats, step: Floats, turned: Floats) -> Floats:
+def updated_curvature(bends: Floats, step: Floats, turned: Floats) -> Floats:
     """Return ``bends`` (r, p, p) that tell how slopes ``turned`` (r, p) on a ``step`` (p,).
 
     They stay symmetric, and else as near to what they were as that allows.
@@ -38,7 +38,7 @@ def learnt(bends: Floats, step: Floats, turned: Floats) -> Floats:
 
 
 @dataclass(frozen=True, eq=False)
-class Curved:
+class QuadraticModel:
     """What figures lack [mm] and the room to limits [1], in ``rows`` (r,), as they are after a step.
 
     The first ``figures`` rows are to come near to nothing, the others may not be negative. ``slopes`` (r, p)
@@ -50,16 +50,16 @@ class Curved:
     bends: Floats
     figures: int
 
-    def after(self, step: Floats) -> tuple[Floats, Floats]:
+    def at_step(self, step: Floats) -> tuple[Floats, Floats]:
         """Return rows and slopes after a ``step`` (p,) [%]."""
         turned = self.bends @ step
         return self.rows + (self.slopes + 0.5 * turned) @ step, self.slopes + turned
 
-    def amiss(self, step: Floats) -> float:
-        """Return what is amiss after a ``step`` (p,) [%]: see ``amiss``."""
-        return amiss(self.after(step)[0], self.figures)
+    def violation(self, step: Floats) -> float:
+        """Return what is amiss after a ``step`` (p,) [%]: see ``violation``."""
+        return violation(self.at_step(step)[0], self.figures)
 
-    def nearest(self, low: Floats, high: Floats) -> tuple[Floats, float]:
+    def minimize(self, low: Floats, high: Floats) -> tuple[Floats, float]:
         """Return the step between ``low`` and ``high`` (p,) [%] that leaves least amiss, and how much.
 
         It is looked for along straight ways, each with what the bends do to it as a stiffness: that of
@@ -68,16 +68,16 @@ class Curved:
         count, limits = len(low), len(self.rows) - self.figures
         leant, looked_at = np.zeros(limits), np.zeros(limits, dtype=bool)
         step = best = np.zeros(count)
-        left = self.amiss(step)
+        left = self.violation(step)
         for _ in range(_BENDS):
-            rows, slopes = self.after(step)
+            rows, slopes = self.at_step(step)
             looked_at |= self._within_reach(rows, slopes, low - step, high - step)
             chosen = np.append(np.ones(self.figures, dtype=bool), looked_at)
             weights = np.concatenate([rows[: self.figures], leant])[chosen]
             stiff = _root(np.tensordot(weights, self.bends[chosen], 1))
             way, leant[looked_at] = self._straight(rows[chosen], slopes[chosen], stiff, step, low, high)
             step = np.clip(step + way, low, high)
-            if (after := self.amiss(step)) < left:
+            if (after := self.violation(step)) < left:
                 best, left = step, after
             if np.abs(way).max() < _DONE * np.abs(step).max():
                 break
@@ -114,13 +114,13 @@ class Curved:
         return found[:count], leant
 
 
-def amiss(rows: Floats, figures: int) -> float:
+def violation(rows: Floats, figures: int) -> float:
     """Return the squares of the first ``figures`` of ``rows``, and how far limits are broken [mm^2]."""
     away, broken = rows[:figures], STRICT * min(float(rows[figures:].min()), 0.0)
     return float(away @ away) + broken * broken
 
 
-def next_reach(reach: float, bold: float, kept: float) -> float:
+def next_trust_radius(reach: float, bold: float, kept: float) -> float:
     """Return how far the next step may go [%], after one that ``kept`` this part of what it promised.
 
     Further than ``bold`` it goes only if that was told to a hair.

@@ -49,7 +49,7 @@ ReadMany = Callable[[Points], tuple[Floats, Floats]]
 
 
 @dataclass(frozen=True)
-class Family:
+class QuantityFamily:
     """Figures that are read alike: their ``names``, and what makes a ``read`` for one of them.
 
     Names that begin with the word ``numbered`` go on with numbers, which ``read`` looks at itself. Targets
@@ -114,13 +114,13 @@ def _read_balance(stages: Stages, name: str) -> Read:
     return _Weighted(stages.watch.bust_points, stages.watch.bust_point_slopes, weights)
 
 
-BUST = Family(tuple(f"{what}{side}" for what in _AXES for side in SIDES), _read_bust)
+BUST = QuantityFamily(tuple(f"{what}{side}" for what in _AXES for side in SIDES), _read_bust)
 """How far bust points rise and come out, the mean of both or one [mm]."""
 
-APEX = Family(tuple(f"{what}{side}" for what in _APEX_AXES for side in SIDES), _read_apex)
+APEX = QuantityFamily(tuple(f"{what}{side}" for what in _APEX_AXES for side in SIDES), _read_apex)
 """How far the foremost places, whatever skin that is, rise and come out, the mean of both or one [mm]."""
 
-EVEN = Family(tuple(_LEFT_LESS_RIGHT), _read_balance)
+EVEN = QuantityFamily(tuple(_LEFT_LESS_RIGHT), _read_balance)
 """How much higher and further out the left bust point is than the right, as they are now [mm]."""
 
 TAPE_STEP = 5.0
@@ -137,13 +137,13 @@ class _Girth:
         self._stages = stages
         self._rise = _read_bust(stages, LIFT)
         marks = stages.rest_marks
-        self._rest_height = (marks.nipple_left_z + marks.nipple_right_z) / 2.0
+        self._rest_height = (marks.bust_point_left_z + marks.bust_point_right_z) / 2.0
         self._levels: dict[float, Tapes] = {}
 
     def __call__(self, control_points: Points) -> Reading:
         """Return the figure at control points, shape (n, 3) [mm]."""
         binding, moving = self._stages.binding, self._stages.moving
-        places = binding.operator.added(binding.change(control_points), moving.rest)
+        places = binding.operator.apply(binding.change(control_points), moving.rest)
         rise = self._rise(control_points)
         low, part = divmod((self._rest_height + rise.value) / TAPE_STEP, 1.0)
         tapes = [self._tape(TAPE_STEP * level) for level in (low, low + 1.0)]
@@ -162,7 +162,7 @@ class _Girth:
 
 GIRTH = "girth"
 _TOLERANCE = 5.0  # a girth grows by 2 pi times what its outline moves by [mm]
-GIRTHS = Family((GIRTH,), lambda stages, _: _Girth(stages), tolerance=_TOLERANCE)
+GIRTHS = QuantityFamily((GIRTH,), lambda stages, _: _Girth(stages), tolerance=_TOLERANCE)
 """The girth at the level of the bust points, as they are then [mm]."""
 
 
@@ -188,7 +188,7 @@ def section_of(name: str) -> str:
     return name.rpartition(" ")[0] if name.startswith(f"{PROFILE} ") else ""
 
 
-def profiles_off(goals: Sequence[Goal], reached: Mapping[str, float]) -> dict[str, Floats]:
+def profile_deviations(goals: Sequence[Goal], reached: Mapping[str, float]) -> dict[str, Floats]:
     """Return by how much what is ``reached`` stands out further than asked for, (k,) [mm], by section."""
     off: dict[str, list[float]] = {}
     for goal in goals:
@@ -246,7 +246,7 @@ class _Section:
         shape = (len(faces), len(self._rest))
         weights = sparse.csr_array((parts.ravel(), faces.ravel(), starts), shape=shape) @ self._operator
         by_columns = weights.toarray()[:, :, None] * ways[:, None, :]
-        return self._binding.by_points(control_points, by_columns)
+        return self._binding.gradient_by_points(control_points, by_columns)
 
 
 def _near(mesh: Mesh, at: float) -> tuple[Indices, Indices]:
@@ -296,7 +296,7 @@ def skin_of(stages: Stages, section: str, heights: Floats) -> ReadMany:
     return partial(_section(stages.body.mesh, stages.binding, section_at(stages, section)), heights=heights)
 
 
-def heights_of(stages: Stages, names: Sequence[str]) -> ReadMany:
+def profile_reader(stages: Stages, names: Sequence[str]) -> ReadMany:
     """Return what reads heights of one section at once. Raises UserError if a name names none."""
     found = [_NAME.fullmatch(name) for name in names]
     for name, match in zip(names, found, strict=True):
@@ -323,7 +323,7 @@ def heights_of(stages: Stages, names: Sequence[str]) -> ReadMany:
 
 
 def _read_profile(stages: Stages, name: str) -> Read:
-    together = heights_of(stages, [name])
+    together = profile_reader(stages, [name])
 
     def read(control_points: Points) -> Reading:
         (value,), (slopes,) = together(control_points)
@@ -332,11 +332,11 @@ def _read_profile(stages: Stages, name: str) -> Read:
     return read
 
 
-OUTLINE = Family((), _read_profile, PROFILE)
+OUTLINE = QuantityFamily((), _read_profile, PROFILE)
 """How far the skin stands out at a height of a section, to the front of the origin [mm]."""
 
 
-FAMILIES: tuple[Family, ...] = (BUST, APEX, GIRTHS, EVEN, OUTLINE)
+FAMILIES: tuple[QuantityFamily, ...] = (BUST, APEX, GIRTHS, EVEN, OUTLINE)
 """All families of figures."""
 
 NAMES = tuple(name for family in FAMILIES for name in family.names)
@@ -382,7 +382,7 @@ class Figures:
     def _together(self, names: tuple[str, ...]) -> ReadMany:
         if section_of(names[0]):
             if names not in self._heights:
-                self._heights[names] = heights_of(self._stages, names)
+                self._heights[names] = profile_reader(self._stages, names)
             return self._heights[names]
         name = names[0]
         read = self._known(name)

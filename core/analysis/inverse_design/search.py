@@ -16,10 +16,10 @@ import numpy as np
 from scipy.optimize import minimize
 
 from core.analysis.inverse_design.candidate import Candidate
-from core.analysis.inverse_design.objective import Slopes, Wanted, tension_of, weights_of
-from core.analysis.inverse_design.quadratic_model import learnt, next_reach
+from core.analysis.inverse_design.objective import Objective, Slopes, goal_weights, total_tension
+from core.analysis.inverse_design.quadratic_model import next_trust_radius, updated_curvature
 from core.analysis.inverse_design.quantities import Figures, Goal, ReadMany
-from core.analysis.inverse_design.sensitivities import PERCENT, Answers, Look
+from core.analysis.inverse_design.sensitivities import PERCENT, LinearizedSolution, LinearizedSolutions
 from core.document.design import Design
 from core.errors import UserError
 from core.garment.tension import SLACK
@@ -29,7 +29,7 @@ from core.mechanics.exact_solution import NEWTON_LIMIT
 from core.mechanics.force_units import newtons_per_unit
 from core.pipeline.active_lines import free_lines
 from core.pipeline.build import Stages
-from core.pipeline.exact import NoBalanceError
+from core.pipeline.exact import NoEquilibriumError
 from core.progress import Progress, quiet
 
 LOOSEST = 1.0
@@ -85,14 +85,14 @@ class Search:
                 "No line that moves the body may change.", "Wear one that is not locked, and name a figure."
             )
         read = Figures(stages).of([goal.name for goal in goals]) if read is None else read
-        self._answers = Answers(stages, self._groups, read)
+        self._answers = LinearizedSolutions(stages, self._groups, read)
         self.nearer: Callable[[Candidate], object] = lambda found: None
         low = [
             max(RATIO_LIMITS[0], *(bounds.shortest.get(name, 0.0) for name in each)) for each in self._groups
         ]
         self._low, self._high = np.array(low) / PERCENT, np.maximum(low, bounds.longest) / PERCENT
         values, lines = np.array([goal.value for goal in goals]), [line.name for line in stages.model.lines]
-        self._wanted = Wanted(values, weights_of(goals), self._low, self._high, lines)
+        self._wanted = Objective(values, goal_weights(goals), self._low, self._high, lines)
         set_ = [stages.design.ratio(group[0]) / PERCENT for group in self._groups]
         self.start = np.clip(set_, self._low, self._high)
         self._bar_pushing()
@@ -106,12 +106,12 @@ class Search:
         """The names of the lines that may change."""
         return frozenset(name for group in self._groups for name in group)
 
-    def want(self, goals: Sequence[Goal]) -> None:
+    def set_goals(self, goals: Sequence[Goal]) -> None:
         """Look for other values of the same figures, or with other priorities, from now on."""
         self._wanted.values = np.array([goal.value for goal in goals])
-        self._wanted.weights = weights_of(goals)
+        self._wanted.weights = goal_weights(goals)
 
-    def limit(self, hardest: Mapping[str, float]) -> None:
+    def set_tension_limits(self, hardest: Mapping[str, float]) -> None:
         """Let named lines pull no harder than so, in the model's unit, from now on."""
         self._wanted.hardest = dict(hardest)
 
@@ -121,48 +121,52 @@ class Search:
         self._wanted.newton = 1.0 / newtons_per_unit(model, self.stages.design.tissue_stiffness)
         least = -_PUSH * self._wanted.newton
         free = self.free
-        self._wanted.loosest = {model.lines[at].name: least for at in model.pulling}
+        self._wanted.loosest = {model.lines[at].name: least for at in model.acting_lines}
         if not free.issuperset(self._wanted.loosest) and (look := self._look(self.start)) is not None:
-            pulls = {model.lines[at].name: float(look.pulls[at]) for at in model.pulling}
+            pulls = {model.lines[at].name: float(look.tensions[at]) for at in model.acting_lines}
             loosest = {name: least if name in free else min(least, pull) for name, pull in pulls.items()}
             self._wanted.loosest = loosest
 
-    def at(self, lengths: Floats, limit: int = NEWTON_LIMIT) -> Look:
+    def solve_at(self, lengths: Floats, limit: int = NEWTON_LIMIT) -> LinearizedSolution:
         """Return the exact answer at ``lengths``. Raises NoBalanceError, Cancelled."""
         self.progress("asking", min(len(self) / _STEPS, 1.0))
         return self._answers(lengths, limit)
 
-    def least(self) -> Floats:
+    def minimize(self) -> Floats:
         """Return the lengths that come nearest to what is wanted, with the least tension if they reach it.
 
         Raises NoBalanceError if there is no balance at the start, Cancelled.
         """
         lengths = self._least_tension(self._near_by())
-        met = self._wanted.is_met(self.at(lengths))
-        if self._answers.checked(lengths):
+        met = self._wanted.is_met(self.solve_at(lengths))
+        if self._answers.is_reachable_from_original(lengths):
             return lengths
-        near = self.from_here(lengths)  # what rest leads to is mostly not far away, nor is the least tension
-        return near if self._wanted.is_met(self.at(near)) >= met else self._least_tension(self._near_by())
+        near = self.iterate_from(
+            lengths
+        )  # what rest leads to is mostly not far away, nor is the least tension
+        return (
+            near if self._wanted.is_met(self.solve_at(near)) >= met else self._least_tension(self._near_by())
+        )
 
-    def alone(self, chosen: Collection[int]) -> Look:
+    def minimize_single(self, chosen: Collection[int]) -> LinearizedSolution:
         """Return the answer nearest to the ``chosen`` of the goals, by number, where the others are free.
 
         Raises NoBalanceError, Cancelled.
         """
         every, nearer = self._wanted, self.nearer
-        self._wanted, self.nearer = every.of(chosen), lambda found: None
+        self._wanted, self.nearer = every.subset(chosen), lambda found: None
         try:
-            return self.at(self._near_by())
+            return self.solve_at(self._near_by())
         finally:
             self._wanted, self.nearer = every, nearer
 
     def _near_by(self) -> Floats:
         """Return the nearest from the start or, if that does not reach what is wanted, from elsewhere."""
-        best = self.from_here(self.start)
+        best = self.iterate_from(self.start)
         known, starts = [best], self._elsewhere()
-        while not self._wanted.is_met(self.at(best)) and (begin := next(starts, None)) is not None:
-            self.nearer(self.found(best))
-            known.append(self.from_here(begin, known))
+        while not self._wanted.is_met(self.solve_at(best)) and (begin := next(starts, None)) is not None:
+            self.nearer(self.result_at(best))
+            known.append(self.iterate_from(begin, known))
             best = min(best, known[-1], key=self._amiss_at)
         return best
 
@@ -180,9 +184,9 @@ class Search:
                 yield min(found, key=self._amiss_at)
 
     def _amiss_at(self, lengths: Floats) -> float:
-        return self._wanted.amiss(self.at(lengths))
+        return self._wanted.violation(self.solve_at(lengths))
 
-    def from_here(self, start: Floats, known: Sequence[Floats] = ()) -> Floats:
+    def iterate_from(self, start: Floats, known: Sequence[Floats] = ()) -> Floats:
         """Return where steps after Gauss and Newton lead from ``start``, none of them too bold.
 
         Each learns how slopes change on the way. Beside one of those ``known`` already they go no further.
@@ -190,13 +194,13 @@ class Search:
         Cancelled.
         """
         here, reach, most = start, _BOLD, len(self) + (_ELSEWHERE if known else _STEPS)
-        look, wanted = self.at(here), self._wanted
-        amiss, finest = wanted.amiss(look), self._wanted.finest
-        bends = np.zeros((*wanted.rows(look)[1].shape, len(here)))
+        look, wanted = self.solve_at(here), self._wanted
+        amiss, finest = wanted.violation(look), self._wanted.smallest_weight_ratio
+        bends = np.zeros((*wanted.residual_rows(look)[1].shape, len(here)))
         while reach > _LAST and len(self) < most and amiss > _EXACT * finest**2:
             if (other := self._beside(here, amiss, known)) is not None:
                 return other
-            there, left = wanted.towards(here, look, reach, bends)
+            there, left = wanted.next_lengths(here, look, reach, bends)
             step, little = there - here, max(_LITTLE * finest**2, 2.0 * _TELLS * finest * amiss**0.5)
             if np.abs(step).max() < _SHORTEST or amiss - left < little:
                 break
@@ -204,12 +208,14 @@ class Search:
             if seen is None:
                 reach = float(np.abs(step).max()) / 4.0
                 continue
-            bends = learnt(bends, step, wanted.rows(seen)[1] - wanted.rows(look)[1])
-            gain = amiss - wanted.amiss(seen)
+            bends = updated_curvature(
+                bends, step, wanted.residual_rows(seen)[1] - wanted.residual_rows(look)[1]
+            )
+            gain = amiss - wanted.violation(seen)
             if gain <= 0.0:
                 reach = float(np.abs(step).max()) / 2.0
                 continue
-            reach = next_reach(reach, _BOLD, gain / (amiss - left))
+            reach = next_trust_radius(reach, _BOLD, gain / (amiss - left))
             # Near enough, and no longer quickly nearer.
             last = gain < little or (gain < 0.5 * amiss and wanted.is_met(seen))
             here, look, amiss = there, seen, amiss - gain
@@ -226,56 +232,56 @@ class Search:
 
     def _least_tension(self, start: Floats) -> Floats:
         """Return lengths that reach what ``start`` reaches with less tension; ``start`` if none are found."""
-        before = self.at(start)
+        before = self.solve_at(start)
         if not self._wanted.is_met(before) or len(start) <= len(self._wanted.values):
             return start
-        unit = max(float(np.abs(before.pulls).sum()), 1e-9)
+        unit = max(float(np.abs(before.tensions).sum()), 1e-9)
 
         def tension(lengths: Floats) -> Slopes:
-            return tension_of(self.at(lengths), unit)
+            return total_tension(self.solve_at(lengths), unit)
 
         wanted = _constraint(
-            "eq", lambda at: (self.at(at).values - self._wanted.values, self.at(at).by_values)
+            "eq", lambda at: (self.solve_at(at).values - self._wanted.values, self.solve_at(at).by_values)
         )
         limits = _constraint(
-            "ineq", lambda at: [part / PERCENT for part in self._wanted.smooth_room(self.at(at))]
+            "ineq", lambda at: [part / PERCENT for part in self._wanted.smooth_margins(self.solve_at(at))]
         )
         try:
             found = self._least(tension, start, [wanted, limits])
-            if not self._wanted.is_met(self.at(found)):
-                found = self.from_here(found)
-            after = self.at(found)
-        except NoBalanceError:
+            if not self._wanted.is_met(self.solve_at(found)):
+                found = self.iterate_from(found)
+            after = self.solve_at(found)
+        except NoEquilibriumError:
             return start
-        less = tension_of(after, unit)[0] < tension_of(before, unit)[0]
+        less = total_tension(after, unit)[0] < total_tension(before, unit)[0]
         return found if self._wanted.is_met(after) and less else start
 
-    def design(self, lengths: Floats) -> Design:
+    def design_at(self, lengths: Floats) -> Design:
         """Return the design with its lines at ``lengths``."""
         set_ = [round(float(length) * PERCENT, 6) for length in lengths]
         both = zip(self._groups, set_, strict=True)
         ratios = [(name, ratio) for group, ratio in both for name in group]
         return reduce(lambda design, each: design.with_line(*each), ratios, self.stages.design)
 
-    def found(self, lengths: Floats) -> Candidate:
+    def result_at(self, lengths: Floats) -> Candidate:
         """Return what was found at ``lengths``."""
-        look = self.at(lengths)
+        look = self.solve_at(lengths)
         ends = np.abs(np.stack([lengths - self._low, lengths - self._high])).min(axis=0) < _AT_END
         at_end = tuple(
             name for group, there in zip(self._groups, ends, strict=True) if there for name in group
         )
         hardest, loosest = self._wanted.hardest, self._wanted.loosest
-        tight = self._wanted.rooms(look)[0] < _AT_LIMIT
+        tight = self._wanted.margins(look)[0] < _AT_LIMIT
         pulls, pushes, strains = np.split(tight, [len(hardest), len(hardest) + len(loosest)])
         pulled = tuple(name for name, there in zip(hardest, pulls, strict=True) if there)
         slack = tuple(name for name, there in zip(loosest, pushes, strict=True) if there)
         met, strained = self._wanted.is_met(look), bool(strains.any())
-        return Candidate(self.design(lengths), lengths, look, met, at_end, pulled, slack, strained)
+        return Candidate(self.design_at(lengths), lengths, look, met, at_end, pulled, slack, strained)
 
-    def _look(self, lengths: Floats, limit: int = NEWTON_LIMIT) -> Look | None:
+    def _look(self, lengths: Floats, limit: int = NEWTON_LIMIT) -> LinearizedSolution | None:
         try:
-            return self.at(lengths, limit)
-        except NoBalanceError:
+            return self.solve_at(lengths, limit)
+        except NoEquilibriumError:
             return None
 
     def _least(

@@ -8,8 +8,8 @@ from itertools import groupby, pairwise
 import numpy as np
 
 from core.analysis.length_limits.criteria import COSTLY, OF_SHAPE
-from core.analysis.length_limits.line_search import PRECISION, Walk
-from core.analysis.length_limits.samples import Span, Stop, guess, nearest
+from core.analysis.length_limits.line_search import PRECISION, LineSearch
+from core.analysis.length_limits.samples import Sample, Span, extrapolate, nearest
 
 _NEARLY = 0.5  # of the least margin, from which on it is looked whether there is none in between [1]
 _WIDE = 1.2  # more than a shape's margin changes by, there and back, over the length between [1]
@@ -18,7 +18,7 @@ _NEAR, _BENT = 0.01, 0.5
 """Costly margins that are further from nothing than that, and than they bend, hide none in between [1]."""
 
 
-def spans(walk: Walk, sign: str) -> tuple[Span, ...]:
+def bracket_spans(walk: LineSearch, sign: str) -> tuple[Span, ...]:
     """Return the lengths that show ``sign``, ascending, closed in on where they begin and end."""
     looked = _worth_a_look(walk.stops, sign) if sign in COSTLY else walk.stops
     seen = sorted([*looked, *_nearly(walk, sign, looked)], key=lambda stop: stop.length.ratio)
@@ -32,7 +32,7 @@ def spans(walk: Walk, sign: str) -> tuple[Span, ...]:
     return tuple(Span(run[0].length, run[-1].length) for run in runs)
 
 
-def _worth_a_look(stops: Sequence[Stop], sign: str) -> list[Stop]:
+def _worth_a_look(stops: Sequence[Sample], sign: str) -> list[Sample]:
     """Return the stops that tell all of a sign whose margin takes long to find, and changes smoothly.
 
     Beside the ends and the middle these are those between which the margin, bent as it is, may be none.
@@ -49,7 +49,7 @@ def _worth_a_look(stops: Sequence[Stop], sign: str) -> list[Stop]:
     return [stops[at] for at in looked]
 
 
-def _may_vanish(looked: Sequence[Stop], at: int, sign: str) -> bool:
+def _may_vanish(looked: Sequence[Sample], at: int, sign: str) -> bool:
     """Tell whether a margin may be none between a stop and the next, bent as it is about there."""
     one, other = (stop.margin(sign) for stop in looked[at : at + 2])
     least = min(abs(one), abs(other))
@@ -60,21 +60,21 @@ def _may_vanish(looked: Sequence[Stop], at: int, sign: str) -> bool:
     return any(least < _BENT * _bend(trio, sign) * width**2 for trio in trios if len(trio) == 3)
 
 
-def _bend(three: Sequence[Stop], sign: str) -> float:
+def _bend(three: Sequence[Sample], sign: str) -> float:
     """Return how much a margin bends at three stops: the size of its second derivative."""
     (a, b, c), (f, g, h) = ([stop.length.ratio for stop in three], [stop.margin(sign) for stop in three])
     return abs(2.0 * ((h - g) / (c - b) - (g - f) / (b - a)) / (c - a))
 
 
-def _nearly(walk: Walk, sign: str, looked: Sequence[Stop]) -> Iterator[Stop]:
+def _nearly(walk: LineSearch, sign: str, looked: Sequence[Sample]) -> Iterator[Sample]:
     """Yield stops where ``sign`` may come and go, or go and come, between two that are alike."""
     for ratio in _dips(walk.stops, sign) if sign in OF_SHAPE else _turns_back(looked, sign):
-        stop = walk.near(ratio, guess(nearest(walk.stops, ratio, 3), ratio))
+        stop = walk.solve_near(ratio, extrapolate(nearest(walk.stops, ratio, 3), ratio))
         if stop is not None:
             yield stop
 
 
-def _turns_back(looked: Sequence[Stop], sign: str) -> Iterator[float]:
+def _turns_back(looked: Sequence[Sample], sign: str) -> Iterator[float]:
     """Yield where a parabola through three margins, the middle one nearest to nothing, turns back."""
     for three in zip(looked, looked[1:], looked[2:], strict=False):
         before, middle, after = (stop.margin(sign) for stop in three)
@@ -87,7 +87,7 @@ def _turns_back(looked: Sequence[Stop], sign: str) -> Iterator[float]:
             yield three[1].length.ratio + turn
 
 
-def _dips(stops: Sequence[Stop], sign: str) -> Iterator[float]:
+def _dips(stops: Sequence[Sample], sign: str) -> Iterator[float]:
     """Yield where the shape between two stops, as three of them lead to it, all but shows ``sign``.
 
     Nothing is solved for that, so it is looked at often: the least margin is closed in on.
@@ -101,7 +101,7 @@ def _dips(stops: Sequence[Stop], sign: str) -> Iterator[float]:
             continue
         for _ in range(3):
             ratios = np.linspace(short, long, 5)
-            guesses = (three[0].looks[sign](guess(three, ratio)) for ratio in ratios[1:-1])
+            guesses = (three[0].criteria[sign](extrapolate(three, ratio)) for ratio in ratios[1:-1])
             rooms = [np.sign(one) * room for room in guesses]
             least = 1 + int(np.argmin(rooms))
             short, long = ratios[least - 1], ratios[least + 1]
@@ -109,7 +109,7 @@ def _dips(stops: Sequence[Stop], sign: str) -> Iterator[float]:
             yield float(ratios[least])
 
 
-def _closing_in(walk: Walk, short: Stop, long: Stop, sign: str) -> Iterator[Stop]:
+def _closing_in(walk: LineSearch, short: Sample, long: Sample, sign: str) -> Iterator[Sample]:
     """Yield stops until ``sign`` begins or ends between two that are PRECISION apart."""
     middle = 0.5 * (short.length.ratio + long.length.ratio)
     others = (stop for stop in nearest(walk.stops, middle, 4) if stop not in (short, long))
@@ -129,15 +129,15 @@ def _closing_in(walk: Walk, short: Stop, long: Stop, sign: str) -> Iterator[Stop
             long, beside = between, [long]
 
 
-def _between(walk: Walk, stops: Sequence[Stop], share: float) -> Stop | None:
+def _between(walk: LineSearch, stops: Sequence[Sample], share: float) -> Sample | None:
     """Return the stop that is a ``share`` of the way from the first of ``stops`` to the second."""
     calm, shown = stops[:2]
     ratio = calm.length.ratio + share * (shown.length.ratio - calm.length.ratio)
-    starts = (guess(stops, ratio), calm.found, shown.found)
-    return next((stop for start in starts if (stop := walk.near(ratio, start))), None)
+    starts = (extrapolate(stops, ratio), calm.found, shown.found)
+    return next((stop for start in starts if (stop := walk.solve_near(ratio, start))), None)
 
 
-def _share(calm: Stop, shown: Stop, beside: Sequence[Stop], sign: str) -> float:
+def _share(calm: Sample, shown: Sample, beside: Sequence[Sample], sign: str) -> float:
     """Return where a sign seems to begin, a little beyond on the side where more is unknown [1].
 
     As a share of the way from one stop to the other; a third one ``beside`` them tells how the margin bends.

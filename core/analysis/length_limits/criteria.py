@@ -9,22 +9,22 @@ from types import MappingProxyType
 
 from core.analysis.length_limits.path_solutions import PathPoint
 from core.document.elastic import Elastic
-from core.document.lines import WornLine
-from core.garment.band_path import courses
+from core.document.lines import ActiveLine
+from core.garment.band_path import band_paths
 from core.garment.cut_list import is_strap
 from core.garment.pressure import band_pressure
-from core.garment.pressure_limits import comfort
+from core.garment.pressure_limits import pressure_limits
 from core.garment.tension import line_tensions
-from core.mechanics.gain_limit import Swing, gain_limit
-from core.mechanics.iteration import at_rest
-from core.mechanics.mesh_quality import CALM_RANGE, FOLD_LIMIT, STRAIN_RANGE, Condition
+from core.mechanics.gain_limit import OscillationLimit, gain_limit
+from core.mechanics.iteration import initial_state
+from core.mechanics.mesh_quality import FOLD_LIMIT, STRAIN_RANGE, STRAINED_RANGE, MeshQuality
 from core.mechanics.model import ConstrainedModel
-from core.mechanics.newton import balance_at
+from core.mechanics.newton import equilibrium_at
 from core.mechanics.potential import Potential
 from core.mechanics.solver_comparison import shape_of
 from core.pipeline.build import GAIN_SHARE, Stages
 
-Look = Callable[[PathPoint], float]
+Criterion = Callable[[PathPoint], float]
 """How far an answer is from showing a sign; 0 or less where it does [1]."""
 
 OF_SHAPE = ("strained", "overstrained", "folded", "inverted")
@@ -36,33 +36,37 @@ COSTLY = ("vibrating", "restless", "pressing")
 _CALM = 1.0  # of the margin where nothing can vibrate
 
 
-def looks_at(model: ConstrainedModel, together: Collection[int], gain: float | None) -> dict[str, Look]:
+def model_criteria(
+    model: ConstrainedModel, together: Collection[int], gain: float | None
+) -> dict[str, Criterion]:
     """Return what can be looked at on any model, by the sign that it is for.
 
     ``together`` are the lines that are tried; ``gain`` is the conventional one, None for the usual share of
     the limit at rest.
     """
-    seen = _Last(shape_of(model).condition)
-    looks: dict[str, Look] = {
-        "strained": lambda found: _within(seen(found), CALM_RANGE),
+    seen = _Last(shape_of(model).quality)
+    looks: dict[str, Criterion] = {
+        "strained": lambda found: _within(seen(found), STRAINED_RANGE),
         "overstrained": lambda found: _within(seen(found), STRAIN_RANGE),
-        "folded": lambda found: seen(found).turned - FOLD_LIMIT,
-        "inverted": lambda found: seen(found).turned,
+        "folded": lambda found: seen(found).least_cosine - FOLD_LIMIT,
+        "inverted": lambda found: seen(found).least_cosine,
         "vibrating": _Vibrating(gain).margin,
         "slack": partial(_pull, together=tuple(together)),
     }
-    if model.mechanics.line_force == "explicit":
+    if model.options.line_force == "explicit":
         looks["restless"] = _rest
     return looks
 
 
-def looks_in(stages: Stages, names: Collection[str], elastics: Mapping[str, Elastic]) -> dict[str, Look]:
+def elastic_criteria(
+    stages: Stages, names: Collection[str], elastics: Mapping[str, Elastic]
+) -> dict[str, Criterion]:
     """Return what can be looked at because worn lines of a design are made of ``elastics``, by sign.
 
     ``names`` are the lines that are tried. Straps are not looked at for pressure, for which no limit is set,
     nor are lines of no elastic, whose newtons are estimates.
     """
-    looks: dict[str, Look] = {}
+    looks: dict[str, Criterion] = {}
     if elastics:
         looks["stretched"] = partial(_room_in_curves, elastics=elastics)
     known = [line.name for line in stages.model.lines if line.name in names and line.name in elastics]
@@ -72,7 +76,7 @@ def looks_in(stages: Stages, names: Collection[str], elastics: Mapping[str, Elas
     return looks
 
 
-def _within(seen: Condition, bounds: tuple[float, float]) -> float:
+def _within(seen: MeshQuality, bounds: tuple[float, float]) -> float:
     return min(seen.shortest - bounds[0], bounds[1] - seen.longest)
 
 
@@ -80,11 +84,11 @@ def _within(seen: Condition, bounds: tuple[float, float]) -> float:
 class _Last:
     """The condition of the answer that was looked at last: four looks ask for it in a row."""
 
-    condition: Callable[..., Condition]
+    condition: Callable[..., MeshQuality]
     found: PathPoint | None = None
-    value: Condition | None = None
+    value: MeshQuality | None = None
 
-    def __call__(self, found: PathPoint) -> Condition:
+    def __call__(self, found: PathPoint) -> MeshQuality:
         if self.value is None or found is not self.found:
             self.found, self.value = found, self.condition(found.points)
         return self.value
@@ -95,12 +99,12 @@ class _Vibrating:
 
     def __init__(self, gain: float | None) -> None:
         self._gain = gain
-        self._swing: tuple[ConstrainedModel, Swing, float] | None = None
+        self._swing: tuple[ConstrainedModel, OscillationLimit, float] | None = None
 
     def margin(self, found: PathPoint) -> float:
         """Return by how much the gain limit there is above the gain, over the gain [1]."""
         if self._swing is None or found.model is not self._swing[0]:
-            swing = Swing(found.model)
+            swing = OscillationLimit(found.model)
             gain = GAIN_SHARE * _limit_at_rest(found.model, swing) if self._gain is None else self._gain
             self._swing = found.model, swing, gain
         _, swing, gain = self._swing
@@ -108,28 +112,30 @@ class _Vibrating:
             return _CALM
         potential = Potential(found.model, found.ratios)
         # A way of balances may turn back within a hair of one: the exact one is near enough then.
-        there = swing.balance(potential, found.balance, gain) or found.balance
+        there = swing.equilibrium(potential, found.balance, gain) or found.balance
         return min(swing.limit(potential, there) / gain - 1.0, _CALM)
 
 
 def _rest(found: PathPoint) -> float:
     """Return how far turns are from a swing that no volume control ends; see ``Swing.overshoot`` [1]."""
-    return 1.0 - 0.5 * Swing(found.model).overshoot(Potential(found.model, found.ratios), found.balance)
+    return 1.0 - 0.5 * OscillationLimit(found.model).overshoot(
+        Potential(found.model, found.ratios), found.balance
+    )
 
 
-def _limit_at_rest(model: ConstrainedModel, swing: Swing) -> float:
+def _limit_at_rest(model: ConstrainedModel, swing: OscillationLimit) -> float:
     """Return what ``gain_limit`` does, six times quicker where there are no held lines."""
-    if model.mechanics.line_hold == "held":
+    if model.options.line_hold == "held":
         return gain_limit(model)  # which leaves out how their tensions change
     potential = Potential(model, (1.0,) * len(model.lines))
-    return swing.limit(potential, balance_at(potential, at_rest(model).moved))
+    return swing.limit(potential, equilibrium_at(potential, initial_state(model).moved))
 
 
 def _pull(found: PathPoint, together: tuple[int, ...]) -> float:
     """Return how far the slackest tried line is stretched, over its rest length; negative: it pushes."""
     model = found.model
     rest = [line.rest_length for line in model.lines]
-    if model.mechanics.line_hold == "held":
+    if model.options.line_hold == "held":
         held = found.balance.tensions
         return min(float(held[at] / model.tapes[at] / rest[at]) for at in together if model.tapes[at] > 0.0)
     lengths = model.line_lengths(found.points)
@@ -138,16 +144,16 @@ def _pull(found: PathPoint, together: tuple[int, ...]) -> float:
 
 def _room_in_curves(found: PathPoint, elastics: Mapping[str, Elastic]) -> float:
     """Return how much further the elastic can be stretched that is nearest to the end of its curve [1]."""
-    return min(elastic.reach - found.elongations[name] for name, elastic in elastics.items())
+    return min(elastic.max_elongation - found.elongations[name] for name, elastic in elastics.items())
 
 
 def _pressing(found: PathPoint, stages: Stages, names: tuple[str, ...]) -> float:
     """Return by how much the lines ``names`` press less than the red light begins with, over that [1]."""
     design = stages.design
     tried = {line.name: ratio for line, ratio in zip(found.model.lines, found.ratios, strict=True)}
-    lines = tuple(WornLine(line.name, tried[line.name]) for line in design.lines)
+    lines = tuple(ActiveLine(line.name, tried[line.name]) for line in design.lines)
     there = replace(stages, design=replace(design, lines=lines), model=found.model)
     tensions = line_tensions(there, found.points)
     of_these = MappingProxyType({name: tensions[name] for name in names})
-    bands = [band_pressure(course, width) for _, course, width in courses(there, found.points, of_these)]
-    return 1.0 - max(band.largest for band in bands) / comfort().red_kpa
+    bands = [band_pressure(course, width) for _, course, width in band_paths(there, found.points, of_these)]
+    return 1.0 - max(band.largest for band in bands) / pressure_limits().red_kpa

@@ -10,20 +10,20 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from core.analysis.length_limits.bracketing import spans
-from core.analysis.length_limits.criteria import Look, looks_at, looks_in
-from core.analysis.length_limits.line_search import PRECISION, RED, Walk
-from core.analysis.length_limits.path_solutions import Ground
+from core.analysis.length_limits.bracketing import bracket_spans
+from core.analysis.length_limits.criteria import Criterion, elastic_criteria, model_criteria
+from core.analysis.length_limits.line_search import PRECISION, RED, LineSearch
+from core.analysis.length_limits.path_solutions import PathSolver
 from core.analysis.length_limits.samples import Length, Span
 from core.document.design import Design
-from core.document.lines import WornLine
+from core.document.lines import ActiveLine
 from core.mechanics.constraint_lines import Line
 from core.mechanics.force_units import newtons_per_unit
 from core.mechanics.model import ConstrainedModel
-from core.pipeline.build import Stages, build, targets_of
+from core.pipeline.build import Stages, build, line_targets
 from core.progress import Progress, quiet
 
-__all__ = ["PRECISION", "RED", "SIGNS", "Length", "Limits", "Span", "all_limits", "limits_of", "shortest"]
+__all__ = ["PRECISION", "RED", "SIGNS", "Length", "Limits", "Span", "all_limits", "limits_from", "limits_of"]
 
 SIGNS = ("strained", "overstrained", "folded", "inverted")
 """What the shape can show, as ``Condition`` names it: from amber to nonsense."""
@@ -35,7 +35,7 @@ class Limits:
 
     ``present`` is the line as it is set, None if it is off; ``beyond`` names those of SIGNS that this setting
     already shows. ``shows`` tells for each sign the lengths that show it, ascending, as far as was
-    ``looked``: beside SIGNS there are "vibrating" (turns of the conventional control would), "restless"
+    ``evaluated``: beside SIGNS there are "vibrating" (turns of the conventional control would), "restless"
     (those of any control would, where lines act one turn late), "slack" (the
     line pushes, which no band can), "pressing" (more than the red light begins with, if what it is made of
     tells the newtons) and "stretched" (an elastic would be stretched beyond its curve). ``rest`` is its
@@ -49,14 +49,14 @@ class Limits:
     beyond: tuple[str, ...]
     shows: Mapping[str, tuple[Span, ...]]
     rest: Length | None
-    looked: Span | None = None
+    evaluated: Span | None = None
     last: Length | None = None
     longest: Length | None = None
     found: bool = True
     pressure_known: bool = False
 
     @cached_property
-    def begins(self) -> dict[str, Length | None]:
+    def onsets(self) -> dict[str, Length | None]:
         """The longest length that shows each of SIGNS, up to that at rest; None where none does.
 
         A beginning at the rest length is the other lines' doing.
@@ -76,7 +76,7 @@ class Limits:
         return min(spans[-1].long, self.rest, key=lambda length: length.ratio) if spans else None
 
 
-def shortest(
+def limits_from(
     model: ConstrainedModel,
     ratios: tuple[float, ...],
     name: str,
@@ -89,8 +89,8 @@ def shortest(
     """
     lines = [line.name for line in model.lines]
     together = {lines.index(name), *(lines.index(each) for each in partners)}
-    ground = Ground(model, ratios, together, {}, 1.0, {}, progress)
-    return _limits(ground, lines.index(name), looks_at(model, together, None), through=True)
+    ground = PathSolver(model, ratios, together, {}, 1.0, {}, progress)
+    return _limits(ground, lines.index(name), model_criteria(model, together, None), through=True)
 
 
 def limits_of(stages: Stages, name: str, progress: Progress = quiet, *, through: bool = True) -> Limits:
@@ -99,18 +99,18 @@ def limits_of(stages: Stages, name: str, progress: Progress = quiet, *, through:
     A linked partner goes with it. Lines made of elastics pull as these do at each length. ``through``: go on
     where it is red, to tell all of SIGNS, and look at the line as it is set too. Raises Cancelled.
     """
-    both, worn = stages.design.linked(name), name in stages.design.worn()
+    both, worn = stages.design.linked_pair(name), name in stages.design.active_lines()
     tried = build(_wearing(stages.design, both), stages)
     design, model = tried.design, tried.model
     lines = [line.name for line in model.lines]
     together = {lines.index(each) for each in both}
-    made = {} if design.line_hold == "held" else design.worn_elastics()
+    made = {} if design.line_hold == "held" else design.active_elastics()
     moving = {line.name: made[line.name] for line in model.lines if line.constrains and line.name in made}
     newtons = newtons_per_unit(model, design.tissue_stiffness)
-    ratios = targets_of(design, tried).ratios
+    ratios = line_targets(design, tried).ratios
     keeps = tried.body_change if design.dense_volume else None
-    ground = Ground(model, ratios, together, made, newtons, design.own_stiffness(), progress, keeps)
-    looks = {**looks_at(model, together, design.gain), **looks_in(tried, both, moving)}
+    ground = PathSolver(model, ratios, together, made, newtons, design.line_stiffnesses(), progress, keeps)
+    looks = {**model_criteria(model, together, design.gain), **elastic_criteria(tried, both, moving)}
     limits = _limits(ground, lines.index(name), looks, through)
     return limits if worn else replace(limits, present=None, beyond=())
 
@@ -120,20 +120,20 @@ def all_limits(stages: Stages) -> Iterator[Limits]:
     return (limits_of(stages, line.name) for line in stages.model.lines if line.constrains)
 
 
-def _limits(ground: Ground, index: int, looks: Mapping[str, Look], through: bool) -> Limits:
+def _limits(ground: PathSolver, index: int, looks: Mapping[str, Criterion], through: bool) -> Limits:
     line, set_ = ground.model.lines[index], ground.set_[index]
-    walk = Walk(ground, line, looks)
-    present = walk.solved(set_) if through else None
+    walk = LineSearch(ground, line, looks)
+    present = walk.solve_at(set_) if through else None
     length = None if present is None else present.length
     beyond = tuple(sign for sign in SIGNS if present is not None and present.shows(sign))
     if not line.constrains:
         return Limits(line, length, beyond, {}, None)
-    walk.go(set_, through)
+    walk.run(set_, through)
     if not walk.stops:
         return Limits(line, length, beyond, {}, None, found=False)
     rest = min(walk.stops, key=lambda stop: abs(stop.length.ratio - 1.0)).length
     looked = Span(walk.stops[0].length, walk.stops[-1].length)
-    shows = _within_curves({sign: spans(walk, sign) for sign in looks}, rest, looked)
+    shows = _within_curves({sign: bracket_spans(walk, sign) for sign in looks}, rest, looked)
     ends = looked, walk.last, walk.longest
     return Limits(line, length, beyond, shows, rest, *ends, pressure_known="pressing" in looks)
 
@@ -153,5 +153,5 @@ def _within_curves(
 
 def _wearing(design: Design, names: Collection[str]) -> Design:
     """Return the design with these lines worn, whether they are locked or not."""
-    off = set(names) - design.worn()
-    return replace(design, lines=(*design.lines, *(WornLine(name, 1.0) for name in sorted(off))))
+    off = set(names) - design.active_lines()
+    return replace(design, lines=(*design.lines, *(ActiveLine(name, 1.0) for name in sorted(off))))

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from core.analysis.length_limits.criteria import Look
-from core.analysis.length_limits.path_solutions import Ground, PathPoint
-from core.analysis.length_limits.samples import Length, Stop, guess
+from core.analysis.length_limits.criteria import Criterion
+from core.analysis.length_limits.path_solutions import PathPoint, PathSolver
+from core.analysis.length_limits.samples import Length, Sample, extrapolate
 from core.mechanics.constraint_lines import RATIO_LIMITS, Line
 
 PRECISION = 0.0005
@@ -27,52 +27,52 @@ _LEAPS = 0.005, 0.05, 0.1, 0.2
 _HAIR = 1e-9  # what is not there and what round-off makes of it [1]
 
 
-class Walk:
+class LineSearch:
     """The way of a ``line`` on a ``ground``; ``stops`` are ascending by length.
 
     ``last`` is the shortest and ``longest`` the longest length with a balance, None where the way ends before
     balances do.
     """
 
-    def __init__(self, ground: Ground, line: Line, looks: Mapping[str, Look]) -> None:
+    def __init__(self, ground: PathSolver, line: Line, looks: Mapping[str, Criterion]) -> None:
         self._ground, self._line, self._looks = ground, line, looks
         self._snapped = False
-        self.stops: list[Stop] = []
+        self.stops: list[Sample] = []
         self.last: Length | None = None
         self.longest: Length | None = None
 
-    def go(self, present: float, through: bool) -> None:
+    def run(self, present: float, through: bool) -> None:
         """Walk both ways from rest, or from the ``present`` length if nothing balances at rest.
 
         To longer lengths until the line is slack: what it does to the body from there on no band can. To
         shorter ones until a sign of RED shows, or ``through`` it until the worst does.
         """
-        begin = self.solved(1.0) or self.solved(present)
+        begin = self.solve_at(1.0) or self.solve_at(present)
         if begin is None:
             return
         down, self.last = self._way([begin], RATIO_LIMITS[0], through)
         up, self.longest = self._way([begin], RATIO_LIMITS[1], through)
         self.stops = [*reversed(down), *up[1:]]
 
-    def solved(self, ratio: float) -> Stop | None:
+    def solve_at(self, ratio: float) -> Sample | None:
         """Return the balance that rest leads to with the line at ``ratio``, or None if there is none."""
-        found = self._ground.from_rest(ratio)
+        found = self._ground.solve_from_original(ratio)
         return None if found is None else self._stop(found)
 
-    def near(self, ratio: float, start: PathPoint) -> Stop | None:
+    def solve_near(self, ratio: float, start: PathPoint) -> Sample | None:
         """Return the balance at ``ratio`` if a few steps lead there from ``start``."""
-        found = self._ground.near(ratio, start)
+        found = self._ground.solve_near(ratio, start)
         return None if found is None else self._stop(found)
 
-    def _way(self, stops: list[Stop], end: float, through: bool) -> tuple[list[Stop], Length | None]:
+    def _way(self, stops: list[Sample], end: float, through: bool) -> tuple[list[Sample], Length | None]:
         """Return the stops on the way to ``end``, and the last length if no balance lies beyond."""
         sign, stride = 1.0 if end > 1.0 else -1.0, _STRIDE
         alike = list(stops)  # those since the last jump: only these lead on
         while not self._ended(stops, end, through):
             here = stops[-1].length.ratio
             ratio = here + sign * min(stride, abs(end - here))
-            start = guess(alike[-3:], ratio)
-            there = self.near(ratio, start)
+            start = extrapolate(alike[-3:], ratio)
+            there = self.solve_near(ratio, start)
             if there is not None and (stride <= PRECISION or not _astray(alike, start, there.found)):
                 stride = _next_stride(stride, _off(start, there.found) if len(alike) > 2 else None)
                 alike.append(there)
@@ -86,12 +86,12 @@ class Walk:
             stops.append(there)
         return stops, None
 
-    def _ended(self, stops: list[Stop], end: float, through: bool) -> bool:
+    def _ended(self, stops: list[Sample], end: float, through: bool) -> bool:
         here = stops[-1]
         enough = here.shows("slack") if end > 1.0 else self._enough(stops, through)
         return enough or abs(end - here.length.ratio) <= _HAIR
 
-    def _enough(self, stops: list[Stop], through: bool) -> bool:
+    def _enough(self, stops: list[Sample], through: bool) -> bool:
         here = stops[-1]
         if here.shows("stretched"):
             return True  # shorter ones are refused, and nothing is known of their elastic
@@ -100,20 +100,20 @@ class Walk:
         # What is red at rest already is the other lines' doing, and this one may mend it.
         return _red(here) and any(not _red(stop) for stop in stops)
 
-    def _jumped(self, above: float) -> Stop | None:
+    def _jumped(self, above: float) -> Sample | None:
         """Return a balance far from the last one: where lines are springs the shape may snap there, once."""
-        if self._snapped or self._ground.model.mechanics.line_hold == "held":
+        if self._snapped or self._ground.model.options.line_hold == "held":
             return None
         self._snapped = True
         ratios = (above - leap for leap in _LEAPS)
-        tries = (self.solved(ratio) for ratio in ratios if ratio >= RATIO_LIMITS[0])
+        tries = (self.solve_at(ratio) for ratio in ratios if ratio >= RATIO_LIMITS[0])
         return next((there for there in tries if there is not None), None)
 
-    def _stop(self, found: PathPoint) -> Stop:
-        return Stop(Length(found.ratio, self._line.length(found.points)), found, self._looks)
+    def _stop(self, found: PathPoint) -> Sample:
+        return Sample(Length(found.ratio, self._line.length(found.points)), found, self._looks)
 
 
-def _red(stop: Stop) -> bool:
+def _red(stop: Sample) -> bool:
     return any(stop.shows(sign) for sign in RED)
 
 
@@ -126,7 +126,7 @@ def _next_stride(stride: float, off: float | None) -> float:
     return max(stride / 1.5, min(stride, _STRIDE)) if off > _OTHERWISE else stride
 
 
-def _astray(stops: list[Stop], start: PathPoint, found: PathPoint) -> bool:
+def _astray(stops: list[Sample], start: PathPoint, found: PathPoint) -> bool:
     """Tell whether an answer lies elsewhere than the way through ``stops`` leads: on another branch."""
     led = _off(stops[-1].found, start)
     return len(stops) > 1 and _off(start, found) > _OFF_WAY * led + _OFF_ANYWAY

@@ -9,11 +9,11 @@ from functools import partial
 import numpy as np
 
 from core.geometry.mesh import Floats, Points
-from core.mechanics.dense_volume import BodyChange, gained, solve_body_exact
-from core.mechanics.elastic_lines import ElasticLines, Fitted, Stretchy, fit_elastics
+from core.mechanics.dense_volume import BodyChange, solve_body_exact, volume_gain
+from core.mechanics.elastic_lines import ElasticCurve, ElasticLines, FittedModel, fit_elastics
 from core.mechanics.exact_solution import solve_exact
 from core.mechanics.model import ConstrainedModel
-from core.mechanics.newton import Balance, energy_steps
+from core.mechanics.newton import Equilibrium, energy_steps
 from core.mechanics.newton_sliding import sliding_steps
 from core.mechanics.potential import Potential
 from core.progress import Progress, quiet
@@ -40,7 +40,7 @@ class PathPoint:
     ratio: float
     ratios: tuple[float, ...]
     model: ConstrainedModel
-    balance: Balance
+    balance: Equilibrium
     log_ea: Floats
     elongations: Mapping[str, float]
     excess: Floats
@@ -50,7 +50,7 @@ class PathPoint:
         """The control points, shape (n, 3) [mm]."""
         return self.model.tensegric.expand(self.balance.state.moved)
 
-    def mixed(self, other: PathPoint, share: float) -> PathPoint:
+    def interpolate(self, other: PathPoint, share: float) -> PathPoint:
         """Return the place between two answers, or beyond, ``share`` of the way to the other."""
 
         def mix(a: Floats, b: Floats) -> Floats:
@@ -64,7 +64,7 @@ class PathPoint:
 
 
 @dataclass(frozen=True, eq=False)
-class Ground:
+class PathSolver:
     """A ``model`` with ``set_`` ratios, one per line, of which those of the lines ``together`` are tried.
 
     ``elastics`` are those that worn lines are made of, by line: such a line has another stiffness at another
@@ -75,27 +75,27 @@ class Ground:
     model: ConstrainedModel
     set_: tuple[float, ...]
     together: Collection[int]
-    elastics: Mapping[str, Stretchy]
+    elastics: Mapping[str, ElasticCurve]
     newtons: float
     own_stiffness: Mapping[str, float]
     progress: Progress = quiet
     body_change: BodyChange | None = None
 
-    def from_rest(self, ratio: float) -> PathPoint | None:
+    def solve_from_original(self, ratio: float) -> PathPoint | None:
         """Return the answer that rest leads to, or None if there is none."""
         ratios = self._with(ratio)
         solve = partial(self._solved, ratios=ratios)
         if self.elastics:
             return self._fitted(ratio, fit_elastics(self._wish(ratios), solve))
         balance = solve(self.model)
-        return self._found(ratio, self.model, balance, np.zeros(0), {}) if balance.found else None
+        return self._found(ratio, self.model, balance, np.zeros(0), {}) if balance.is_converged else None
 
-    def near(self, ratio: float, start: PathPoint) -> PathPoint | None:
+    def solve_near(self, ratio: float, start: PathPoint) -> PathPoint | None:
         """Return the answer if a few steps lead there from ``start``."""
         ratios, here, excess = self._with(ratio), start.balance, start.excess
         enough = 0.0 if self.elastics else _NEAR_ENOUGH
 
-        def solve(model: ConstrainedModel) -> Balance:
+        def solve(model: ConstrainedModel) -> Equilibrium:
             nonlocal here, excess
             here, excess = self._kept(model, ratios, here, excess, enough)
             return here
@@ -106,7 +106,7 @@ class Ground:
         lost = balance.residual >= _NEAR_ENOUGH
         return None if lost else self._found(ratio, self.model, balance, start.log_ea, {})
 
-    def _solved(self, model: ConstrainedModel, ratios: tuple[float, ...]) -> Balance:
+    def _solved(self, model: ConstrainedModel, ratios: tuple[float, ...]) -> Equilibrium:
         if self.body_change is not None:
             return solve_body_exact(model, ratios, self.body_change)
         return solve_exact(model, ratios)
@@ -115,10 +115,10 @@ class Ground:
         self,
         model: ConstrainedModel,
         ratios: tuple[float, ...],
-        start: Balance,
+        start: Equilibrium,
         excess: Floats,
         enough: float,
-    ) -> tuple[Balance, Floats]:
+    ) -> tuple[Equilibrium, Floats]:
         """Return the balance that a few steps lead to with all volumes kept, and the excess that it needs.
 
         Where they lead to none its residual is infinite.
@@ -130,19 +130,19 @@ class Ground:
                 break
             if self.body_change is None:
                 return found, excess
-            last, more = found, gained(model, self.body_change, found)
+            last, more = found, volume_gain(model, self.body_change, found)
             if np.abs(more).max() < _MORE * abs(model.volume.rest_volume):
                 return found, excess
             excess = excess - more
         return replace(start, residual=np.inf), excess
 
-    def _steps(self, potential: Potential, start: Balance, enough: float) -> Balance | None:
+    def _steps(self, potential: Potential, start: Equilibrium, enough: float) -> Equilibrium | None:
         model = potential.model
-        slides = model.mechanics.line_contact == "sliding" and len(model.owner) > 0
+        slides = model.options.line_contact == "sliding" and len(model.owner) > 0
         steps = (sliding_steps if slides else energy_steps)(potential, start, _FEW_STEPS)
-        return next((step for step in steps if step.found or step.residual < enough), None)
+        return next((step for step in steps if step.is_converged or step.residual < enough), None)
 
-    def _fitted(self, ratio: float, fitted: Fitted) -> PathPoint | None:
+    def _fitted(self, ratio: float, fitted: FittedModel) -> PathPoint | None:
         if not fitted.agreed:
             return None
         return self._found(ratio, fitted.model, fitted.balance, fitted.log_ea, fitted.elongations)
@@ -151,7 +151,7 @@ class Ground:
         self,
         ratio: float,
         model: ConstrainedModel,
-        balance: Balance,
+        balance: Equilibrium,
         log_ea: Floats,
         elongations: Mapping[str, float],
     ) -> PathPoint:

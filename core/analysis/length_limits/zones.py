@@ -49,12 +49,12 @@ class Reason:
         """One of TONES."""
         return TONE_OF[self.why]
 
-    def holds(self, ratio: float) -> bool:
+    def contains(self, ratio: float) -> bool:
         """Tell whether it holds at a length [1]."""
         return self.short <= ratio <= self.long
 
     @property
-    def always(self) -> bool:
+    def is_independent(self) -> bool:
         """Whether it holds whatever this line does."""
         return self.short <= RATIO_LIMITS[0] and self.long >= RATIO_LIMITS[1]
 
@@ -70,7 +70,7 @@ class Zone:
 
 
 @dataclass(frozen=True)
-class Leeway:
+class LengthLimits:
     """How far the line ``name`` can go: ``zones`` of all its lengths, ascending, one beside the other.
 
     ``pressure_known`` tells whether pressures were looked at: they are only where what the line is made of
@@ -94,18 +94,18 @@ class Leeway:
         return first.long if first.tone == RED else None
 
 
-def leeway_of(
+def length_limits_of(
     stages: Stages, name: str, progress: Progress = quiet, *, through: bool = False
-) -> Leeway | None:
+) -> LengthLimits | None:
     """Return the leeway of a line that moves anything, worn or not, the others being as they are set.
 
     ``through``: look on where it is red, and tell what else is wrong there. None where the other lines leave
     no balance at any length. Raises Cancelled.
     """
-    return leeway(limits_of(stages, name, progress, through=through))
+    return to_length_limits(limits_of(stages, name, progress, through=through))
 
 
-def leeway(limits: Limits) -> Leeway | None:
+def to_length_limits(limits: Limits) -> LengthLimits | None:
     """Return limits as zones; None where no length has a balance, or nothing can move.
 
     Where a way from rest comes into the red all that follows is red: it is of no use to anybody.
@@ -119,15 +119,15 @@ def leeway(limits: Limits) -> Leeway | None:
     longer = [piece for piece in pieces if piece.short >= rest]
     ways = [*reversed(_red_on(shorter)), *_red_on(longer)]
     zones = (_joined(list(alike)) for _, alike in groupby(ways, lambda zone: zone.tone))
-    return Leeway(limits.line.name, tuple(zones), limits.pressure_known)
+    return LengthLimits(limits.line.name, tuple(zones), limits.pressure_known)
 
 
 def _reasons(limits: Limits) -> Iterator[Reason]:
     """Yield every reason; what shows where the way ended goes on to the end of all lengths."""
     assert limits.rest is not None
-    assert limits.looked is not None
+    assert limits.evaluated is not None
     low, high = RATIO_LIMITS
-    first, last = limits.looked.short.ratio, limits.looked.long.ratio
+    first, last = limits.evaluated.short.ratio, limits.evaluated.long.ratio
     for why, spans in limits.shows.items():
         for span in spans if why in TONE_OF else ():
             short = low if span.short.ratio <= first else span.short.ratio
@@ -140,7 +140,7 @@ def _reasons(limits: Limits) -> Iterator[Reason]:
 
 
 def _zone(short: float, long: float, reasons: tuple[Reason, ...]) -> Zone:
-    here = tuple(reason for reason in reasons if reason.holds(0.5 * (short + long)))
+    here = tuple(reason for reason in reasons if reason.contains(0.5 * (short + long)))
     if "restless" in (reason.why for reason in here):
         here = tuple(reason for reason in here if reason.why != "vibrating")  # with any control
     if SLACK in (reason.tone for reason in here):

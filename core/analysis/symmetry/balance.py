@@ -7,16 +7,16 @@ from dataclasses import dataclass, replace
 from math import hypot
 
 from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER, LIFT, OUT, Goal, reading
-from core.analysis.inverse_design.solve import Reply, ask
-from core.analysis.symmetry.compare import NO_BREAST, Evenness, evenness
-from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, partable, parted
+from core.analysis.inverse_design.solve import InverseResult, solve_targets
+from core.analysis.symmetry.compare import NO_BREAST, Evenness, compare_sides
+from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, split_sides, splittable_lines
 from core.control_mesh.template import read_template
 from core.errors import UserError
 from core.geometry.mesh import Points
 from core.landmarks.types import SIDES
 from core.measurements.subject import shows_breast
 from core.pipeline.build import Stages, build
-from core.pipeline.solve import run
+from core.pipeline.solve import solve
 from core.progress import Progress, quiet
 
 EVEN = (Goal(HIGHER, 0.0), Goal(FURTHER_OUT, 0.0))
@@ -29,44 +29,44 @@ KEPT = (LIFT, OUT)
 
 
 @dataclass(frozen=True, eq=False)
-class Evened:
-    """What makes a design even, or nearest to it: the ``reply`` to ``goals``, those of evenness first.
+class BalanceResult:
+    """What makes a design even, or nearest to it: the ``result`` to ``goals``, those of evenness first.
 
     ``rest``, ``before`` and ``after`` are how left and right differ at rest, and in the exact answers of the
     design as it was and as it was found. ``kept`` is how lift and way out went from there to here [mm].
-    ``parted`` names the lines that were split or unlinked for it.
+    ``split`` names the lines that were split or unlinked for it.
     """
 
-    reply: Reply
+    result: InverseResult
     goals: tuple[Goal, ...]
     rest: Evenness
     before: Evenness
     after: Evenness
     kept: Mapping[str, tuple[float, float]]
-    parted: tuple[str, ...]
+    split: tuple[str, ...]
 
     @property
-    def even(self) -> bool:
+    def is_balanced(self) -> bool:
         """Whether both bust points come to lie alike."""
-        return self.after.furthest < ENOUGH
+        return self.after.largest_difference < ENOUGH
 
     @property
-    def gained(self) -> float:
+    def gain(self) -> float:
         """By how much nearer to each other the bust points lie, mirrored [mm]."""
-        return self.before.apart - self.after.apart
+        return self.before.distance - self.after.distance
 
     @property
-    def lost(self) -> float:
+    def loss(self) -> float:
         """By how much both sides together lie elsewhere than they did, in height and way out [mm]."""
         return hypot(*(after - before for before, after in self.kept.values()))
 
     @property
-    def worth(self) -> bool:
+    def is_worthwhile(self) -> bool:
         """Whether it is even, or at least brings more than what it takes away."""
-        return self.even or self.gained > max(self.lost, ENOUGH)
+        return self.is_balanced or self.gain > max(self.loss, ENOUGH)
 
 
-def even_goals(stages: Stages, control_points: Points) -> tuple[Goal, ...]:
+def balance_goals(stages: Stages, control_points: Points) -> tuple[Goal, ...]:
     """Return what to ask for so that left and right come alike and the rest stays: the first the most.
 
     Lift and way out of both together are to stay as they are at ``control_points`` (n, 3) [mm]. With fewer
@@ -84,12 +84,12 @@ def make_even(
     shortest: Mapping[str, float] | None = None,
     kept: Collection[str] = (),
     progress: Progress = quiet,
-) -> Evened:
+) -> BalanceResult:
     """Return the lengths that bring both bust points of a design alike, or as near as is worth it.
 
     Pairs are set apart and lines across both sides split first, if nothing else moves one side alone. What
     cannot be kept besides is let go of where that makes it even, or brings more than it takes away. Where
-    nothing does, what is returned is not ``worth`` it. ``shortest`` and ``kept`` see ``ask``. Raises
+    nothing does, what is returned is not ``worth`` it. ``shortest`` and ``kept`` see ``solve_targets``. Raises
     UserError if a breast is missing, no worn line can move one side alone, or nothing balances; Cancelled.
     """
     if not all(shows_breast(stages.landmarks, side) for side in SIDES):
@@ -98,31 +98,33 @@ def make_even(
     names: tuple[str, ...] = ()
     if not moves_one_side(exact):
         template = read_template(exact.design.template)
-        names = partable(exact.design, template)
-        exact = build(parted(exact.design, template), exact, progress)
+        names = splittable_lines(exact.design, template)
+        exact = build(split_sides(exact.design, template), exact, progress)
     if not moves_one_side(exact):
         raise UserError(
             "No worn line can move one side alone.",
             "Wear a line that is not locked: one across both sides is split, a pair set apart.",
         )
-    best = _best(exact, names, lambda goals: ask(exact, goals, shortest, kept, progress))
-    design = replace(best.reply.design, volume=stages.design.volume)
-    return replace(best, reply=replace(best.reply, design=design))
+    best = _best(exact, names, lambda goals: solve_targets(exact, goals, shortest, kept, progress))
+    design = replace(best.result.design, volume=stages.design.volume)
+    return replace(best, result=replace(best.result, design=design))
 
 
-def _best(stages: Stages, names: tuple[str, ...], asked: Callable[[tuple[Goal, ...]], Reply]) -> Evened:
+def _best(
+    stages: Stages, names: tuple[str, ...], asked: Callable[[tuple[Goal, ...]], InverseResult]
+) -> BalanceResult:
     """Return what brings the most among those that keep more and less; if any is even, among these."""
-    here = run(stages).control_points
-    told, found = evenness(stages, here), []
-    were, goals = _kept(stages, here), even_goals(stages, here)
+    here = solve(stages).control_points
+    told, found = compare_sides(stages, here), []
+    were, goals = _kept(stages, here), balance_goals(stages, here)
 
     def tried(count: int) -> bool:
         reply = asked(goals[:count])
         there = build(reply.design, stages)
-        points = run(there).control_points
+        points = solve(there).control_points
         kept = {name: (were[name], value) for name, value in _kept(there, points).items()}
-        after = evenness(there, points).after
-        found.append(Evened(reply, goals[:count], told.before, told.after, after, kept, names))
+        after = compare_sides(there, points).after
+        found.append(BalanceResult(reply, goals[:count], told.before, told.after, after, kept, names))
         return reply.reachable
 
     # What evenness alone does not reach it does not reach with more to keep either: that is not looked for.
@@ -131,5 +133,5 @@ def _best(stages: Stages, names: tuple[str, ...], asked: Callable[[tuple[Goal, .
     # Of several that bring as much, to what cannot be seen, the one that keeps the most.
     return max(
         found,
-        key=lambda each: (each.even, round((each.gained - each.lost) / _UNSEEN), len(each.goals)),
+        key=lambda each: (each.is_balanced, round((each.gain - each.loss) / _UNSEEN), len(each.goals)),
     )

@@ -9,14 +9,14 @@ from math import hypot
 import numpy as np
 from scipy.spatial import cKDTree
 
-from core.analysis.symmetry.mirrored_surface import Mirrored, SkinGap
+from core.analysis.symmetry.mirrored_surface import MirroredSurface, SkinGap
 from core.control_mesh.fit import ControlMesh
-from core.deformation.blend_region import Patch
+from core.deformation.blend_region import BlendRegion
 from core.deformation.tffd import deform
 from core.geometry.mesh import Points
 from core.landmarks.types import SIDES
 from core.measurements.subject import shows_breast
-from core.measurements.table import calm_moves
+from core.measurements.table import smoothed_moves
 from core.pipeline.build import Stages
 from core.scan.body import Body
 
@@ -28,22 +28,22 @@ class Evenness:
     """How left and right differ in one shape of a body.
 
     ``higher`` and ``further_out`` are how much higher and further to the front the left bust point is than
-    the right one, ``further_aside`` how much further from the mirror [mm]; ``skin`` is how that of one breast
+    the right one, ``further_lateral`` how much further from the mirror [mm]; ``skin`` is how that of one breast
     lies beside the other one's, None where it cannot be told.
     """
 
     higher: float
     further_out: float
-    further_aside: float
+    further_lateral: float
     skin: SkinGap | None
 
     @property
-    def furthest(self) -> float:
+    def largest_difference(self) -> float:
         """The larger one of what the bust points differ by in height and to the front [mm]."""
         return max(abs(self.higher), abs(self.further_out))
 
     @property
-    def apart(self) -> float:
+    def distance(self) -> float:
         """How far one bust point is from the other, mirrored, in height and to the front together [mm]."""
         return hypot(self.higher, self.further_out)
 
@@ -57,7 +57,7 @@ class BeforeAfter:
     notes: tuple[str, ...]
 
 
-def evenness(stages: Stages, control_points: Points) -> BeforeAfter:
+def compare_sides(stages: Stages, control_points: Points) -> BeforeAfter:
     """Return how left and right differ at rest, and reshaped by ``control_points``, shape (n, 3) [mm].
 
     Raises ValueError unless there are as many control points as the control mesh has.
@@ -71,30 +71,30 @@ def _of(stages: Stages, control_points: Points) -> Evenness:
     mirrored = _mirrored(stages.body, stages.control, stages.patch)
     left, right = stages.watch.bust_points(control_points)
     aside = (left[0] - mirrored.middle) - (mirrored.middle - right[0])
-    calm = stages.body.calm.vertices
+    calm = stages.body.smoothed.vertices
     moves = deform(stages.binding, control_points) - stages.body.mesh.vertices
     return Evenness(
         float(left[2] - right[2]),
         float(right[1] - left[1]),
         float(aside),
-        mirrored.gap(calm + calm_moves(stages.body, moves)),
+        mirrored.gap(calm + smoothed_moves(stages.body, moves)),
     )
 
 
 @lru_cache(maxsize=2)  # while lines change, the body at rest and what of it moves are the same
-def _mirrored(body: Body, control: ControlMesh, patch: Patch) -> Mirrored:
+def _mirrored(body: Body, control: ControlMesh, patch: BlendRegion) -> MirroredSurface:
     """Return the breasts of a body: its skin nearest to control points that can move."""
-    calm, fade = body.calm, patch.fade
+    calm, fade = body.smoothed, patch.fade
     if len(calm.vertices) != len(fade):  # of a giant scan the calm skin is coarser
         fade = fade[cKDTree(body.mesh.vertices).query(calm.vertices)[1]]
     nearest = np.asarray(cKDTree(control.mesh.vertices).query(calm.vertices)[1])
     breasts = ~control.fixed[nearest] & (fade > 0.0)
     middle = float(control.mesh.vertices[control.border, 0].mean())
-    return Mirrored(calm, fade == 0.0, breasts, middle)
+    return MirroredSurface(calm, fade == 0.0, breasts, middle)
 
 
 @dataclass(frozen=True)
-class EvenRow:
+class SymmetryRow:
     """One figure ``before`` and ``after`` in ``unit``, None where it is not known.
 
     A ``sided`` one is positive where it is the left that is higher or further, negative where the right is.
@@ -107,12 +107,12 @@ class EvenRow:
     sided: bool = True
 
 
-def even_rows(before: Evenness, after: Evenness) -> list[EvenRow]:
+def symmetry_rows(before: Evenness, after: Evenness) -> list[SymmetryRow]:
     """Return how left and right differ as a table, two shapes side by side."""
     first, last = _values(before), _values(after)
     units = {key: "ml" if key in ("in_all", "left_more", "right_more") else "mm" for key in first}
     sided = {key: key not in ("mean", "left_more", "right_more") for key in first}
-    return [EvenRow(key, units[key], first[key], last[key], sided[key]) for key in first]
+    return [SymmetryRow(key, units[key], first[key], last[key], sided[key]) for key in first]
 
 
 def _values(told: Evenness) -> dict[str, float | None]:
@@ -120,8 +120,8 @@ def _values(told: Evenness) -> dict[str, float | None]:
     return {
         "higher": told.higher,
         "further_out": told.further_out,
-        "further_aside": told.further_aside,
-        "in_all": skin.in_all if skin else None,
+        "further_aside": told.further_lateral,
+        "in_all": skin.total if skin else None,
         "mean": skin.mean if skin else None,
         "largest": (skin.largest if skin.side == "left" else -skin.largest) if skin else None,
         "left_more": skin.left_more if skin else None,

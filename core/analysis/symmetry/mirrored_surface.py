@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points
-from core.geometry.mirror_plane import Sides, mirror_plane
+from core.geometry.mirror_plane import SideComparison, mirror_plane
 
 MM3_PER_ML = 1000.0
 
@@ -31,17 +31,17 @@ class SkinGap:
     seen: float
 
     @property
-    def in_all(self) -> float:
+    def total(self) -> float:
         """By how much the left stands out more than the right, all in all [ml]: by how much it is larger."""
         return self.left_more - self.right_more
 
     @property
-    def apart(self) -> float:
+    def absolute_total(self) -> float:
         """All that lies between the skin and its mirror image [ml]."""
         return self.left_more + self.right_more
 
 
-class Mirrored:
+class MirroredSurface:
     """The breasts of a skin at rest, the left laid over the right, again and again while it moves.
 
     ``still`` (n,) tells the vertices that do not move, ``breasts`` (n,) those of the breasts, which are taken
@@ -51,7 +51,7 @@ class Mirrored:
     def __init__(self, rest: Mesh, still: Flags, breasts: Flags, start: float) -> None:
         self._rest = rest
         self.middle = mirror_plane(rest, still, start)
-        self._sides = Sides(rest, np.arange(len(rest.vertices)), self.middle)
+        self._sides = SideComparison(rest, np.arange(len(rest.vertices)), self.middle)
         across = breasts[self._sides.partner] & ~self._sides.alone
         self._rows: Indices = np.flatnonzero(breasts | across)
 
@@ -65,7 +65,7 @@ class Mirrored:
         What lies between two skins is the mean of what either's area tells: right to second order (ours).
         """
         mesh = self._rest.moved(places)
-        off = self._sides.differ(mesh.vertices, mesh.vertex_normals, self._rows)
+        off = self._sides.protrusion_difference(mesh.vertices, mesh.vertex_normals, self._rows)
         area, known = _areas(mesh)[self._rows], np.isfinite(off)
         if not known.any():
             return None

@@ -28,18 +28,22 @@ def _one_sided(stages: Stages, group: tuple[str, ...]) -> bool:
     return bool(sides) and (min(sides) > 0 or max(sides) < 0)
 
 
-def partable(design: Design, template: Template) -> tuple[str, ...]:
+def splittable_lines(design: Design, template: Template) -> tuple[str, ...]:
     """Return the worn lines that can be set apart or split so that left and right change each by itself."""
-    free = [name for name in sorted(design.worn()) if not design.traits_of(name).locked]
-    return tuple(name for name in free if len(design.linked(name)) > 1 or can_split(design, template, name))
+    free = [name for name in sorted(design.active_lines()) if not design.line_settings(name).locked]
+    return tuple(
+        name for name in free if len(design.linked_pair(name)) > 1 or can_split(design, template, name)
+    )
 
 
-def parted(design: Design, template: Template) -> Design:
+def split_sides(design: Design, template: Template) -> Design:
     """Return the design with linked pairs set apart and lines across both sides split; locked ones stay."""
-    return reduce(lambda after, name: _parted(after, template, name), partable(design, template), design)
+    return reduce(
+        lambda after, name: _parted(after, template, name), splittable_lines(design, template), design
+    )
 
 
 def _parted(design: Design, template: Template, name: str) -> Design:
-    if len(design.linked(name)) > 1:
-        return design.with_traits(replace(design.traits_of(name), linked=False))
+    if len(design.linked_pair(name)) > 1:
+        return design.with_line_settings(replace(design.line_settings(name), linked=False))
     return split(design, template, name) if can_split(design, template, name) else design

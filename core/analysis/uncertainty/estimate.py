@@ -14,13 +14,28 @@ from types import MappingProxyType
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from core.analysis.uncertainty.input_uncertainty import Assumed, assumed
+from core.analysis.uncertainty.input_uncertainty import InputUncertainty, default_uncertainty
 from core.analysis.uncertainty.linear_propagation import Effect, Propagation, effects
-from core.analysis.uncertainty.parameters import PLACING, Knob, Turned, beyond, knobs
-from core.analysis.uncertainty.perturbed_solutions import Trials
+from core.analysis.uncertainty.parameters import (
+    PLACING,
+    Perturbed,
+    UncertainParameter,
+    uncertain_parameters,
+    unmodelled_measurements,
+)
+from core.analysis.uncertainty.perturbed_solutions import PerturbedSolutions
 from core.document.design import Design
 from core.errors import UserError
-from core.measurements.uncertain_value import AFTER, BEFORE, LANDMARKS, ROOT, SCAN, SOURCES, Doubt, Spread
+from core.measurements.uncertain_value import (
+    AFTER,
+    BEFORE,
+    LANDMARKS,
+    ROOT,
+    SCAN,
+    SOURCES,
+    Spread,
+    Uncertainty,
+)
 from core.mechanics.options import CONTACTS
 from core.pipeline.build import Stages
 from core.progress import Progress, quiet
@@ -39,29 +54,29 @@ _UNTOLD = tuple(f"{kind}:asymmetry_volume" for kind in (BEFORE, AFTER))
 """Figures whose ± is known not to hold: a root goes with its bust point, see docs/how-to/symmetry.md."""
 
 
-class Spreading:
-    """Finds how far the figures of a design may be off, the ``quick`` part, then the ``whole``.
+class UncertaintyEstimator:
+    """Finds how far the figures of a design may be off, the ``estimate_partial`` part, then the ``estimate``.
 
     Raises NoBalanceError where the design has no exact answer, and Cancelled.
     """
 
-    def __init__(self, trials: Trials, sizes: Assumed | None = None) -> None:
-        self.trials, self.sizes = trials, sizes or assumed()
+    def __init__(self, trials: PerturbedSolutions, sizes: InputUncertainty | None = None) -> None:
+        self.trials, self.sizes = trials, sizes or default_uncertainty()
         self._found: list[Effect] = []
         self._failed = 0
         self._propagation: Propagation | None = None
 
-    def quick(self, progress: Progress = quiet) -> Spread:
+    def estimate_partial(self, progress: Progress = quiet) -> Spread:
         """Return the spread by all sources but the landmarks, which are slow."""
         return self._by([knob for knob in self._knobs if knob.source != LANDMARKS], progress)
 
-    def whole(self, progress: Progress = quiet) -> Spread:
+    def estimate(self, progress: Progress = quiet) -> Spread:
         """Return the spread by all sources, and the figures with the other skin contact."""
         if self._propagation is None:
-            self.quick(progress)
+            self.estimate_partial(progress)
         marks = [knob for knob in self._knobs if knob.source == LANDMARKS]
         whole = self._by([*marks, *([PLACING] if marks else [])], progress)
-        if self.trials.bare:  # the contact of no line makes no difference
+        if self.trials.has_no_active_lines:  # the contact of no line makes no difference
             return replace(whole, sources=SOURCES)
         progress("the other contact", 1.0)
         with threadpool_limits(1):
@@ -69,10 +84,10 @@ class Spreading:
         return replace(whole, sources=SOURCES, other=figures, contact=contact)
 
     @cached_property
-    def _knobs(self) -> tuple[Knob, ...]:
-        return knobs(self.trials.base, self.sizes)
+    def _knobs(self) -> tuple[UncertainParameter, ...]:
+        return uncertain_parameters(self.trials.base, self.sizes)
 
-    def _by(self, turning: Sequence[Knob], progress: Progress) -> Spread:
+    def _by(self, turning: Sequence[UncertainParameter], progress: Progress) -> Spread:
         # Two BLAS threads make these small products many times slower.
         with threadpool_limits(1):
             progress("propagating", 0.0)
@@ -84,47 +99,57 @@ class Spreading:
             return _spread(self._propagation, self._found, self.sizes, self._failed)
 
 
-def spread_of(stages: Stages, sizes: Assumed | None = None, progress: Progress = quiet) -> Spread:
-    """Return how far the figures of a design may be off; see ``Spreading``."""
-    return Spreading(Trials(stages), sizes).whole(progress)
+def estimate_uncertainty(
+    stages: Stages, sizes: InputUncertainty | None = None, progress: Progress = quiet
+) -> Spread:
+    """Return how far the figures of a design may be off; see ``UncertaintyEstimator``."""
+    return UncertaintyEstimator(PerturbedSolutions(stages), sizes).estimate(progress)
 
 
 def cautions(design: Design, doubts: Mapping[str, object]) -> Iterator[str]:
     """Yield where the ± of a design says less than it seems to, of the figures that have ``doubts``."""
     if f"{BEFORE}:waist_girth" in doubts:
         yield WAIST
-    if design.worn() and design.line_contact == "sliding":
+    if design.active_lines() and design.line_contact == "sliding":
         yield SLIDING
 
 
-def _other_contact(trials: Trials) -> tuple[str, Mapping[str, float]]:
+def _other_contact(trials: PerturbedSolutions) -> tuple[str, Mapping[str, float]]:
     """Return the skin contact that a design has not, and its figures with that; none without an answer."""
     design = trials.base.design
     other = next(each for each in CONTACTS if each != design.line_contact)
     try:
-        tried = trials(Turned(replace(design, line_contact=other)))
+        tried = trials(Perturbed(replace(design, line_contact=other)))
     except UserError:
         return other, MappingProxyType({})
-    return other, MappingProxyType(tried.figures)
+    return other, MappingProxyType(tried.values)
 
 
-def _spread(propagation: Propagation, found: list[Effect], sizes: Assumed, failed: int) -> Spread:
+def _spread(propagation: Propagation, found: list[Effect], sizes: InputUncertainty, failed: int) -> Spread:
     doubts: dict[str, dict[str, float]] = {}
     for effect in found:
-        for key, step in effect.figures.items():
+        for key, step in effect.values.items():
             of_figure = doubts.setdefault(key, {})
-            of_figure[effect.knob.source] = np.hypot(of_figure.get(effect.knob.source, 0.0), step)
-    unsure = [f"{kind}:{key}" for kind in (BEFORE, AFTER) for key in beyond(propagation.stages.design)]
+            of_figure[effect.parameter.source] = np.hypot(of_figure.get(effect.parameter.source, 0.0), step)
+    unsure = [
+        f"{kind}:{key}"
+        for kind in (BEFORE, AFTER)
+        for key in unmodelled_measurements(propagation.stages.design)
+    ]
     for key in (*_UNTOLD, *unsure):
         doubts.pop(key, None)
     for key, sd in _of_roots(propagation, sizes).items():
         doubts.setdefault(key, {})[ROOT] = sd
     skin = sum((effect.skin**2 for effect in found), np.zeros(len(propagation.places)))
-    sources = tuple(dict.fromkeys(effect.knob.source for effect in found if effect.knob.source != LANDMARKS))
-    told = {key: Doubt({name: float(sd) for name, sd in parts.items()}) for key, parts in doubts.items()}
-    rest = next((effect.knob.sd for effect in found if effect.knob.source == SCAN), 0.0)
+    sources = tuple(
+        dict.fromkeys(effect.parameter.source for effect in found if effect.parameter.source != LANDMARKS)
+    )
+    told = {
+        key: Uncertainty({name: float(sd) for name, sd in parts.items()}) for key, parts in doubts.items()
+    }
+    rest = next((effect.parameter.sd for effect in found if effect.parameter.source == SCAN), 0.0)
     return Spread(
-        doubts=MappingProxyType(told),
+        by_output=MappingProxyType(told),
         skin=np.sqrt(skin),
         rest=rest,
         sds=sizes.sds,
@@ -132,15 +157,15 @@ def _spread(propagation: Propagation, found: list[Effect], sizes: Assumed, faile
         other=MappingProxyType({}),
         contact="",
         failed=failed,
-        figures=MappingProxyType(propagation.trials.figures),
-        bare=propagation.trials.bare,
+        values=MappingProxyType(propagation.trials.values),
+        bare=propagation.trials.has_no_active_lines,
         cautions=tuple(cautions(propagation.stages.design, doubts)),
     )
 
 
-def _of_roots(propagation: Propagation, sizes: Assumed) -> dict[str, float]:
+def _of_roots(propagation: Propagation, sizes: InputUncertainty) -> dict[str, float]:
     """Return what the top of the root, which no skin shows, makes of volumes, the same before and after."""
-    before = propagation.trials.rest.before
+    before = propagation.trials.original.before
     return {
         f"{kind}:{key}": measure.plus_minus / 2.0
         for kind in (BEFORE, AFTER)

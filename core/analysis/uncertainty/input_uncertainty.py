@@ -11,12 +11,12 @@ from importlib import resources
 from core.errors import UserError
 from core.landmarks.bust_point import SMOOTH
 from core.landmarks.types import CERTAIN, Landmark
-from core.measurements.size_table import Words
+from core.measurements.size_table import LocalizedText
 from core.measurements.uncertain_value import SOURCES
 
 
 @dataclass(frozen=True)
-class Assumed:
+class InputUncertainty:
     """Standard deviations of the sources.
 
     ``landmark_mm`` of a landmark in each direction along the skin, ``unsure_landmark_mm`` of one that is not
@@ -41,7 +41,7 @@ class Assumed:
             if not 0.0 <= getattr(self, name) <= 20.0:
                 raise UserError(f"{name} cannot be {getattr(self, name):g}.", "It goes from 0 to 20.")
 
-    def times(self, share: float) -> Assumed:
+    def scaled(self, share: float) -> InputUncertainty:
         """Return all sources so many times as large."""
         return replace(self, **{name: share * getattr(self, name) for name in NUMBERS if name != "sds"})
 
@@ -52,24 +52,24 @@ class Assumed:
         return self.landmark_mm if sure else self.unsure_landmark_mm
 
 
-NUMBERS = tuple(field.name for field in fields(Assumed))
+NUMBERS = tuple(field.name for field in fields(InputUncertainty))
 """The names of all that is assumed."""
 
 
 @cache
-def assumed() -> Assumed:
+def default_uncertainty() -> InputUncertainty:
     """Return what comes with Busk."""
-    return Assumed(**{name: float(_file()[name]) for name in NUMBERS})  # type: ignore[arg-type]
+    return InputUncertainty(**{name: float(_file()[name]) for name in NUMBERS})  # type: ignore[arg-type]
 
 
 @cache
-def origins() -> Mapping[str, Words]:
+def origins() -> Mapping[str, LocalizedText]:
     """Return where each source's numbers come from, by source."""
-    told = {each["name"]: Words(each["en"], each["ja"]) for each in _file()["sources"]}  # type: ignore[attr-defined]
+    told = {each["name"]: LocalizedText(each["en"], each["ja"]) for each in _file()["sources"]}  # type: ignore[attr-defined]
     return {name: told[name] for name in SOURCES}
 
 
-def assuming(texts: Sequence[str], base: Assumed) -> Assumed:
+def with_overrides(texts: Sequence[str], base: InputUncertainty) -> InputUncertainty:
     """Return ``base`` with what ``texts`` like "tape_mm=3" say. Raises UserError."""
     told = {}
     for text in texts:

@@ -14,54 +14,54 @@ import numpy as np
 
 from core.analysis.uncertainty.outputs import (
     Figures,
-    apart,
-    line_figures,
-    measured_figures,
-    rested,
-    rested_figures,
+    line_values,
+    measurement_values,
+    normal_distance,
+    original_measurements,
+    original_values,
     skin_normals,
 )
-from core.analysis.uncertainty.parameters import PLACING, Knob, turned
-from core.analysis.uncertainty.perturbed_solutions import Trials
+from core.analysis.uncertainty.parameters import PLACING, UncertainParameter, perturb
+from core.analysis.uncertainty.perturbed_solutions import PerturbedSolutions
 from core.deformation.tffd import deform
 from core.errors import UserError
 from core.garment.tension import LineTension, line_tensions
 from core.geometry.mesh import Floats, Points
 from core.measurements.uncertain_value import ELASTIC, LANDMARKS, LINE, SCAN, TAPE, TISSUE
 from core.mechanics.force_units import newtons_per_unit
-from core.mechanics.stiffness_sensitivity import Changes, answers_to
-from core.pipeline.build import targets_of
+from core.mechanics.stiffness_sensitivity import Changes, stiffness_rates
+from core.pipeline.build import line_targets
 
 
 @dataclass(frozen=True, eq=False)
 class Effect:
-    """What one standard deviation of a ``knob`` does to ``figures``, and to the reshaped skin along its
+    """What one standard deviation of a ``parameter`` does to ``values``, and to the reshaped skin along its
     normals, ``skin`` (n,) [mm].
     """
 
-    knob: Knob
-    figures: Figures
+    parameter: UncertainParameter
+    values: Figures
     skin: Floats
 
 
 class Propagation:
     """One solved design and what its knobs do to it. Raises NoBalanceError."""
 
-    def __init__(self, trials: Trials) -> None:
+    def __init__(self, trials: PerturbedSolutions) -> None:
         self.trials, self.stages = trials, trials.base
         stages = trials.base
-        self.ratios = np.array(targets_of(stages.design, stages).ratios)
+        self.ratios = np.array(line_targets(stages.design, stages).ratios)
         self.points = trials.points
-        self.answer, self._kept = trials.resting.answer, trials.resting.kept
+        self.answer, self._kept = trials.equilibrium.solution, trials.equilibrium.kept
         self.places = deform(stages.binding, self.points)
         self.normals = skin_normals(stages, self.points)
         self.tensions = line_tensions(stages, self.points)
         self._long = {line.name: line.rest_lengths for line in stages.model.lines}
-        for at in stages.model.pulling:
+        for at in stages.model.acting_lines:
             name = stages.model.lines[at].name
             self._long[name] = stages.model.tapes_at_rest[stages.model.owner == at]
 
-    def effect(self, knob: Knob) -> Effect:
+    def effect(self, knob: UncertainParameter) -> Effect:
         """Return what a knob does. Raises the UserError of a fit that fails to both sides."""
         if knob.source == SCAN:
             return self._of_scan(knob)
@@ -72,42 +72,44 @@ class Propagation:
     def _of_placing(self) -> Effect:
         """A fold that is placed may lead a root another way than one that is found."""
         trials, stages = self.trials, self.stages
-        here = rested_figures(trials.rest)
-        if not trials.bare:
-            here = measured_figures(stages, trials.steps, trials.rest, self.points) | trials.figures
-        there = trials(turned(stages, {PLACING: 0.0}))
-        skin = apart(stages.body, there.places, self.places, self.normals)
-        return Effect(PLACING, _per(here, there.figures, 1.0), skin)
+        here = original_values(trials.original)
+        if not trials.has_no_active_lines:
+            here = measurement_values(stages, trials.steps, trials.original, self.points) | trials.values
+        there = trials(perturb(stages, {PLACING: 0.0}))
+        skin = normal_distance(stages.body, there.places, self.places, self.normals)
+        return Effect(PLACING, _per(here, there.values, 1.0), skin)
 
-    def _of_scan(self, knob: Knob) -> Effect:
-        rest, steps = self.trials.rest.subject, self.trials.steps
-        if self.trials.bare:
-            sides = [rested(self.stages, steps, rest, skin) for skin in (-knob.sd, knob.sd)]
-            return Effect(knob, _half(*map(rested_figures, sides)), np.full(len(self.places), knob.sd))
+    def _of_scan(self, knob: UncertainParameter) -> Effect:
+        rest, steps = self.trials.original.subject, self.trials.steps
+        if self.trials.has_no_active_lines:
+            sides = [original_measurements(self.stages, steps, rest, skin) for skin in (-knob.sd, knob.sd)]
+            return Effect(knob, _half(*map(original_values, sides)), np.full(len(self.places), knob.sd))
         found = [
-            measured_figures(self.stages, steps, rested(self.stages, steps, rest, skin), self.points, skin)
+            measurement_values(
+                self.stages, steps, original_measurements(self.stages, steps, rest, skin), self.points, skin
+            )
             for skin in (-knob.sd, knob.sd)
         ]
         return Effect(knob, _half(*found), np.full(len(self.places), knob.sd))
 
-    def _of_landmark(self, knob: Knob) -> Effect:
+    def _of_landmark(self, knob: UncertainParameter) -> Effect:
         tried = []
         for turn in (-1.0, 1.0):
             try:
-                tried.append((turn, self.trials(turned(self.stages, {knob: turn}))))
+                tried.append((turn, self.trials(perturb(self.stages, {knob: turn}))))
             except UserError as problem:
                 failed = problem
         if not tried:
             raise failed
         if len(tried) == 1:
             # To one side there is no fit: the other side alone tells, against all landmarks in their places.
-            tried.append((0.0, self.trials(turned(self.stages, {knob: 0.0}))))
+            tried.append((0.0, self.trials(perturb(self.stages, {knob: 0.0}))))
         (low, one), (high, other) = sorted(tried, key=lambda each: each[0])
         whole = high - low
-        skin = apart(self.stages.body, other.places, one.places, self.normals) / whole
-        return Effect(knob, _per(one.figures, other.figures, whole), skin)
+        skin = normal_distance(self.stages.body, other.places, one.places, self.normals) / whole
+        return Effect(knob, _per(one.values, other.values, whole), skin)
 
-    def _of_lines(self, knob: Knob) -> Effect:
+    def _of_lines(self, knob: UncertainParameter) -> Effect:
         moved, pulls = self._answered(knob)
         found, places = [], []
         for turn in (-1.0, 1.0):
@@ -116,22 +118,24 @@ class Propagation:
                 name: _pulled(each, turn * pulls[name], self._long[name])
                 for name, each in self.tensions.items()
             }
-            design = turned(self.stages, {knob: turn}).design
+            design = perturb(self.stages, {knob: turn}).design
             stages = replace(self.stages, design=design)
             meant = {
                 line.name: float(ratio) for line, ratio in zip(stages.model.lines, self.ratios, strict=True)
             }
-            figures = line_figures(stages, points, tensions, meant)
+            figures = line_values(stages, points, tensions, meant)
             if np.abs(moved).max() > _STILL:
-                figures |= measured_figures(stages, self.trials.steps, self.trials.rest, points)
+                figures |= measurement_values(stages, self.trials.steps, self.trials.original, points)
             found.append(figures)
             places.append(deform(self.stages.binding, points))
-        return Effect(knob, _half(*found), apart(self.stages.body, places[1], places[0], self.normals) / 2.0)
+        return Effect(
+            knob, _half(*found), normal_distance(self.stages.body, places[1], places[0], self.normals) / 2.0
+        )
 
-    def _answered(self, knob: Knob) -> tuple[Points, dict[str, Floats]]:
+    def _answered(self, knob: UncertainParameter) -> tuple[Points, dict[str, Floats]]:
         """Return how control points move, (n, 3) [mm], and tensions change [N], by line, for one sd."""
         model, design = self.stages.model, self.stages.design
-        elastics = design.worn_elastics()
+        elastics = design.active_elastics()
         names = [line.name for line in model.lines]
         stiffer, ratios = np.zeros((len(names), 1)), np.zeros((len(names), 1))
         newtons = knob.sd if knob.source == TISSUE else 0.0
@@ -146,12 +150,14 @@ class Propagation:
             elif knob.source == TAPE and name == knob.name:
                 ratios[at] = knob.sd / model.lines[at].whole_length
         made = {names.index(name): elastic for name, elastic in elastics.items()}
-        answers = answers_to(self.answer, Changes(stiffer, ratios), made, self.ratios, self._kept)
+        answers = stiffness_rates(self.answer, Changes(stiffer, ratios), made, self.ratios, self._kept)
         moved = np.zeros_like(self.points)
         moved[model.tensegric.free] = answers.moved[:, 0].reshape(-1, 3)
         return moved, self._pulls(knob, answers.pulls[:, 0], newtons, ratios)
 
-    def _pulls(self, knob: Knob, pulls: Floats, newtons: float, ratios: Floats) -> dict[str, Floats]:
+    def _pulls(
+        self, knob: UncertainParameter, pulls: Floats, newtons: float, ratios: Floats
+    ) -> dict[str, Floats]:
         stages, model = self.stages, self.stages.model
         unit = newtons_per_unit(model, stages.design.tissue_stiffness)
         held = stages.design.line_hold == "held"
@@ -177,9 +183,9 @@ class Propagation:
         by_line = self.answer.tensions(rates, np.diag(rest))[1]
         return float(by_line[line] @ ratios[:, 0])
 
-    def _on_ribs(self, knob: Knob, name: str, longer: float) -> float:
+    def _on_ribs(self, knob: UncertainParameter, name: str, longer: float) -> float:
         """Return what the tension of an elastic that cannot move gains [N]."""
-        elastic, ratio = self.stages.design.worn_elastics()[name], self.stages.design.ratio(name)
+        elastic, ratio = self.stages.design.active_elastics()[name], self.stages.design.ratio(name)
         force = elastic.force(1.0 / ratio - 1.0)
         if knob.source == ELASTIC and knob.name == elastic.name:
             return knob.sd * force
@@ -190,7 +196,7 @@ class Propagation:
 _STILL = 1e-9  # a knob that moves no point further changes no measure [mm]
 
 
-def effects(propagation: Propagation, knobs: Sequence[Knob]) -> Iterator[Effect | None]:
+def effects(propagation: Propagation, knobs: Sequence[UncertainParameter]) -> Iterator[Effect | None]:
     """Yield what each knob does, or None where no fit was found to either side."""
     for knob in knobs:
         try:

@@ -9,37 +9,41 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from core.analysis.uncertainty.outputs import Figures
-from core.analysis.uncertainty.parameters import Knob, turned
-from core.analysis.uncertainty.perturbed_solutions import Trials
+from core.analysis.uncertainty.parameters import UncertainParameter, perturb
+from core.analysis.uncertainty.perturbed_solutions import PerturbedSolutions
 from core.errors import UserError
 from core.geometry.mesh import Floats
 from core.progress import Progress, quiet
 
 
 @dataclass(frozen=True, eq=False)
-class Sampled:
-    """Draws of the ``turns`` (s, k) of knobs in standard deviations, with the ``figures`` of each.
+class Samples:
+    """Draws of the ``draws`` (s, k) of knobs in standard deviations, with the ``outputs`` of each.
 
     ``failed`` counts draws that had no answer and are left out.
     """
 
-    turns: Floats
-    figures: tuple[Figures, ...]
+    draws: Floats
+    outputs: tuple[Figures, ...]
     failed: int
 
     def values(self, key: str) -> Floats:
         """Return a figure of all draws that have it, shape (d,)."""
-        return np.array([each[key] for each in self.figures if key in each])
+        return np.array([each[key] for each in self.outputs if key in each])
 
-    def sds(self) -> dict[str, float]:
+    def deviations(self) -> dict[str, float]:
         """Return the standard deviation of each figure that all draws have."""
-        keys = set.intersection(*(set(each) for each in self.figures)) if len(self.figures) > 1 else set()
+        keys = set.intersection(*(set(each) for each in self.outputs)) if len(self.outputs) > 1 else set()
         return {key: float(self.values(key).std(ddof=1)) for key in sorted(keys)}
 
 
-def sampled(
-    trials: Trials, knobs: Sequence[Knob], count: int, seed: int = 1, progress: Progress = quiet
-) -> Sampled:
+def sample(
+    trials: PerturbedSolutions,
+    knobs: Sequence[UncertainParameter],
+    count: int,
+    seed: int = 1,
+    progress: Progress = quiet,
+) -> Samples:
     """Draw all ``knobs`` ``count`` times from normal distributions, and solve each draw anew."""
     draws = np.random.default_rng(seed).standard_normal((count, len(knobs)))
     kept, figures = [], []
@@ -48,8 +52,8 @@ def sampled(
             progress("sampling", at / count)
             turns = dict(zip(knobs, draw.tolist(), strict=True))
             try:
-                figures.append(trials(turned(trials.base, turns), keep=False).figures)
+                figures.append(trials(perturb(trials.base, turns), keep=False).values)
                 kept.append(draw)
             except UserError:
                 continue
-    return Sampled(np.array(kept).reshape(len(kept), len(knobs)), tuple(figures), count - len(kept))
+    return Samples(np.array(kept).reshape(len(kept), len(knobs)), tuple(figures), count - len(kept))

@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.deformation.tffd import deform
-from core.garment.band_path import courses
+from core.garment.band_path import band_paths
 from core.garment.pressure import band_pressure
 from core.garment.tension import LineTension, line_tensions
 from core.geometry.mesh import Floats, Mesh, Points
 from core.measurements.definitions import Measure
 from core.measurements.subject import Subject, subject_of
-from core.measurements.table import calm_moves, of_subject
+from core.measurements.table import of_subject, smoothed_moves
 from core.measurements.uncertain_value import (
     AFTER,
     BEFORE,
@@ -34,7 +34,7 @@ Figures = dict[str, float]
 
 
 @dataclass(frozen=True, eq=False)
-class Rested:
+class OriginalMeasurements:
     """A body at rest that is measured again and again: ``subject``, and what was measured ``before``."""
 
     subject: Subject
@@ -53,35 +53,37 @@ class Steps:
     after: float | None
 
 
-def steps_of(rest: Subject, after: Subject) -> Steps:
+def under_bust_steps(rest: Subject, after: Subject) -> Steps:
     """Return the steps that a body takes by the rule."""
     return Steps(*(each.landmarks.underbust_level - each.levels["underbust"].z for each in (rest, after)))
 
 
-def rested(stages: Stages, steps: Steps, subject: Subject | None = None, skin: float = 0.0) -> Rested:
+def original_measurements(
+    stages: Stages, steps: Steps, subject: Subject | None = None, skin: float = 0.0
+) -> OriginalMeasurements:
     """Return the body of a design at rest, its skin so much further out [mm]."""
-    subject = subject or replace(subject_of(stages.body.calm, stages.landmarks), down=steps.before)
+    subject = subject or replace(subject_of(stages.body.smoothed, stages.landmarks), down=steps.before)
     shown = subject
     if skin:
         mesh = subject.mesh
         shown = subject.moved(mesh.vertices + skin * mesh.vertex_normals, (0.0, 0.0))
-    return Rested(subject, of_subject(shown, stages.design.own_measures))
+    return OriginalMeasurements(subject, of_subject(shown, stages.design.own_measures))
 
 
-def rested_figures(rest: Rested) -> Figures:
+def original_values(rest: OriginalMeasurements) -> Figures:
     """Return the measures of a body that wears nothing: before and after are the same, and no change is."""
     return {**_values(BEFORE, rest.before), **_values(AFTER, rest.before)}
 
 
-def measured_figures(
-    stages: Stages, steps: Steps, rest: Rested, points: Points, skin: float = 0.0
+def measurement_values(
+    stages: Stages, steps: Steps, rest: OriginalMeasurements, points: Points, skin: float = 0.0
 ) -> Figures:
     """Return measures before and after with their change, and how the bust points moved [mm].
 
     ``points`` (n, 3) [mm] are the control points; ``skin`` [mm] is how much further out all skin lies.
     """
     places = deform(stages.binding, points)
-    vertices = rest.subject.mesh.vertices + calm_moves(stages.body, places - stages.body.mesh.vertices)
+    vertices = rest.subject.mesh.vertices + smoothed_moves(stages.body, places - stages.body.mesh.vertices)
     if skin:
         vertices = vertices + skin * Mesh(vertices, rest.subject.mesh.faces).vertex_normals
     left, right = stages.body_change(points).tolist()
@@ -93,10 +95,10 @@ def measured_figures(
         for key in after
         if f"{AFTER}:{key}" in now and f"{BEFORE}:{key}" in before
     }
-    return {**before, **now, **changes, **bust_figures(stages, points)}
+    return {**before, **now, **changes, **bust_values(stages, points)}
 
 
-def bust_figures(stages: Stages, points: Points) -> Figures:
+def bust_values(stages: Stages, points: Points) -> Figures:
     """Return how far the bust points rose and came forward [mm], both and each."""
     moves = stages.watch.bust_points(points) - stages.watch.bust_points(stages.control.mesh.vertices)
     found: Figures = {}
@@ -105,7 +107,7 @@ def bust_figures(stages: Stages, points: Points) -> Figures:
     return found
 
 
-def line_figures(
+def line_values(
     stages: Stages, points: Points, tensions: Mapping[str, LineTension], ratios: Mapping[str, float]
 ) -> Figures:
     """Return what is told of worn lines: lengths to cut [mm], tensions [N] and pressures [kPa].
@@ -113,7 +115,7 @@ def line_figures(
     ``ratios`` are the lengths that are meant to be cut, whatever comes of cutting them.
     """
     found: Figures = {f"{TENSION}:{name}": each.mean for name, each in tensions.items()}
-    elastics, held = stages.design.worn_elastics(), stages.design.line_hold == "held"
+    elastics, held = stages.design.active_elastics(), stages.design.line_hold == "held"
     for line in stages.model.lines:
         if line.name in elastics:
             elastic, reached = elastics[line.name], line.length(points)
@@ -122,18 +124,18 @@ def line_figures(
                 natural = reached / (1.0 + elastic.elongation(tensions[line.name].mean))
             whole = reached + line.back_length
             found[f"{CUT}:{line.name}"] = whole * natural / reached + elastic.allowance_mm
-    for name, course, width in courses(stages, points, tensions):
+    for name, course, width in band_paths(stages, points, tensions):
         pressed = band_pressure(course, width)
         found[f"{MEAN_KPA}:{name}"], found[f"{MAX_KPA}:{name}"] = pressed.mean, pressed.largest
     return found
 
 
-def figures_of(stages: Stages, points: Points) -> Figures:
+def output_values(stages: Stages, points: Points) -> Figures:
     """Return all but the measures of a design as it is solved to control ``points``, shape (n, 3) [mm]."""
     ratios = {line.name: stages.design.ratio(line.name) for line in stages.model.lines}
     return {
-        **bust_figures(stages, points),
-        **line_figures(stages, points, line_tensions(stages, points), ratios),
+        **bust_values(stages, points),
+        **line_values(stages, points, line_tensions(stages, points), ratios),
     }
 
 
@@ -142,7 +144,7 @@ def skin_normals(stages: Stages, points: Points) -> Points:
     return Mesh(deform(stages.binding, points), stages.body.mesh.faces).vertex_normals
 
 
-def apart(body: Body, one: Points, other: Points, normals: Points) -> Floats:
+def normal_distance(body: Body, one: Points, other: Points, normals: Points) -> Floats:
     """Return how far ``one`` lies beyond ``other``, both (n, 3) [mm], along ``normals``, shape (n,) [mm]."""
     return np.asarray(np.einsum("ij,ij->i", one - other, normals))
 

@@ -9,7 +9,7 @@ from functools import reduce
 
 import numpy as np
 
-from core.analysis.uncertainty.input_uncertainty import Assumed
+from core.analysis.uncertainty.input_uncertainty import InputUncertainty
 from core.document.design import Design
 from core.document.elastic import TISSUE_LIMITS, Elastic
 from core.geometry.mesh import Points, unit
@@ -34,50 +34,54 @@ NAMES = tuple(f"{kind}_{side}" for kind in (*OF_THE_FIT, *OF_MEASURES) for side 
 
 
 @dataclass(frozen=True, eq=False)
-class Knob:
+class UncertainParameter:
     """One thing that may be off by ``sd``: in mm, or in the logarithm of a stiffness or force.
 
-    ``source`` is one of ``SOURCES``; ``name`` that of a landmark, line or elastic; ``way`` (3,) is where a
+    ``source`` is one of ``SOURCES``; ``name`` that of a landmark, line or elastic; ``direction`` (3,) is where a
     landmark goes, None for ``PLACING``.
     """
 
     source: str
     sd: float
     name: str = ""
-    way: Points | None = None
+    direction: Points | None = None
 
 
-PLACING = Knob(LANDMARKS, 1.0)
+PLACING = UncertainParameter(LANDMARKS, 1.0)
 """What placing all landmarks where they were found does by itself: so far are those unsure, too."""
 
 
-def knobs(stages: Stages, assumed: Assumed) -> tuple[Knob, ...]:
+def uncertain_parameters(stages: Stages, assumed: InputUncertainty) -> tuple[UncertainParameter, ...]:
     """Return all knobs of a design that turn anything, the quick ones first."""
-    found = [*_of_lines(stages, assumed), Knob(SCAN, assumed.skin_mm), *_of_landmarks(stages, assumed)]
+    found = [
+        *_of_lines(stages, assumed),
+        UncertainParameter(SCAN, assumed.skin_mm),
+        *_of_landmarks(stages, assumed),
+    ]
     return tuple(knob for knob in found if knob.sd > 0.0)
 
 
-def _of_lines(stages: Stages, assumed: Assumed) -> Iterator[Knob]:
+def _of_lines(stages: Stages, assumed: InputUncertainty) -> Iterator[UncertainParameter]:
     design = stages.design
     elastics, worn = (
-        design.worn_elastics(),
-        [line for line in stages.model.lines if line.name in design.worn()],
+        design.active_elastics(),
+        [line for line in stages.model.lines if line.name in design.active_lines()],
     )
     moving = [line for line in worn if line.constrains]
     if worn:
-        yield Knob(TISSUE, assumed.tissue_ln)
+        yield UncertainParameter(TISSUE, assumed.tissue_ln)
     if any(line.name not in elastics for line in moving) and design.line_hold == "spring":
-        yield Knob(LINE, assumed.line_ln)
+        yield UncertainParameter(LINE, assumed.line_ln)
     for line in worn:
         if line.constrains or line.name in elastics:
-            yield Knob(TAPE, assumed.tape_mm, line.name)
+            yield UncertainParameter(TAPE, assumed.tape_mm, line.name)
     for elastic in dict.fromkeys(elastics.values()):
         sd = assumed.elastic_ln if elastic.estimate else assumed.measured_elastic_ln
-        yield Knob(ELASTIC, sd, elastic.name)
+        yield UncertainParameter(ELASTIC, sd, elastic.name)
 
 
-def _of_landmarks(stages: Stages, assumed: Assumed) -> Iterator[Knob]:
-    marks, skin = stages.landmarks.points, stages.body.calm
+def _of_landmarks(stages: Stages, assumed: InputUncertainty) -> Iterator[UncertainParameter]:
+    marks, skin = stages.landmarks.points, stages.body.smoothed
     for name in NAMES:
         if name not in marks:
             continue
@@ -86,12 +90,12 @@ def _of_landmarks(stages: Stages, assumed: Assumed) -> Iterator[Knob]:
         across = unit(np.cross(UPRIGHT, skin.vertex_normals[nearest]))
         if not name.startswith("root"):
             up = UPRIGHT if name.startswith("fold") else np.cross(skin.vertex_normals[nearest], across)
-            yield Knob(LANDMARKS, sd, name, up)
+            yield UncertainParameter(LANDMARKS, sd, name, up)
         if not name.startswith("fold"):
-            yield Knob(LANDMARKS, sd, name, across)
+            yield UncertainParameter(LANDMARKS, sd, name, across)
 
 
-def beyond(design: Design) -> tuple[str, ...]:
+def unmodelled_measurements(design: Design) -> tuple[str, ...]:
     """Return the keys of measures at rest and as worn whose landmarks have no knobs: how sure, nobody knows.
 
     Waist and hip are not among them: where they lie a girth hardly changes with the height.
@@ -101,14 +105,14 @@ def beyond(design: Design) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True, eq=False)
-class Turned:
+class Perturbed:
     """A ``design`` with knobs turned, and how much further out all skin lies [mm]."""
 
     design: Design
     skin: float = 0.0
 
 
-def turned(stages: Stages, turns: Mapping[Knob, float]) -> Turned:
+def perturb(stages: Stages, turns: Mapping[UncertainParameter, float]) -> Perturbed:
     """Return the design of ``stages`` with each knob turned by so many standard deviations.
 
     Where a landmark is turned all others that have knobs are placed where they are: they do not follow it.
@@ -123,33 +127,33 @@ def turned(stages: Stages, turns: Mapping[Knob, float]) -> Turned:
         if knob.source == SCAN:
             skin += off
         elif knob.source == LANDMARKS:
-            if knob.way is not None:
-                marks[knob.name] = marks[knob.name] + off * knob.way
+            if knob.direction is not None:
+                marks[knob.name] = marks[knob.name] + off * knob.direction
         else:
             design = _TURNS[knob.source](design, knob, off, lines)
     for name, place in marks.items():
         design = design.with_placed(name, in_file(place, stages.body.pose.file_to_mm))
-    return Turned(design, skin)
+    return Perturbed(design, skin)
 
 
-def _tissue(design: Design, knob: Knob, off: float, lines: Mapping[str, Line]) -> Design:
+def _tissue(design: Design, knob: UncertainParameter, off: float, lines: Mapping[str, Line]) -> Design:
     return replace(design, tissue_stiffness=_within(design.tissue_stiffness * math.exp(off), TISSUE_LIMITS))
 
 
-def _line(design: Design, knob: Knob, off: float, lines: Mapping[str, Line]) -> Design:
+def _line(design: Design, knob: UncertainParameter, off: float, lines: Mapping[str, Line]) -> Design:
     """Return it with lines that are made of no elastic stiffer."""
     limits, factor = RANGES["line_stiffness"], math.exp(off)
-    own = design.own_stiffness()
+    own = design.line_stiffnesses()
     traits = [
-        replace(design.traits_of(name), stiffness=_within(stiffness * factor, limits))
+        replace(design.line_settings(name), stiffness=_within(stiffness * factor, limits))
         for name, stiffness in own.items()
-        if name not in design.worn_elastics()
+        if name not in design.active_elastics()
     ]
     usual = _within(design.line_stiffness * factor, limits)
-    return reduce(Design.with_traits, traits, replace(design, line_stiffness=usual))
+    return reduce(Design.with_line_settings, traits, replace(design, line_stiffness=usual))
 
 
-def _tape(design: Design, knob: Knob, off: float, lines: Mapping[str, Line]) -> Design:
+def _tape(design: Design, knob: UncertainParameter, off: float, lines: Mapping[str, Line]) -> Design:
     ratio = design.ratio(knob.name) + off / lines[knob.name].whole_length
     worn = [
         replace(line, ratio=_within(ratio, RATIO_LIMITS)) if line.name == knob.name else line
@@ -158,7 +162,7 @@ def _tape(design: Design, knob: Knob, off: float, lines: Mapping[str, Line]) -> 
     return replace(design, lines=tuple(worn))
 
 
-def _elastic(design: Design, knob: Knob, off: float, lines: Mapping[str, Line]) -> Design:
+def _elastic(design: Design, knob: UncertainParameter, off: float, lines: Mapping[str, Line]) -> Design:
     made = [_stronger(each, math.exp(off)) if each.name == knob.name else each for each in design.elastics]
     return replace(design, elastics=tuple(made))
 
@@ -171,7 +175,7 @@ def _within(number: float, limits: tuple[float, float]) -> float:
     return min(max(number, limits[0]), limits[1])
 
 
-_TURNS: Mapping[str, Callable[[Design, Knob, float, Mapping[str, Line]], Design]] = {
+_TURNS: Mapping[str, Callable[[Design, UncertainParameter, float, Mapping[str, Line]], Design]] = {
     TISSUE: _tissue,
     LINE: _line,
     TAPE: _tape,

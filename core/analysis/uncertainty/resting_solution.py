@@ -11,49 +11,49 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.analysis.diagnosis.stability import resting, together
+from core.analysis.diagnosis.stability import combined_volume_model, equilibrium_for
 from core.mechanics.potential import Potential
-from core.mechanics.sensitivity import Answer, Rates
-from core.pipeline.build import Stages, targets_of
-from core.pipeline.exact import NoBalanceError, answer_of, volume_keeper
+from core.mechanics.sensitivity import Rates, Sensitivities
+from core.pipeline.build import Stages, line_targets
+from core.pipeline.exact import NoEquilibriumError, body_volume_rates, exact_solution
 
 
 @dataclass(frozen=True, eq=False)
-class Resting:
-    """The ``answer`` at which a run rests; ``kept`` makes of rates at its volume those under its control."""
+class ConvergedSolution:
+    """The ``solution`` at which a run rests; ``kept`` makes of rates at its volume those under its control."""
 
-    answer: Answer
+    solution: Sensitivities
     kept: Callable[[Rates], Rates]
 
 
-def push_of(stages: Stages) -> float:
+def control_response(stages: Stages) -> float:
     """Return what pressure the control of a design answers missing volume with, in the model's unit."""
-    targets = targets_of(stages.design, stages)
+    targets = line_targets(stages.design, stages)
     return targets.gain * stages.model.pressure_unit if targets.control == "conventional" else 0.0
 
 
-def resting_answer(stages: Stages, push: float | None = None) -> Resting:
-    """Return what the run of a design comes to; ``push`` is its control's, see ``push_of``.
+def converged_solution(stages: Stages, push: float | None = None) -> ConvergedSolution:
+    """Return what the run of a design comes to; ``push`` is its control's, see ``control_response``.
 
     Raises NoBalanceError.
     """
-    targets = targets_of(stages.design, stages)
+    targets = line_targets(stages.design, stages)
     if targets.control == "exact":
-        answer = answer_of(stages)
-        return Resting(answer, volume_keeper(stages, answer))
-    push = push_of(stages) if push is None else push
-    balance = resting(stages, replace(targets, gain=push / stages.model.pressure_unit))
-    if not balance.found:
-        raise NoBalanceError(stages.design)
-    model = together(stages.model)
+        answer = exact_solution(stages)
+        return ConvergedSolution(answer, body_volume_rates(stages, answer))
+    push = control_response(stages) if push is None else push
+    balance = equilibrium_for(stages, replace(targets, gain=push / stages.model.pressure_unit))
+    if not balance.is_converged:
+        raise NoEquilibriumError(stages.design)
+    model = combined_volume_model(stages.model)
     share = model.volume.volume(model.tensegric.expand(balance.state.moved)) / model.volume.rest_volume - 1.0
     keeps = targets.control in ("adaptive", "accumulating")
     excess = np.full(2, 0.0 if keeps else 0.5 * share * model.volume.rest_volume)
-    answer = Answer(Potential(model, targets.ratios, excess), balance)
-    return Resting(answer, (lambda rates: rates) if keeps else _pushed(answer, push))
+    answer = Sensitivities(Potential(model, targets.ratios, excess), balance)
+    return ConvergedSolution(answer, (lambda rates: rates) if keeps else _pushed(answer, push))
 
 
-def _pushed(answer: Answer, push: float) -> Callable[[Rates], Rates]:
+def _pushed(answer: Sensitivities, push: float) -> Callable[[Rates], Rates]:
     """Return what makes of rates at a held volume those at which the pressure follows what is missing."""
     potential, by = answer.potential, answer.by_excess
     half = 0.5 * potential.model.volume.rest_volume

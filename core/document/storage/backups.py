@@ -17,7 +17,7 @@ import platformdirs
 
 from core.document.storage.project_file import SUFFIX, safe_name
 from core.errors import UserError
-from core.files.atomic_write import followed, private_folder, remove_abandoned, whole_file
+from core.files.atomic_write import atomic_path, private_folder, remove_abandoned, resolve_links
 from core.files.regular_file import open_regular, read_text
 
 MOST = 5
@@ -42,7 +42,7 @@ class Backup:
 
 
 @contextmanager
-def backed_up(project: Path, most: int = MOST) -> Iterator[None]:
+def backup_before_write(project: Path, most: int = MOST) -> Iterator[None]:
     """Keep the project as it is now, before anything can fail, while it is overwritten.
 
     The oldest versions beyond ``most`` go only when that went well. Where none can be kept the project is
@@ -73,12 +73,12 @@ def back_up(project: Path, most: int = MOST) -> Path | None:
     filecmp.clear_cache()  # it takes files of one size and time for the same
     if versions and filecmp.cmp(project, versions[-1], shallow=False):
         return versions[-1]
-    with whole_file(folder / _SOURCE, private=True) as partial:
+    with atomic_path(folder / _SOURCE, private=True) as partial:
         partial.write_text(str(project), encoding="utf-8", errors="surrogateescape")
     # The clock may have been set back: the newest version is the last by name all the same.
     number = max(time.time_ns(), *(int(each.stem) + 1 for each in versions if each.stem.isdecimal()), 0)
     backup = folder / f"{number:020d}{SUFFIX}"
-    with whole_file(backup, private=True) as partial:
+    with atomic_path(backup, private=True) as partial:
         _copy(project, partial)
     return backup
 
@@ -99,7 +99,7 @@ def _versions(folder: Path) -> list[Path]:
 
 
 def _folder_of(project: Path) -> Path:
-    absolute = str(followed(project))
+    absolute = str(resolve_links(project))
     mark = hashlib.sha256(absolute.encode("utf-8", "surrogateescape")).hexdigest()[:12]
     return backups_folder() / f"{safe_name(project.stem)}-{mark}"
 

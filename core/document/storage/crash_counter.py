@@ -9,7 +9,7 @@ from pathlib import Path
 
 import platformdirs
 
-from core.document.storage.file_lock import Hold
+from core.document.storage.file_lock import FolderLock
 from core.files.atomic_write import private_folder
 
 _BEGUN = "begun"
@@ -20,21 +20,21 @@ def starts_folder() -> Path:
     return Path(platformdirs.user_state_path("Busk", appauthor=False)) / "starts"
 
 
-class Start:
+class StartMarker:
     """The mark of this process, held as long as it lives. Raises OSError where none can be left."""
 
     def __init__(self) -> None:
         base = starts_folder()
         private_folder(base)
         self._folder = Path(tempfile.mkdtemp(dir=base))
-        self._hold = Hold(self._folder)
+        self._hold = FolderLock(self._folder)
         (self._folder / _BEGUN).touch()  # from here on it counts, and it is held already
 
-    def end(self) -> None:
+    def remove(self) -> None:
         """Take the mark away: it went well."""
         with suppress(OSError):
             (self._folder / _BEGUN).unlink(missing_ok=True)
-        self._hold.end()
+        self._hold.release()
         shutil.rmtree(self._folder, ignore_errors=True)
 
 
@@ -43,7 +43,7 @@ def failed_starts() -> list[Path]:
     found = []
     for mark in starts_folder().glob(f"*/{_BEGUN}"):
         with suppress(OSError):
-            Hold(mark.parent).end()
+            FolderLock(mark.parent).release()
             found.append(mark.parent)
     return found
 

@@ -18,7 +18,7 @@ else:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
-class Hold:
+class FolderLock:
     """Holds a folder by a lock on the file "lock" in it. Raises OSError if someone holds it already.
 
     The lock is the system's, not the file: a process that was killed holds nothing, and none that happens to
@@ -34,6 +34,6 @@ class Hold:
             os.close(self._file)
             raise
 
-    def end(self) -> None:
+    def release(self) -> None:
         """Let go of the folder."""
         os.close(self._file)

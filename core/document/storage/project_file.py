@@ -16,7 +16,7 @@ from core.document.document_limits import LARGEST_PICTURE, LARGEST_SCAN, LARGEST
 from core.document.document_text import DESIGN, VARIANTS, from_texts, to_texts
 from core.document.storage.archive import member_bytes, project_archive
 from core.errors import ProjectError, ScanError, UserError
-from core.files.atomic_write import whole_file
+from core.files.atomic_write import atomic_path
 from core.progress import Progress, quiet
 from core.scan.readers.registry import scan_bytes
 
@@ -57,7 +57,7 @@ def save_project(
     texts = _checked_texts(inside)
     check_size(member, scan.data, LARGEST_SCAN)
     with (
-        whole_file(target, private=True) as partial,
+        atomic_path(target, private=True) as partial,
         zipfile.ZipFile(partial, "w", zipfile.ZIP_STORED) as archive,
     ):
         for name, text in texts.items():
@@ -98,7 +98,7 @@ def read_scan_file(source: ScanSource, progress: Progress = quiet) -> ScanFile:
     return ScanFile(source.name, scan_bytes(Path(source.path), progress))
 
 
-def stamp_of(path: Path | None) -> Stamp | None:
+def file_stamp(path: Path | None) -> Stamp | None:
     """Return the stamp of a file, or None if there is none."""
     try:
         kind = path.stat() if path is not None else None

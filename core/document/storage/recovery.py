@@ -20,10 +20,10 @@ from core.document.document import Document
 from core.document.document_limits import LARGEST_PICTURE, LARGEST_TEXT
 from core.document.document_text import from_texts, to_texts
 from core.document.json_values import parsed, value_of
-from core.document.storage.file_lock import Hold
+from core.document.storage.file_lock import FolderLock
 from core.document.storage.project_file import ScanFile, Stamp, safe_name, with_scan
 from core.errors import ProjectError, UserError
-from core.files.atomic_write import private_folder, whole_file, write_text
+from core.files.atomic_write import atomic_path, private_folder, write_text
 from core.files.regular_file import read_regular, read_text
 
 _DOCUMENT, _PICTURE, _ASIDE = "document.json", "picture.png", ".broken"
@@ -35,7 +35,7 @@ def recovery_folder() -> Path:
 
 
 @dataclass(frozen=True)
-class Kept:
+class RecoveredDocument:
     """A document that was not saved, its scan where it is kept: the ``project`` it was opened from, if any,
     and its ``stamp`` as it was known then, when it was kept (``time`` [s] since 1970) and a PNG ``picture``.
     """
@@ -65,7 +65,7 @@ class Recovery:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self._hold = Hold(folder)
+        self._hold = FolderLock(folder)
         self._scan: ScanFile | None = None
         self._place: Path | None = None
 
@@ -79,7 +79,7 @@ class Recovery:
         except OSError as problem:
             raise _unkept(base, problem) from problem
 
-    def keep(
+    def save(
         self,
         document: Document,
         scan: ScanFile,
@@ -92,7 +92,7 @@ class Recovery:
         try:
             place = self._keep_scan(document, scan)
             if picture:
-                with whole_file(self.folder / _PICTURE, private=True) as partial:
+                with atomic_path(self.folder / _PICTURE, private=True) as partial:
                     partial.write_bytes(picture)
             told = {
                 "name": name,
@@ -108,19 +108,19 @@ class Recovery:
             raise _unkept(self.folder, problem) from problem
         self._sweep(place.parent)
 
-    def forget(self) -> None:
+    def clear(self) -> None:
         """Keep no document any more: it is saved. The scan stays, a restored document may lie on it."""
         with suppress(OSError):
             (self.folder / _DOCUMENT).unlink(missing_ok=True)
 
-    def let_go(self) -> None:
+    def leave(self) -> None:
         """Leave all that is kept to the next window that starts."""
-        self._hold.end()
+        self._hold.release()
 
-    def end(self) -> None:
+    def remove(self) -> None:
         """Let nothing be left: the window closes in order."""
-        self.forget()
-        self._hold.end()
+        self.clear()
+        self._hold.release()
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def _keep_scan(self, document: Document, scan: ScanFile) -> Path:
@@ -132,7 +132,7 @@ class Recovery:
             free = next(n for n in range(1, 10**6) if not (self.folder / f"scan{n}").exists())
             place = self.folder / f"scan{free}" / safe_name(scan.name)
             private_folder(place.parent)
-            with whole_file(place, private=True) as partial:
+            with atomic_path(place, private=True) as partial:
                 partial.write_bytes(scan.data)
             self._scan, self._place = scan, place
         return self._place
@@ -143,7 +143,7 @@ class Recovery:
                 shutil.rmtree(old, ignore_errors=True)
 
 
-def left_behind() -> tuple[list[tuple[Kept, Recovery]], list[Path]]:
+def find_unsaved() -> tuple[list[tuple[RecoveredDocument, Recovery]], list[Path]]:
     """Take hold of what windows left behind that did not close in order, the newest first.
 
     Folders with nothing to lose are removed. What cannot be read is put aside: where, is returned beside.
@@ -157,17 +157,17 @@ def left_behind() -> tuple[list[tuple[Kept, Recovery]], list[Path]]:
         except OSError:
             continue  # its window is at work, or it is not ours to take
         try:
-            found.append((read_kept(folder), recovery))
+            found.append((load_unsaved(folder), recovery))
         except FileNotFoundError:
-            recovery.end()
+            recovery.remove()
         except UserError:
-            recovery.let_go()
+            recovery.leave()
             with suppress(OSError):
                 broken.append(folder.replace(folder.with_suffix(_ASIDE)))
     return sorted(found, key=lambda each: -each[0].time), broken
 
 
-def read_kept(folder: Path) -> Kept:
+def load_unsaved(folder: Path) -> RecoveredDocument:
     """Read what a folder keeps. Raises FileNotFoundError if that is nothing, ProjectError if it is broken."""
     try:
         text = read_text(folder / _DOCUMENT, 5 * LARGEST_TEXT)  # two texts, spelled as one
@@ -183,11 +183,11 @@ def read_kept(folder: Path) -> Kept:
         raise _unreadable(folder) from problem
 
 
-def _kept(folder: Path, told: _Told, document: Document) -> Kept:
+def _kept(folder: Path, told: _Told, document: Document) -> RecoveredDocument:
     scan, picture = folder / told.scan, folder / _PICTURE
     if scan.stat().st_size != told.size:
         raise ValueError("the scan is not whole")
-    return Kept(
+    return RecoveredDocument(
         with_scan(document, str(scan), ""),
         told.name,
         Path(told.project) if told.project else None,

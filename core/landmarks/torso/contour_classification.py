@@ -33,7 +33,7 @@ def limbs(pieces: Pieces, main: Indices, z: Floats, middle: float) -> Flags:
     free = pieces.closed & (body != np.arange(len(body)))
     member = np.flatnonzero(free)
     centre, box = pieces.centre, (pieces.low, pieces.high)
-    odd = free & ((body < 0) | beside(pieces, body, middle))
+    odd = free & ((body < 0) | pieces_beside(pieces, body, middle))
     odd |= free & (np.linalg.norm(pieces.high - pieces.low, axis=1) > BROAD)
     pairs = []
     order = member[np.lexsort((-pieces.size[member], pieces.level[member]))]
@@ -59,7 +59,7 @@ def limbs(pieces: Pieces, main: Indices, z: Floats, middle: float) -> Flags:
     return np.asarray(free & bad[label])
 
 
-def beside(pieces: Pieces, body: Indices, middle: float) -> Flags:
+def pieces_beside(pieces: Pieces, body: Indices, middle: float) -> Flags:
     """Tell which pieces lie beside or behind the trunk piece ``body`` of their level, or cross the middle."""
     x, y = pieces.centre.T
     own = pieces.centre[body, 1]

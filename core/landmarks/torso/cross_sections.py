@@ -13,17 +13,17 @@ from core.geometry.level_outlines import (
     BINS,
     MOST_SEGMENTS,
     Outlines,
+    not_a_surface_error,
     outlines,
-    places,
-    reach,
-    through_the_body,
+    points_at,
+    radii,
 )
 from core.geometry.mesh import SIGNS, Flags, Floats, Indices, Mesh, Points
 from core.geometry.plane_sections import hull_corners, hull_perimeter
 from core.landmarks.torso.arm_removal import SLACK
-from core.landmarks.torso.contour_classification import beside, kept_pieces, main_pieces, split_pieces
+from core.landmarks.torso.contour_classification import kept_pieces, main_pieces, pieces_beside, split_pieces
 from core.landmarks.torso.gap_filling import bearing_bin, bridge, eroded, gaps
-from core.landmarks.torso.torso_axis import STEP, Guide, cut_off, guide_of
+from core.landmarks.torso.torso_axis import STEP, TorsoAxis, arm_segments, torso_axis
 
 NECK = 0.5
 """A level narrower than this part of the trunk is a neck: what is above it is none of the trunk [1]."""
@@ -83,7 +83,7 @@ def trunk_levels(mesh: Mesh, heights: npt.ArrayLike, *, arms: bool = False) -> l
     Source: ours.
     """
     z = np.atleast_1d(np.asarray(heights, dtype=np.float64))
-    cuts, guide = outlines(mesh, z), guide_of(mesh)
+    cuts, guide = outlines(mesh, z), torso_axis(mesh)
     if len(guide.z) == 0:
         return [Level(float(height), np.empty((0, 2, 3))) for height in z]
     near = np.array([guide.between(float(height))[:2] for height in z])
@@ -104,12 +104,12 @@ def trunk_levels(mesh: Mesh, heights: npt.ArrayLike, *, arms: bool = False) -> l
     return levels
 
 
-def _limbs(cuts: Outlines, main: Indices, guide: Guide, near: Indices) -> Flags:
+def _limbs(cuts: Outlines, main: Indices, guide: TorsoAxis, near: Indices) -> Flags:
     """Tell which closed pieces are arms: beside the trunk, or where an arm is on the levels of the guide."""
     pieces = cuts.pieces
     body = main[pieces.level]
     other = pieces.closed & (body >= 0) & (body != np.arange(len(body)))
-    limb = other & beside(pieces, body, guide.middle)
+    limb = other & pieces_beside(pieces, body, guide.middle)
     for piece in np.flatnonzero(other & ~limb):
         boxes = guide.limb_boxes[np.isin(guide.limb_level, near[pieces.level[piece]])]
         centre = pieces.centre[piece]
@@ -117,13 +117,13 @@ def _limbs(cuts: Outlines, main: Indices, guide: Guide, near: Indices) -> Flags:
     return np.asarray(limb)
 
 
-def _armless(cuts: Outlines, guide: Guide, own: Indices, near: Indices) -> Indices:
+def _armless(cuts: Outlines, guide: TorsoAxis, own: Indices, near: Indices) -> Indices:
     """Return those of the segments ``own`` of one level that are left when the arms are cut off."""
     z = float(cuts.z[cuts.level[own[0]]])
     centre = guide.centre_at(z)
     joints = [bool(guide.necks[near, s].any()) for s in (0, 1)]
     if any(joints):
-        for joint, arm in zip(joints, cut_off(cuts, own, centre), strict=True):
+        for joint, arm in zip(joints, arm_segments(cuts, own, centre), strict=True):
             own = own[~np.isin(own, arm)] if joint else own
     for s, side in enumerate(SIGNS):
         if guide.cut[near, s].any():
@@ -132,10 +132,10 @@ def _armless(cuts: Outlines, guide: Guide, own: Indices, near: Indices) -> Indic
     return own
 
 
-def _closed(segments: Points, guide: Guide, z: float, cut: bool) -> Level:
+def _closed(segments: Points, guide: TorsoAxis, z: float, cut: bool) -> Level:
     """Return a level whose gaps are bridged after the guide; the ends of a cut are taken off."""
     centre = guide.centre_at(z)
-    far = reach(segments, np.zeros(len(segments), dtype=np.int64), centre[None])[0]
+    far = radii(segments, np.zeros(len(segments), dtype=np.int64), centre[None])[0]
     skin = np.isfinite(far)
     if skin.sum() <= BINS // 3:  # the guide shows no such level either
         segments, skin[:] = segments[:0], False
@@ -156,7 +156,7 @@ def _bridges(far: Floats, skin: Flags, centre: Points, z: float) -> Points:
     for run in gaps(skin) if skin.any() else [np.arange(1, BINS)]:
         line = np.concatenate([[(run[0] - 1) % BINS], run, [(run[-1] + 1) % BINS]])
         line = line[np.isfinite(far[line])]
-        points = places(far[line], line, centre, z)
+        points = points_at(far[line], line, centre, z)
         bridges.append(np.stack([points[:-1], points[1:]], axis=1))
     return np.concatenate(bridges)
 
@@ -177,7 +177,7 @@ def stable_level(mesh: Mesh, underbust_level: float) -> Level:
 
 
 @dataclass(frozen=True, eq=False)
-class Survey:
+class TorsoSections:
     """The trunk level by level, from below: arrays of shape (k,) [mm].
 
     ``samples`` are points spread evenly over all outlines, shape (n, 3) [mm], ``row`` the level of each.
@@ -221,7 +221,7 @@ class Survey:
         return np.asarray(np.maximum(median_filter(width, 5), 1.0))
 
 
-def survey(mesh: Mesh) -> Survey:
+def scan_torso(mesh: Mesh) -> TorsoSections:
     """Measure the trunk of the whole ``mesh`` every 5 mm.
 
     Raises LandmarkError if it has not the height of a body, or no skin.
@@ -231,7 +231,7 @@ def survey(mesh: Mesh) -> Survey:
         raise LandmarkError(
             f"The scan is {high - low:.0f} mm high, no upper body is.", "Say in which unit it is."
         )
-    guide = guide_of(mesh)
+    guide = torso_axis(mesh)
     segments, row = guide.cuts.segments[guide.keep], guide.cuts.level[guide.keep]
     seen, bridges = np.bincount(row, minlength=len(guide.z)) > 0, {}
     for k in np.flatnonzero(guide.shown | seen):
@@ -244,7 +244,7 @@ def survey(mesh: Mesh) -> Survey:
     length = np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1)
     times = np.maximum(1, np.ceil(length / 4.0).astype(np.int64))
     if times.sum() > MOST_SEGMENTS:
-        raise through_the_body()
+        raise not_a_surface_error()
     t = (np.arange(times.sum()) - np.repeat(np.cumsum(times) - times, times) + 0.5) / np.repeat(times, times)
     a, b = (np.repeat(segments[:, k], times, axis=0) for k in (0, 1))
     samples = a + (b - a) * t[:, None]
@@ -258,4 +258,4 @@ def survey(mesh: Mesh) -> Survey:
     middle = float(np.median(0.5 * (lo + hi)[full, 0])) if full.any() else 0.0
     half_width = 0.5 * (hi - lo)[:, 0]
     tape, row = np.where(full, guide.tape, 0.0), np.repeat(row, times)
-    return Survey(guide.z, STEP, middle, half_width, lo[:, 1], hi[:, 1], tape, samples, row)
+    return TorsoSections(guide.z, STEP, middle, half_width, lo[:, 1], hi[:, 1], tape, samples, row)

@@ -55,7 +55,7 @@ def girths(body: Body, landmarks: Landmarks) -> Mapping[str, Girth]:
     level down which no longer nicks the breasts, as there the girth hardly changes with the height; "waist"
     and "hip" at their landmarks, and "high_bust" under the armpits, if those were found. Source: ours.
     """
-    found = {name: _girth(level) for name, level in trunk_sections(body.calm, landmarks).items()}
+    found = {name: _girth(level) for name, level in trunk_sections(body.smoothed, landmarks).items()}
     sure = confidences(landmarks)
     return MappingProxyType(
         {
@@ -108,7 +108,7 @@ def girth_levels(landmarks: Landmarks) -> Mapping[str, float]:
     return MappingProxyType(found)
 
 
-def girth_doubts(found: Mapping[str, Girth]) -> list[str]:
+def girth_warnings(found: Mapping[str, Girth]) -> list[str]:
     """Return one sentence for each girth of the bust that is an estimate, or whose height is uncertain."""
     estimates = [said for name, said in ESTIMATES.items() if name in found and found[name].bridged_mm > MUCH]
     return estimates + [UNCERTAIN] * ("underbust" in found and found["underbust"].confidence < CERTAIN)

@@ -9,7 +9,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from scipy.ndimage import median_filter
 
-from core.geometry.level_outlines import BEARINGS, BINS, Outlines, outlines, reach, ring
+from core.geometry.level_outlines import BEARINGS, BINS, Outlines, outlines, radii, ring
 from core.geometry.mesh import SIGNS, Flags, Floats, Indices, Mesh, Points
 from core.geometry.plane_sections import arc_length
 from core.landmarks.torso.arm_removal import necks, shoulder_clip
@@ -30,7 +30,7 @@ MOST = 800
 
 
 @dataclass(frozen=True, eq=False)
-class Guide:
+class TorsoAxis:
     """The trunk every 5 mm of height ``z``, shape (k,) [mm], about ``centre``, shape (k, 2) [mm].
 
     ``reach``, shape (k, BINS) [mm], is how far it reaches all round, bridged where it is not ``skin``, even
@@ -85,18 +85,18 @@ class Guide:
         return low, min(low + 1, len(self.z) - 1), at - low
 
 
-_GUIDES: WeakKeyDictionary[Mesh, Guide] = WeakKeyDictionary()
+_GUIDES: WeakKeyDictionary[Mesh, TorsoAxis] = WeakKeyDictionary()
 """The guides of the meshes that are still in use: none keeps its mesh alive."""
 
 
-def guide_of(mesh: Mesh) -> Guide:
+def torso_axis(mesh: Mesh) -> TorsoAxis:
     """Look at the whole height of ``mesh`` [mm], once. Source: ours."""
     if mesh not in _GUIDES:
         _GUIDES[mesh] = _looked_at(mesh)
     return _GUIDES[mesh]
 
 
-def _looked_at(mesh: Mesh) -> Guide:
+def _looked_at(mesh: Mesh) -> TorsoAxis:
     low, high = mesh.vertices[:, 2].min(), mesh.vertices[:, 2].max()
     count = min(int(np.ceil((high - low) / STEP - 0.5)), MOST) if high > low else 0
     cuts = outlines(mesh, low + STEP * (np.arange(count) + 0.5))
@@ -113,14 +113,14 @@ def _looked_at(mesh: Mesh) -> Guide:
     for k, rows in enumerate(cuts.rows()):
         own = rows[keep[rows]]
         if hollow[k]:
-            left, right = cut_off(cuts, own, centre[k])
+            left, right = arm_segments(cuts, own, centre[k])
             joints[k] = len(left) > 0, len(right) > 0
             keep[left] = keep[right] = False
-    far = reach(cuts.segments[keep], cuts.level[keep], centre)
+    far = radii(cuts.segments[keep], cuts.level[keep], centre)
     clip = np.stack([shoulder_clip(_width(cuts, keep, far, centre, s), STEP) for s in SIGNS], axis=1)
     keep &= within(cuts, centre, clip)
     cut = joints | np.isfinite(clip)
-    far = reach(cuts.segments[keep], cuts.level[keep], centre)
+    far = radii(cuts.segments[keep], cuts.level[keep], centre)
     shown = np.isfinite(far).sum(axis=1) > BINS // 3
     open_ = shown & (cut.any(axis=1) | joined)
     skin = np.isfinite(far)
@@ -132,12 +132,12 @@ def _looked_at(mesh: Mesh) -> Guide:
     whole = bridged_levels(far, skin, np.asarray(cut.any(axis=1)), cuts.z)
     whole, shown = over_strips(whole, shown, cuts.z)
     limb_level = cuts.pieces.level[limb]
-    return Guide(
+    return TorsoAxis(
         cuts.z, middle, centre, whole, skin, clip, joints, shown, boxes, limb_level, sides, cuts, keep
     )
 
 
-def cut_off(cuts: Outlines, own: Indices, centre: Points) -> tuple[Indices, Indices]:
+def arm_segments(cuts: Outlines, own: Indices, centre: Points) -> tuple[Indices, Indices]:
     """Return those of the segments ``own`` of one level that belong to a left and to a right arm."""
     order, starts = ring(cuts.segments[own], cuts.ids[own])
     rows, closed = own[order], np.concatenate([starts, starts[:1]])
@@ -163,7 +163,7 @@ def _hollow(cuts: Outlines, keep: Flags, centre: Points) -> Flags:
     """Tell which levels have an outline with hollows deep enough for an arm that touches, shape (k,)."""
     length = np.linalg.norm(cuts.segments[keep, 1] - cuts.segments[keep, 0], axis=1)
     whole = np.bincount(cuts.level[keep], weights=length, minlength=len(centre))
-    far = reach(cuts.segments[keep], cuts.level[keep], centre)
+    far = radii(cuts.segments[keep], cuts.level[keep], centre)
     return np.asarray(whole > 1.012 * _tapes(far)) & (whole > 0.0)
 
 
@@ -207,7 +207,7 @@ def _legs(cuts: Outlines, main: Indices, centre: Points) -> Flags:
     if len(cuts.piece) == 0:
         return legs
     trunk = np.isin(cuts.piece, main[main >= 0])
-    far = reach(cuts.segments[trunk], cuts.level[trunk], centre)
+    far = radii(cuts.segments[trunk], cuts.level[trunk], centre)
     front, back = far[:, np.abs(BEARINGS) < 0.1], far[:, np.abs(BEARINGS) > np.pi - 0.1]
     depth = np.ptp(np.stack([cuts.pieces.low[main, 1], cuts.pieces.high[main, 1]]), axis=0)
     thin = np.nan_to_num(front.min(axis=1) + back.min(axis=1), nan=np.inf) < 0.6 * depth

@@ -20,7 +20,7 @@ NEAR = 0.69
 
 
 @dataclass(frozen=True, eq=False)
-class Told:
+class AxisOverride:
     """A unit vector, shape (3,), that up or front is: ``exact``, or the nearest of the six axes."""
 
     direction: Floats
@@ -31,14 +31,14 @@ class Told:
         return bool(self.direction @ direction > (1.0 - 1e-9 if self.exact else NEAR))
 
 
-def read_direction(text: str | None) -> Told | None:
+def parse_axis(text: str | None) -> AxisOverride | None:
     """Read "+x" .. "-z", "x" for "+x", or "x,y,z" as numbers. Raises ScanError."""
     if text is None:
         return None
     axis = text.strip().lower()
     axis = axis if axis.startswith(("+", "-")) else "+" + axis
     if axis in AXES:
-        return Told(AXES[axis], exact=False)
+        return AxisOverride(AXES[axis], exact=False)
     try:
         direction = np.array([float(number) for number in text.split(",")])
     except ValueError:
@@ -49,17 +49,17 @@ def read_direction(text: str | None) -> Told | None:
             f"The axis {text!r} is not known.",
             f"Choose one of {', '.join(AXES)}, or a direction like 0,0.2,1.",
         )
-    return Told(direction / length, exact=True)
+    return AxisOverride(direction / length, exact=True)
 
 
-def read_directions(up: str | None, front: str | None) -> tuple[Told | None, Told | None]:
+def parse_axes(up: str | None, front: str | None) -> tuple[AxisOverride | None, AxisOverride | None]:
     """Read what was told of up and front. Raises ScanError."""
-    told_up, told_front = read_direction(up), read_direction(front)
+    told_up, told_front = parse_axis(up), parse_axis(front)
     if told_up and told_front and abs(told_up.direction @ told_front.direction) > 0.9:
         raise ScanError(f"Up {up} and front {front} lie along the same axis.", "Choose two different axes.")
     if told_up and told_front and told_front.exact:  # up is believed first, front lies level
         level = told_front.direction - (told_front.direction @ told_up.direction) * told_up.direction
-        told_front = Told(unit(level), exact=True)
+        told_front = AxisOverride(unit(level), exact=True)
     return told_up, told_front
 
 

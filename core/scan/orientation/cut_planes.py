@@ -20,7 +20,7 @@ TRIED = 16
 
 
 @dataclass(frozen=True, eq=False)
-class FlatEnd:
+class CutPlane:
     """A plane {p: p . normal = offset} that a skin ends at: ``normal`` points out of the body, shape (3,).
 
     ``area`` is in file units^2; ``filled`` tells a plate from the rim of a hole.
@@ -32,9 +32,9 @@ class FlatEnd:
     filled: bool
 
 
-def flat_ends(
+def find_cut_planes(
     points: Points, grain: float, towards: Floats | None = None, within: float = 30.0
-) -> list[FlatEnd]:
+) -> list[CutPlane]:
     """Return the flat ends of even ``points``, shape (n, 3), largest first. Source: ours.
 
     With ``towards``, shape (3,), only those that face it ``within`` an angle [degrees]. A hull face is a flat
@@ -51,7 +51,7 @@ def flat_ends(
     normals = hull.equations[:, :3]
     if towards is not None:
         areas = np.where(normals @ towards > np.cos(np.radians(within)), areas, 0.0)
-    found: list[FlatEnd] = []
+    found: list[CutPlane] = []
     tried: list[Floats] = []
     for face in np.argsort(-areas):
         if areas[face] == 0.0 or len(tried) == TRIED:
@@ -64,7 +64,7 @@ def flat_ends(
     return sorted(found, key=lambda end: -end.area)
 
 
-def _flat_end(points: Points, grain: float, normal: Floats, offset: float) -> FlatEnd | None:
+def _flat_end(points: Points, grain: float, normal: Floats, offset: float) -> CutPlane | None:
     """Lay a plane through all points that touch a hull face; None if they do not go all the way round."""
     first_normal = normal
     for _ in range(3):
@@ -90,4 +90,4 @@ def _flat_end(points: Points, grain: float, normal: Floats, offset: float) -> Fl
     length, area = float(outline.area), float(outline.volume)  # of a plane hull: its perimeter and its area
     if gap > np.radians(40.0) or len(touching) < 0.7 * length / grain:
         return None
-    return FlatEnd(normal, offset, area, len(touching) > 0.5 * area / grain**2)
+    return CutPlane(normal, offset, area, len(touching) > 0.5 * area / grain**2)

@@ -64,7 +64,7 @@ class Side:
 
 
 @dataclass(frozen=True, eq=False)
-class Look:
+class TorsoFeatures:
     """A trunk as it looks if z is up and its -y is front."""
 
     trunk: Silhouette
@@ -82,17 +82,19 @@ class Look:
 
 @dataclass(frozen=True)
 class Cue:
-    """One thing that tells up or front: ``says`` gives -1 (against) .. 1 (for); ``words`` name it."""
+    """One thing that tells up or front: ``evaluate`` gives -1 (against) .. 1 (for); ``words`` name it."""
 
     words: str
     weight: float
-    says: Callable[[Look], float]
+    evaluate: Callable[[TorsoFeatures], float]
 
 
-def look(trunk: Silhouette) -> Look:
+def extract_features(trunk: Silhouette) -> TorsoFeatures:
     """Look at ``trunk`` from the front and from the back."""
     rows = _torso(trunk)
-    return Look(trunk, find_fold(trunk), _side(trunk, trunk.front, rows), _side(trunk, trunk.back, rows))
+    return TorsoFeatures(
+        trunk, find_fold(trunk), _side(trunk, trunk.front, rows), _side(trunk, trunk.back, rows)
+    )
 
 
 def _torso(trunk: Silhouette) -> slice:
@@ -176,7 +178,7 @@ def _shifted(values: Floats, rows: float) -> Floats:
     return np.asarray(lower + (rows - whole) * (upper - lower))
 
 
-def _bust(seen: Look) -> float:
+def _bust(seen: TorsoFeatures) -> float:
     fold = seen.fold
     strength = (
         fold.strength / 10.0 if fold.strength < 20.0 else 2.0 + (min(fold.strength, 60.0) - 20.0) / 40.0
@@ -186,13 +188,13 @@ def _bust(seen: Look) -> float:
     return strength - 4.0 * max(0.0, 0.25 - fold.height) - 1.5 * (fold.middle < -90.0)
 
 
-def _breasts(seen: Look) -> float:
+def _breasts(seen: TorsoFeatures) -> float:
     high = slice(int(0.35 * len(seen.front.lobes)), int(0.85 * len(seen.front.lobes)) + 1)
     front, back = (np.nanmax(np.nan_to_num(side.lobes[high], nan=-9.9)) for side in (seen.front, seen.back))
     return float(front - back) / 25.0
 
 
-def _buttocks(seen: Look) -> float:
+def _buttocks(seen: TorsoFeatures) -> float:
     return (_low_lobes(seen.back) - _low_lobes(seen.front)) / 10.0
 
 
@@ -206,7 +208,7 @@ def _low_lobes(side: Side) -> float:
     return 0.0 if hangs else here
 
 
-def _spine(seen: Look) -> float:
+def _spine(seen: TorsoFeatures) -> float:
     middle = len(seen.back.middle) // 2
     back, front = seen.back.hollow, seen.front.hollow
     low = back[:middle].max(initial=0.0) - front[:middle].max(initial=0.0)
@@ -214,32 +216,32 @@ def _spine(seen: Look) -> float:
     return float(np.clip(low, -30.0, 30.0) - 0.5 * np.clip(high, -30.0, 30.0)) / 30.0
 
 
-def _shoulders(seen: Look) -> float:
+def _shoulders(seen: TorsoFeatures) -> float:
     middle = 0.5 * (seen.back.middle - seen.front.middle)
     depth = max(float(np.median(seen.back.middle + seen.front.middle)), 1.0)
     top, rest = int(0.85 * len(middle)), int(0.7 * len(middle))
     return float(middle[top:].mean() - middle[: rest + 1].mean()) / depth / 0.2 if len(middle) > 4 else 0.0
 
 
-def _legs(seen: Look) -> float:
+def _legs(seen: TorsoFeatures) -> float:
     trunk = seen.trunk
     middle = np.median(np.flatnonzero(trunk.proper))
     below = np.sign(middle - np.flatnonzero(trunk.legs)).sum()
     return float(below) / (0.15 * len(trunk.z))
 
 
-def _upright(seen: Look) -> float:
+def _upright(seen: TorsoFeatures) -> float:
     return -min(max(0.0, abs(seen.lean - 0.06) - 0.17) / 0.35, 3.0)
 
 
-def _taper(seen: Look) -> float:
+def _taper(seen: TorsoFeatures) -> float:
     width = seen.trunk.width[~seen.trunk.slim]
     end = max(1, len(width) // 6)
     bottom, top = np.median(width[:end]), np.median(width[-end:])
     return float(np.log(max(bottom, 1e-9) / max(top, 1e-9)))
 
 
-def _arms(seen: Look) -> float:
+def _arms(seen: TorsoFeatures) -> float:
     trunk = seen.trunk
     merged, free = np.nan_to_num(trunk.width) > 1.3 * trunk.half_width, trunk.arms & trunk.proper
     return (
@@ -261,7 +263,7 @@ CUES = (
 """What tells up and front; weights are ours, from bodies deformed in many ways."""
 
 
-def rate(seen: Look) -> tuple[float, dict[str, float]]:
+def score(seen: TorsoFeatures) -> tuple[float, dict[str, float]]:
     """Return how well this look is that of an upper body that stands, and what each cue adds to it [1]."""
     trunk = seen.trunk
     said = {cue.words: cue.weight * _bounded(cue, seen) for cue in CUES}
@@ -269,6 +271,6 @@ def rate(seen: Look) -> tuple[float, dict[str, float]]:
     return total - 3.0 * float(np.clip((SHORTEST - trunk.height[-1]) / 60.0, 0.0, 1.0)), said
 
 
-def _bounded(cue: Cue, seen: Look) -> float:
-    value = cue.says(seen)
-    return value if cue.says in (_bust, _upright) else float(np.clip(value, -1.0, 1.0))
+def _bounded(cue: Cue, seen: TorsoFeatures) -> float:
+    value = cue.evaluate(seen)
+    return value if cue.evaluate in (_bust, _upright) else float(np.clip(value, -1.0, 1.0))

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from core.errors import ScanError
-from core.scan.orientation.cut_planes import TOUCH, FlatEnd, flat_ends
-from core.scan.orientation.pose_candidates import Stance
+from core.scan.orientation.cut_planes import TOUCH, CutPlane, find_cut_planes
+from core.scan.orientation.pose_candidates import PoseCandidate
 from core.scan.orientation.symmetry_planes import Cloud
 
 LEAST = 2.0
@@ -35,7 +35,7 @@ FACING = 0.6
 WHOLE = "Open a scan of a whole upper body, or say which way is up and which way is front."
 
 
-def refuse_unlike(cloud: Cloud, readings: Sequence[Stance]) -> None:
+def require_plausible(cloud: Cloud, readings: Sequence[PoseCandidate]) -> None:
     """Raise ScanError, with the likeliest reason, if the best of ``readings``, the first, is no upper body.
 
     A half of a body fits none of them: its opening stands upright in one of them at least. Source: ours.
@@ -63,9 +63,9 @@ def refuse_unlike(cloud: Cloud, readings: Sequence[Stance]) -> None:
         )
 
 
-def _halved(cloud: Cloud, readings: Sequence[Stance]) -> bool:
+def _halved(cloud: Cloud, readings: Sequence[PoseCandidate]) -> bool:
     """Tell whether the skin is open along an upright plane, and not like a tube, at both ends."""
-    ends = [end for end in flat_ends(cloud.points, cloud.grain) if not end.filled]
+    ends = [end for end in find_cut_planes(cloud.points, cloud.grain) if not end.filled]
     area = HALF * len(cloud.points) * cloud.grain**2
     return any(
         end.area > area
@@ -76,6 +76,6 @@ def _halved(cloud: Cloud, readings: Sequence[Stance]) -> bool:
     )
 
 
-def _is_rim(cloud: Cloud, end: FlatEnd) -> bool:
+def _is_rim(cloud: Cloud, end: CutPlane) -> bool:
     touching = np.abs(cloud.points @ end.normal - end.offset) < TOUCH * cloud.grain
     return bool(np.median(np.abs(cloud.normals[touching] @ end.normal)) < FACING)

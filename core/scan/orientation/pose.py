@@ -10,11 +10,11 @@ from core.errors import ScanError
 from core.geometry.mesh import Faces, Floats, Points, frozen, unit
 from core.geometry.plane_sections import hull_perimeter
 from core.progress import Progress, quiet
-from core.scan.orientation.axis_override import AXES, Told, nearest_axis, read_directions
-from core.scan.orientation.plausibility import LEAST, refuse_unlike
-from core.scan.orientation.pose_candidates import Stance, settled, stances
-from core.scan.orientation.symmetry_planes import Cloud, MirrorPlane, even_cloud, mirror_planes
-from core.scan.orientation.unit_detection import MILLIMETRES, find_unit
+from core.scan.orientation.axis_override import AXES, AxisOverride, nearest_axis, parse_axes
+from core.scan.orientation.plausibility import LEAST, require_plausible
+from core.scan.orientation.pose_candidates import PoseCandidate, rank_candidates, refine_candidate
+from core.scan.orientation.symmetry_planes import Cloud, MirrorPlane, mirror_planes, sample_uniformly
+from core.scan.orientation.unit_detection import MILLIMETRES, estimate_unit
 
 SNAP = 1.5
 """A side axis nearer than this to an axis of the file [degrees] is taken for it: then no digit changes."""
@@ -43,7 +43,7 @@ class Pose:
     ``file_to_mm`` takes file coordinates to the canonical frame, shape (4, 4): a turn times a scale, never
     a mirror, without a shift. ``up`` and ``front`` name the nearest axes of the file; ``tilt`` is the angle
     between up and its axis [degrees]. ``margin`` is the lead of this reading over the best other one [1]; if
-    small, ``sure`` is False and the user should be asked. ``others`` are the ``file_to_mm`` of the next best
+    small, ``is_certain`` is False and the user should be asked. ``others`` are the ``file_to_mm`` of the next best
     readings, at most three. What lies under the level ``stand`` [mm] is a pole or a base, no body.
     """
 
@@ -51,7 +51,7 @@ class Pose:
     up: str
     front: str
     file_to_mm: Floats
-    sure: bool
+    is_certain: bool
     reason: str
     margin: float
     tilt: float = 0.0
@@ -63,13 +63,13 @@ class Pose:
         object.__setattr__(self, "others", tuple(frozen(other) for other in self.others))
 
 
-__all__ = ["AXES", "MILLIMETRES", "Pose", "find_pose"]
+__all__ = ["AXES", "MILLIMETRES", "Pose", "estimate_pose"]
 
 STANDING = "finding up and front"
 """What is said to be at work."""
 
 
-def find_pose(
+def estimate_pose(
     vertices: Points,
     faces: Faces,
     *,
@@ -89,22 +89,22 @@ def find_pose(
         raise ScanError(f"The unit {unit!r} is not known.", f"Choose one of {', '.join(MILLIMETRES)}.")
     if len(faces) == 0:
         raise ScanError("No trunk can be made out in this scan.", NOTHING_ELSE)
-    told_up, told_front = read_directions(up, front)
+    told_up, told_front = parse_axes(up, front)
     told = told_up is not None and told_front is not None
-    cloud = even_cloud(vertices, faces)
+    cloud = sample_uniformly(vertices, faces)
     progress(STANDING, 0.3)
     readings = _readings(cloud, told_up, told_front)
     progress(STANDING, 0.9)
     if told_up and told_front and readings[0].evidence < LEAST:  # against the shape: then to the letter
-        readings = _readings(cloud, Told(told_up.direction, exact=True), told_front)
+        readings = _readings(cloud, AxisOverride(told_up.direction, exact=True), told_front)
     if not told:
-        refuse_unlike(cloud, readings)
+        require_plausible(cloud, readings)
     return _pose(cloud, readings, unit, told)
 
 
-def _pose(cloud: Cloud, readings: list[Stance], unit: str | None, told: bool) -> Pose:
+def _pose(cloud: Cloud, readings: list[PoseCandidate], unit: str | None, told: bool) -> Pose:
     best = readings[0]
-    size = find_unit(_girth(cloud, best), unit)
+    size = estimate_unit(_girth(cloud, best), unit)
     margin = best.score - max((other.score for other in readings[1:]), default=-np.inf)
     clear = best.evidence >= LEAST if told else margin >= SURE_MARGIN and best.score >= SURE_SCORE
     turns = [_turn(reading) for reading in readings]
@@ -115,11 +115,11 @@ def _pose(cloud: Cloud, readings: list[Stance], unit: str | None, told: bool) ->
         reason += f" The body stands {tilt:.0f} degrees off {axes[0]} in its file and was set upright."
     matrices = [_scaled(turn, MILLIMETRES[size.unit]) for turn in turns]
     stand = MILLIMETRES[size.unit] * best.seen.trunk.stand
-    sure = clear and size.sure
+    sure = clear and size.is_certain
     return Pose(size.unit, *axes, matrices[0], sure, reason, margin, tilt, tuple(matrices[1:]), stand)
 
 
-def _readings(cloud: Cloud, up: Told | None, front: Told | None) -> list[Stance]:
+def _readings(cloud: Cloud, up: AxisOverride | None, front: AxisOverride | None) -> list[PoseCandidate]:
     """Return ways to stand that fit what was told, each other than the ones before it, best first."""
     exact = up if up and up.exact else front if front and front.exact else None
     told = exact or up
@@ -129,13 +129,16 @@ def _readings(cloud: Cloud, up: Told | None, front: Told | None) -> list[Stance]
     if (
         up
         and front
-        and ((up.exact and front.exact) or not any(stances(cloud, plane, up, front) for plane in planes))
+        and (
+            (up.exact and front.exact)
+            or not any(rank_candidates(cloud, plane, up, front) for plane in planes)
+        )
     ):
         planes = [_told_plane(cloud, up, front)]
-    found = [stance for plane in planes for stance in stances(cloud, plane, up, front)]
+    found = [stance for plane in planes for stance in rank_candidates(cloud, plane, up, front)]
     if not found:
         raise ScanError("No trunk can be made out in this scan.", NOTHING_ELSE)
-    chosen: list[Stance] = []
+    chosen: list[PoseCandidate] = []
     for stance in sorted(found, key=lambda stance: -stance.score):
         if len(chosen) < READINGS and all(stance.differs(other, DIFFERENT) for other in chosen):
             chosen.append(stance)
@@ -149,26 +152,26 @@ def _readings(cloud: Cloud, up: Told | None, front: Told | None) -> list[Stance]
     return [s for k, s in enumerate(chosen) if all(s.differs(other, DIFFERENT) for other in chosen[:k])]
 
 
-def _settled(cloud: Cloud, stance: Stance, found: list[Stance]) -> Stance:
+def _settled(cloud: Cloud, stance: PoseCandidate, found: list[PoseCandidate]) -> PoseCandidate:
     """Return ``stance`` settled, or what is ``found`` upright near to it if that settles better.
 
     A chin over a chest that leans far forward looks like a bust until the trunk is set upright.
     """
     rivals = [other for other in found if other.upright and other.score > stance.score - RIVAL]
     near = [other for other in rivals if not (stance.upright or stance.differs(other, DIFFERENT))]
-    return max((settled(cloud, one) for one in [stance, *near]), key=lambda one: one.score)
+    return max((refine_candidate(cloud, one) for one in [stance, *near]), key=lambda one: one.score)
 
 
-def _allowed(stance: Stance, up: Told | None, front: Told | None) -> bool:
+def _allowed(stance: PoseCandidate, up: AxisOverride | None, front: AxisOverride | None) -> bool:
     return (up is None or up.allows(stance.up)) and (front is None or front.allows(-stance.back))
 
 
-def _told_plane(cloud: Cloud, up: Told, front: Told) -> MirrorPlane:
+def _told_plane(cloud: Cloud, up: AxisOverride, front: AxisOverride) -> MirrorPlane:
     side = unit(np.cross(up.direction, front.direction))
     return MirrorPlane(side, float(np.percentile(cloud.points @ side, (2, 98)).mean()), 1.0)
 
 
-def _girth(cloud: Cloud, stance: Stance) -> float:
+def _girth(cloud: Cloud, stance: PoseCandidate) -> float:
     """Return the girth of the trunk by a tape [file units]: as for the silhouette, but exact."""
     trunk = stance.seen.trunk
     own = cloud.points[trunk.own] @ np.stack([stance.left, stance.back, stance.up], axis=1)
@@ -179,7 +182,7 @@ def _girth(cloud: Cloud, stance: Stance) -> float:
     return float(np.percentile(girths, 60)) if girths else 0.0
 
 
-def _turn(stance: Stance) -> Floats:
+def _turn(stance: PoseCandidate) -> Floats:
     """Return left, back and up as rows, shape (3, 3), on the axes of the file if they are near."""
     left, back = stance.left, stance.back
     if np.abs(stance.up).max() == 1.0 and np.abs(left).max() > np.cos(np.radians(SNAP)):
@@ -193,12 +196,12 @@ def _scaled(turn: Floats, factor: float) -> Floats:
     return matrix
 
 
-def _reason(best: Stance, axes: tuple[str, str], told: bool, sure: bool) -> str:
+def _reason(best: PoseCandidate, axes: tuple[str, str], told: bool, sure: bool) -> str:
     up, front = axes
     if told:
         words = f"That {up} is up and {front} is front was told."
         return words if sure else words + " The shape speaks against it: please look."
     if not sure:
         return f"It is not certain that {up} is up and {front} is front: please look."
-    first, second, third = sorted(best.said, key=lambda words: -best.said[words])[:3]
+    first, second, third = sorted(best.cue_scores, key=lambda words: -best.cue_scores[words])[:3]
     return f"That {up} is up and {front} is front is told by {first}, {second} and {third}."

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.geometry.mesh import Floats, unit
-from core.scan.orientation.axis_override import AXES, Told, nearest_axis
-from core.scan.orientation.cut_planes import flat_ends
-from core.scan.orientation.orientation_cues import Look, look, rate
+from core.scan.orientation.axis_override import AXES, AxisOverride, nearest_axis
+from core.scan.orientation.cut_planes import find_cut_planes
+from core.scan.orientation.orientation_cues import TorsoFeatures, extract_features, score
 from core.scan.orientation.silhouette import silhouette
 from core.scan.orientation.symmetry_planes import Cloud, MirrorPlane
 
@@ -33,10 +33,10 @@ TRUE_ASIDE, TRUE_LEAN = 1.0, 17.0
 
 
 @dataclass(frozen=True, eq=False)
-class Stance:
+class PoseCandidate:
     """One way to stand: unit vectors ``left``, ``back``, ``up`` in the file, shape (3,).
 
-    ``evidence`` is what speaks for an upper body that stands so [1], ``said`` what each cue adds to it;
+    ``evidence`` is what speaks for an upper body that stands so [1], ``cue_scores`` what each cue adds to it;
     ``residual`` and ``offset`` are those of the mirror plane. ``cut``: it ends in a plane cut below.
     """
 
@@ -45,9 +45,9 @@ class Stance:
     up: Floats
     offset: float
     residual: float
-    seen: Look
+    seen: TorsoFeatures
     evidence: float
-    said: dict[str, float]
+    cue_scores: dict[str, float]
     cut: bool = False
 
     @property
@@ -60,14 +60,14 @@ class Stance:
         """How likely this is how the body stands [1]."""
         return self.evidence + FILE_AXIS * float(self.upright) + CUT * float(self.cut) - 6.0 * self.residual
 
-    def differs(self, other: Stance, degrees: float = 40.0) -> bool:
+    def differs(self, other: PoseCandidate, degrees: float = 40.0) -> bool:
         """Tell whether up or front point elsewhere."""
         return bool(min(self.up @ other.up, self.back @ other.back) < np.cos(np.radians(degrees)))
 
 
-def stances(
-    cloud: Cloud, plane: MirrorPlane, up: Told | None = None, front: Told | None = None
-) -> list[Stance]:
+def rank_candidates(
+    cloud: Cloud, plane: MirrorPlane, up: AxisOverride | None = None, front: AxisOverride | None = None
+) -> list[PoseCandidate]:
     """Return the ways to stand with a mirror plane: every 15 degrees round, facing to or fro.
 
     One of them is along the axis of the file nearest to the plane. ``up`` and ``front`` leave out ways; the
@@ -86,7 +86,9 @@ def stances(
     return [stance for stance in found if front is None or front.allows(-stance.back)]
 
 
-def _ways_to_stand(cloud: Cloud, plane: MirrorPlane, up: Floats, ways: tuple[int, ...]) -> list[Stance]:
+def _ways_to_stand(
+    cloud: Cloud, plane: MirrorPlane, up: Floats, ways: tuple[int, ...]
+) -> list[PoseCandidate]:
     back = np.cross(up, plane.side)
     trunk = silhouette(
         cloud.points @ np.stack([plane.side, back, up], axis=1) - [plane.offset, 0.0, 0.0], cloud.grain
@@ -96,14 +98,16 @@ def _ways_to_stand(cloud: Cloud, plane: MirrorPlane, up: Floats, ways: tuple[int
     found = []
     for way in ways:
         for sign in (1, -1):
-            seen = look(trunk.turned(way, sign))
-            evidence, said = rate(seen)
+            seen = extract_features(trunk.turned(way, sign))
+            evidence, said = score(seen)
             directions = (way * sign * plane.side, sign * back, way * up)
-            found.append(Stance(*directions, way * sign * plane.offset, plane.residual, seen, evidence, said))
+            found.append(
+                PoseCandidate(*directions, way * sign * plane.offset, plane.residual, seen, evidence, said)
+            )
     return found
 
 
-def settled(cloud: Cloud, stance: Stance) -> Stance:
+def refine_candidate(cloud: Cloud, stance: PoseCandidate) -> PoseCandidate:
     """Return ``stance`` with its up set by a plane cut below, by the trunk and by the axis of the file."""
     cut = _cut_below(cloud, stance)
     up = _true_up(cloud, stance, cut)
@@ -115,15 +119,15 @@ def settled(cloud: Cloud, stance: Stance) -> Stance:
     return replace(found, cut=cut is not None)
 
 
-def _cut_below(cloud: Cloud, stance: Stance) -> Floats | None:
+def _cut_below(cloud: Cloud, stance: PoseCandidate) -> Floats | None:
     """Return the up that a plane cut through the trunk tells, if it ends in one below."""
     own = cloud.points[stance.seen.trunk.own]
     least = 0.3 * stance.seen.trunk.main_girth**2 / (4.0 * np.pi)
-    cuts = [end for end in flat_ends(own, cloud.grain, -stance.up) if end.area > least]
+    cuts = [end for end in find_cut_planes(own, cloud.grain, -stance.up) if end.area > least]
     return -cuts[0].normal if cuts else None
 
 
-def _true_up(cloud: Cloud, stance: Stance, cut: Floats | None) -> Floats:
+def _true_up(cloud: Cloud, stance: PoseCandidate, cut: Floats | None) -> Floats:
     axis = AXES[nearest_axis(stance.up)]
     aside = np.degrees(np.arcsin(min(1.0, abs(float(axis @ stance.left)))))
     if cut is not None and _angle(cut, axis) < LEVEL:
@@ -138,7 +142,7 @@ def _true_up(cloud: Cloud, stance: Stance, cut: Floats | None) -> Floats:
     return axis if _angle(trunk, axis) < leans and aside < LEAN_ASIDE else trunk
 
 
-def _along_trunk(cloud: Cloud, stance: Stance) -> Floats:
+def _along_trunk(cloud: Cloud, stance: PoseCandidate) -> Floats:
     """Return the up along which the middle of the trunk runs, in its mirror plane."""
     for _ in range(3):
         lean = np.arctan(stance.seen.lean)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import distance_transform_edt
 
-from core.geometry.mesh import Faces, Flags, Floats, Indices, Points, area_vectors, strewn, unit
+from core.geometry.mesh import Faces, Flags, Floats, Indices, Points, area_vectors, sample_surface, unit
 
 CELLS = 11_000
 """Grain-sized squares that the skin is divided into: the grain is the spacing of everything here."""
@@ -73,11 +73,11 @@ class MirrorPlane:
     residual: float
 
 
-def even_cloud(vertices: Points, faces: Faces) -> Cloud:
+def sample_uniformly(vertices: Points, faces: Faces) -> Cloud:
     """Lay even points on a skin, whatever its triangles are like. Any unit. Source: ours."""
     vectors = area_vectors(vertices, faces)
     areas = np.linalg.norm(vectors, axis=1)
-    points, face = strewn(vertices, faces, areas, SAMPLES)
+    points, face = sample_surface(vertices, faces, areas, SAMPLES)
     normals, area = unit(vectors[face]), float(areas.sum())
     low, high = np.percentile(points, (1, 99), axis=0)
     grain = max(np.sqrt(area / CELLS), float(np.linalg.norm(high - low)) / FINEST)

@@ -19,15 +19,15 @@ TOLD_GIRTHS = (300.0, 2500.0)
 
 
 @dataclass(frozen=True)
-class Size:
+class UnitEstimate:
     """The unit of a scan, whether it is sure, and the reason in words."""
 
     unit: str
-    sure: bool
+    is_certain: bool
     reason: str
 
 
-def find_unit(girth: float, told: str | None = None) -> Size:
+def estimate_unit(girth: float, told: str | None = None) -> UnitEstimate:
     """Return the unit in which a trunk girth [file units] is that of a body; ``told`` overrules it.
 
     Raises ScanError if no body is that big. Source: ours.
@@ -36,7 +36,7 @@ def find_unit(girth: float, told: str | None = None) -> Size:
         mm = girth * MILLIMETRES[told]
         if TOLD_GIRTHS[0] < mm < TOLD_GIRTHS[1]:
             reason = f"The unit was told to be {told}: with it the trunk is {mm:.0f} mm round."
-            return Size(told, True, reason)
+            return UnitEstimate(told, True, reason)
         raise ScanError(
             f"In {told} the trunk would measure {_plain(mm)} mm round, which is not the size of a body.",
             "Check the unit, and that the scan holds an upper body.",
@@ -56,7 +56,7 @@ def find_unit(girth: float, told: str | None = None) -> Size:
     for other in rare:
         if other != unit:
             reason += f" It might also be {other} ({girth * MILLIMETRES[other]:.0f} mm): please check it."
-    return Size(unit, len(rare) == 1, reason)
+    return UnitEstimate(unit, len(rare) == 1, reason)
 
 
 def _plain(length: float) -> str:

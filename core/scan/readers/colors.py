@@ -8,7 +8,7 @@ import warnings
 import numpy as np
 from scipy.spatial import cKDTree
 
-from core.geometry.mesh import FARTHEST, Floats, Points
+from core.geometry.mesh import MAX_COORDINATE, Floats, Points
 from core.scan.readers.raw_scan import Colours
 
 UNREADABLE = "The colours of the scan could not be read."
@@ -25,7 +25,7 @@ _LARGEST_PROGRESSIVE = 8192**2
 _FORMATS = ("JPEG", "PNG", "BMP", "TGA")
 
 
-def colourless(count: int) -> Colours:
+def without_colors(count: int) -> Colours:
     """Return the colours of vertices without any, shape (count, 4)."""
     return np.zeros((count, 4), dtype=np.uint8)
 
@@ -38,12 +38,12 @@ def full_of(kind: np.dtype[np.generic]) -> float | None:
     return float(2 ** (8 * kind.itemsize) - 1) if kind.kind in "iu" and kind.itemsize <= 2 else None
 
 
-def coloured(values: Floats, full: float | None = None) -> Colours:
+def with_colors(values: Floats, full: float | None = None) -> Colours:
     """Return the colours of rows of three numbers, shape (n, 3), of which ``full`` is the brightest.
 
     None: fractions of 1 if none is larger, else of 255. Rows of numbers that are not finite have no colour.
     """
-    colours = colourless(len(values))
+    colours = without_colors(len(values))
     known = np.isfinite(values).all(axis=1)
     real = values[known]
     full = full or (1.0 if real.max(initial=0.0) <= 1.0 else 255.0)
@@ -78,7 +78,7 @@ def sampled(pixels: Colours, places: Floats) -> Colours:
 
     The image repeats beyond. Rows of numbers that are not finite have no colour.
     """
-    colours = colourless(len(places))
+    colours = without_colors(len(places))
     known = np.isfinite(places).all(axis=1)
     x, y = (np.mod(places[known], 1.0) * (pixels.shape[1], pixels.shape[0])).astype(np.int64).T
     at = np.minimum(y, pixels.shape[0] - 1), np.minimum(x, pixels.shape[1] - 1)
@@ -94,13 +94,13 @@ def is_plain(colours: Colours | None) -> bool:
     return len(known) == 0 or not np.ptp(known, axis=0).any()
 
 
-def laid_on(vertices: Points, scanned: Points, colours: Colours) -> Colours:
+def transfer_colors(vertices: Points, scanned: Points, colours: Colours) -> Colours:
     """Return the colours of ``vertices``, (n, 3) [mm], of the nearest ``scanned`` ones, (k, 3) [mm].
 
     Cleaning moves few vertices and makes few new ones, so nearly all find themselves.
     """
-    found = colourless(len(vertices))
-    sound = (np.abs(scanned) < FARTHEST).all(axis=1)
+    found = without_colors(len(vertices))
+    sound = (np.abs(scanned) < MAX_COORDINATE).all(axis=1)
     scanned, colours = scanned[sound], colours[sound]
     if len(scanned):
         away, nearest = cKDTree(scanned).query(vertices, distance_upper_bound=NEAR)

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 
-def beside(path: Path, name: str) -> Path | None:
+def companion_file(path: Path, name: str) -> Path | None:
     """Return the file in the folder of ``path`` that a plain name means, None if there is none."""
     if not re.fullmatch(r"[^/\\:\0]{1,255}", name):
         return None

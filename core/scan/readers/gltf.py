@@ -13,7 +13,7 @@ import numpy.typing as npt
 from core.errors import ScanError
 from core.geometry.mesh import Faces, Floats, Indices
 from core.progress import Progress
-from core.scan.readers.colors import UNREADABLE, coloured, full_of, sampled, texture
+from core.scan.readers.colors import UNREADABLE, full_of, sampled, texture, with_colors
 from core.scan.readers.gltf_buffers import MOST_MARKS, MOST_NODES, cut_short, marks
 from core.scan.readers.raw_scan import (
     FREE,
@@ -149,7 +149,7 @@ class _Reader:
         named = primitive["attributes"]
         if "COLOR_0" in named:
             values = self._values(named["COLOR_0"], count)
-            return coloured(values[:, :3].astype(np.float64), full_of(values.dtype) or 1.0)
+            return with_colors(values[:, :3].astype(np.float64), full_of(values.dtype) or 1.0)
         if "material" not in primitive:
             return None
         surface = self.json["materials"][primitive["material"]].get("pbrMetallicRoughness", {})

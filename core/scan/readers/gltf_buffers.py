@@ -12,7 +12,7 @@ from typing import Any
 
 from core.errors import ScanError
 from core.progress import Progress, quiet
-from core.scan.readers.companion_files import beside
+from core.scan.readers.companion_files import companion_file
 from core.scan.readers.raw_scan import AGAIN
 
 MOST_NODES, MOST_MARKS = 10_000, 500_000
@@ -111,7 +111,7 @@ def _joined_images(path: Path, document: Any, joins: _Joins) -> list[Any]:
 def _file_of(path: Path, uri: Any) -> Path | None:
     """Return the file in the folder of ``path`` that an address means, None if there is none."""
     spelled = uri.encode() if isinstance(uri, str) else b""
-    return beside(
+    return companion_file(
         path, re.sub(rb"%([\da-fA-F]{2})", lambda code: bytes.fromhex(code[1].decode()), spelled).decode()
     )
 

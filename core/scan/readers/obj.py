@@ -8,7 +8,7 @@ import numpy as np
 
 from core.geometry.mesh import Faces, Indices
 from core.progress import Progress
-from core.scan.readers.colors import UNREADABLE, coloured
+from core.scan.readers.colors import UNREADABLE, with_colors
 from core.scan.readers.raw_scan import Colours, RawScan, check_size, fans
 from core.scan.readers.text_table import Growing, Lines, Table, blocks, lines_of, table, whole
 
@@ -75,7 +75,7 @@ def _colours(points: int, behind: Growing, painted: Growing) -> Colours | None:
     if not len(behind):
         return None
     behind.add(np.full(3 * points - len(behind), np.nan))
-    return coloured(behind.array().reshape(-1, 3))
+    return with_colors(behind.array().reshape(-1, 3))
 
 
 def _polygons(name: str, lines: Lines, known: Indices) -> Faces:

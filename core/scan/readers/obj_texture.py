@@ -10,8 +10,8 @@ import numpy as np
 from core.errors import ScanError
 from core.geometry.mesh import Floats, Indices
 from core.progress import Progress
-from core.scan.readers.colors import colourless, sampled, texture
-from core.scan.readers.companion_files import beside
+from core.scan.readers.colors import sampled, texture, without_colors
+from core.scan.readers.companion_files import companion_file
 from core.scan.readers.obj import MRGB
 from core.scan.readers.raw_scan import FREE, TIMES, Colours, check_size
 from core.scan.readers.text_table import Growing, Lines, blocks, lines_of, table, whole
@@ -30,7 +30,7 @@ def with_texture(path: Path, data: bytes, most: int, progress: Progress) -> byte
     which the reader tells. Names that lead out of the folder are not followed. Raises Cancelled.
     """
     found = _LIBRARY.search(data[:_HEAD])
-    library = beside(path, _text(found[1])) if found else None
+    library = companion_file(path, _text(found[1])) if found else None
     if library is None or MRGB in data:
         return data
     try:
@@ -66,7 +66,7 @@ def _pixels(path: Path, images: dict[bytes, bytes], most: int) -> dict[bytes, Co
     known, room = dict[bytes, Colours](), FREE
     for name in dict.fromkeys(images.values()):
         # Options may precede the name, which may hold blanks.
-        file = beside(path, _text(name)) or beside(path, _text(name.split()[-1]))
+        file = companion_file(path, _text(name)) or companion_file(path, _text(name.split()[-1]))
         if file is None or file.stat().st_size > most:
             raise ValueError("a texture that is missing or too large")
         content = file.read_bytes()
@@ -121,7 +121,7 @@ def _from_zero(numbers: Indices, known: Indices) -> Indices:
 
 def _sampled(points: int, uvs: Floats, corners: Indices, images: list[Colours]) -> Colours:
     """Return the colours of vertices whose corners are known, as ``_corners`` gives them."""
-    colours = colourless(points)
+    colours = without_colors(points)
     vertex, place, _ = corners.T
     corners = corners[(vertex >= 0) & (vertex < points) & (place >= 0) & (place < len(uvs))]
     for number, image in enumerate(images):

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from core.errors import ScanError
 from core.geometry.mesh import Faces, Floats, Indices, rows_of
 from core.progress import Progress
-from core.scan.readers.colors import coloured, full_of
+from core.scan.readers.colors import full_of, with_colors
 from core.scan.readers.ply_header import COLOURS, CORNERS, NEEDED, NORMALS, PLACES, Element, Kind, read_header
 from core.scan.readers.raw_scan import (
     AGAIN,
@@ -222,7 +222,7 @@ class _Table:
         for names in COLOURS:
             values = self.columns(names)
             if values is not None:
-                return coloured(values, full_of(kinds[names[0]]))
+                return with_colors(values, full_of(kinds[names[0]]))
         return None
 
     def corners(self) -> tuple[Indices, Indices]:

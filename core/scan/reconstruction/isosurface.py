@@ -26,7 +26,7 @@ BLOCK = 4096
 """How many places are worked on at a time, so that they stay in the cache."""
 
 
-def contour(spots: Points, normals: Points, spacing: float) -> tuple[Points, Faces]:
+def extract_isosurface(spots: Points, normals: Points, spacing: float) -> tuple[Points, Faces]:
     """Return the surface through spots, shape (n, 3), that look along ``normals``: vertices and triangles.
 
     It is where the height over the spots' planes is zero: each cell of the grid that it passes through gets a

@@ -7,10 +7,10 @@ from scipy import sparse
 from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
 from scipy.spatial import cKDTree
 
-from core.geometry.mesh import FARTHEST, Faces, Flags, Floats, Indices, Points, quadric_terms, unit
+from core.geometry.mesh import MAX_COORDINATE, Faces, Flags, Floats, Indices, Points, quadric_terms, unit
 from core.progress import Progress, quiet
 from core.scan.readers.raw_scan import RawScan
-from core.scan.reconstruction.isosurface import BLOCK, contour, distinct, nearest, once, spacing_of
+from core.scan.reconstruction.isosurface import BLOCK, distinct, extract_isosurface, nearest, once, spacing_of
 
 FEWEST_POINTS = 2000
 """With fewer points no breast could be made out."""
@@ -43,7 +43,7 @@ NEIGHBOURS = 24
 """Points that a smooth patch is laid through."""
 
 
-def surface_of(
+def reconstruct_surface(
     points: Points, normals: Points | None = None, progress: Progress = quiet
 ) -> tuple[Points, Faces]:
     """Lay a surface through points, shape (n, 3), of any unit: vertices (k, 3) and faces (m, 3).
@@ -65,7 +65,7 @@ def surface_of(
     direction = _outward(spots, direction, outside)
     progress("rebuilding the surface", 0.6)
     spacing = spacing_of(spots)
-    vertices, faces = contour(spots, direction, spacing)
+    vertices, faces = extract_isosurface(spots, direction, spacing)
     progress("rebuilding the surface", 0.8)
     smooth, _ = _on_patches(vertices, spots)
     moved = np.linalg.norm(smooth - vertices, axis=1, keepdims=True)
@@ -91,7 +91,7 @@ def is_cloud(scan: RawScan) -> bool:
 
 
 def _placed(points: Points) -> Flags:
-    return np.asarray((np.abs(points) < FARTHEST).all(axis=1))  # not a number is no place either
+    return np.asarray((np.abs(points) < MAX_COORDINATE).all(axis=1))  # not a number is no place either
 
 
 def _thinned(points: Points, normals: Points | None, cell: float) -> tuple[Points, Points | None, float]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points
 from core.geometry.mirror_plane import mirror
-from core.scan.repair.editable_mesh import Skin
+from core.scan.repair.editable_mesh import EditableMesh
 
 SNAP = 0.15
 """Vertices nearer to the plane than this part of the median edge are moved onto it: no slivers [1]."""
@@ -15,7 +15,9 @@ SPECK = 0.01
 """Pieces that a cut leaves with less than this part of the largest one's area are dropped [1]."""
 
 
-def above(mesh: Mesh, axis: int, level: float, sign: float = 1.0, snap: float = SNAP) -> tuple[Mesh, Flags]:
+def clip_above(
+    mesh: Mesh, axis: int, level: float, sign: float = 1.0, snap: float = SNAP
+) -> tuple[Mesh, Flags]:
     """Return the part of a mesh [mm] beyond a plane, and which of its vertices, shape (n,), are on the plane.
 
     On the plane the coordinate ``axis`` is ``level``; what is kept is on the side of ``sign``.
@@ -42,7 +44,7 @@ def above(mesh: Mesh, axis: int, level: float, sign: float = 1.0, snap: float = 
         np.stack([third, two[:, 1], two[:, 2]], axis=1),
         np.stack([third, two[:, 2], fourth], axis=1),
     ]
-    skin = Skin(np.concatenate([vertices, places]), np.concatenate(faces)).compact()
+    skin = EditableMesh(np.concatenate([vertices, places]), np.concatenate(faces)).compact()
     if len(skin.faces):
         skin = skin.without_pieces(skin.piece_areas < SPECK * skin.piece_areas.max())
     return Mesh(skin.vertices, skin.faces), skin.vertices[:, axis] == level
@@ -54,9 +56,9 @@ def mirrored_half(mesh: Mesh, middle: float, sign: float) -> Mesh:
     ``sign`` is 1 to keep the left half (+x), -1 to keep the right one.
     """
     for snap in (SNAP, 0.0):
-        half, seam = above(mesh, 0, middle, sign, snap)
+        half, seam = clip_above(mesh, 0, middle, sign, snap)
         whole = _with_image(half, seam, middle)
-        if len(whole.faces) == 0 or Skin(whole.vertices, whole.faces).sides.count.max() <= 2:
+        if len(whole.faces) == 0 or EditableMesh(whole.vertices, whole.faces).sides.count.max() <= 2:
             break
     return whole
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from core.geometry.mesh import Floats, Indices, Points, strewn, unit
-from core.scan.repair.editable_mesh import Skin
+from core.geometry.mesh import Floats, Indices, Points, sample_surface, unit
+from core.scan.repair.editable_mesh import EditableMesh
 
 SPECK = 0.005
 """A loose piece with less than this share of the largest piece's area [1] is a speck."""
@@ -46,7 +46,7 @@ SEAM, SEWN = 0.05, 0.3
 a patch of a skin does so along that share of its border [1]."""
 
 
-def size_of(skin: Skin) -> float:
+def size_of(skin: EditableMesh) -> float:
     """Return the root mean square distance of a skin from its middle: some 220 for a torso in mm."""
     total = float(skin.areas.sum())
     if total == 0.0:
@@ -55,7 +55,7 @@ def size_of(skin: Skin) -> float:
     return float(np.sqrt(skin.areas @ np.einsum("ij,ij->i", from_middle, from_middle) / total))
 
 
-def drop_furniture(skin: Skin) -> tuple[Skin, int]:
+def remove_scan_stand(skin: EditableMesh) -> tuple[EditableMesh, int]:
     """Drop loose pieces that are flat, or everywhere along or square to one axis: floors, boxes, poles.
 
     If nothing else would be left, all stays.
@@ -73,7 +73,7 @@ def drop_furniture(skin: Skin) -> tuple[Skin, int]:
     return skin.without_pieces(built), int(built.sum())
 
 
-def drop_specks(skin: Skin) -> tuple[Skin, int]:
+def remove_small_components(skin: EditableMesh) -> tuple[EditableMesh, int]:
     """Drop pieces that are tiny, and small ones that lie apart."""
     if len(skin.faces) == 0 or len(skin.piece_areas) < 2:
         return skin, 0
@@ -83,10 +83,10 @@ def drop_specks(skin: Skin) -> tuple[Skin, int]:
         return skin, 0  # they are what the skin is made of
     doubtful = np.flatnonzero((share < LOOSE) & ~small)
     if len(doubtful):
-        body = cKDTree(strewn_on(skin, np.flatnonzero((share >= LOOSE)[skin.piece]), 10 * SAMPLES))
+        body = cKDTree(sample_component(skin, np.flatnonzero((share >= LOOSE)[skin.piece]), 10 * SAMPLES))
         apart = BESIDE * size_of(skin.without_pieces(share < LOOSE))
         for number in doubtful:
-            places = strewn_on(skin, np.flatnonzero(skin.piece == number), 200)
+            places = sample_component(skin, np.flatnonzero(skin.piece == number), 200)
             small[number] = np.min(body.query(places)[0]) > apart
     return skin.without_pieces(small), int(small.sum())
 
@@ -97,14 +97,14 @@ def largest(areas: Floats, share: float = 0.0) -> Indices:
     return np.asarray(order[areas[order] > share * areas.max(initial=0.0)])
 
 
-def strewn_on(skin: Skin, faces: Indices, count: int = SAMPLES) -> Points:
+def sample_component(skin: EditableMesh, faces: Indices, count: int = SAMPLES) -> Points:
     """Return places strewn evenly over triangles, shape (count, 3)."""
-    return strewn(skin.vertices, skin.faces[faces], skin.areas[faces], count)[0]
+    return sample_surface(skin.vertices, skin.faces[faces], skin.areas[faces], count)[0]
 
 
-def _is_built(skin: Skin, faces: Indices) -> bool:
+def _is_built(skin: EditableMesh, faces: Indices) -> bool:
     """Tell whether a piece is a plate, a body between two plates along one axis, or a pole."""
-    places = strewn_on(skin, faces)
+    places = sample_component(skin, faces)
     _, near = cKDTree(places).query(places, k=NEAREST)
     around = places[near] - places[near].mean(axis=1, keepdims=True)
     spread, directions = np.linalg.eigh(np.einsum("ski,skj->sij", around, around))
@@ -125,7 +125,7 @@ def _is_built(skin: Skin, faces: Indices) -> bool:
     return False
 
 
-def _is_patch(skin: Skin, number: int, large: Indices) -> bool:
+def _is_patch(skin: EditableMesh, number: int, large: Indices) -> bool:
     """Tell whether the border of a piece runs along the borders of others, as patches of one skin do."""
     side = skin.sides.border
     piece, start = skin.piece[side % len(skin.faces)], skin.vertices[skin.sides.ends(side)[0]]

@@ -10,8 +10,8 @@ from scipy import sparse
 
 from core.geometry.mesh import Indices, Mesh
 from core.progress import Progress, quiet
-from core.scan.repair.editable_mesh import Skin, first_equal, grouped
-from core.scan.repair.repair import without_fins
+from core.scan.repair.editable_mesh import EditableMesh, first_equal, grouped
+from core.scan.repair.repair import remove_fins
 
 GIANT = 250_000
 """A skin of more triangles is thinned before it is measured."""
@@ -42,7 +42,7 @@ def _go_on() -> None:
     """Nobody asks for an end."""
 
 
-def calmed(mesh: Mesh, progress: Progress = quiet) -> Mesh:
+def denoise(mesh: Mesh, progress: Progress = quiet) -> Mesh:
     """Return ``mesh`` without the noise of the scanner; one without noise and of usual size stays as it is.
 
     A giant skin is thinned, noise is smoothed without shrinking: the more noise the more, and over the same
@@ -51,7 +51,7 @@ def calmed(mesh: Mesh, progress: Progress = quiet) -> Mesh:
     if len(mesh.faces) > GIANT:
         # noise as large as the triangles would fold the thinned skin
         smooth = _smoothed(mesh, 0.05 * _edge(mesh), 10, progress)
-        mesh = thinned(smooth, CELL, partial(progress, CALMING, 0.6))
+        mesh = decimate(smooth, CELL, partial(progress, CALMING, 0.6))
     return _smoothed(mesh, NOISELESS, 40, progress, 0.8)
 
 
@@ -72,7 +72,7 @@ def _smoothed(mesh: Mesh, noiseless: float, most: int, progress: Progress, begun
     return mesh.moved(vertices)
 
 
-def noise_of(mesh: Mesh) -> float:
+def estimate_noise(mesh: Mesh) -> float:
     """Return the noise of a skin [mm], the standard deviation of its vertices along each axis.
 
     It is what a fourth-order smooth surface cannot explain, less what the shape of a body leaves there on
@@ -94,7 +94,7 @@ def _noise(mesh: Mesh, mean: sparse.csr_array, ask: Callable[[], None] = _go_on)
     return float(np.sqrt(max(raw**2 - (SHAPE * _edge(mesh) ** 2) ** 2, 0.0)))
 
 
-def thinned(mesh: Mesh, cell: float, ask: Callable[[], None] = _go_on) -> Mesh:
+def decimate(mesh: Mesh, cell: float, ask: Callable[[], None] = _go_on) -> Mesh:
     """Return ``mesh`` with the vertices in each cell of edge ``cell`` [mm] averaged to one.
 
     Vertices that look different ways stay apart, so that sheets lying on each other do not grow together.
@@ -117,7 +117,7 @@ def thinned(mesh: Mesh, cell: float, ask: Callable[[], None] = _go_on) -> Mesh:
     vertices = np.stack([np.bincount(member, mesh.vertices[:, k]) for k in range(3)], axis=1) / count[:, None]
     faces = member[mesh.faces]
     faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
-    skin = without_fins(Skin(vertices, faces[_first_listed(faces, len(vertices))]).compact())[0]
+    skin = remove_fins(EditableMesh(vertices, faces[_first_listed(faces, len(vertices))]).compact())[0]
     return Mesh(skin.vertices, skin.faces)
 
 

@@ -13,7 +13,7 @@ from core.geometry.mesh import Faces, Flags, Floats, Indices, Points, area_vecto
 
 
 @dataclass(frozen=True, eq=False)
-class Skin:
+class EditableMesh:
     """Vertices, shape (n, 3) [any unit], and triangles, shape (m, 3), in no way sound yet."""
 
     vertices: Points
@@ -51,22 +51,22 @@ class Skin:
         """Areas of the pieces, shape (k,)."""
         return np.asarray(np.bincount(self.piece, self.areas), dtype=np.float64)
 
-    def with_faces(self, keep: Flags) -> Skin:
+    def with_faces(self, keep: Flags) -> EditableMesh:
         """Return the skin of the triangles ``keep``, shape (m,), and of their vertices alone."""
-        return self if keep.all() else Skin(self.vertices, self.faces[keep]).compact()
+        return self if keep.all() else EditableMesh(self.vertices, self.faces[keep]).compact()
 
-    def without_pieces(self, dropped: Flags) -> Skin:
+    def without_pieces(self, dropped: Flags) -> EditableMesh:
         """Return the skin without the pieces ``dropped``, shape (k,)."""
         return self.with_faces(~dropped[self.piece]) if dropped.any() else self
 
-    def with_vertices(self, keep: Flags) -> Skin:
+    def with_vertices(self, keep: Flags) -> EditableMesh:
         """Return the skin of the vertices ``keep``, shape (n,), and of the triangles between them."""
         if keep.all():
             return self
         faces = self.faces[keep[self.faces].all(axis=1)]
-        return Skin(self.vertices[keep], (np.cumsum(keep) - 1)[faces])
+        return EditableMesh(self.vertices[keep], (np.cumsum(keep) - 1)[faces])
 
-    def compact(self) -> Skin:
+    def compact(self) -> EditableMesh:
         """Return the skin without vertices outside any triangle."""
         used = np.zeros(len(self.vertices), dtype=bool)
         used[self.faces] = True

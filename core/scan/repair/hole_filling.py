@@ -8,11 +8,11 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from core.geometry.mesh import Faces, Floats, Indices, Mesh, Points, quadric_terms
-from core.geometry.triangulate import triangulated
+from core.geometry.triangulate import triangulate
 from core.progress import Progress, quiet
-from core.scan.repair.editable_mesh import Skin
+from core.scan.repair.editable_mesh import EditableMesh
 from core.scan.repair.holes import border_loops, find_holes, frame_of, hole_sentences, islands
-from core.scan.repair.repair import counted
+from core.scan.repair.repair import count_text
 
 CLOSED = 30.0
 """Holes up to this length are closed [mm]."""
@@ -27,26 +27,26 @@ CRACK = 30.0
 """The two sides of one border are sewn to each other only where the way between them is longer [mm]."""
 
 
-def mended(mesh: Mesh, progress: Progress = quiet) -> tuple[Mesh, tuple[str, ...]]:
+def fill_holes(mesh: Mesh, progress: Progress = quiet) -> tuple[Mesh, tuple[str, ...]]:
     """Return an upright ``mesh`` [mm] mended, and a sentence a repair and an open hole. Raises Cancelled."""
-    mesh, sewn, closed = mend(mesh, progress)
+    mesh, sewn, closed = fill_small_holes(mesh, progress)
     progress("closing holes", 1.0)
     sentences = []
     if sewn:
-        sentences.append(f"Joined {counted(sewn, 'vertex')} along seams between parts of the scan.")
+        sentences.append(f"Joined {count_text(sewn, 'vertex')} along seams between parts of the scan.")
     if closed:
-        sentences.append(f"Closed {counted(closed, 'hole')} up to {CLOSED:.0f} mm across.")
+        sentences.append(f"Closed {count_text(closed, 'hole')} up to {CLOSED:.0f} mm across.")
     return mesh, (*sentences, *hole_sentences(mesh, find_holes(mesh)))
 
 
-def mend(mesh: Mesh, progress: Progress = quiet) -> tuple[Mesh, int, int]:
+def fill_small_holes(mesh: Mesh, progress: Progress = quiet) -> tuple[Mesh, int, int]:
     """Return ``mesh`` with seams sewn and small holes closed, and how many vertices and holes that were.
 
     Old vertices keep their order, those sewn to another are gone; new ones come last. A closed hole follows
     the curvature of the skin round it. Source: ours.
     """
     progress("closing holes", 0.0)
-    skin = Skin(mesh.vertices, mesh.faces)
+    skin = EditableMesh(mesh.vertices, mesh.faces)
     start, end = skin.sides.ends(skin.sides.border)
     if len(start) == 0:
         return mesh, 0, 0
@@ -77,7 +77,7 @@ def mend(mesh: Mesh, progress: Progress = quiet) -> tuple[Mesh, int, int]:
         faces.append(corners)
         added.append(new)
         count, closed = count + len(new), closed + 1
-    whole = Skin(np.concatenate(added), np.concatenate(faces)).compact()
+    whole = EditableMesh(np.concatenate(added), np.concatenate(faces)).compact()
     return Mesh(whole.vertices, whole.faces), sewn, closed
 
 
@@ -120,7 +120,7 @@ def _without_tangles(mesh: Mesh, twin: Indices) -> Indices:
         if (home == np.arange(len(home))).all():
             return twin
         faces = home[mesh.faces]
-        sides = Skin(mesh.vertices, faces).sides
+        sides = EditableMesh(mesh.vertices, faces).sides
         wrong = np.zeros(len(twin), dtype=bool)
         flat = (faces == np.roll(faces, 1, axis=1)).any(axis=1)
         wrong[faces[flat].ravel()] = True
@@ -157,7 +157,7 @@ def _filled(border: Points, skin: cKDTree, normals: Points) -> tuple[Faces, Poin
     axes, extent = frame_of(border)
     middle = border.mean(axis=0)
     local = (border - middle) @ axes.T
-    faces, inside = triangulated(local[::-1, :2])
+    faces, inside = triangulate(local[::-1, :2])
     faces = np.where(faces < len(border), len(border) - 1 - faces, faces)
     if len(inside) == 0:
         return faces, np.empty((0, 3))

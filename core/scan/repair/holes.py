@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points, unit
-from core.scan.repair.editable_mesh import Skin
+from core.scan.repair.editable_mesh import EditableMesh
 
 TUBE = 0.5
 """The skin round a hole looks its way; at the end of a neck or an arm it looks across it by more [cosine]."""
@@ -54,7 +54,7 @@ class Hole:
 
 def find_holes(mesh: Mesh) -> tuple[Hole, ...]:
     """Return all holes of a repaired skin [mm], longest first. Source: ours."""
-    skin = Skin(mesh.vertices, mesh.faces)
+    skin = EditableMesh(mesh.vertices, mesh.faces)
     border = skin.sides.border[~islands(skin, np.arange(len(mesh.vertices)))]
     start, end = skin.sides.ends(border)
     loops = border_loops(start, end, np.arange(len(mesh.vertices)))
@@ -67,7 +67,7 @@ def find_holes(mesh: Mesh) -> tuple[Hole, ...]:
     return tuple(sorted(found, key=lambda hole: -hole.length))
 
 
-def islands(skin: Skin, twin: Indices) -> Flags:
+def islands(skin: EditableMesh, twin: Indices) -> Flags:
     """Tell which sides of the border, shape (b,), are those of loose single triangles: round no hole.
 
     ``twin`` (n,) tells which vertex each is sewn to, itself if none.

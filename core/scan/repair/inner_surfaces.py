@@ -8,8 +8,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from core.geometry.mesh import Flags, Floats, Indices, Points, unit
-from core.scan.repair.components import SAMPLES, largest, size_of, strewn_on
-from core.scan.repair.editable_mesh import Skin, components, grouped
+from core.scan.repair.components import SAMPLES, largest, sample_component, size_of
+from core.scan.repair.editable_mesh import EditableMesh, components, grouped
 
 COVERED = 0.9
 """Share of a piece [1] that lies inside another, or on it, if it is no skin of its own."""
@@ -40,7 +40,7 @@ DEEP, MUCH = 0.05, 0.2
 same parts, from what is left: linings lie nearer, and legs that reach into a trunk are less."""
 
 
-def drop_inner(skin: Skin) -> tuple[Skin, int]:
+def remove_inner(skin: EditableMesh) -> tuple[EditableMesh, int]:
     """Drop pieces that lie inside another, or on it: linings and layers scanned twice. Wound outward."""
     areas = skin.piece_areas if len(skin.faces) else np.zeros(0)
     large = largest(areas)
@@ -51,7 +51,7 @@ def drop_inner(skin: Skin) -> tuple[Skin, int]:
     tree_of = cache(lambda number: cKDTree(skin.centres[faces[number]]))
     cells_of = cache(lambda number: _gathered(skin, faces[number], CELL * size)[:2])
     for rank, number in enumerate(faces):
-        places = strewn_on(skin, faces[number], 100)
+        places = sample_component(skin, faces[number], 100)
         for other_rank, other in enumerate(faces):
             # a lining may be a little larger than what it lines, a layer is the smaller one
             if other == number or inner[other] or areas[other] < 0.5 * areas[number]:
@@ -66,7 +66,7 @@ def drop_inner(skin: Skin) -> tuple[Skin, int]:
     return skin.without_pieces(inner), int(inner.sum())
 
 
-def drop_hidden(skin: Skin) -> tuple[Skin, int]:
+def remove_occluded(skin: EditableMesh) -> tuple[EditableMesh, int]:
     """Drop the triangles of pieces that lie inside a larger piece, where nobody could have scanned them.
 
     The skin is to be wound outward. Source: ours.
@@ -88,15 +88,15 @@ def drop_hidden(skin: Skin) -> tuple[Skin, int]:
     return skin.with_faces(~gone), int(gone.sum())
 
 
-def buried(before: Skin, after: Skin) -> bool:
+def is_enclosed(before: EditableMesh, after: EditableMesh) -> bool:
     """Tell whether much of a skin is gone that lay deep inside what is left of it."""
     every, left = np.arange(len(before.faces)), np.arange(len(after.faces))
-    skin = cKDTree(strewn_on(after, left, 10 * SAMPLES))
-    away = skin.query(strewn_on(before, every))[0]
+    skin = cKDTree(sample_component(after, left, 10 * SAMPLES))
+    away = skin.query(sample_component(before, every))[0]
     return bool(np.mean(away > DEEP * size_of(before)) > MUCH)
 
 
-def _hidden(skin: Skin, own: Indices, others: Indices, size: float) -> Flags:
+def _hidden(skin: EditableMesh, own: Indices, others: Indices, size: float) -> Flags:
     """Tell which triangles lie deep inside the skin of ``own``, or near it and cut off with what does."""
     near, deep = np.zeros((2, len(skin.faces)), dtype=bool)
     first, member = _celled(skin.centres[others], DEPTH * size)
@@ -119,7 +119,7 @@ def _hidden(skin: Skin, own: Indices, others: Indices, size: float) -> Flags:
     return np.asarray(deep | (reached[skin.piece] & ~seen[part]))
 
 
-def _covered(skin: Skin, faces: Indices, tree: cKDTree, places: Points, near: float) -> bool:
+def _covered(skin: EditableMesh, faces: Indices, tree: cKDTree, places: Points, near: float) -> bool:
     """Tell whether nearly all ``places`` lie nearer than ``near`` to ``faces``, in a ``tree`` of centres."""
     distance, at = tree.query(places)
     away = places - skin.centres[faces[at]]
@@ -138,7 +138,7 @@ def _celled(places: Points, edge: float) -> tuple[Indices, Indices]:
     return order[start], member
 
 
-def _gathered(skin: Skin, own: Indices, edge: float) -> tuple[Points, Points, Floats]:
+def _gathered(skin: EditableMesh, own: Indices, edge: float) -> tuple[Points, Points, Floats]:
     """Return the middles of the cells of a skin, their area vectors and areas."""
     cell, area = _celled(skin.centres[own], edge)[1], skin.areas[own]
 

@@ -10,7 +10,7 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from core.geometry.mesh import Faces, Floats, Indices, Mesh, Points, edges
-from core.geometry.triangulate import triangulated
+from core.geometry.triangulate import triangulate
 from core.scan.repair.hole_filling import edge_keys, edges_at, quadric_height
 from core.scan.repair.holes import Hole, frame_of
 
@@ -30,7 +30,7 @@ RINGS = 2
 """So many rings of triangles round a hole give a patch its slope and curvature at the border."""
 
 
-def filled(mesh: Mesh, holes: Sequence[Hole]) -> tuple[Mesh, Indices, int]:
+def fill_large_holes(mesh: Mesh, holes: Sequence[Hole]) -> tuple[Mesh, Indices, int]:
     """Return a mesh [mm] with ``holes`` filled, its new vertices, shape (k,), and how many stay open.
 
     Old vertices keep their numbers. A hole stays open if its border touches itself. Source: ours; the patch
@@ -106,7 +106,7 @@ def _rim(mesh: Mesh, border: Indices) -> _Rim:
 
 def _triangles(outline: Floats, length: float) -> tuple[Faces, Floats]:
     """Triangulate a border, shape (b, 2), that runs against its hole, and strew places in it."""
-    faces, inside = triangulated(outline[::-1], length / MOST_STEPS)
+    faces, inside = triangulate(outline[::-1], length / MOST_STEPS)
     return np.where(faces < len(outline), len(outline) - 1 - faces, faces), inside
 
 

@@ -6,13 +6,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from core.geometry.mesh import FARTHEST, Faces, Flags, Indices, Points
+from core.geometry.mesh import MAX_COORDINATE, Faces, Flags, Indices, Points
 from core.progress import Progress, quiet
-from core.scan.repair.components import drop_furniture, drop_specks, size_of
-from core.scan.repair.editable_mesh import Skin, components, first_equal
-from core.scan.repair.inner_surfaces import BURIED, buried, drop_hidden, drop_inner
+from core.scan.repair.components import remove_scan_stand, remove_small_components, size_of
+from core.scan.repair.editable_mesh import EditableMesh, components, first_equal
+from core.scan.repair.inner_surfaces import BURIED, is_enclosed, remove_inner, remove_occluded
 
-Step = Callable[[Skin], tuple[Skin, int]]
+Step = Callable[[EditableMesh], tuple[EditableMesh, int]]
 
 FAR_OFF = 50.0
 """A vertex farther from the middle than so many times the median vertex [1] is a mistake."""
@@ -47,44 +47,44 @@ def repair(
         (_drop_far, "Dropped {} far away from all others.", "vertex"),
         (_merge_equal, "Merged {} with others at the same place.", "vertex"),
         (_drop_empty_faces, "Dropped {} without an area or listed before.", "face"),
-        (without_fins, "Dropped {} standing off the skin like a fin.", "face"),
+        (remove_fins, "Dropped {} standing off the skin like a fin.", "face"),
         (_part_sheets, "Parted the skin at {} in which two sheets touched.", "vertex"),
-        (drop_furniture, "Dropped {} shaped like a floor, a wall or a stand.", "piece"),
-        (drop_specks, "Dropped {} beside the body.", "speck"),
+        (remove_scan_stand, "Dropped {} shaped like a floor, a wall or a stand.", "piece"),
+        (remove_small_components, "Dropped {} beside the body.", "speck"),
         (_drop_spikes, "Dropped {} sticking out of the skin like a spike.", "vertex"),
         (_wind_outward, "Turned {} to look outward.", "face"),
-        (drop_inner, "Dropped {} inside the body or doubling its skin.", "piece"),
-        (drop_hidden, "Dropped {} of parts that reach into the body.", "face"),
+        (remove_inner, "Dropped {} inside the body or doubling its skin.", "piece"),
+        (remove_occluded, "Dropped {} of parts that reach into the body.", "face"),
     )
-    skin, sentences = Skin(vertices, faces), []
+    skin, sentences = EditableMesh(vertices, faces), []
     for done, (step, words, noun) in enumerate(steps):
         progress("repairing", done / len(steps))
         before = skin
         skin, count = step(before)
         if count:
-            sentences.append(words.format(counted(count, noun)))
-        if count and step in (drop_inner, drop_hidden) and buried(before, skin):
+            sentences.append(words.format(count_text(count, noun)))
+        if count and step in (remove_inner, remove_occluded) and is_enclosed(before, skin):
             sentences.append(BURIED)
     return skin.vertices, skin.faces, tuple(sentences)
 
 
-def counted(count: int, noun: str) -> str:
+def count_text(count: int, noun: str) -> str:
     """Return how many of something there are, in words."""
     plural = {"vertex": "vertices"}.get(noun, noun + "s")
     return f"{count:,} {noun if count == 1 else plural}"
 
 
-def _drop_positionless(skin: Skin) -> tuple[Skin, int]:
-    good = np.all(np.abs(skin.vertices) < FARTHEST, axis=1)  # False for NaN too
+def _drop_positionless(skin: EditableMesh) -> tuple[EditableMesh, int]:
+    good = np.all(np.abs(skin.vertices) < MAX_COORDINATE, axis=1)  # False for NaN too
     return skin.with_vertices(good), int((~good).sum())
 
 
-def _drop_unused(skin: Skin) -> tuple[Skin, int]:
+def _drop_unused(skin: EditableMesh) -> tuple[EditableMesh, int]:
     used = skin.compact()
     return used, len(skin.vertices) - len(used.vertices)
 
 
-def _drop_far(skin: Skin) -> tuple[Skin, int]:
+def _drop_far(skin: EditableMesh) -> tuple[EditableMesh, int]:
     if len(skin.vertices) == 0:
         return skin, 0
     some = skin.vertices[:: len(skin.vertices) // 100_000 + 1]
@@ -96,7 +96,7 @@ def _drop_far(skin: Skin) -> tuple[Skin, int]:
     return skin.with_vertices(near).compact(), int((~near).sum())
 
 
-def _merge_equal(skin: Skin) -> tuple[Skin, int]:
+def _merge_equal(skin: EditableMesh) -> tuple[EditableMesh, int]:
     if len(skin.vertices) == 0:
         return skin, 0
     low, high = np.percentile(skin.vertices[:: len(skin.vertices) // 100_000 + 1], (1, 99), axis=0)
@@ -109,10 +109,10 @@ def _merge_equal(skin: Skin) -> tuple[Skin, int]:
     keep = first == np.arange(len(first))
     if keep.all():
         return skin, 0
-    return Skin(skin.vertices[keep], (np.cumsum(keep) - 1)[first[skin.faces]]), int((~keep).sum())
+    return EditableMesh(skin.vertices[keep], (np.cumsum(keep) - 1)[first[skin.faces]]), int((~keep).sum())
 
 
-def _drop_empty_faces(skin: Skin) -> tuple[Skin, int]:
+def _drop_empty_faces(skin: EditableMesh) -> tuple[EditableMesh, int]:
     low, middle, high = np.sort(skin.faces, axis=1).T
     keep = (low < middle) & (middle < high)
     # faces with the same two lower corners are few: their upper corners are compared among these alone
@@ -127,7 +127,7 @@ def _drop_empty_faces(skin: Skin) -> tuple[Skin, int]:
     return skin.with_faces(keep), int((~keep).sum())
 
 
-def without_fins(skin: Skin) -> tuple[Skin, int]:
+def remove_fins(skin: EditableMesh) -> tuple[EditableMesh, int]:
     """Where more than two faces share an edge, drop the smallest patches until two are left.
 
     A patch is what hangs together over edges of two faces. Those with a free side go first.
@@ -157,7 +157,7 @@ def without_fins(skin: Skin) -> tuple[Skin, int]:
     return skin.with_faces(keep), int((~keep).sum())
 
 
-def _part_sheets(skin: Skin) -> tuple[Skin, int]:
+def _part_sheets(skin: EditableMesh) -> tuple[EditableMesh, int]:
     """Give each sheet its own vertex where sheets touch in nothing but a vertex."""
     n, sides = len(skin.vertices), skin.sides
     start, end = sides.ends(sides.border)
@@ -170,7 +170,7 @@ def _part_sheets(skin: Skin) -> tuple[Skin, int]:
     near = skin.faces[several[skin.faces].any(axis=1)]
     if len(near) == 0:
         return skin, 0
-    fan = _fans(Skin(skin.vertices, near))
+    fan = _fans(EditableMesh(skin.vertices, near))
     # the first fan of a vertex keeps it, each other gets a copy
     corner = near.ravel()
     order = np.argsort(fan, kind="stable")
@@ -184,10 +184,10 @@ def _part_sheets(skin: Skin) -> tuple[Skin, int]:
     faces = skin.faces.copy()
     faces[several[skin.faces].any(axis=1)] = number[fan].reshape(-1, 3)
     vertices = np.concatenate([skin.vertices, skin.vertices[fan_vertex[extra]]])
-    return Skin(vertices, faces), len(np.unique(fan_vertex[extra]))
+    return EditableMesh(vertices, faces), len(np.unique(fan_vertex[extra]))
 
 
-def _fans(skin: Skin) -> Indices:
+def _fans(skin: EditableMesh) -> Indices:
     """Return the fan of each corner, shape (3 m,): corners at a vertex that meet over edges are one fan."""
     sides, m = skin.sides, len(skin.faces)
     later = np.ones(3 * m, dtype=bool)
@@ -201,7 +201,7 @@ def _fans(skin: Skin) -> Indices:
     return components(np.concatenate([a, a_end]), np.concatenate([starts, ends]), 3 * m)
 
 
-def _drop_spikes(skin: Skin) -> tuple[Skin, int]:
+def _drop_spikes(skin: EditableMesh) -> tuple[EditableMesh, int]:
     """Drop inner vertices that stand far off between faces that are all narrow there."""
     if len(skin.faces) == 0:
         return skin, 0
@@ -229,7 +229,7 @@ def _drop_spikes(skin: Skin) -> tuple[Skin, int]:
     return skin.with_vertices(~spike).compact(), int(spike.sum())
 
 
-def _wind_outward(skin: Skin) -> tuple[Skin, int]:
+def _wind_outward(skin: EditableMesh) -> tuple[EditableMesh, int]:
     """Make neighbours run the same way round, then each piece look outward.
 
     Two sheets of the skin are laid over each other, one with every face as it is, one with every face turned,
@@ -248,10 +248,12 @@ def _wind_outward(skin: Skin) -> tuple[Skin, int]:
     turned ^= _inward(skin, turned)[skin.piece]
     if not turned.any():
         return skin, 0
-    return Skin(skin.vertices, np.where(turned[:, None], skin.faces[:, ::-1], skin.faces)), int(turned.sum())
+    return EditableMesh(skin.vertices, np.where(turned[:, None], skin.faces[:, ::-1], skin.faces)), int(
+        turned.sum()
+    )
 
 
-def _inward(skin: Skin, turned: Flags) -> Flags:
+def _inward(skin: EditableMesh, turned: Flags) -> Flags:
     """Tell which pieces look inward with their faces ``turned``, shape (k,).
 
     A closed piece has its volume for it, an open one its place round the middle of the body. If its own

@@ -25,7 +25,7 @@ def pair(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, str]:
     stages = build(design)
     truth = worn_mesh(stages, replace(design, line_stiffness=6.0, firm_chest=0.1))
     mesh, _ = scanned(truth, stages, np.random.default_rng(4), noise=0.2, resampled=False, hole=0.0)
-    save_project(folder / "plan.busk", Document.of(design), stages.scan, None)
+    save_project(folder / "plan.busk", Document.single(design), stages.scan, None)
     return str(folder / "plan.busk"), written(mesh, folder / "worn.ply")
 
 

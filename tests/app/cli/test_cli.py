@@ -16,7 +16,7 @@ from app.cli.main import main
 from core import __version__
 from core.document.design import Design, ScanSource
 from core.document.document import Document
-from core.document.lines import OwnLine, WornLine
+from core.document.lines import ActiveLine, CustomLine
 from core.document.storage.project_file import ScanFile, open_project, save_project
 
 TURN_COLUMNS = [
@@ -233,8 +233,10 @@ def test_detect_prints_the_contract(person: Path, capsys: pytest.CaptureFixture[
 
 
 def test_a_project_can_be_solved_and_overruled(mannequin: Path, tmp_path: Path) -> None:
-    design = Design(ScanSource(str(mannequin)), lines=(WornLine("mid-bust", 0.96),))
-    save_project(tmp_path / "a.busk", Document.of(design), ScanFile("scan.ply", mannequin.read_bytes()), None)
+    design = Design(ScanSource(str(mannequin)), lines=(ActiveLine("mid-bust", 0.96),))
+    save_project(
+        tmp_path / "a.busk", Document.single(design), ScanFile("scan.ply", mannequin.read_bytes()), None
+    )
     assert open_project(tmp_path / "a.busk").design.ratio("mid-bust") == 0.96
     for extra, expected in (([], 96.0), (["--line", "mid-bust=98%"], 98.0)):
         assert (
@@ -286,9 +288,9 @@ def test_an_own_line_is_worn_and_reported(mannequin: Path, tmp_path: Path) -> No
 
 
 def test_a_project_with_own_lines_keeps_its_template(tmp_path: Path, mannequin: Path) -> None:
-    design = Design(ScanSource(str(mannequin)), own_lines=(OwnLine("strap", (35, 48)),))
+    design = Design(ScanSource(str(mannequin)), own_lines=(CustomLine("strap", (35, 48)),))
     save_project(
-        tmp_path / "a.busk", Document.of(design), ScanFile("mannequin.ply", mannequin.read_bytes()), None
+        tmp_path / "a.busk", Document.single(design), ScanFile("mannequin.ply", mannequin.read_bytes()), None
     )
     words = ["solve", str(tmp_path / "a.busk"), "--settings", "template=120", "--out", str(tmp_path)]
     assert main(words) == 2

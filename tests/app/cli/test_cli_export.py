@@ -25,7 +25,7 @@ OPTIONS = {"control": "control-mesh", "flat": "strips", "measures": "measurement
 def anna(tmp_path_factory):
     design = Design(ScanSource(str(SCAN))).with_line("mid-bust", 0.95)
     path = tmp_path_factory.mktemp("projects") / "anna.busk"
-    save_project(path, Document.of(design), ScanFile(SCAN.name, SCAN.read_bytes()), None)
+    save_project(path, Document.single(design), ScanFile(SCAN.name, SCAN.read_bytes()), None)
     return str(path)
 
 

@@ -39,8 +39,8 @@ def test_without_a_fix_the_locked_lines_are_named(tmp_path: Path, capsys: pytest
     assert main(["diagnose", SCAN, *READ, "--line", "mid-bust=85%", "--out", out]) == DONE
     capsys.readouterr()
     project = open_project(out)
-    locked = replace(project.design.traits_of("mid-bust"), locked=True)
-    project = project.with_design(project.design.with_line("mid-bust", 0.85).with_traits(locked))
+    locked = replace(project.design.line_settings("mid-bust"), locked=True)
+    project = project.with_design(project.design.with_line("mid-bust", 0.85).with_line_settings(locked))
     save_project(out, project, build(project.design).scan, None)
     unwritten = tmp_path / "none.busk"
     assert main(["diagnose", out, "--out", str(unwritten), "--json"]) == NOT_CONVERGED

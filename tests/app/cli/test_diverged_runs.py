@@ -17,7 +17,7 @@ def runaway(mannequin: Path, tmp_path: Path) -> Path:
     source = ScanSource(str(mannequin))
     design = Design(source, line_force="explicit", line_stiffness=60.0).with_line("mid-bust", 0.6)
     path = tmp_path / "runaway.busk"
-    save_project(path, Document.of(design), read_scan_file(source), b"")
+    save_project(path, Document.single(design), read_scan_file(source), b"")
     return path
 
 

@@ -9,23 +9,23 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
-from core.document.custom_measures import OwnMeasure
+from core.document.custom_measures import CustomMeasurement
 from core.document.design import Design, ScanSource
 from core.document.document import Document
 from core.document.storage.project_file import open_project, read_scan_file, save_project
 from core.measurements.definitions import KEYS
 
 DOCS = Path(__file__).parents[3] / "docs"
-GORE = OwnMeasure("Gore", "straight", ("bust_point_left", "bust_point_right"))
+GORE = CustomMeasurement("Gore", "straight", ("bust_point_left", "bust_point_right"))
 
 
 @pytest.fixture(scope="module")
 def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     sample = Path(__file__).parents[3] / "resources" / "samples" / "mannequin.ply"
     source = ScanSource(str(sample))
-    design = Design(source, volume="exact").with_line("mid-bust", 0.95).with_own_measure(GORE)
+    design = Design(source, volume="exact").with_line("mid-bust", 0.95).with_custom_measurement(GORE)
     path = tmp_path_factory.mktemp("measure") / "anna.busk"
-    save_project(path, Document.of(design), read_scan_file(source), b"")
+    save_project(path, Document.single(design), read_scan_file(source), b"")
     return path
 
 

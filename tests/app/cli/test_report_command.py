@@ -59,7 +59,7 @@ def test_a_sheet_with_no_display(mannequin: Path, tmp_path: Path) -> None:
 def test_the_customer_of_a_project_is_taken_and_can_be_overruled(mannequin: Path, tmp_path: Path) -> None:
     design = Design(ScanSource(str(mannequin)), volume="exact", customer="Anna")
     project, out = tmp_path / "coat.busk", tmp_path / "sheet.json"
-    document = Document.of(design).showing("B")
+    document = Document.single(design).with_shown("B")
     save_project(project, document, read_scan_file(design.scan), None)
     words = ["report", str(project), "--out", str(tmp_path / "sheet.pdf"), "--json", str(out)]
     assert main(words) == DONE

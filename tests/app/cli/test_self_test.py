@@ -187,7 +187,7 @@ def test_type_without_its_letters_is_found_out(
 def test_files_that_are_not_what_they_should_be_are_found_out(
     qapp: QApplication, bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.report.images.shots", lambda *_: iter(()))
+    monkeypatch.setattr("app.report.images.render_images", lambda *_: iter(()))
     monkeypatch.setattr(papers, "in_one_go", lambda _: {})
     assert "sheet-ja.pdf of 2 pages" in papers.report(bench)
     write = app.report.pdf.write_pdf

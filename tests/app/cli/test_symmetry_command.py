@@ -47,7 +47,7 @@ def test_what_makes_it_even_is_found_and_saved(tmp_path: Path, capsys: pytest.Ca
     # The saved design is solved by another control than the balance: that is printed with its values.
     assert "With the volume control of the design: " in told
     design = open_project(out).design
-    assert {"mid-bust left", "mid-bust right", "full-bust left", "full-bust right"} < design.worn()
+    assert {"mid-bust left", "mid-bust right", "full-bust left", "full-bust right"} < design.active_lines()
     assert main(["symmetry", str(out), "--balance", "--json"]) == DONE
     figures = json.loads(capsys.readouterr().out)
     assert abs(figures["rows"]["higher"]["after"]) < 1.0
@@ -71,7 +71,7 @@ def test_what_is_not_worth_it_is_left_as_it_is(tmp_path: Path, capsys: pytest.Ca
     assert others == pytest.approx([before, before], abs=4.0)  # docs/how-to/symmetry.md
     assert told.endswith("left.busk, unchanged\n")
     saved = open_project(out).design
-    assert saved.worn() == {"mid-bust", "full-bust"}
+    assert saved.active_lines() == {"mid-bust", "full-bust"}
     assert saved.ratio("mid-bust") == 0.93
 
 

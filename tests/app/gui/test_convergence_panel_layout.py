@@ -11,7 +11,7 @@ from app.gui.plots.convergence_panel import Strip
 from app.gui.step_navigation import Rail
 from app.gui.theme.stylesheet import apply_theme, load_fonts
 from app.i18n.catalog import speaking
-from app.presenters.status import StripVerdict
+from app.presenters.status import ConvergenceView
 
 NUMBERS = {
     "en": [("Bust point", "0.2 mm up, 1.2 mm back"), ("Bust girth", "895.4 mm"), ("Pressure", "12.8 kPa")],
@@ -34,7 +34,9 @@ def test_a_hint_of_three_lines_keeps_off_the_controls(qtbot: QtBot, qapp: QAppli
     strip.resize(1180 - NARROW - Rail().width(), LOW + TALLER.get(code, 0))
     strip.show()
     numbers, hint = NUMBERS[code], strip._hint
-    strip.set_verdict(StripVerdict("bad", "Do not use", "settled", numbers, HINTS[code], "0.2 s", "", False))
+    strip.set_verdict(
+        ConvergenceView("bad", "Do not use", "settled", numbers, HINTS[code], "0.2 s", "", False)
+    )
     strip._show_emptiness(False)
     QApplication.processEvents()
     assert hint.heightForWidth(hint.width()) >= 3 * hint.fontMetrics().height()

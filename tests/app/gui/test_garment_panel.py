@@ -11,7 +11,7 @@ from pytestqt.qtbot import QtBot
 from app.gui.features.garment.panel import GarmentPanel
 from app.gui.inspector import Inspector
 from app.i18n.catalog import LANGUAGES, tr, use_language
-from app.presenters.cut_list import CutView, GarmentView
+from app.presenters.cut_list import CutListView, CutView
 from app.presenters.pressure import PressureView
 
 pytestmark = pytest.mark.usefixtures("light_theme")
@@ -24,7 +24,7 @@ BARE = CutView("mid-bust", "Mid-bust", "#E5536B", 12.0, "", tension="5.1", notes
 def panel_of(qtbot: QtBot, *rows: CutView) -> GarmentPanel:
     panel = GarmentPanel()
     qtbot.addWidget(panel)
-    panel.set_view(GarmentView(rows, ("Newtons are an estimate.",), 530.0, worn=True))
+    panel.set_view(CutListView(rows, ("Newtons are an estimate.",), 530.0, worn=True))
     panel.resize(Inspector.LEAST, 500)
     panel.show()
     return panel
@@ -104,7 +104,7 @@ def test_figures_of_a_former_shape_fade_and_rows_stay_what_they_are(qtbot: QtBot
     panel.set_stale()
     assert strap.cut.property("tone") == "faint"
     assert [each.isEnabled() for each in leaves] == [False, False], "nothing says on paper of when it is"
-    panel.set_view(GarmentView((STRAP,), worn=True))
+    panel.set_view(CutListView((STRAP,), worn=True))
     assert panel.rows == {"strap left": strap}, "what has the keyboard keeps it"
     assert strap.cut.property("tone") == ""
     assert [each.isEnabled() for each in leaves] == [True, True]
@@ -113,6 +113,6 @@ def test_figures_of_a_former_shape_fade_and_rows_stay_what_they_are(qtbot: QtBot
 def test_without_a_piece_no_list_leaves(qtbot: QtBot) -> None:
     panel = panel_of(qtbot, STRAP)
     buttons = {each.text(): each for each in panel.findChildren(QPushButton)}
-    panel.set_view(GarmentView((BARE,)))
+    panel.set_view(CutListView((BARE,)))
     assert panel.nothing.isVisible()
     assert [buttons[words].isEnabled() for words in ("Copy", "CSV…", "Elastics…")] == [False, False, True]

@@ -15,7 +15,7 @@ from app.presenters.landmarks import LandmarkView, landmark_view, spot_of
 from core.landmarks.bust_point import NIPPLE
 from core.landmarks.detect import find_landmarks
 from core.landmarks.types import CERTAIN, Landmark, Landmarks
-from core.landmarks.warnings import first_doubt, landmark_doubts
+from core.landmarks.warnings import first_warning, landmark_warnings
 from tests.core.landmarks.test_damaged_scans import body
 from tests.core.landmarks.test_landmarks import found, sample, truth
 
@@ -132,7 +132,7 @@ def test_the_first_doubt_is_of_the_landmark_that_is_shown_and_does_not_deny_its_
         for side, sure in (("left", 0.4 if kind == "bust_point" else 0.1), ("right", 0.9))
     }
     landmarks = Landmarks(points, 1.0, 0.0)
-    said = landmark_doubts(landmarks)
+    said = landmark_warnings(landmarks)
     assert said[0] == "The nipple of the left breast is not clearly seen: please check its bust point."
     assert len(said) == 2
-    assert first_doubt(landmarks) == "bust_point_left"
+    assert first_warning(landmarks) == "bust_point_left"

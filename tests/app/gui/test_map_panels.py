@@ -13,10 +13,10 @@ from app.gui.features.maps.legend import Legend
 from app.gui.features.sections.panel import STEPS, ProfilePanel
 from app.gui.plots.section_plot import Drawn, ProfilePlot, grid_step
 from app.gui.widgets.inline_edit import read_figure
-from app.presenters.bust_shift import BustMove, BustStep
+from app.presenters.bust_shift import BustShift, BustStep
 from app.presenters.maps import MAPS, automatic_range, map_kinds, ramp_of, section_words, sides_words
 from app.rendering.appearance import rgb
-from core.measurements.uncertain_value import SOURCES, Doubt, Spread
+from core.measurements.uncertain_value import SOURCES, Spread, Uncertainty
 
 
 @pytest.fixture
@@ -103,18 +103,20 @@ def test_ranges_are_round_and_colours_start_at_the_material() -> None:
 
 
 def test_a_section_tells_how_far_the_bust_points_went() -> None:
-    move = BustMove(BustStep(4.0, -1.5), BustStep(-3.0, 2.5))
+    move = BustShift(BustStep(4.0, -1.5), BustStep(-3.0, 2.5))
     assert section_words("x", "left", move) == "Bust point left 4.0 mm up, 1.5 mm back"
     assert section_words("x", "right", move) == "Bust point right 3.0 mm down, 2.5 mm forward"
     both = "Bust point 0.5 mm up, 0.5 mm forward (left 4.0 mm up, right 3.0 mm down)"
     assert section_words("z", "left", move) == both
-    alike = BustMove(BustStep(4.0, -1.5), BustStep(4.4, -1.1))
+    alike = BustShift(BustStep(4.0, -1.5), BustStep(4.4, -1.1))
     assert section_words("y", "left", alike) == "Bust point 4.2 mm up, 1.3 mm back"
 
 
 def test_a_section_tells_how_far_that_may_be_off() -> None:
-    move = BustMove(BustStep(4.0, -1.5), BustStep(4.4, 2.5))
-    doubts = {key: Doubt({"scan": sd}) for key, sd in (("lift left", 0.6), ("out left", 0.02), ("lift", 6.0))}
+    move = BustShift(BustStep(4.0, -1.5), BustStep(4.4, 2.5))
+    doubts = {
+        key: Uncertainty({"scan": sd}) for key, sd in (("lift left", 0.6), ("out left", 0.02), ("lift", 6.0))
+    }
     spread = Spread(doubts, np.zeros(0), 0.2, 2.0, SOURCES, {}, "sliding")
     said = section_words("x", "left", move, spread).replace("\N{NO-BREAK SPACE}", " ")
     assert said == "Bust point left 4.0 ± 1.2 mm up, 1.5 ± 0.1 mm back"

@@ -15,26 +15,26 @@ from app.gui.features.maps.legend import Legend
 from app.gui.theme.stylesheet import tokens_of
 from app.i18n.catalog import use_language
 from app.presenters.maps import map_kinds, ramp_of
-from app.presenters.pressure import light_limits, pressure_summary, pressure_views, side_words
+from app.presenters.pressure import pressure_summary, pressure_views, rating_limits, side_words
 from core.document.design import Design, ScanSource
 from core.garment.body_location import SHOULDERS, SIDES
-from core.garment.pressure_limits import AMBER, GREEN, RED, comfort
-from core.garment.pressure_list import PressList, PressRow
+from core.garment.pressure_limits import AMBER, GREEN, RED, pressure_limits
+from core.garment.pressure_list import PressureList, PressureRow
 
 DESIGN = Design(ScanSource("anna.ply")).with_line("mid-bust", 0.8)
-ROW = PressRow(
+ROW = PressureRow(
     *("mid-bust", "mid-bust", "Picot edge 10 mm", 10.0, 1.0, 1.23, 9.2, 2.44, 18.3, "back left", 341.7),
     place=(1.0, 2.0, 341.7),
     light=AMBER,
     force_n=5.5,
     bridged_mm=89.0,
 )
-LISTED = PressList((ROW,), {})
+LISTED = PressureList((ROW,), {})
 
 
 @pytest.fixture
 def card(qapp: QApplication) -> PressureCard:
-    card = PressureCard(light_limits())
+    card = PressureCard(rating_limits())
     card.resize(300, 400)
     return card
 
@@ -47,16 +47,16 @@ def test_a_row_tells_its_largest_pressure_and_more_where_it_is_pointed_at() -> N
         "Mean where it lies on the skin 1.2 kPa · 9 mmHg",
         "Presses on the skin with 5.5 N in all",
     ]
-    assert view.tip.endswith(comfort().lights[AMBER].en)
+    assert view.tip.endswith(pressure_limits().lights[AMBER].en)
     stale = pressure_views(LISTED, DESIGN, stale=True)["mid-bust"]
     assert (stale.kpa, stale.light, stale.word, stale.stale) == ("2.4", "", "", True)
 
 
 def test_a_line_that_is_not_known_says_why() -> None:
-    row = PressRow("mid-bust", "mid-bust", "", notes=("It is slack: it does not press.",))
-    view = pressure_views(PressList((row,), {}), DESIGN, stale=False)["mid-bust"]
+    row = PressureRow("mid-bust", "mid-bust", "", notes=("It is slack: it does not press.",))
+    view = pressure_views(PressureList((row,), {}), DESIGN, stale=False)["mid-bust"]
     assert (view.kpa, view.light, view.tip) == ("", "", "It is slack: it does not press.")
-    summary = pressure_summary(PressList((row,), {}), DESIGN)
+    summary = pressure_summary(PressureList((row,), {}), DESIGN)
     assert (summary.largest, summary.says) == ("", "No worn line presses whose tension is known.")
     assert pressure_summary(None, DESIGN).says == "Worked out as soon as the run rests."
 
@@ -68,8 +68,8 @@ def test_the_card_says_how_much_where_and_what_that_means(card: PressureCard) ->
         "snug",
         "Mid-bust, back left",
     )
-    assert card.says.text() == comfort().lights[AMBER].en
-    card.show_summary(pressure_summary(PressList((), {}), DESIGN), faint=False)
+    assert card.says.text() == pressure_limits().lights[AMBER].en
+    card.show_summary(pressure_summary(PressureList((), {}), DESIGN), faint=False)
     assert card.largest.isHidden()
     assert card.place.isHidden()
     assert card.scale.isHidden()
@@ -89,7 +89,7 @@ def test_figures_of_a_former_shape_are_faint_and_have_no_light(card: PressureCar
 
 def test_a_light_is_a_word_too(card: PressureCard) -> None:
     for light, word in ((GREEN, "gentle"), (AMBER, "snug"), (RED, "too tight")):
-        listed = PressList((replace(ROW, light=light),), {})
+        listed = PressureList((replace(ROW, light=light),), {})
         card.show_summary(pressure_summary(listed, DESIGN), faint=False)
         assert (card.light.word, card.light.accessibleName()) == (word, word)
 
@@ -129,14 +129,14 @@ def test_the_legend_marks_the_limits_in_their_tones(qapp: QApplication) -> None:
 
 
 def test_all_of_it_is_said_in_japanese() -> None:
-    english = light_limits(), [side_words(side) for side in (*SIDES, *SHOULDERS)]
+    english = rating_limits(), [side_words(side) for side in (*SIDES, *SHOULDERS)]
     use_language("ja")
-    limits, sides = light_limits(), [side_words(side) for side in (*SIDES, *SHOULDERS)]
+    limits, sides = rating_limits(), [side_words(side) for side in (*SIDES, *SHOULDERS)]
     assert len(set(sides)) == len(sides)
     assert not set(sides) & set(english[1])
     assert not set(limits.words) & set(english[0].words)
     assert all("。" in each for each in (*limits.sources, *limits.left_out))
-    assert len(limits.sources) == len(comfort().sources) + len(comfort().doubts)
+    assert len(limits.sources) == len(pressure_limits().sources) + len(pressure_limits().doubts)
     assert "繊維学会誌" in " ".join(limits.sources)
     assert not any(word in " ".join(limits.sources) for word in ("Gakkaishi", "Senshoshi", "abstract"))
     view = pressure_views(LISTED, DESIGN, stale=False)["mid-bust"]

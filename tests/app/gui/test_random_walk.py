@@ -17,11 +17,11 @@ from app.gui.session.session import Session
 from core.control_mesh.template import read_template
 from core.document.design import Design
 from core.document.document import Document
-from core.document.line_notation import ready_made
+from core.document.line_notation import ready_made_lines
 from core.document.presets import built_in, with_preset
 from core.document.storage.project_file import open_project, with_scan
 from core.errors import LineError, UserError
-from core.pipeline.converged import settled_frame
+from core.pipeline.converged import converged_frame
 from core.pipeline.live_solver import Failure, Frame
 
 LINES = ("mid-bust", "full-bust", "under-bust")
@@ -135,16 +135,18 @@ class Walk:
         """Lock a line or link it, or let it be free."""
         name, kind = self.chance.choice((*LINES, *STRAPS)), self.chance.choice(("locked", "linked"))
         free = self.chance.random() < 0.5
-        self.edit(lambda design: design.with_traits(replace(design.traits_of(name), **{kind: free})))
+        self.edit(
+            lambda design: design.with_line_settings(replace(design.line_settings(name), **{kind: free}))
+        )
 
     def draw(self) -> None:
         """Add a pair of own lines, or remove one of them."""
         if self.chance.random() < 0.7:
-            pair = ready_made(read_template("168"))["straps"]
+            pair = ready_made_lines(read_template("168"))["straps"]
             self.session.add_own_lines(pair, "straps")
-            self.decide(lambda design: reduce(Design.with_own_line, pair, design))
+            self.decide(lambda design: reduce(Design.with_custom_line, pair, design))
         else:
-            self.edit(lambda design: design.without_own_line("strap left"))
+            self.edit(lambda design: design.without_custom_line("strap left"))
 
     def dress(self) -> None:
         preset = self.chance.choice(built_in())
@@ -153,7 +155,7 @@ class Walk:
     def choose(self) -> None:
         if self.chance.random() < 0.3:
             self.session.reset_lines()
-            self.decide(Design.at_rest)
+            self.decide(Design.with_lines_reset)
             return
         stiff = self.chance.choice((0.5, 1.0, 2.0))
         self.session.change({"line_stiffness": stiff}, "stiffness")
@@ -174,7 +176,7 @@ class Walk:
             self.note(before.without(name))
         elif name != before.shown:
             self.session.show_variant(name)
-            self.note(before.showing(name))
+            self.note(before.with_shown(name))
 
     def hurry(self) -> Path:
         """Save, and wait for no disk."""
@@ -213,11 +215,11 @@ class Walk:
 
         def rests() -> bool:
             frame = self.session.frame
-            return frame.stages.design is self.session.design and not frame.at_work
+            return frame.stages.design is self.session.design and not frame.is_running
 
         self.qtbot.waitUntil(rests)
         shown = self.session.frame
-        alone = settled_frame(self.session.design, shown.stages)
+        alone = converged_frame(self.session.design, shown.stages)
         assert np.allclose(astuple(shown.exact_marks), astuple(alone.exact_marks), atol=1e-3)
         assert np.abs(shown.control_points - alone.control_points).max() < 0.3
 

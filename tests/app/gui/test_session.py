@@ -12,7 +12,7 @@ from pytestqt.qtbot import QtBot
 
 from app.gui.session.session import Session
 from core.document.storage.project_file import save_project
-from core.document.storage.recovery import Recovery, left_behind
+from core.document.storage.recovery import Recovery, find_unsaved
 from core.errors import LineError
 from core.pipeline.live_solver import Failure
 
@@ -95,14 +95,14 @@ def test_a_restored_document_does_not_pass_over_a_project_that_was_saved_since(
             session.open(str(other))
         recovery = Recovery.new()
         scan = session.frame.stages.scan
-        recovery.keep(session.document, scan, "berta", session.path, stamp=session.stamp)
-        recovery.let_go()
+        recovery.save(session.document, scan, "berta", session.path, stamp=session.stamp)
+        recovery.leave()
         if saved_since:
             save_project(other, session.document, scan, b"another picture")
-        (kept, found), *_ = left_behind()[0]
+        (kept, found), *_ = find_unsaved()[0]
         with qtbot.waitSignal(session.opened):
             session.restore(kept)
-        found.end()
+        found.remove()
         assert session.path == other
         assert session.unsaved
         return session.changed_elsewhere

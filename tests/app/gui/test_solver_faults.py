@@ -13,7 +13,7 @@ from app.gui.session.jobs import Jobs
 from app.gui.session.session import Session
 from core.document.storage.project_file import open_project
 from core.errors import LineError
-from core.mechanics.solver_comparison import Comparison
+from core.mechanics.solver_comparison import SolverComparison
 from core.pipeline.live_solver import Failure
 
 LINES = ("mid-bust", "full-bust")
@@ -25,15 +25,15 @@ class Faults:
 
     def __init__(self, patch: pytest.MonkeyPatch, error: BaseException, count: float = float("inf")) -> None:
         self.error, self.left, self.hits = error, count, 0
-        advance = Comparison.advance
+        advance = SolverComparison.advance
 
-        def hit(comparison: Comparison) -> None:
+        def hit(comparison: SolverComparison) -> None:
             if self.left <= 0:
                 return advance(comparison)
             self.left, self.hits = self.left - 1, self.hits + 1
             raise self.error
 
-        patch.setattr(Comparison, "advance", hit)
+        patch.setattr(SolverComparison, "advance", hit)
 
     def end(self) -> None:
         """Let the solver work again."""
@@ -50,7 +50,7 @@ def edit(session: Session, count: int) -> None:
 def is_solved(session: Session) -> bool:
     """The frame is that of the document, solved to the end."""
     frame = session.frame
-    return frame is not None and frame.stages.design is session.design and not frame.at_work
+    return frame is not None and frame.stages.design is session.design and not frame.is_running
 
 
 def refuse(session: Session) -> None:
@@ -127,7 +127,9 @@ def test_a_fault_while_another_file_opens_leaves_the_document_alone(
     qtbot.waitUntil(lambda: is_solved(session))
     document, reported = session.document, []
     session.failed.connect(reported.append)
-    monkeypatch.setattr("core.pipeline.build.find", lambda *_, **__: (_ for _ in ()).throw(MemoryError()))
+    monkeypatch.setattr(
+        "core.pipeline.build.detect_landmarks", lambda *_, **__: (_ for _ in ()).throw(MemoryError())
+    )
     session.open(str(person))
     qtbot.waitUntil(lambda: bool(reported))
     assert isinstance(reported[0], MemoryError)

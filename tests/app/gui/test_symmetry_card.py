@@ -13,7 +13,7 @@ from app.gui.features.symmetry.card import ElidedTitle, SymmetryCard
 from app.gui.theme.stylesheet import load_fonts
 from app.i18n.catalog import speaking
 from app.presenters.samples import sample_design
-from app.presenters.symmetry import even_summary
+from app.presenters.symmetry import symmetry_view
 from core.analysis.symmetry.compare import BeforeAfter, Evenness
 from core.analysis.symmetry.mirrored_surface import SkinGap
 from core.pipeline.build import build
@@ -30,7 +30,7 @@ def test_titles_and_units_are_whole_beside_what_figures_may_be_off(words: str, q
     stages = build(sample_design("person").with_line("mid-bust", 0.97))
     now = Evenness(-11.8, -10.3, -0.1, SKIN)
     with speaking(words):
-        summary = even_summary(BeforeAfter(now, now, ()), stages)
+        summary = symmetry_view(BeforeAfter(now, now, ()), stages)
         card = SymmetryCard()
         views = tuple(replace(view, off="± 5.8") for view in summary.views)
         card.fold.setChecked(True)

@@ -17,12 +17,12 @@ from app.gui.features.lines.row import LineView
 from app.gui.features.lines.slider import LengthSlider
 from app.gui.features.lines.slider_groove import LONGEST, SHORTEST
 from app.i18n.catalog import use_language
-from core.analysis.length_limits.zones import Leeway, Reason, Zone
+from core.analysis.length_limits.zones import LengthLimits, Reason, Zone
 
 pytestmark = pytest.mark.usefixtures("light_theme")
 
 WAIST = LineView("waist", "Waist", "#7A1F2E", 1.0, 400.0, 396.0, True, True, 700.0)
-RED_BELOW_97 = Leeway(
+RED_BELOW_97 = LengthLimits(
     "waist",
     (
         Zone("red", 0.5, 0.97, (Reason("folded", 0.5, 0.97),)),
@@ -211,7 +211,7 @@ def test_a_gap_has_the_tone_of_the_groove_at_its_length(lines: LinesPanel, ratio
 
 def test_the_key_of_an_elastic_line_has_the_tone_of_its_pressure(lines: LinesPanel) -> None:
     pressing = Zone("amber", 0.5, 0.97, (Reason("pressing", 0.5, 0.97),))
-    leeway = Leeway("waist", (pressing, Zone("green", 0.97, 1.3)), pressure_known=True)
+    leeway = LengthLimits("waist", (pressing, Zone("green", 0.97, 1.3)), pressure_known=True)
     elastic = replace(WAIST, ratio=0.9, elastic="Power-net", leeway=leeway, pressed="4.2 kPa", tone="bad")
     lines.set_lines([elastic, RIBS])
     lines.select("waist")

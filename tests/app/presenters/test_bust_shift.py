@@ -5,17 +5,24 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.presenters.bust_shift import BustMove, BustStep, bust_sentence, move_between, step_words, ups
-from core.mechanics.iteration import Marks
+from app.presenters.bust_shift import (
+    BustShift,
+    BustStep,
+    bust_sentence,
+    mean_lifts,
+    shift_between,
+    step_words,
+)
+from core.mechanics.iteration import Observables
 
-REST = Marks(300.0, 310.0, 320.0, 90.0, 80.0, 70.0)
+REST = Observables(300.0, 310.0, 320.0, 90.0, 80.0, 70.0)
 
 
 def test_a_move_is_counted_from_the_body_before() -> None:
-    move = move_between(REST, Marks(304.0, 312.0, 400.0, 0.0, 79.0, 72.0))
+    move = shift_between(REST, Observables(304.0, 312.0, 400.0, 0.0, 79.0, 72.0))
     assert (move.left, move.right) == (BustStep(4.0, -1.0), BustStep(2.0, 2.0))
     assert move.mean == BustStep(3.0, 0.5), "the foremost place has no part in it"
-    assert ups(REST, np.array([300.0, 304.0]), np.array([310.0, 312.0])).tolist() == [0.0, 3.0]
+    assert mean_lifts(REST, np.array([300.0, 304.0]), np.array([310.0, 312.0])).tolist() == [0.0, 3.0]
 
 
 @pytest.mark.parametrize(
@@ -31,9 +38,9 @@ def test_words_say_the_way_and_need_no_sign(step: BustStep, words: str) -> None:
 
 
 def test_sides_are_told_apart_from_one_millimetre_on() -> None:
-    near = BustMove(BustStep(3.0, 1.0), BustStep(2.0, 1.0))
+    near = BustShift(BustStep(3.0, 1.0), BustStep(2.0, 1.0))
     assert not near.differs
     assert bust_sentence(near) == "Bust point 2.5 mm up, 1.0 mm forward"
-    apart = BustMove(BustStep(3.0, 4.0), BustStep(2.0, -1.0))
+    apart = BustShift(BustStep(3.0, 4.0), BustStep(2.0, -1.0))
     assert apart.differs
     assert bust_sentence(apart).endswith("2.5 mm up, 1.5 mm forward (left 4.0 mm forward, right 1.0 mm back)")

@@ -17,12 +17,12 @@ import pytest
 import pyvista as pv
 
 from app.i18n.catalog import speaking
-from app.presenters.export import Choices, Manner, Outcome, exports
-from app.presenters.export_preview import make_ready
+from app.presenters.export import ExportOptions, ExportSettings, ExportSource, exports
+from app.presenters.export_preview import prepare_export
 from core.control_mesh.template import read_template
-from core.document.custom_measures import OwnMeasure
+from core.document.custom_measures import CustomMeasurement
 from core.document.design import Design, ScanSource
-from core.document.line_notation import ready_made
+from core.document.line_notation import ready_made_lines
 from core.export.drawings import CURVE_FORMATS, STRIP_FORMATS
 from core.export.measurement_files import MEASURE_FORMATS
 from core.export.mesh import FORMATS
@@ -32,7 +32,7 @@ from core.garment.elastic_library import find_elastic
 from core.geometry.mesh import Mesh
 from core.geometry.plane_sections import arc_length
 from core.pipeline.build import build
-from core.pipeline.solve import run
+from core.pipeline.solve import solve
 from core.progress import quiet
 
 SAMPLES = Path(__file__).parents[3] / "resources" / "samples"
@@ -40,38 +40,40 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 
 @pytest.fixture(scope="module")
-def outcome() -> Outcome:
+def outcome() -> ExportSource:
     """A body that wears a band of plush elastic, a plain band and a closed ring."""
     design = Design(ScanSource(str(SAMPLES / "mannequin.ply")))
-    design = design.with_own_line(ready_made(read_template("168"))["rings"][0]).with_line("ring left", 0.99)
+    design = design.with_custom_line(ready_made_lines(read_template("168"))["rings"][0]).with_line(
+        "ring left", 0.99
+    )
     design = design.with_line("under-bust", 0.97).with_line("mid-bust", 0.8)
-    solution = run(build(design.with_elastic("mid-bust", find_elastic("plush 12"))))
-    return Outcome(solution.stages, solution.control_points, solution.records)
+    solution = solve(build(design.with_elastic("mid-bust", find_elastic("plush 12"))))
+    return ExportSource(solution.stages, solution.control_points, solution.records)
 
 
-def write(what: str, path: Path, outcome: Outcome, manner: Manner) -> Path:
-    make_ready(what, path, outcome, manner).write(path, None, quiet)
+def write(what: str, path: Path, outcome: ExportSource, manner: ExportOptions) -> Path:
+    prepare_export(what, path, outcome, manner).write(path, None, quiet)
     return path
 
 
-def test_measures_of_ones_own_keep_their_names_in_files(outcome: Outcome, tmp_path: Path) -> None:
+def test_measures_of_ones_own_keep_their_names_in_files(outcome: ExportSource, tmp_path: Path) -> None:
     marks = "bust_point_left", "bust_point_right"
-    own = replace(outcome.stages.design, own_measures=(OwnMeasure("Bust girth", "straight", marks),))
+    own = replace(outcome.stages.design, own_measures=(CustomMeasurement("Bust girth", "straight", marks),))
     stages = replace(outcome.stages, design=own)
-    named = Outcome(stages, outcome.control_points, outcome.records)
+    named = ExportSource(stages, outcome.control_points, outcome.records)
     with speaking("ja"):
-        written = write("measures", tmp_path / "a.csv", named, Manner())
+        written = write("measures", tmp_path / "a.csv", named, ExportOptions())
     titles = [title for _, title, *_ in csv.reader(written.read_text("utf-8").splitlines())]
     assert titles.count("Bust girth") == 1, "in the words of the designer"
     assert titles.count("バスト囲") == 1, "in those of the window"
 
 
 @pytest.mark.parametrize("axes", AXES)
-def test_the_axes_are_told_in_the_language_of_the_window(outcome: Outcome, axes: str) -> None:
-    manner = Manner(unit="mm", axes=axes)
-    assert make_ready("body", "a.stl", outcome, manner).how == f"in mm, {axes}"
+def test_the_axes_are_told_in_the_language_of_the_window(outcome: ExportSource, axes: str) -> None:
+    manner = ExportOptions(unit="mm", axes=axes)
+    assert prepare_export("body", "a.stl", outcome, manner).how == f"in mm, {axes}"
     with speaking("ja"):
-        assert make_ready("body", "a.stl", outcome, manner).how.startswith(f"mm、{axes[0]} が上")
+        assert prepare_export("body", "a.stl", outcome, manner).how.startswith(f"mm、{axes[0]} が上")
 
 
 def turned(places: np.ndarray, unit: str, axes: str) -> np.ndarray:
@@ -91,9 +93,9 @@ def read_mesh(path: Path) -> pv.PolyData:
 @pytest.mark.parametrize("unit", UNITS)
 @pytest.mark.parametrize("kind", FORMATS)
 def test_a_mesh_is_read_at_its_size_and_faces_where_it_is_said(
-    tmp_path: Path, outcome: Outcome, kind: str, unit: str, axes: str
+    tmp_path: Path, outcome: ExportSource, kind: str, unit: str, axes: str
 ) -> None:
-    path = write("control", tmp_path / f"c.{kind}", outcome, Manner(unit, axes))
+    path = write("control", tmp_path / f"c.{kind}", outcome, ExportOptions(unit, axes))
     mesh, wanted = read_mesh(path), outcome.stages.control.mesh.moved(outcome.control_points)
     places = turned(mesh.points, unit, axes)
     corners = places[mesh.regular_faces]
@@ -107,9 +109,9 @@ def test_a_mesh_is_read_at_its_size_and_faces_where_it_is_said(
 @pytest.mark.parametrize("kind", FORMATS)
 @pytest.mark.parametrize("before", [False, True])
 def test_a_whole_body_is_read_at_its_place_and_size(
-    tmp_path: Path, outcome: Outcome, kind: str, before: bool
+    tmp_path: Path, outcome: ExportSource, kind: str, before: bool
 ) -> None:
-    path = write("body", tmp_path / f"b.{kind}", outcome, Manner(before=before))
+    path = write("body", tmp_path / f"b.{kind}", outcome, ExportOptions(before=before))
     space, wanted = space_of(kind), outcome.body(before)
     mesh = read_mesh(path)
     places = turned(mesh.points, space.unit, space.axes)
@@ -126,10 +128,10 @@ def test_a_whole_body_is_read_at_its_place_and_size(
 
 @pytest.mark.parametrize("unit", UNITS)
 def test_a_dxf_of_lines_holds_closed_curves_of_the_length_that_is_told(
-    tmp_path: Path, outcome: Outcome, unit: str
+    tmp_path: Path, outcome: ExportSource, unit: str
 ) -> None:
-    manner = Manner(unit, "y-up")
-    told = make_ready("lines", "l.dxf", outcome, manner).contents
+    manner = ExportOptions(unit, "y-up")
+    told = prepare_export("lines", "l.dxf", outcome, manner).contents
     parts = read_polylines(write("lines", tmp_path / "l.dxf", outcome, manner))
     assert {part.layer for part in parts} == {
         "under-bust front", "under-bust back", "mid-bust front", "mid-bust back", "ring left front"
@@ -151,10 +153,12 @@ def test_a_dxf_of_lines_holds_closed_curves_of_the_length_that_is_told(
         assert length == pytest.approx(reached, rel=0.06 if name.startswith("ring") else 0.02)
 
 
-def test_what_stands_on_a_strip_is_in_the_language_of_the_window(tmp_path: Path, outcome: Outcome) -> None:
+def test_what_stands_on_a_strip_is_in_the_language_of_the_window(
+    tmp_path: Path, outcome: ExportSource
+) -> None:
     with speaking("ja"):
-        again = Outcome(outcome.stages, outcome.control_points, outcome.records)
-        root = ElementTree.parse(write("flat", tmp_path / "ja.svg", again, Manner())).getroot()
+        again = ExportSource(outcome.stages, outcome.control_points, outcome.records)
+        root = ElementTree.parse(write("flat", tmp_path / "ja.svg", again, ExportOptions())).getroot()
     words = [each.text or "" for each in root.iter(f"{SVG}text")][2:]  # heading and scale bar say mm
     assert {"前中心", "右脇（縫い目）", "左脇", "後ろ中心"} <= set(words)
     assert re.findall(r"[A-Za-z]{3,}", " ".join(words)) == []
@@ -162,22 +166,22 @@ def test_what_stands_on_a_strip_is_in_the_language_of_the_window(tmp_path: Path,
     assert wide > 20.0 + max(4.0 * sum(ord(letter) > 255 for letter in text) for text in words)
 
 
-def test_strips_are_headed_with_project_and_customer(tmp_path: Path, outcome: Outcome) -> None:
+def test_strips_are_headed_with_project_and_customer(tmp_path: Path, outcome: ExportSource) -> None:
     for named, told in (
         (("anna-3", "Anna M."), "anna-3 · Anna M."),
         (("anna-3", ""), "anna-3"),
         (None, ".ply"),
     ):
-        file = write("flat", tmp_path / "w.svg", replace(outcome, named=named), Manner())
+        file = write("flat", tmp_path / "w.svg", replace(outcome, named=named), ExportOptions())
         heading = next(ElementTree.parse(file).getroot().iter(f"{SVG}text")).text or ""
         assert heading.endswith(f"{told}  1:1, mm")
 
 
 @pytest.mark.parametrize("kind", STRIP_FORMATS)
 def test_a_strip_is_as_long_as_the_cut_list_says_and_closed(
-    tmp_path: Path, outcome: Outcome, kind: str
+    tmp_path: Path, outcome: ExportSource, kind: str
 ) -> None:
-    path = write("flat", tmp_path / f"f.{kind}", outcome, Manner())
+    path = write("flat", tmp_path / f"f.{kind}", outcome, ExportOptions())
     if kind == "dxf":
         parts = read_polylines(path)
         assert all(part.closed for part in parts)
@@ -199,16 +203,16 @@ def test_a_strip_is_as_long_as_the_cut_list_says_and_closed(
     assert sizes["under-bust"][0] == pytest.approx(rows["under-bust"].reached_whole_mm, abs=1e-3)
 
 
-def test_control_points_are_a_table_as_they_are_reshaped(tmp_path: Path, outcome: Outcome) -> None:
+def test_control_points_are_a_table_as_they_are_reshaped(tmp_path: Path, outcome: ExportSource) -> None:
     for before in (True, False):
-        path = write("control", tmp_path / "c.csv", outcome, Manner(before=before))
+        path = write("control", tmp_path / "c.csv", outcome, ExportOptions(before=before))
         rows = np.genfromtxt(path, delimiter=",", skip_header=1, usecols=(0, 3, 4, 5))
         np.testing.assert_allclose(rows[:, 1:], outcome.points(before), atol=6e-4)
         assert rows[:, 0].tolist() == list(range(len(rows)))
 
 
-def test_turns_are_a_table_with_a_row_each(tmp_path: Path, outcome: Outcome) -> None:
-    path = write("turns", tmp_path / "t.csv", outcome, Manner())
+def test_turns_are_a_table_with_a_row_each(tmp_path: Path, outcome: ExportSource) -> None:
+    path = write("turns", tmp_path / "t.csv", outcome, ExportOptions())
     rows = np.genfromtxt(path, delimiter=",", names=True)
     assert len(rows) == len(outcome.records) > 5
     names = [line.name for line in outcome.stages.model.lines]
@@ -231,17 +235,17 @@ def test_the_window_offers_what_can_be_written_and_nothing_else() -> None:
 
 
 @pytest.mark.parametrize("export", exports(), ids=lambda export: export.what)
-def test_every_choice_can_be_made(outcome: Outcome, export: object) -> None:
+def test_every_choice_can_be_made(outcome: ExportSource, export: object) -> None:
     what = export.what  # type: ignore[attr-defined]
     for kind in export.formats:  # type: ignore[attr-defined]
-        choices = Choices("{}")
+        choices = ExportSettings("{}")
         choices.choose(what, "format", kind)
         for setting in choices.settings(what):
             if setting.key != "format":
                 for value, _ in setting.options:
                     choices.choose(what, setting.key, value)
                     assert choices.values(what)[setting.key] == value
-                    ready = make_ready(what, f"x.{kind}", outcome, choices.manner(what))
+                    ready = prepare_export(what, f"x.{kind}", outcome, choices.manner(what))
                     assert ready.contents
 
 

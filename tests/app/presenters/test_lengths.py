@@ -11,9 +11,9 @@ from app.gui.widgets.value_edit import FigureField
 from app.i18n.catalog import say, use_language
 from app.i18n.lengths import length, read_length, use_unit
 from app.presenters.bust_shift import up_words
-from app.presenters.measurements import MeasureView, as_table, length_off
-from app.presenters.variants import Figure
-from app.report.text import figure
+from app.presenters.measurements import MeasureView, as_table, length_uncertainty
+from app.presenters.variants import VariantValues
+from app.report.text import value_text
 
 UNITS = ("mm", "cm", "in")
 
@@ -98,7 +98,11 @@ def test_a_sentence_of_the_core_has_its_lengths_in_the_unit_in_use() -> None:
 
 def test_no_plus_minus_is_nothing() -> None:
     use_unit("in")
-    assert (length_off(0.1), length_off(3.0), length_off(14.0)) == ("± 0.01", "± 0.12", "± 0.55")
+    assert (length_uncertainty(0.1), length_uncertainty(3.0), length_uncertainty(14.0)) == (
+        "± 0.01",
+        "± 0.12",
+        "± 0.55",
+    )
 
 
 def test_an_unknown_unit_leaves_millimetres() -> None:
@@ -153,7 +157,7 @@ def test_measures_agree_in_their_columns_and_files_keep_millimetres() -> None:
 def test_other_units_than_millimetres_are_left_alone() -> None:
     use_unit("in")
     assert MeasureView("Volume", "ml", 500.0, 600.0).spoken() == "Volume: 500 ml → 600 ml"
-    assert Figure("%", 1, False, (94.0,)).written(0) == "94.0 %"
-    assert Figure("mm", 1, True, (25.4,)).written(0) == "+1.00 in"
-    assert (figure(25.4, 1), figure(25.4, 1, "mm")) == ("25.4", "1.00")
+    assert VariantValues("%", 1, False, (94.0,)).written(0) == "94.0 %"
+    assert VariantValues("mm", 1, True, (25.4,)).written(0) == "+1.00 in"
+    assert (value_text(25.4, 1), value_text(25.4, 1, "mm")) == ("25.4", "1.00")
     assert up_words(25.4, 2.54).split() == ["1.00", "±", "0.10", "in", "up"]

@@ -7,27 +7,27 @@ from dataclasses import replace
 
 from app.presenters.assessment import assessment_view
 from app.presenters.bust_shift import bust_girths
-from app.presenters.status import StripVerdict, strip_verdict
-from core.garment.assessment import assessment_of
+from app.presenters.status import ConvergenceView, convergence_view
+from core.garment.assessment import assess_with
 from core.garment.cut_list import cut_list
-from core.garment.pressure_list import press_list
-from core.mechanics.solver_comparison import Comparison
-from core.pipeline.build import Stages, build, targets_of
+from core.garment.pressure_list import pressure_list
+from core.mechanics.solver_comparison import SolverComparison
+from core.pipeline.build import Stages, build, line_targets
 from core.pipeline.live_solver import Frame, make_frame
 
 
-def verdict_of(frame: Frame) -> StripVerdict:
-    pressed = press_list(frame.stages, frame.control_points) if frame.verdict.sound else None
-    overall = assessment_of(frame, cut_list(frame.stages, frame.control_points), pressed)
-    return strip_verdict(frame, assessment_view(overall, frame.stages.design))
+def verdict_of(frame: Frame) -> ConvergenceView:
+    pressed = pressure_list(frame.stages, frame.control_points) if frame.verdict.is_valid else None
+    overall = assess_with(frame, cut_list(frame.stages, frame.control_points), pressed)
+    return convergence_view(frame, assessment_view(overall, frame.stages.design))
 
 
-def said(stages: Stages, **settings: object) -> StripVerdict:
+def said(stages: Stages, **settings: object) -> ConvergenceView:
     """What is said once everything rests, with the mid-bust line at 80 %."""
     design = replace(stages.design.with_line("mid-bust", 0.8), **settings)  # type: ignore[arg-type]
     stages = build(design, stages)
-    comparison = Comparison(stages.model, targets_of(design, stages), stages.watch)
-    while not comparison.resting:
+    comparison = SolverComparison(stages.model, line_targets(design, stages), stages.watch)
+    while not comparison.is_finished:
         comparison.advance()
     return verdict_of(make_frame(1, stages, comparison, 0.3))
 
@@ -41,7 +41,7 @@ def test_the_exact_answer_takes_newton_steps_and_not_turns(built: Callable[[str]
 
 def test_of_one_newton_step_it_says_step(built: Callable[[str], Stages]) -> None:
     stages = build(replace(built("mannequin").design.with_line("mid-bust", 0.8), volume="exact"))
-    comparison = Comparison(stages.model, targets_of(stages.design, stages), stages.watch)
+    comparison = SolverComparison(stages.model, line_targets(stages.design, stages), stages.watch)
     comparison.exact = replace(comparison.exact, steps=1)
     assert verdict_of(make_frame(1, stages, comparison)).effort == "Worked out in one Newton step"
 
@@ -56,17 +56,17 @@ def test_a_run_that_ran_away_has_no_figures(built: Callable[[str], Stages]) -> N
 
 def test_what_a_designer_asks_first_stands_first(built: Callable[[str], Stages]) -> None:
     stages = build(built("mannequin").design.with_line("mid-bust", 0.97), built("mannequin"))
-    comparison = Comparison(stages.model, targets_of(stages.design, stages), stages.watch)
-    while not comparison.resting:
+    comparison = SolverComparison(stages.model, line_targets(stages.design, stages), stages.watch)
+    while not comparison.is_finished:
         comparison.advance()
     frame = make_frame(1, stages, comparison, 0.3)
-    pressed = press_list(stages, frame.control_points)
-    overall = assessment_view(assessment_of(frame, cut_list(stages, frame.control_points), pressed))
+    pressed = pressure_list(stages, frame.control_points)
+    overall = assessment_view(assess_with(frame, cut_list(stages, frame.control_points), pressed))
     before, after = bust_girths(frame)
-    shown = strip_verdict(frame, overall, (before, after), pressed).numbers
+    shown = convergence_view(frame, overall, (before, after), pressed).numbers
     assert [name for name, _ in shown] == ["Bust point", "Bust girth", "Highest pressure", "Volume error"]
     assert shown[1][1] == f"{before:.1f} → {after:.1f} mm"
     assert 700.0 < before < 1100.0
     assert before != after
     assert shown[2][1] == f"{max(row.max_kpa for row in pressed.rows if row.max_kpa):.1f} kPa"
-    assert [name for name, _ in strip_verdict(frame, overall).numbers][-1] == "Volume error"
+    assert [name for name, _ in convergence_view(frame, overall).numbers][-1] == "Volume error"

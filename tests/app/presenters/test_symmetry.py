@@ -9,16 +9,22 @@ import pytest
 
 from app.i18n.catalog import speaking
 from app.presenters.samples import sample_design
-from app.presenters.symmetry import EvenSummary, asks_to_be_even, even_summary, evened_words, map_note
+from app.presenters.symmetry import (
+    SymmetryView,
+    balance_result_texts,
+    has_balance_targets,
+    map_note,
+    symmetry_view,
+)
 from core.analysis.inverse_design.quantities import Goal
-from core.analysis.inverse_design.solve import Reply
-from core.analysis.symmetry.compare import BeforeAfter, Evenness, evenness
+from core.analysis.inverse_design.solve import InverseResult
+from core.analysis.symmetry.compare import BeforeAfter, Evenness, compare_sides
 from core.analysis.symmetry.mirrored_surface import SkinGap
 from core.control_mesh.template import read_template
-from core.document.line_notation import ready_made
-from core.document.lines import LineTraits
+from core.document.line_notation import ready_made_lines
+from core.document.lines import LineSettings
 from core.document.split_lines import split
-from core.measurements.uncertain_value import SOURCES, Doubt, Spread
+from core.measurements.uncertain_value import SOURCES, Spread, Uncertainty
 from core.pipeline.build import Stages, build
 
 TEMPLATE = read_template("168")
@@ -31,12 +37,12 @@ def person() -> Stages:
 
 @pytest.fixture(scope="module")
 def told(person: Stages) -> BeforeAfter:
-    return evenness(person, person.control.mesh.vertices)
+    return compare_sides(person, person.control.mesh.vertices)
 
 
 def test_each_figure_names_the_side_that_is_more(person: Stages) -> None:
     left = Evenness(2.04, 0.3, -0.04, SkinGap(1.0, 3.0, "left", 0, 41.0, 12.0, 1.0))
-    summary = even_summary(BeforeAfter(left, replace(left, higher=-1.2), ()), person)
+    summary = symmetry_view(BeforeAfter(left, replace(left, higher=-1.2), ()), person)
     views = {view.title: view for view in summary.views}
     assert summary.says == "Bust points: right 1.2 mm higher."
     assert (views["Higher [mm]"].before, views["Higher [mm]"].after) == (
@@ -48,7 +54,7 @@ def test_each_figure_names_the_side_that_is_more(person: Stages) -> None:
     assert views["Stands out [ml]"].after == "L 29", "what the legend of the map tells, all in all"
     assert "left 41 ml, right 12 ml" in map_note(BeforeAfter(left, left, ()), True)
     assert views["Skin apart [mm]"].shares == (None, None)
-    none = even_summary(BeforeAfter(left, replace(left, skin=None), ()), person).views
+    none = symmetry_view(BeforeAfter(left, replace(left, skin=None), ()), person).views
     assert next(view for view in none if view.title == "Skin apart [mm]").after == "–"
 
 
@@ -56,11 +62,11 @@ def test_a_difference_within_the_error_is_said_to_be_none(person: Stages) -> Non
     now = Evenness(-2.0, 3.0, 0.0, None)
     offs = {"after:asymmetry_height": 5.9, "after:asymmetry_forward": 1.2}
 
-    def told(higher: float, out: float) -> EvenSummary:
-        doubts = {key: Doubt({"scan": 0.5 * off}) for key, off in offs.items()}
+    def told(higher: float, out: float) -> SymmetryView:
+        doubts = {key: Uncertainty({"scan": 0.5 * off}) for key, off in offs.items()}
         spread = Spread(doubts, np.zeros(0), 0.2, 2.0, SOURCES, {}, "sliding")
         there = replace(now, higher=higher, further_out=out)
-        return even_summary(BeforeAfter(there, there, ()), person, spread=spread)
+        return symmetry_view(BeforeAfter(there, there, ()), person, spread=spread)
 
     both = told(-2.0, 3.0)
     assert both.says == "Bust points: right 2.0 ± 5.9 mm higher, left 3.0 ± 1.2 mm further out."
@@ -74,7 +80,7 @@ def test_a_difference_within_the_error_is_said_to_be_none(person: Stages) -> Non
 
 
 def test_of_a_doubtful_run_only_before_is_told(person: Stages, told: BeforeAfter) -> None:
-    summary = even_summary(told, person, "It vibrates.")
+    summary = symmetry_view(told, person, "It vibrates.")
     assert not summary.possible
     assert summary.hint == "It vibrates."
     assert summary.says == "Bust points before: right 11.8 mm higher.", "no word of it is of now"
@@ -84,15 +90,15 @@ def test_of_a_doubtful_run_only_before_is_told(person: Stages, told: BeforeAfter
 
 def test_the_hint_says_what_is_parted_first_or_what_is_lacking(person: Stages, told: BeforeAfter) -> None:
     design = person.design
-    for line in ready_made(TEMPLATE)["straps"]:
-        design = design.with_own_line(line).with_line(line.name, 0.95)
-    summary = even_summary(told, build(design, person))
+    for line in ready_made_lines(TEMPLATE)["straps"]:
+        design = design.with_custom_line(line).with_line(line.name, 0.95)
+    summary = symmetry_view(told, build(design, person))
     assert summary.hint == "Make even begins by setting left and right apart: Mid-bust, Straps."
     assert summary.possible
-    halves = even_summary(told, build(split(person.design, TEMPLATE, "mid-bust"), person))
+    halves = symmetry_view(told, build(split(person.design, TEMPLATE, "mid-bust"), person))
     assert (halves.hint, halves.possible) == ("", True)
-    locked = person.design.with_traits(LineTraits("mid-bust", locked=True))
-    summary = even_summary(told, build(locked, person))
+    locked = person.design.with_line_settings(LineSettings("mid-bust", locked=True))
+    summary = symmetry_view(told, build(locked, person))
     assert "wear a line that moves one side" in summary.hint
     assert not summary.possible
 
@@ -109,14 +115,16 @@ def test_the_legend_tells_ml_of_what_is_shown(told: BeforeAfter) -> None:
     )
 
 
-def evened(**changes: object) -> Reply:
+def evened(**changes: object) -> InverseResult:
     """The answer of a design whose left breast sits lower."""
     reached = {"left higher": -2.7, "left further out": -3.6, "lift": 4.2}
     design = sample_design("person")
     for name, ratio in (("strap right", 0.999), ("mid-bust left", 0.999), ("mid-bust right", 0.95)):
         design = design.with_line(name, ratio)
     at_end = ("strap right", "mid-bust left")
-    plain = Reply(design, reached, False, 2.7, at_end, (), (), True, True, {}, 4.0, (), 1.0, 3, longest=0.999)
+    plain = InverseResult(
+        design, reached, False, 2.7, at_end, (), (), True, True, {}, 4.0, (), 1.0, 3, longest=0.999
+    )
     return replace(plain, **changes)
 
 
@@ -129,9 +137,9 @@ NOW = {"left higher": -11.5, "left further out": -0.1, "lift": 6.9, "out": 1.2}
 
 
 def test_what_makes_it_even_is_told_from_where_to_where_with_its_price() -> None:
-    assert asks_to_be_even(EVEN)
-    assert not asks_to_be_even(EVEN[2:])
-    said, price, why = evened_words(evened(), EVEN, NOW, {"out": -3.0})
+    assert has_balance_targets(EVEN)
+    assert not has_balance_targets(EVEN[2:])
+    said, price, why = balance_result_texts(evened(), EVEN, NOW, {"out": -3.0})
     assert said.splitlines() == [
         "Not reachable. Nearest:",
         "Right higher: 11.5 → 2.7 mm",
@@ -145,14 +153,14 @@ def test_what_makes_it_even_is_told_from_where_to_where_with_its_price() -> None
         f"and the body would be strained more than looks natural.\n{BY_TURNS}"
     )
     with speaking("ja"):
-        said, _, why = evened_words(evened(), EVEN, NOW, {"out": -3.0})
+        said, _, why = balance_result_texts(evened(), EVEN, NOW, {"out": -3.0})
         assert said.splitlines()[1] == "右が高い：11.5 → 2.7 mm"
         assert "ストラップ（右）、バスト下部（左）は" in why
 
 
 def test_a_side_that_changes_is_named_and_what_is_even_has_none() -> None:
     turned = evened(reached={"left higher": 2.0, "left further out": 0.0}, reachable=True)
-    said, price, why = evened_words(turned, EVEN[:2], NOW, {"lift": 6.9, "out": 1.2})
+    said, price, why = balance_result_texts(turned, EVEN[:2], NOW, {"lift": 6.9, "out": 1.2})
     assert said.splitlines() == [
         "Reached.",
         "Right higher 11.5 mm → Left higher 2.0 mm",
@@ -161,8 +169,8 @@ def test_a_side_that_changes_is_named_and_what_is_even_has_none() -> None:
     assert (price, why) == ("", BY_TURNS), "turns keep the volume of both breasts together, and end elsewhere"
     for same in ({"volume": "exact"}, {"volume_of": "both"}):
         exact = replace(turned, design=replace(turned.design, **same))
-        assert evened_words(exact, EVEN[:2], NOW, {"lift": 6.9, "out": 1.2})[2] == ""
-    said, price, why = evened_words(evened(agreed=False), EVEN, NOW, {"out": 1.2})
+        assert balance_result_texts(exact, EVEN[:2], NOW, {"lift": 6.9, "out": 1.2})[2] == ""
+    said, price, why = balance_result_texts(evened(agreed=False), EVEN, NOW, {"out": 1.2})
     assert said.startswith("Nearest so far:\n")
     assert price.startswith("At the price of: ")
     assert why.startswith("Lengths, elastics and pressures did not come to agree.")

@@ -9,22 +9,22 @@ import pytest
 from app.i18n.catalog import speaking
 from app.presenters.samples import sample_design
 from app.presenters.target_shape import (
-    answer_words,
-    beside_words,
+    bust_movement_text,
     change_words,
-    figure_title,
+    deviation_text,
     is_met,
     is_near,
-    kept_words,
-    off_words,
+    locked_lines_text,
     pressure_words,
+    result_text,
     result_words,
     step_words,
+    target_title,
     unlimited_words,
     value_words,
 )
 from core.analysis.inverse_design.quantities import GIRTH, NAMES, Goal, profile_name
-from core.analysis.inverse_design.solve import Reply
+from core.analysis.inverse_design.solve import InverseResult
 from core.document.design import Design
 
 
@@ -32,8 +32,8 @@ def design() -> Design:
     return sample_design().with_line("mid-bust", 0.93).with_line("full-bust", 0.999)
 
 
-def reply(**changes: object) -> Reply:
-    plain = Reply(
+def reply(**changes: object) -> InverseResult:
+    plain = InverseResult(
         design(), {"lift": 2.04}, False, 1.0, (), (), (), False, True, {}, 4.0, (), 1.0, 3, longest=0.999
     )
     return replace(plain, **changes)
@@ -76,9 +76,9 @@ GOALS = (Goal("lift", 5.0),)
 )
 def test_an_answer_is_one_sentence(changes: dict[str, object], english: str, japanese: str) -> None:
     answer = reply(**changes)
-    assert answer_words(answer, GOALS) == english
+    assert result_text(answer, GOALS) == english
     with speaking("ja"):
-        assert answer_words(answer, GOALS) == japanese
+        assert result_text(answer, GOALS) == japanese
 
 
 def test_of_a_profile_it_is_told_how_far_it_is_off() -> None:
@@ -87,14 +87,14 @@ def test_of_a_profile_it_is_told_how_far_it_is_off() -> None:
     answer = reply(reached={heights[0]: 103.0, heights[1]: 96.0})
     because = "because these lines do not move the body that way."
     said = "Not reachable: nearest is a profile off by 3.5 mm on average (4.0 mm at most), "
-    assert answer_words(answer, goals) == said + because
+    assert result_text(answer, goals) == said + because
     with speaking("ja"):
-        assert "最も近いのは 輪郭のずれが平均 3.5 mm（最大 4.0 mm）の結果。理由：" in answer_words(
+        assert "最も近いのは 輪郭のずれが平均 3.5 mm（最大 4.0 mm）の結果。理由：" in result_text(
             answer, goals
         )
     both = [*goals, Goal(profile_name("right", 300.0), 100.0)]
     answer = replace(answer, reached={**answer.reached, both[-1].name: 106.0})
-    assert "nearest is Profile through the left bust point: off by 3.5 mm on " in answer_words(answer, both)
+    assert "nearest is Profile through the left bust point: off by 3.5 mm on " in result_text(answer, both)
     assert step_words([*GOALS, *goals]) == (
         "Asked for: Bust point up +5.0 mm, Profile through the left bust point"
     )
@@ -113,23 +113,23 @@ def test_changes_are_told_line_by_line_and_what_presses() -> None:
         "presses with 2.5 kPa at most",
         "pressure of Full bust not looked at: see Garment",
     ]
-    assert kept_words(design(), ["mid-bust", "strap left"]) == "Locked, so kept: Mid-bust."
-    assert kept_words(design(), []) == ""
+    assert locked_lines_text(design(), ["mid-bust", "strap left"]) == "Locked, so kept: Mid-bust."
+    assert locked_lines_text(design(), []) == ""
 
 
 def test_every_figure_has_a_title_of_its_own_in_both_languages() -> None:
-    titles = {figure_title(name) for name in NAMES}
+    titles = {target_title(name) for name in NAMES}
     assert len(titles) == len(NAMES)
     with speaking("ja"):
-        assert not titles & {figure_title(name) for name in NAMES}
+        assert not titles & {target_title(name) for name in NAMES}
 
 
 def test_a_profile_that_is_nearly_met_is_reached_within_so_much() -> None:
     goals = [Goal(profile_name("left", height), 200.0) for height in (340.0, 350.0)]
     names = [goal.name for goal in goals]
     near = reply(reached=dict(zip(names, (200.2, 199.6), strict=True)))
-    assert answer_words(near, goals) == "Reached within 0.4 mm."
-    assert off_words(goals, near.reached, "profile left") == "off by 0.3 mm, at most 0.4 mm"
+    assert result_text(near, goals) == "Reached within 0.4 mm."
+    assert deviation_text(goals, near.reached, "profile left") == "off by 0.3 mm, at most 0.4 mm"
     assert is_met(near, goals)
     assert not is_met(near, [*goals[:1], Goal(names[1], 201.0)])
     both = replace(near, reached={**near.reached, "lift": 4.0})
@@ -139,20 +139,20 @@ def test_a_profile_that_is_nearly_met_is_reached_within_so_much() -> None:
 def test_what_a_hand_draws_is_met_on_average() -> None:
     goals = [Goal(profile_name("left", 300.0 + 10.0 * at), 200.0) for at in range(10)]
 
-    def off_by(least: float, most: float, **others: float) -> Reply:
+    def off_by(least: float, most: float, **others: float) -> InverseResult:
         reached = {goal.name: 200.0 + least for goal in goals} | {goals[0].name: 200.0 + most} | others
         return reply(reached=reached)
 
     near = off_by(-0.1, 3.0)
-    assert answer_words(near, goals) == "Met within 0.4 mm on average, 3.0 mm at most."
+    assert result_text(near, goals) == "Met within 0.4 mm on average, 3.0 mm at most."
     assert (is_near(near, goals), is_met(near, goals)) == (True, False)
     with speaking("ja"):
-        assert answer_words(near, goals) == "平均 0.4 mm、最大 3.0 mm のずれで到達できます。"
+        assert result_text(near, goals) == "平均 0.4 mm、最大 3.0 mm のずれで到達できます。"
     now = {goal.name: 200.9 for goal in goals}
-    assert answer_words(near, goals, None, now) == "Met within 0.4 mm on average, 3.0 mm at most."
+    assert result_text(near, goals, None, now) == "Met within 0.4 mm on average, 3.0 mm at most."
     now = {goal.name: 200.5 for goal in goals}
     said = "Nearest is 0.4 mm off on average, 3.0 mm at most (was 0.5 mm)."
-    assert answer_words(near, goals, None, now) == said, "what hardly comes nearer is not met"
+    assert result_text(near, goals, None, now) == said, "what hardly comes nearer is not met"
     assert not is_near(off_by(1.1, 1.0), goals), "a millimetre is seen"
     assert not is_near(off_by(0.1, 5.2), goals), "nor is one place far off"
     assert not is_near(replace(near, agreed=False), goals)
@@ -168,17 +168,17 @@ def test_of_a_drawn_profile_it_is_told_what_it_was_off_and_how_the_bust_point_mo
     off = reply(reached=dict(zip(names, (206.0, 199.0), strict=True)), strained=True)
     now = {names[0]: 203.0, names[1]: 199.0, "lift": 7.3, "out": -5.3}
     then = {"lift": 6.5, "out": -5.33}
-    said = answer_words(off, goals, None, now)
+    said = result_text(off, goals, None, now)
     assert said.startswith(
         "Not reachable: nearest is a profile off by 3.5 mm on average (6.0 mm at most), 2.0 mm before, "
     )
-    assert beside_words(goals, now, then) == "Moves along: Bust point up +7.3 → +6.5 mm"
+    assert bust_movement_text(goals, now, then) == "Moves along: Bust point up +7.3 → +6.5 mm"
     with speaking("ja"):
-        assert "の結果（変更前 2.0 mm）。理由：" in answer_words(off, goals, None, now)
-        assert beside_words(goals, now, then) == "あわせて変わるもの：BPの上昇 +7.3 → +6.5 mm"
-    assert beside_words([*goals, Goal("lift", 6.5)], now, then) == "", "it is asked for"
-    assert beside_words([Goal("out", -4.0)], now, then) == "", "no profile is"
-    assert beside_words(goals, {}, then) == "", "not known yet"
+        assert "の結果（変更前 2.0 mm）。理由：" in result_text(off, goals, None, now)
+        assert bust_movement_text(goals, now, then) == "あわせて変わるもの：BPの上昇 +7.3 → +6.5 mm"
+    assert bust_movement_text([*goals, Goal("lift", 6.5)], now, then) == "", "it is asked for"
+    assert bust_movement_text([Goal("out", -4.0)], now, then) == "", "no profile is"
+    assert bust_movement_text(goals, {}, then) == "", "not known yet"
 
 
 def test_values_of_a_row_are_now_and_the_result_with_its_change() -> None:

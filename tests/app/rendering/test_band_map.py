@@ -17,9 +17,9 @@ from app.rendering.vertex_colors import Ramp
 from core.document.presets import built_in, with_preset
 from core.garment.elastic_library import find_elastic
 from core.garment.pressure import LinePressure, pressures
-from core.pipeline.build import Stages, build, targets_of
-from core.pipeline.solve import Solution, run
-from core.pipeline.surface_fields import pulls
+from core.pipeline.build import Stages, build, line_targets
+from core.pipeline.solve import Solution, solve
+from core.pipeline.surface_fields import line_forces
 
 RAMP = Ramp(("#EDD8C9", "#8A3408"), 0.0, 5.0, "#EDD8C9")
 
@@ -29,7 +29,7 @@ def solution(built: Callable[[str], Stages]) -> Solution:
     stages = built("mannequin")
     design = replace(with_preset(stages.design, built_in()[0]), volume="adaptive")
     design = design.with_line("mid-bust", 0.8).with_elastic("mid-bust", find_elastic("picot 10"))
-    return run(build(design, stages))
+    return solve(build(design, stages))
 
 
 @pytest.fixture
@@ -70,7 +70,7 @@ def test_a_row_of_a_band_has_the_pressure_of_its_place(scene: Scene, worn: dict[
 
 def test_the_largest_pressure_of_a_line_is_found_on_its_band(built: Callable[[str], Stages]) -> None:
     stages = built("person")
-    solved = run(build(replace(with_preset(stages.design, built_in()[0]), volume="adaptive"), stages))
+    solved = solve(build(replace(with_preset(stages.design, built_in()[0]), volume="adaptive"), stages))
     plotter = pv.Plotter(off_screen=True, window_size=(30, 30), lighting="none")
     scene = Scene(plotter)
     scene.show_body(stages.body.mesh)
@@ -108,7 +108,7 @@ def test_over_a_hollow_the_band_is_drawn_where_it_is_taut(
     taut, _ = scene.bands.spine("mid-bust")
     far = np.linalg.norm(taut - band.places, axis=1)
     assert far.max() < 4.5, "it lies about 2 mm over the middle of the band"
-    deep = band.off > 8.0
+    deep = band.gap > 8.0
     assert deep.any()
     assert np.linalg.norm(laid - band.places, axis=1)[deep].max() > 6.0
     scene.mark_bands("mid-bust")
@@ -135,7 +135,7 @@ def test_the_back_of_a_band_has_pressure_but_no_pull(
     scene: Scene, worn: dict[str, LinePressure], solution: Solution
 ) -> None:
     stages = solution.stages
-    found = pulls(stages.model, solution.control_points, targets_of(stages.design, stages).ratios)
+    found = line_forces(stages.model, solution.control_points, line_targets(stages.design, stages).ratios)
     pulling: BandValues = pulls_on(scene.bands, found)
     back = scene.bands.ribbon("mid-bust").part < 0
     assert back.any()

@@ -89,7 +89,7 @@ def test_a_move_between_views_ends_there_the_short_way() -> None:
 def test_the_picture_plane_agrees_with_vtk(parallel: bool) -> None:
     plotter = pv.Plotter(off_screen=True, window_size=(WIDTH, HEIGHT), lighting="none")
     scene = Scene(plotter)
-    scene.look_from(View((10.0, -20.0, 300.0), 1800.0, 34.0, 8.0, parallel))
+    scene.set_camera(View((10.0, -20.0, 300.0), 1800.0, 34.0, 8.0, parallel))
     plotter.render()
     points = np.random.default_rng(3).uniform(-150.0, 150.0, (8, 3)) + scene.view.focus
     ours = scene.view.to_picture(points, WIDTH, HEIGHT)

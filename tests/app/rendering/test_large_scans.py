@@ -15,9 +15,9 @@ import pyvista as pv
 import core.scan.body
 from app.presenters.scan import scan_view
 from app.rendering import render_mesh as skin_module
-from app.rendering.body_part_actor import SkinPart
-from app.rendering.prepare import make_ready
-from app.rendering.render_mesh import skin_of
+from app.rendering.body_part_actor import BodyPartActor
+from app.rendering.prepare import prepare_scene
+from app.rendering.render_mesh import render_mesh
 from app.rendering.scene import Scene
 from core.document.design import Design, ScanSource
 from core.geometry.mesh import Mesh
@@ -43,18 +43,18 @@ def scene():
 
 
 def test_what_a_scene_looks_up_was_worked_out_where_the_skin_was_prepared(ball, scene, monkeypatch):
-    skin_of(ball)  # as the solver's thread does
+    render_mesh(ball)  # as the solver's thread does
     monkeypatch.setattr(skin_module, "cKDTree", _refuse)
     monkeypatch.setattr(skin_module, "box_of", _refuse)
     scene.show_body(ball)
     scene.frame_all()
-    assert np.allclose(scene.carried(ball.vertices[:3]), ball.vertices[:3])
+    assert np.allclose(scene.carried_points(ball.vertices[:3]), ball.vertices[:3])
 
 
 def test_a_body_whose_moving_vertices_are_known_is_parted_once(ball, scene, monkeypatch):
     made = []
-    real = SkinPart.__init__
-    monkeypatch.setattr(SkinPart, "__init__", lambda *a: made.append(a[3]) or real(*a))
+    real = BodyPartActor.__init__
+    monkeypatch.setattr(BodyPartActor, "__init__", lambda *a: made.append(a[3]) or real(*a))
     upper = np.flatnonzero(ball.vertices[:, 2] > 20.0)
     scene.show_body(ball, upper)
     scene.move_body(upper, ball.vertices[upper] + 1.0, ball.vertex_normals[upper])
@@ -64,37 +64,37 @@ def test_a_body_whose_moving_vertices_are_known_is_parted_once(ball, scene, monk
 
 def test_the_tree_holds_the_vertices_of_the_body_alone(mannequin):
     body = read_scan(mannequin).mesh
-    assert len(skin_of(body).source) > len(body.vertices)  # the rims of its plates are doubled
-    assert skin_of(body).tree.n == len(body.vertices)
+    assert len(render_mesh(body).source) > len(body.vertices)  # the rims of its plates are doubled
+    assert render_mesh(body).tree.n == len(body.vertices)
 
 
 def test_the_holes_that_are_listed_were_looked_for_where_the_skin_was_prepared(built, monkeypatch):
     stages = built("mannequin")
     fresh = replace(stages, body=replace(stages.body))
-    make_ready(fresh)
+    prepare_scene(fresh)
     monkeypatch.setattr(core.scan.body, "find_holes", _refuse)
     assert scan_view(fresh.design.scan, fresh.body).edits is not None
 
 
 def test_preparing_a_body_tells_how_far_it_is_and_can_be_stopped(ball):
     heard = []
-    skin_of(Mesh(ball.vertices, ball.faces), lambda _, share: heard.append(share))
+    render_mesh(Mesh(ball.vertices, ball.faces), lambda _, share: heard.append(share))
     assert len(heard) > 8
     assert heard == sorted(heard)
     for times in range(8):
         with pytest.raises(Cancelled):
-            skin_of(Mesh(ball.vertices, ball.faces), _stop_after(times))
+            render_mesh(Mesh(ball.vertices, ball.faces), _stop_after(times))
 
 
 def test_thinning_a_giant_skin_tells_how_far_it_is_and_can_be_stopped(ball, monkeypatch):
     monkeypatch.setattr(calm, "GIANT", 1000)
     heard = []
     rough = ball.moved(ball.vertices + np.random.default_rng(3).normal(0.0, 1.0, ball.vertices.shape))
-    calm.calmed(rough, lambda _, share: heard.append(share))
+    calm.denoise(rough, lambda _, share: heard.append(share))
     assert len(heard) > 5
     assert heard == sorted(heard)
     with pytest.raises(Cancelled):
-        calm.calmed(rough, _stop_after(3))
+        calm.denoise(rough, _stop_after(3))
 
 
 def test_each_long_step_of_understanding_a_scan_asks_whether_to_go_on(mannequin):
@@ -104,13 +104,13 @@ def test_each_long_step_of_understanding_a_scan_asks_whether_to_go_on(mannequin)
     assert count["finding up and front"] >= 4
     assert count["closing holes"] >= 2
     heard.clear()
-    calm.calmed(read_scan(mannequin).mesh, lambda what, share: heard.append((what, share)))
+    calm.denoise(read_scan(mannequin).mesh, lambda what, share: heard.append((what, share)))
     assert len(heard) >= 6
     assert [share for _, share in heard] == sorted(share for _, share in heard)
 
 
 def test_a_skin_without_plates_has_the_normals_of_the_body(ball):
-    normals = skin_of(ball).mesh.vertex_normals
+    normals = render_mesh(ball).mesh.vertex_normals
     assert normals is ball.vertex_normals
 
 

@@ -12,7 +12,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 
 from app.rendering.band import Band
-from app.rendering.layer_cache import StillPicture
+from app.rendering.layer_cache import StaticLayerCache
 from app.rendering.scene import Scene
 from core.geometry.mesh import Mesh
 
@@ -48,12 +48,12 @@ def pixels(scene: Scene) -> np.ndarray:
     return vtk_to_numpy(data).copy()
 
 
-def drawn_with(scene: Scene, still: StillPicture) -> tuple[np.ndarray, int]:
+def drawn_with(scene: Scene, still: StaticLayerCache) -> tuple[np.ndarray, int]:
     """Return the picture, and how many of the actors that stand still were drawn for it."""
     drawn: list[int] = []
-    count = lambda *_: drawn.append(sum(bool(prop.GetVisibility()) for prop in scene.still()))  # noqa: E731
+    count = lambda *_: drawn.append(sum(bool(prop.GetVisibility()) for prop in scene.static_actors()))  # noqa: E731
     tag = scene.plotter.renderer.AddObserver("StartEvent", count)
-    still.render(scene.still())
+    still.render(scene.static_actors())
     scene.plotter.renderer.RemoveObserver(tag)
     return pixels(scene), sum(drawn)
 
@@ -64,9 +64,9 @@ def drawn_whole(scene: Scene) -> np.ndarray:
 
 
 def test_a_picture_over_what_was_kept_equals_one_drawn_anew(scene: Scene) -> None:
-    still = StillPicture(scene.plotter)
+    still = StaticLayerCache(scene.plotter)
     press(scene, 0.02)
-    still.render(scene.still())
+    still.render(scene.static_actors())
     counts = []
     for by in (0.05, 0.15, 0.3, 0.0):
         press(scene, by)
@@ -77,8 +77,8 @@ def test_a_picture_over_what_was_kept_equals_one_drawn_anew(scene: Scene) -> Non
 
 
 def test_the_outermost_pixels_are_kept_too(scene: Scene) -> None:
-    scene.look_from(replace(scene.view.named("front"), distance=250.0))  # the body reaches over all edges
-    still, last = StillPicture(scene.plotter), np.empty(0)
+    scene.set_camera(replace(scene.view.named("front"), distance=250.0))  # the body reaches over all edges
+    still, last = StaticLayerCache(scene.plotter), np.empty(0)
     for by in (0.02, 0.05, 0.3, 0.45, 0.1):
         press(scene, by)
         last, _ = drawn_with(scene, still)  # no whole picture in between: it would mend what was left out
@@ -90,7 +90,7 @@ def test_graphics_that_cannot_keep_a_picture_draw_each_one_once(
 ) -> None:
     formats = iter(range(1000))
     monkeypatch.setattr("app.rendering.layer_cache._depth_of", lambda _: next(formats))  # never the same
-    still, counts = StillPicture(scene.plotter), []
+    still, counts = StaticLayerCache(scene.plotter), []
     for by in (0.1, 0.2, 0.3, 0.4):
         press(scene, by)
         picture, count = drawn_with(scene, still)
@@ -105,7 +105,7 @@ def side(scene: Scene) -> np.ndarray:
 
 CHANGES: dict[str, Callable[[Scene], object]] = {
     "the camera turns": lambda scene: scene.set_view("left"),
-    "the camera comes nearer": lambda scene: scene.look_from(replace(scene.view, distance=300.0)),
+    "the camera comes nearer": lambda scene: scene.set_camera(replace(scene.view, distance=300.0)),
     "another theme": lambda scene: scene.set_dark(True),
     "another material": lambda scene: scene.set_material("graphite"),
     "no floor": lambda scene: scene.set_visible("floor", False),
@@ -124,10 +124,10 @@ CHANGES: dict[str, Callable[[Scene], object]] = {
 def test_nothing_that_was_kept_is_shown_once_it_is_wrong(
     scene: Scene, change: Callable[[Scene], object]
 ) -> None:
-    still = StillPicture(scene.plotter)
+    still = StaticLayerCache(scene.plotter)
     press(scene, 0.3)
     for _ in range(3):
-        still.render(scene.still())
+        still.render(scene.static_actors())
     former = pixels(scene)
     change(scene)
     for _ in range(3):
@@ -137,16 +137,16 @@ def test_nothing_that_was_kept_is_shown_once_it_is_wrong(
 
 
 def test_nothing_is_kept_while_the_camera_moves_or_after_it_is_forgotten(scene: Scene) -> None:
-    still = StillPicture(scene.plotter)
+    still = StaticLayerCache(scene.plotter)
     press(scene, 0.1)
     for distance in (900.0, 880.0, 860.0):
-        scene.look_from(replace(scene.view, distance=distance))
+        scene.set_camera(replace(scene.view, distance=distance))
         _, count = drawn_with(scene, still)
         assert count == 2, "drawn once, not a second time to be kept"
         assert still._kept is None
     drawn_with(scene, still)
     assert still._kept is not None
-    still.forget()
+    still.clear()
     assert still._kept is None
     picture, _ = drawn_with(scene, still)
     assert np.array_equal(picture, drawn_whole(scene))

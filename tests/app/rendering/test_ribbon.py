@@ -13,15 +13,15 @@ from scipy.spatial import cKDTree
 from app.presenters.lines import bands
 from app.rendering.band import OFF_WIDTH, Band, band_width
 from app.rendering.band_actors import Bands, RibbonActor
-from app.rendering.picking import Sight
-from app.rendering.ribbon_mesh import CASING, Ribbon, Surface, build_casing, build_ribbon
+from app.rendering.picking import RayPicker
+from app.rendering.ribbon_mesh import CASING, Ribbon, RibbonSurface, build_casing, build_ribbon
 from core.document.design import Design, ScanSource
 from core.garment.curve_smoothing import centre_line
 from core.geometry.mesh import Mesh, unit
 from core.geometry.plane_sections import arc_length
 from core.pipeline.build import Stages, build
-from core.pipeline.line_routes import Route
-from core.pipeline.solve import run
+from core.pipeline.line_routes import LineRoute
+from core.pipeline.solve import solve
 
 RADIUS = 120.0
 
@@ -45,8 +45,8 @@ def arc(start: float, end: float, step: float, radius: float = RADIUS) -> np.nda
 
 def test_a_band_with_a_back_closes_round_the_body() -> None:
     front, back = arc(-80.0, 80.0, 20.0), arc(80.0, 280.0, 4.0)
-    surface = Surface(tube(lambda turn: np.full_like(turn, RADIUS)))
-    ribbon = build_ribbon(Route(front, back), surface, 12.0)
+    surface = RibbonSurface(tube(lambda turn: np.full_like(turn, RADIUS)))
+    ribbon = build_ribbon(LineRoute(front, back), surface, 12.0)
     middle = ribbon.mesh.vertices.reshape(ribbon.rows, 8, 3)[:, 3:5].mean(axis=1)
     steps = np.linalg.norm(np.roll(middle, -1, axis=0) - middle, axis=1)
     assert steps.max() < 5.0  # no gap, not even where the rows begin
@@ -58,12 +58,12 @@ def test_a_band_with_a_back_closes_round_the_body() -> None:
     assert (np.abs(bearing[ribbon.part < 0]) > 78.0).all()
     inside = np.abs(bearing + 70.0) < 8.0
     assert set(ribbon.part[inside].tolist()) == {0}  # the first segment, from -80 to -60 degrees
-    assert len(build_casing(Route(front, back), surface, 12.0).mesh.boundary_loops) == 2
+    assert len(build_casing(LineRoute(front, back), surface, 12.0).mesh.boundary_loops) == 2
 
 
 def test_a_line_without_a_back_ends_where_it_ends() -> None:
-    surface = Surface(tube(lambda turn: np.full_like(turn, RADIUS)))
-    ribbon = build_ribbon(Route(arc(-40.0, 40.0, 20.0)), surface, 12.0)
+    surface = RibbonSurface(tube(lambda turn: np.full_like(turn, RADIUS)))
+    ribbon = build_ribbon(LineRoute(arc(-40.0, 40.0, 20.0)), surface, 12.0)
     assert len(ribbon.mesh.boundary_loops) == 1
     assert (ribbon.part >= 0).all()
     ends = ribbon.mesh.vertices.reshape(ribbon.rows, 8, 3)[[0, -1]]
@@ -71,7 +71,7 @@ def test_a_line_without_a_back_ends_where_it_ends() -> None:
 
 
 def test_a_ring_closes_by_itself() -> None:
-    surface = Surface(tube(lambda turn: np.full_like(turn, RADIUS)))
+    surface = RibbonSurface(tube(lambda turn: np.full_like(turn, RADIUS)))
     turn = np.radians(np.arange(0.0, 361.0, 30.0))
     ring = np.stack([30.0 * np.sin(turn), np.full(13, -RADIUS), 100.0 + 30.0 * np.cos(turn)], axis=1)
     line = centre_line(ring, surface)
@@ -83,7 +83,7 @@ def test_a_taut_band_bridges_a_hollow_and_lies_on_the_rest() -> None:
     def cleft(turn: np.ndarray) -> np.ndarray:
         return RADIUS - 25.0 * np.exp(-((turn / 0.12) ** 2))
 
-    surface = Surface(tube(cleft))
+    surface = RibbonSurface(tube(cleft))
     places = arc(-72.0, 72.0, 24.0)
     line = centre_line(places[np.abs(places[:, 0]) > 1.0], surface)
     middle = np.abs(line.points[:, 0]) < 3.0
@@ -111,10 +111,10 @@ def test_a_strap_lies_on_a_wide_band(x: float) -> None:
     shown, out = Bands(plotter), np.array([0.0, -10.0, 0.0])
     wide = Band("wide", arc(-80.0, 80.0, 20.0), "#125A6B", 60.0, arc(80.0, 280.0, 4.0))
     path = np.stack([np.full(len(z), x), np.full(len(z), -np.hypot(RADIUS, x)), z], axis=1)
-    shown.show([wide, Band("strap", path, "#E0A030", 12.0)], Surface(breast()))
+    shown.show([wide, Band("strap", path, "#E0A030", 12.0)], RibbonSurface(breast()))
     shown.mark("strap", "")
     strap, casing = shown.ribbon("strap"), shown._casings["strap"].ribbon
-    below, above = Sight(drawn(shown.ribbon("wide"))), Sight(drawn(strap))
+    below, above = RayPicker(drawn(shown.ribbon("wide"))), RayPicker(drawn(strap))
     for at in strap.top.reshape(-1, 3):
         assert below.hit(at, at + out) is None
     hidden = (np.abs(casing.mesh.vertices[:, 0] - x) < 4.0) & (
@@ -130,7 +130,7 @@ def test_a_strap_lies_on_a_wide_band(x: float) -> None:
 def test_a_line_that_is_off_is_dashed_and_met_between_its_dashes_all_the_same() -> None:
     shown = Bands(pv.Plotter(off_screen=True))
     off = Band("off", arc(-80.0, 80.0, 20.0), "#125A6B", 4.0, off=True)
-    shown.show([off], Surface(breast()))
+    shown.show([off], RibbonSurface(breast()))
     drawn_rows = np.unique(shown._ribbons["off"].data.regular_faces // shown.ribbon("off").columns)
     assert 0.6 < len(drawn_rows) / shown.ribbon("off").rows < 0.9
     whole = shown.ribbon("off").mesh
@@ -152,8 +152,10 @@ def test_what_can_pull_and_is_off_is_thin_and_dashed_and_nothing_else() -> None:
 
 
 def test_a_band_covers_a_nipple() -> None:
-    ribbon = build_ribbon(Route(arc(-80.0, 80.0, 20.0), arc(80.0, 280.0, 4.0)), Surface(breast()), 12.0)
-    met = Sight(drawn(ribbon)).hit(np.array([0.0, -300.0, 100.0]), np.array([0.0, 0.0, 100.0]))
+    ribbon = build_ribbon(
+        LineRoute(arc(-80.0, 80.0, 20.0), arc(80.0, 280.0, 4.0)), RibbonSurface(breast()), 12.0
+    )
+    met = RayPicker(drawn(ribbon)).hit(np.array([0.0, -300.0, 100.0]), np.array([0.0, 0.0, 100.0]))
     assert met is not None
     assert met[1] < -RADIUS - 6.0
 
@@ -163,14 +165,14 @@ def test_no_skin_stands_through_a_band_however_wide_it_is(name: str, built: Call
     stages, design = built(name), built(name).design
     for line in ("full-bust", "mid-bust"):
         design = design.with_line(line, 0.9)
-    solved = run(build(design, stages))
+    solved = solve(build(design, stages))
     rest = stages.body.mesh
     reshaped = rest.vertices.copy()
     reshaped[solved.stages.moving.vertices] = solved.stages.shape(solved.control_points)[0]
     assert np.abs(reshaped - rest.vertices).max() > 5.0
     for band in bands(stages, ()):
         for width in (10.0, 25.0, 40.0, 60.0):
-            ribbon = build_ribbon(band.route, Surface(rest), width)
+            ribbon = build_ribbon(band.route, RibbonSurface(rest), width)
             for skin in (rest, rest.moved(reshaped)):
                 cloth = ribbon.mesh.vertices + ribbon.follow @ (skin.vertices - rest.vertices)
                 assert bare(skin, cloth.reshape(ribbon.rows, -1, 3)) == 0.0, (band.name, width)
@@ -200,7 +202,7 @@ def test_bands_of_the_template_go_round_a_body(
     name: str, calm: float, built: Callable[[str], Stages]
 ) -> None:
     stages = built(name)
-    surface = Surface(stages.body.mesh)
+    surface = RibbonSurface(stages.body.mesh)
     shown = bands(stages, ())
     assert {band.name for band in shown} == {"full-bust", "mid-bust", "under-bust"}
     for band in shown:
@@ -216,26 +218,26 @@ def test_bands_of_the_template_go_round_a_body(
         # No edge is wavier than a tape: it turns up and down less than the path, which stays under it.
         turning = bending(np.concatenate([band.path, band.back[1:-1]]), surface)
         assert max(bending(rows[:, 1], surface), bending(rows[:, -2], surface)) < calm * turning
-        aside, _ = cKDTree(middle).query(surface.lay(band.path)[0])
+        aside, _ = cKDTree(middle).query(surface.project(band.path)[0])
         assert aside.max() < 0.6 * band.width + 2.0
 
 
-def bending(curve: np.ndarray, surface: Surface) -> float:
+def bending(curve: np.ndarray, surface: RibbonSurface) -> float:
     """How much a closed curve turns aside on the skin, whatever the skin does [1/mm]: root mean square."""
     around = np.concatenate([curve, curve[:1]])
     s = arc_length(around)
     spline = CubicSpline(s, around, bc_type="periodic")
     at = np.arange(0.0, s[-1], 1.0)
-    _, normal = surface.lay(spline(at))
+    _, normal = surface.project(spline(at))
     aside = np.cross(normal, unit(spline(at, 1)))
     return float(np.sqrt(np.mean(np.einsum("kx,kx->k", spline(at, 2), aside) ** 2)))
 
 
 def test_an_open_ribbon_ends_round() -> None:
-    surface = Surface(tube(lambda turn: np.full_like(turn, RADIUS)))
+    surface = RibbonSurface(tube(lambda turn: np.full_like(turn, RADIUS)))
     path = arc(-40.0, 40.0, 20.0)
     for laid, radius in ((build_ribbon, 10.0), (build_casing, 0.5 * (20.0 + CASING))):
-        ribbon = laid(Route(path), surface, 20.0)
+        ribbon = laid(LineRoute(path), surface, 20.0)
         rows = ribbon.mesh.vertices.reshape(ribbon.rows, -1, 3)
         along = RADIUS * np.arctan2(rows[..., 0], -rows[..., 1])
         end = along[:, 1:-1].max()
@@ -246,8 +248,8 @@ def test_an_open_ribbon_ends_round() -> None:
 
 
 def test_a_ribbon_forgets_nothing_that_moved_once() -> None:
-    surface = Surface(tube(lambda turn: np.full_like(turn, RADIUS)))
-    ribbon = build_ribbon(Route(arc(-80.0, 80.0, 20.0), arc(80.0, 280.0, 4.0)), surface, 12.0)
+    surface = RibbonSurface(tube(lambda turn: np.full_like(turn, RADIUS)))
+    ribbon = build_ribbon(LineRoute(arc(-80.0, 80.0, 20.0), arc(80.0, 280.0, 4.0)), surface, 12.0)
     plotter = pv.Plotter(off_screen=True)
     actor = RibbonActor(plotter, ribbon, "ribbon")
     skin = surface.mesh.vertices

@@ -18,9 +18,9 @@ from app.presenters.lines import bands
 from app.rendering import render_mesh_parts as piece_module
 from app.rendering import ribbon_mesh as ribbon_module
 from app.rendering.band import Band
-from app.rendering.prepare import make_ready
-from app.rendering.render_mesh import skin_of
-from app.rendering.render_mesh_parts import CELL, pieces_of
+from app.rendering.prepare import prepare_scene
+from app.rendering.render_mesh import render_mesh
+from app.rendering.render_mesh_parts import CELL, mesh_parts
 from app.rendering.scene import Scene
 from core.document.design import Design, ScanSource
 from core.geometry.mesh import Mesh
@@ -48,7 +48,7 @@ def upper(ball: Mesh) -> np.ndarray:
 
 
 def test_a_rough_copy_has_few_faces_and_lies_on_the_skin(ball):
-    still, _, rough = pieces_of(skin_of(ball), upper(ball))
+    still, _, rough = mesh_parts(render_mesh(ball), upper(ball))
     assert len(rough.faces) < 0.25 * len(still.faces)
     off = np.abs(np.linalg.norm(rough.places, axis=1) - RADIUS)
     assert off.max() < CELL**2 / (2.0 * RADIUS)  # the sag of a cell
@@ -57,7 +57,7 @@ def test_a_rough_copy_has_few_faces_and_lies_on_the_skin(ball):
 
 
 def test_a_rough_copy_ends_where_the_moving_part_begins(ball):
-    still, moving, rough = pieces_of(skin_of(ball), upper(ball))
+    still, moving, rough = mesh_parts(render_mesh(ball), upper(ball))
     shared = np.intersect1d(still.rows, moving.rows)
     rim = np.isin(rough.rows, shared)
     assert np.array_equal(np.sort(rough.rows[rim]), shared)
@@ -73,14 +73,15 @@ def test_sheets_back_to_back_in_one_cell_stay_apart(monkeypatch):
         np.vstack([places + apart, places - apart]),
         np.vstack([faces, faces[:, ::-1] + len(places)]),
     )
-    _, _, rough = pieces_of(skin_of(mesh), np.empty(0, dtype=np.int64))
+    _, _, rough = mesh_parts(render_mesh(mesh), np.empty(0, dtype=np.int64))
     assert set(np.round(rough.places[:, 2], 3)) == {0.5, -0.5}
 
 
 def test_usual_bodies_have_no_rough_copy():
     small = pv.Icosphere(radius=RADIUS, nsub=3)
     assert (
-        pieces_of(skin_of(Mesh(small.points, small.regular_faces)), np.empty(0, dtype=np.int64)).rough is None
+        mesh_parts(render_mesh(Mesh(small.points, small.regular_faces)), np.empty(0, dtype=np.int64)).rough
+        is None
     )
 
 
@@ -114,7 +115,7 @@ def test_sights_meet_a_large_body_where_it_is(ball, scene):
 
 def test_bands_that_were_made_ready_are_not_laid_again(mannequin, scene, monkeypatch):
     stages = build(Design(ScanSource(str(mannequin))))
-    make_ready(stages)
+    prepare_scene(stages)
     monkeypatch.setattr(ribbon_module, "centre_line", _refuse)
     scene.show_body(stages.body.mesh, stages.moving.vertices)
     scene.show_bands(bands(stages, ()))

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.rendering.appearance import LOOKS, rgb
+from app.rendering.appearance import APPEARANCES, rgb
 from app.rendering.band import Band
 from app.rendering.camera import VIEWS
-from app.rendering.picking import Sight
+from app.rendering.picking import RayPicker
 from app.rendering.render_mesh import split_plates
-from app.rendering.ribbon_mesh import Surface, build_casing, build_ribbon
+from app.rendering.ribbon_mesh import RibbonSurface, build_casing, build_ribbon
 from app.rendering.scene import Scene
 from core.garment.curve_smoothing import centre_line
 from core.geometry.mesh import Mesh
-from core.pipeline.line_routes import Route
+from core.pipeline.line_routes import LineRoute
 
 ROOT = Path(__file__).parents[3]
 WIDTH, HEIGHT = 450, 300
@@ -59,7 +59,7 @@ def scene(mannequin: Mesh) -> Iterator[Scene]:
 
 def across_front(mesh: Mesh, z: float, reach: float = 110.0) -> np.ndarray:
     """A coarse path over the front at height z, as control points give it."""
-    sight = Sight(pv.PolyData.from_regular_faces(mesh.vertices.astype(np.float32), mesh.faces))
+    sight = RayPicker(pv.PolyData.from_regular_faces(mesh.vertices.astype(np.float32), mesh.faces))
     places = [
         sight.hit(np.array([x, -900.0, z]), np.array([x, 900.0, z])) for x in np.linspace(-reach, reach, 9)
     ]
@@ -90,11 +90,14 @@ def distance_to(mesh: Mesh, points: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("name", ["mannequin", "person"])
 def test_a_ribbon_lies_on_the_skin(name: str, request: pytest.FixtureRequest) -> None:
     body = request.getfixturevalue(name)
-    surface = Surface(body)
+    surface = RibbonSurface(body)
     for z in (UNDERBUST, BUST, BUST + 50.0):
         path = across_front(body, z)
         line = centre_line(path, surface, width=12.0)
-        for ribbon in (build_ribbon(Route(path), surface, 12.0), build_casing(Route(path), surface, 12.0)):
+        for ribbon in (
+            build_ribbon(LineRoute(path), surface, 12.0),
+            build_casing(LineRoute(path), surface, 12.0),
+        ):
             middle = ribbon.mesh.vertices.reshape(ribbon.rows, 8, 3).mean(axis=1)
             nearest = np.linalg.norm(middle[:, None] - line.points, axis=2).argmin(axis=1)
             bridged = line.lift[nearest]  # there it stands off, as a taut band does
@@ -102,7 +105,7 @@ def test_a_ribbon_lies_on_the_skin(name: str, request: pytest.FixtureRequest) ->
 
 
 def test_a_ribbon_has_its_width_and_looks_outward(mannequin: Mesh) -> None:
-    ribbon = build_ribbon(Route(across_front(mannequin, BUST)), Surface(mannequin), 12.0)
+    ribbon = build_ribbon(LineRoute(across_front(mannequin, BUST)), RibbonSurface(mannequin), 12.0)
     rows = ribbon.mesh.vertices.reshape(ribbon.rows, 8, 3)
     width = np.linalg.norm(rows[6:-6, 1] - rows[6:-6, -2], axis=1)  # its ends are round
     assert width == pytest.approx(12.0, abs=0.8)
@@ -112,7 +115,7 @@ def test_a_ribbon_has_its_width_and_looks_outward(mannequin: Mesh) -> None:
 
 def test_a_ribbon_passes_through_its_control_points(mannequin: Mesh) -> None:
     path = across_front(mannequin, BUST)
-    ribbon = build_ribbon(Route(path), Surface(mannequin), 12.0)
+    ribbon = build_ribbon(LineRoute(path), RibbonSurface(mannequin), 12.0)
     apart = np.linalg.norm(ribbon.mesh.vertices[None] - path[:, None], axis=2).min(axis=1)
     assert apart.max() < 5.0
 
@@ -214,7 +217,7 @@ def test_the_body_is_warm_clay_before_a_quiet_background(scene: Scene) -> None:
         assert red > green > blue
         assert 10.0 < red - blue < 90.0
         corner = image[3, 3]
-        assert corner == pytest.approx(rgb(LOOKS[dark].edge), abs=6.0)
+        assert corner == pytest.approx(rgb(APPEARANCES[dark].edge), abs=6.0)
 
 
 def test_a_line_shows_its_colour(scene: Scene, mannequin: Mesh) -> None:
@@ -271,16 +274,16 @@ def test_a_point_behind_the_breast_is_hidden(scene: Scene, person: Mesh) -> None
 
 def test_places_ride_on_the_skin_and_back(scene: Scene, mannequin: Mesh) -> None:
     places = across_front(mannequin, BUST)
-    assert scene.carried(places) == pytest.approx(places)
+    assert scene.carried_points(places) == pytest.approx(places)
     bump = 15.0 * np.exp(-(((mannequin.vertices - [80.0, -200.0, BUST]) / 60.0) ** 2).sum(axis=1))
     moved = mannequin.moved(mannequin.vertices + bump[:, None] * mannequin.vertex_normals)
     scene.move_body(np.arange(len(bump)), moved.vertices)
-    carried = scene.carried(places)
+    carried = scene.carried_points(places)
     assert np.linalg.norm(carried - places, axis=1).max() > 10.0
     assert distance_to(moved, carried).max() < 0.5
     assert scene.at_rest(carried) == pytest.approx(places, abs=0.1)
     scene.before(True)
-    assert scene.carried(places) == pytest.approx(places)
+    assert scene.carried_points(places) == pytest.approx(places)
 
 
 # -- the camera

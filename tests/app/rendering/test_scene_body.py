@@ -9,9 +9,9 @@ import pytest
 import pyvista as pv
 
 from app.rendering.ambient_occlusion import bake_occlusion
-from app.rendering.appearance import LOOKS, rgb
+from app.rendering.appearance import APPEARANCES, rgb
 from app.rendering.body_actor import BodyActor
-from app.rendering.render_mesh import plate_faces, skin_of, split_plates
+from app.rendering.render_mesh import plate_faces, render_mesh, split_plates
 from app.rendering.vertex_colors import clay_colours
 from core.geometry.mesh import Mesh
 
@@ -80,7 +80,7 @@ def test_what_another_control_mesh_carries_no_more_stands_where_it_rests() -> No
     ball = pv.Icosphere(radius=150.0, nsub=4)
     mesh = Mesh(ball.points, ball.regular_faces)
     plotter = pv.Plotter(off_screen=True)
-    actor = BodyActor(plotter, mesh, LOOKS[False])
+    actor = BodyActor(plotter, mesh, APPEARANCES[False])
     first, then = np.arange(0, 40), np.arange(20, 60)
     for indices, shift in ((first, 9.0), (first, 12.0), (then, 5.0)):
         actor.move(indices, mesh.vertices[indices] + shift, np.tile([0.0, 0.0, 1.0], (len(indices), 1)))
@@ -88,7 +88,7 @@ def test_what_another_control_mesh_carries_no_more_stands_where_it_rests() -> No
     assert np.array_equal(actor.displacement, np.where(moved[:, None], 5.0, 0.0) * np.ones(3))
     drawn = np.concatenate([pv.wrap(part.actor.mapper.GetInput()).points for part in actor._parts])
     assert np.abs(drawn[:, None] - mesh.vertices[None, :20]).max(axis=2).min(axis=0).max() < 1e-4
-    assert np.array_equal(actor._normals[:20], skin_of(mesh).normals[:20])
+    assert np.array_equal(actor._normals[:20], render_mesh(mesh).normals[:20])
     plotter.close()
 
 
@@ -114,7 +114,7 @@ def test_the_fold_is_darker_than_the_breast(person: Mesh) -> None:
 
 @pytest.mark.parametrize("dark", [False, True])
 def test_clay_deepens_with_the_fold_and_plates_stay_plaster(dark: bool) -> None:
-    look = LOOKS[dark]
+    look = APPEARANCES[dark]
     colours = clay_colours(np.array([0.2, 0.6, 1.0, 0.2]), np.array([False, False, False, True]), look)
     assert colours[0] == pytest.approx(rgb(look.deep))
     assert colours[2] == pytest.approx(rgb(look.clay))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.rendering.appearance import LOOKS, rgb
+from app.rendering.appearance import APPEARANCES, rgb
 from app.rendering.scene import Scene
 from app.rendering.vertex_colors import FOLDS, Ramp
 from app.research.sphere import sphere
@@ -65,7 +65,7 @@ def test_a_map_colours_the_body_and_leaves_it_again(scene: Scene) -> None:
     scene.set_occlusion(np.ones(len(BALL.vertices)))
     body.show_map(None)
     assert (drawn(scene) == clay).all()
-    assert drawn(scene)[0] == pytest.approx(rgb(LOOKS[False].clay), abs=1.0)
+    assert drawn(scene)[0] == pytest.approx(rgb(APPEARANCES[False].clay), abs=1.0)
 
 
 def test_the_section_plane_shows_its_sheet_and_its_curve(scene: Scene) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.rendering.appearance import LOOKS, rgb
+from app.rendering.appearance import APPEARANCES, rgb
 from app.rendering.scene import Scene
 from core.geometry.mesh import Mesh
 
@@ -31,7 +31,7 @@ def ghostly(scene: Scene) -> np.ndarray:
     """Which pixels have the ghost's colour, shape (HEIGHT, WIDTH)."""
     scene.plotter.render()
     image = np.asarray(scene.plotter.screenshot(return_img=True), dtype=float)
-    return np.abs(image - rgb(LOOKS[scene.dark].ghost)).max(axis=2) < 3.0
+    return np.abs(image - rgb(APPEARANCES[scene.dark].ghost)).max(axis=2) < 3.0
 
 
 def flatten_front(scene: Scene, by: float) -> None:

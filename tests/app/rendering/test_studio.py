@@ -8,10 +8,10 @@ from PIL import Image
 import app.rendering.offscreen as room
 from app.presenters.lines import bands
 from app.rendering.display import off_screen
-from app.rendering.offscreen import Studio, on_ground, on_nothing, write_picture
+from app.rendering.offscreen import OffscreenRenderer, with_background, with_transparency, write_picture
 from app.rendering.scene import Scene
 from core.errors import UserError
-from core.pipeline.solve import run
+from core.pipeline.solve import solve
 from core.progress import Cancelled, in_one_go
 
 SIZE = (150, 180)
@@ -20,24 +20,24 @@ SIZE = (150, 180)
 @pytest.fixture(scope="module")
 def reshaped(built):
     stages = built("mannequin")
-    return stages, run(stages).control_points, bands(stages, ()), np.ones(len(stages.body.mesh.vertices))
+    return stages, solve(stages).control_points, bands(stages, ()), np.ones(len(stages.body.mesh.vertices))
 
 
 @pytest.fixture
 def studio(reshaped):
-    with Studio(*reshaped) as studio:
+    with OffscreenRenderer(*reshaped) as studio:
         assert len(list(studio.set_up())) > 4, "a window answers between the parts"
-        studio.stand_back(SIZE, "three-quarter")
+        studio.frame_bust(SIZE, "three-quarter")
         yield studio
 
 
 @pytest.mark.parametrize("parallel", [False, True])
 def test_pieces_are_one_picture(monkeypatch, studio, parallel):
     studio.scene.set_parallel(parallel)
-    whole = in_one_go(studio.shot(SIZE)).astype(float)
+    whole = in_one_go(studio.render(SIZE)).astype(float)
     heard = []
     monkeypatch.setattr(room, "LONGEST", 100)
-    pieces = in_one_go(studio.shot(SIZE), lambda _, share: heard.append(share)).astype(float)
+    pieces = in_one_go(studio.render(SIZE), lambda _, share: heard.append(share)).astype(float)
     assert len(heard) == 12
     assert heard == pytest.approx(np.arange(1, 13) / 12)
     assert pieces.shape == (180, 150, 4)
@@ -46,7 +46,7 @@ def test_pieces_are_one_picture(monkeypatch, studio, parallel):
 
 
 def test_it_is_what_the_views_draw(reshaped, studio):
-    drawn = on_ground(in_one_go(studio.shot(SIZE)), dark=False).astype(float)
+    drawn = with_background(in_one_go(studio.render(SIZE)), dark=False).astype(float)
     stages, points, worn, occlusion = reshaped
     off_screen()
     plotter = pv.Plotter(off_screen=True, window_size=[2 * side for side in SIZE], lighting="none")
@@ -58,7 +58,7 @@ def test_it_is_what_the_views_draw(reshaped, studio):
         scene.show_control_mesh(stages.control.mesh, stages.control.fixed)
         scene.show_bands(worn)
         scene.move_body(stages.moving.vertices, *stages.shape(points))
-        scene.look_from(studio.scene.view)
+        scene.set_camera(studio.scene.view)
         seen = plotter.screenshot(return_img=True).astype(float)
     finally:
         plotter.close()
@@ -68,7 +68,7 @@ def test_it_is_what_the_views_draw(reshaped, studio):
 
 def test_without_ground_only_the_body_is_solid_and_keeps_its_colours(tmp_path, studio):
     studio.scene.set_visible("floor", False)
-    shot = in_one_go(studio.shot(SIZE))
+    shot = in_one_go(studio.render(SIZE))
     write_picture(tmp_path / "p.png", shot, False, clear=True)
     with Image.open(tmp_path / "p.png") as picture:
         pixels = np.asarray(picture)
@@ -84,17 +84,17 @@ def test_without_ground_only_the_body_is_solid_and_keeps_its_colours(tmp_path, s
 
 
 def test_a_picture_lies_whole_on_light_or_dark_ground(tmp_path, studio):
-    shot = in_one_go(studio.shot(SIZE))
+    shot = in_one_go(studio.render(SIZE))
     write_picture(tmp_path / "p.png", shot, False, clear=False)
     with Image.open(tmp_path / "p.png") as picture:
         assert (picture.mode, picture.size) == ("RGB", SIZE)
         pixels = np.asarray(picture).astype(float)
     assert pixels[0, 0] == pytest.approx([227, 224, 220], abs=3)  # LOOKS: the edge
-    assert np.abs(pixels[..., :3] - on_ground(shot, False)).max() == 0.0
+    assert np.abs(pixels[..., :3] - with_background(shot, False)).max() == 0.0
 
 
 def test_what_is_stopped_or_misnamed_leaves_no_file(tmp_path, studio):
-    shot = on_nothing(in_one_go(studio.shot((64, 64))), False)
+    shot = with_transparency(in_one_go(studio.render((64, 64))), False)
 
     def stop(what, share):
         if share > 0.2:

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.rendering.orientation_thumbnails import pictures, ways
+from app.rendering.orientation_thumbnails import option_thumbnails, orientation_options
 from app.rendering.scene import Scene
-from app.rendering.thumbnail import portrait
+from app.rendering.thumbnail import render_thumbnail
 from core.geometry.mesh import Mesh
 from core.scan.body import read_scan
 from core.scan.orientation.pose import Pose
@@ -27,7 +27,7 @@ def box(wide: float, deep: float, high: float) -> Mesh:
 
 
 def test_a_box_fills_its_part_of_the_picture_and_nothing_else() -> None:
-    picture = portrait(box(100.0, 40.0, 200.0), np.eye(3), (60, 100), CLAY)
+    picture = render_thumbnail(box(100.0, 40.0, 200.0), np.eye(3), (60, 100), CLAY)
     seen = picture[..., 3] > 127
     rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
     assert np.ptp(rows) + 1 == pytest.approx(92, abs=2)
@@ -36,9 +36,11 @@ def test_a_box_fills_its_part_of_the_picture_and_nothing_else() -> None:
 
 
 def test_the_near_side_is_seen_and_light_comes_from_the_front() -> None:
-    front = portrait(box(100.0, 40.0, 200.0), np.eye(3), (60, 100), CLAY)
-    back = portrait(box(100.0, 40.0, 200.0), np.diag([-1.0, -1.0, 1.0]), (60, 100), CLAY)
-    above = portrait(box(100.0, 40.0, 200.0), np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]), (60, 100), CLAY)
+    front = render_thumbnail(box(100.0, 40.0, 200.0), np.eye(3), (60, 100), CLAY)
+    back = render_thumbnail(box(100.0, 40.0, 200.0), np.diag([-1.0, -1.0, 1.0]), (60, 100), CLAY)
+    above = render_thumbnail(
+        box(100.0, 40.0, 200.0), np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]), (60, 100), CLAY
+    )
     assert np.array_equal(front[..., 3] > 127, back[..., 3] > 127), "a box looks the same from behind"
     assert np.flatnonzero(above[..., 3].any(axis=1)).size < 40, "from above it is low"
 
@@ -47,14 +49,14 @@ def test_four_ways_are_offered_as_the_scan_would_be_told_them() -> None:
     turn = np.eye(4)
     turn[:3, :3] = 10.0 * np.array([[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     pose = Pose("cm", "+y", "+x", turn, False, "", 0.1)
-    offered = ways(pose)
+    offered = orientation_options(pose)
     assert {way.up for way in offered} == {"+y"}
     fronts = [way.front for way in offered]
     assert fronts[0] == "+x"
     assert fronts[3] == "-x"
     assert set(fronts[1:3]) == {"+z", "-z"}
     for way in offered:
-        file_to_body = way.turn @ (turn[:3, :3] / 10.0)
+        file_to_body = way.rotation @ (turn[:3, :3] / 10.0)
         assert np.linalg.det(file_to_body) == pytest.approx(1.0)
         assert file_to_body[2] == pytest.approx([0.0, 1.0, 0.0])
 
@@ -63,14 +65,14 @@ def test_a_way_askew_is_told_by_its_numbers() -> None:
     c, s = np.cos(0.3), np.sin(0.3)
     turn = np.eye(4)
     turn[:3, :3] = [[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]]
-    way = ways(Pose("mm", "+z", "-y", turn, False, "", 0.1))[0]
+    way = orientation_options(Pose("mm", "+z", "-y", turn, False, "", 0.1))[0]
     assert [float(x) for x in way.up.split(",")] == pytest.approx([0.0, s, c], abs=1e-4)
     assert way.axes == ("+z", "-y")
 
 
 def test_the_picture_of_a_body_has_its_front_first(mannequin: Path) -> None:
     body = read_scan(mannequin)
-    painted = pictures(replace(body, pose=replace(body.pose, sure=False)), (60, 80), CLAY)
+    painted = option_thumbnails(replace(body, pose=replace(body.pose, is_certain=False)), (60, 80), CLAY)
     assert len(painted) == 4
     assert painted[0][0].axes == (body.pose.up, body.pose.front)
     for (_, picture), (_, other) in combinations(painted, 2):

@@ -7,10 +7,10 @@ import pytest
 from PIL import Image
 
 from app.presenters.lines import bands
-from app.rendering.offscreen import Studio, on_ground
-from app.rendering.turntable import FORMATS, Turntable, turn_round, write_turntable
+from app.rendering.offscreen import OffscreenRenderer, with_background
+from app.rendering.turntable import FORMATS, Turntable, render_turntable, write_turntable
 from core.errors import UserError
-from core.pipeline.solve import run
+from core.pipeline.solve import solve
 from core.progress import Cancelled, in_one_go
 
 SMALL = Turntable(frames=4, size=(120, 100), seconds=2.0)
@@ -20,17 +20,17 @@ SMALL = Turntable(frames=4, size=(120, 100), seconds=2.0)
 def reshaped(built):
     """A body with its bands, and no soft shadows, which are another test's."""
     stages = built("mannequin")
-    return stages, run(stages).control_points, bands(stages, ()), np.ones(len(stages.body.mesh.vertices))
+    return stages, solve(stages).control_points, bands(stages, ()), np.ones(len(stages.body.mesh.vertices))
 
 
 def shots_of(reshaped, turntable, hear=lambda *_: None):
-    with Studio(*reshaped, dark=turntable.dark) as studio:
+    with OffscreenRenderer(*reshaped, dark=turntable.dark) as studio:
         in_one_go(studio.set_up())
-        return in_one_go(turn_round(studio, turntable), hear)
+        return in_one_go(render_turntable(studio, turntable), hear)
 
 
 def pictures(reshaped, turntable):
-    return [on_ground(shot, turntable.dark).astype(float) for shot in shots_of(reshaped, turntable)]
+    return [with_background(shot, turntable.dark).astype(float) for shot in shots_of(reshaped, turntable)]
 
 
 @pytest.fixture(scope="module")
@@ -73,7 +73,7 @@ def test_it_begins_at_the_front_and_turns_to_the_left_side(reshaped):
 
 
 def test_before_and_after_stand_side_by_side_and_bands_are_worn_after(tmp_path, reshaped):
-    wide = Turntable(2, (200, 100), beside=True)
+    wide = Turntable(2, (200, 100), side_by_side=True)
     files = write_turntable(tmp_path / "t.png", shots_of(reshaped, wide), wide)
     with Image.open(files[0]) as picture:
         pixels = np.asarray(picture, dtype=float)

@@ -6,7 +6,7 @@ import numpy as np
 import pyvista as pv
 
 from app.rendering.scene import Scene
-from app.rendering.vertex_lighting import QuickLight
+from app.rendering.vertex_lighting import VertexLighting
 from core.geometry.mesh import Mesh
 
 
@@ -19,7 +19,7 @@ def test_quick_light_looks_like_that_of_every_pixel_and_goes_without_a_trace() -
     plotter.add_mesh(pv.Cube(x_length=100.0, y_length=500.0, z_length=80.0), name="flat", render=False)
     scene.set_view("three-quarter")
     scene.frame_all()
-    light = QuickLight(plotter)
+    light = VertexLighting(plotter)
     pictures = []
     for quickly in (False, True, True, False):
         light.use(quickly)
@@ -37,7 +37,7 @@ def test_quick_light_looks_like_that_of_every_pixel_and_goes_without_a_trace() -
 
 def test_what_comes_later_is_lit_quickly_too() -> None:
     plotter = pv.Plotter(off_screen=True, window_size=[64, 64], lighting="none")
-    scene, light = Scene(plotter), QuickLight(plotter)
+    scene, light = Scene(plotter), VertexLighting(plotter)
     light.use(True)
     ball = pv.Icosphere(radius=150.0, nsub=2)
     scene.show_body(Mesh(ball.points, ball.regular_faces))

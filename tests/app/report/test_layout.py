@@ -8,8 +8,8 @@ import pytest
 from PySide6.QtWidgets import QApplication
 
 from app.gui.theme.stylesheet import load_fonts
-from app.report.layout import Block, Column, flow
-from app.report.painter import elided, line_height, text_width, wrapped
+from app.report.layout import Block, Column, place_blocks
+from app.report.painter import elide, line_height, text_width, wrap
 
 
 def columns() -> Iterator[Column]:
@@ -23,7 +23,7 @@ def block(height: float, gap: float = 0.0, keep: bool = False) -> Block:
 
 
 def places(*blocks: Block) -> list[tuple[int, float, float]]:
-    return [(each.page, each.x, each.y) for each in flow(blocks, columns())[0]]
+    return [(each.page, each.x, each.y) for each in place_blocks(blocks, columns())[0]]
 
 
 def test_a_gap_is_between_blocks_and_not_at_the_head_of_a_column() -> None:
@@ -46,7 +46,7 @@ def test_pages_follow_and_what_fits_nowhere_has_a_column_of_its_own() -> None:
 
 
 def test_what_is_left_of_the_last_column_is_told() -> None:
-    assert flow([block(30.0), block(20.0, gap=5.0)], columns())[1] == Column(0, 10.0, 55.0, 100.0)
+    assert place_blocks([block(30.0), block(20.0, gap=5.0)], columns())[1] == Column(0, 10.0, 55.0, 100.0)
 
 
 @pytest.mark.parametrize(
@@ -58,7 +58,7 @@ def test_what_is_left_of_the_last_column_is_told() -> None:
 )
 def test_lines_hold_all_words_and_no_more_than_goes(qapp: QApplication, text: str) -> None:
     load_fonts()
-    lines = wrapped(text, "small", 40.0)
+    lines = wrap(text, "small", 40.0)
     assert len(lines) > 3
     assert all(text_width(line, "small") <= 40.0 + 1e-6 for line in lines)
     assert "".join(lines).replace(" ", "") == text.replace(" ", "")
@@ -67,11 +67,11 @@ def test_lines_hold_all_words_and_no_more_than_goes(qapp: QApplication, text: st
 
 def test_long_names_end_in_dots(qapp: QApplication) -> None:
     load_fonts()
-    assert elided("Anna", "body", 30.0) == "Anna"
-    short = elided("Anna " * 30, "body", 30.0)
+    assert elide("Anna", "body", 30.0) == "Anna"
+    short = elide("Anna " * 30, "body", 30.0)
     assert short.endswith("…")
     assert text_width(short, "body") <= 30.0
-    assert elided("Anna\nK.", "body", 30.0) == "Anna K.", "a name is one line"
+    assert elide("Anna\nK.", "body", 30.0) == "Anna K.", "a name is one line"
     assert line_height("title") > line_height("small") > 2.0
 
 
@@ -79,7 +79,7 @@ def test_the_last_line_of_a_text_is_never_a_letter_or_two(qapp: QApplication) ->
     load_fonts()
     text = "乳頭がはっきり見えません。バストポイントは乳房の形から推定しています。"
     for width in range(30, 100):
-        lines = wrapped(text, "small", float(width))
+        lines = wrap(text, "small", float(width))
         assert "".join(lines) == text
         assert len(lines) == 1 or len(lines[-1]) > 3
         assert max(text_width(line, "small") for line in lines) <= width

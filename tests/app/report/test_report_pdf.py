@@ -18,17 +18,17 @@ from PySide6.QtWidgets import QApplication
 from app.gui.theme.stylesheet import load_fonts
 from app.i18n.catalog import language, number, use_language
 from app.presenters.lines import line_colours
-from app.report.document import SHOT_SIZES, SHOTS, Handout
+from app.report.document import SHOT_SIZES, SHOTS, ReportDocument
 from app.report.pages import pages_of
 from app.report.painter import A4, MARGIN, TYPES
 from app.report.pdf import write_pdf
-from core.document.lines import LineTraits
+from core.document.lines import LineSettings
 from core.errors import UserError
-from core.export.report_data import Heading, Sheet, sheet_of
+from core.export.report_data import Heading, Report, make_report
 from core.garment.assessment import Assessment, Finding
 from core.garment.elastic_library import find_elastic
 from core.pipeline.build import Stages, build
-from core.pipeline.solve import run
+from core.pipeline.solve import solve
 
 LONG = "Customer 0412, who has a name so long that it never fits on one line of any sheet, however wide it is"
 HEADING = Heading("Bodysuit", "2026-11-22", "Customer 0412", "B", "eu")
@@ -36,16 +36,16 @@ Built = Callable[[str], Stages]
 
 
 @pytest.fixture(scope="module")
-def sheet(built: Built, qapp: QApplication) -> Sheet:
+def sheet(built: Built, qapp: QApplication) -> Report:
     """Four lines worn: two of elastics, one of none, one named by hand that does not move."""
     load_fonts()
     stages = built("mannequin")
     design = replace(stages.design, template="168").with_line("mid-bust", 0.7).with_line("full-bust", 0.98)
     design = design.with_line("under-bust", 0.75).with_elastic("mid-bust", find_elastic("plush 12"))
     design = design.with_elastic("under-bust", find_elastic("picot 10"))
-    design = design.with_traits(LineTraits("full-bust", title="Upper edge " * 5))
-    solution = run(build(design, stages))
-    return sheet_of(solution, solution.records, HEADING)
+    design = design.with_line_settings(LineSettings("full-bust", title="Upper edge " * 5))
+    solution = solve(build(design, stages))
+    return make_report(solution, solution.records, HEADING)
 
 
 def pictures() -> dict[str, QImage]:
@@ -57,12 +57,12 @@ def pictures() -> dict[str, QImage]:
     return found
 
 
-def handout(sheet: Sheet, drawn: bool = True) -> Handout:
+def handout(sheet: Report, drawn: bool = True) -> ReportDocument:
     names = [row.line for row in sheet.cuts.rows]
-    return Handout(sheet, pictures() if drawn else {}, line_colours(names))
+    return ReportDocument(sheet, pictures() if drawn else {}, line_colours(names))
 
 
-def written(of: Handout, path: Path, words: str = "en") -> Pdf:
+def written(of: ReportDocument, path: Path, words: str = "en") -> Pdf:
     write_pdf(path, pages_of(of, words), "sheet")
     return Pdf(path)
 
@@ -72,7 +72,7 @@ def told(value: float | None, digits: int, signed: bool = False) -> str:
 
 
 @pytest.mark.parametrize("words", ["en", "ja"])
-def test_every_figure_of_the_tables_is_that_of_the_data(sheet: Sheet, tmp_path: Path, words: str) -> None:
+def test_every_figure_of_the_tables_is_that_of_the_data(sheet: Report, tmp_path: Path, words: str) -> None:
     text = written(handout(sheet), tmp_path / "sheet.pdf", words).text()
     data = sheet.as_data()
     for row in data["measures"]:
@@ -110,7 +110,7 @@ def change_shown(row: dict[str, Any], digits: int) -> float | None:
 
 
 @pytest.mark.parametrize("words", ["en", "ja"])
-def test_it_is_two_pages_of_a4_with_its_type_inside(sheet: Sheet, tmp_path: Path, words: str) -> None:
+def test_it_is_two_pages_of_a4_with_its_type_inside(sheet: Report, tmp_path: Path, words: str) -> None:
     pdf = written(handout(sheet), tmp_path / "sheet.pdf", words)
     assert pdf.sizes == [(210, 297)] * 2
     fonts = pdf.fonts()
@@ -125,7 +125,7 @@ def test_it_is_two_pages_of_a4_with_its_type_inside(sheet: Sheet, tmp_path: Path
 @pytest.mark.parametrize("drawn", [True, False])
 @pytest.mark.parametrize("customer", ["", LONG])
 def test_no_text_leaves_the_margins_or_lies_over_another(
-    sheet: Sheet, tmp_path: Path, words: str, drawn: bool, customer: str
+    sheet: Report, tmp_path: Path, words: str, drawn: bool, customer: str
 ) -> None:
     changed = replace(sheet, heading=replace(HEADING, customer=customer, project=f"{LONG}.busk"))
     pdf = written(handout(changed, drawn), tmp_path / "sheet.pdf", words)
@@ -140,7 +140,7 @@ def test_no_text_leaves_the_margins_or_lies_over_another(
         assert [pair for pair in combinations(pieces, 2) if pair[0].overlaps(pair[1])] == []
 
 
-def test_long_names_end_in_dots_and_nobody_leaves_no_hole(sheet: Sheet, tmp_path: Path) -> None:
+def test_long_names_end_in_dots_and_nobody_leaves_no_hole(sheet: Report, tmp_path: Path) -> None:
     named = replace(sheet, heading=replace(HEADING, customer=LONG))
     text = written(handout(named), tmp_path / "named.pdf").text()
     assert LONG not in text
@@ -152,10 +152,10 @@ def test_long_names_end_in_dots_and_nobody_leaves_no_hole(sheet: Sheet, tmp_path
     assert abs(title.left - project.left) < 0.6, "the project stands where the customer would"
 
 
-def test_what_is_missing_is_said(sheet: Sheet, built: Built, tmp_path: Path) -> None:
+def test_what_is_missing_is_said(sheet: Report, built: Built, tmp_path: Path) -> None:
     stages = built("mannequin")
-    bare = run(build(replace(stages.design, lines=()), stages))
-    at_rest = sheet_of(bare, bare.records, HEADING)
+    bare = solve(build(replace(stages.design, lines=()), stages))
+    at_rest = make_report(bare, bare.records, HEADING)
     text = written(handout(at_rest, drawn=False), tmp_path / "bare.pdf").text()
     assert "No line is worn: there is nothing to cut." in text
     assert "No turns to plot: no line is worn." in text
@@ -175,7 +175,7 @@ def test_what_is_missing_is_said(sheet: Sheet, built: Built, tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("words", "said"), [("en", "could not be seen clearly"), ("ja", "バージスがはっきり見えません")]
 )
-def test_doubts_stand_on_the_first_page(sheet: Sheet, tmp_path: Path, words: str, said: str) -> None:
+def test_doubts_stand_on_the_first_page(sheet: Report, tmp_path: Path, words: str, said: str) -> None:
     unclear = "The fold under the left breast could not be seen clearly: please check it."
     doubted = replace(sheet, assessment=Assessment((Finding("landmarks", "caution", unclear),)))
     page = written(handout(doubted), tmp_path / "sheet.pdf", words)
@@ -183,7 +183,7 @@ def test_doubts_stand_on_the_first_page(sheet: Sheet, tmp_path: Path, words: str
     assert said not in "".join(piece.text for piece in page.pieces(1))
 
 
-def test_a_shape_that_is_no_result_tells_no_figure_of_it(sheet: Sheet, tmp_path: Path) -> None:
+def test_a_shape_that_is_no_result_tells_no_figure_of_it(sheet: Report, tmp_path: Path) -> None:
     folded = replace(sheet, state="folded", lift=None)
     text = written(handout(folded), tmp_path / "folded.pdf").text()
     assert text.count("No figure: the shape is no result.") == 3 + len(sheet.cuts.rows)
@@ -197,7 +197,7 @@ def test_a_shape_that_is_no_result_tells_no_figure_of_it(sheet: Sheet, tmp_path:
         assert " ".join((told(row["before"], 1), told(None, 0), told(None, 0))) in text, row["key"]
 
 
-def test_a_front_part_alone_is_no_great_figure(sheet: Sheet, tmp_path: Path) -> None:
+def test_a_front_part_alone_is_no_great_figure(sheet: Report, tmp_path: Path) -> None:
     parts = tuple(replace(row, front_only=True) for row in sheet.cuts.rows)
     text = written(handout(replace(sheet, cuts=replace(sheet.cuts, rows=parts))), tmp_path / "p.pdf").text()
     assert "No whole piece: front parts alone stand in the cut list." in text
@@ -205,13 +205,13 @@ def test_a_front_part_alone_is_no_great_figure(sheet: Sheet, tmp_path: Path) -> 
         assert cut.cut_mm is None or f"{cut.cut_mm:,.0f} mm" not in text
 
 
-def test_elastics_are_named_in_the_language_of_the_sheet(sheet: Sheet, tmp_path: Path) -> None:
+def test_elastics_are_named_in_the_language_of_the_sheet(sheet: Report, tmp_path: Path) -> None:
     text = written(handout(sheet), tmp_path / "ja.pdf", "ja").text()
     assert "Picot" not in text
     assert "plush" not in text
 
 
-def test_the_band_of_a_size_is_no_band_of_the_garment_in_japanese(sheet: Sheet, tmp_path: Path) -> None:
+def test_the_band_of_a_size_is_no_band_of_the_garment_in_japanese(sheet: Report, tmp_path: Path) -> None:
     text = written(handout(sheet), tmp_path / "ja.pdf", "ja").text()
     assert "アンダー EU 75" in text
     assert "バンド EU" not in text
@@ -221,7 +221,7 @@ def test_letters_are_large_enough_for_the_bench() -> None:
     assert min(size for kind, (size, *_) in TYPES.items() if kind != "axis") >= 7.5
 
 
-def test_a_garment_of_six_lines_is_two_pages_too(sheet: Sheet, tmp_path: Path) -> None:
+def test_a_garment_of_six_lines_is_two_pages_too(sheet: Report, tmp_path: Path) -> None:
     cuts, presses = sheet.cuts.rows * 2, sheet.pressures * 2
     rows = tuple(replace(row, line=f"own {k}", title=f"Own line {k}") for k, row in enumerate(cuts))
     notes = [(f"It goes straight over hollows for {k} mm: it does not press there.",) for k in range(6)]
@@ -231,7 +231,7 @@ def test_a_garment_of_six_lines_is_two_pages_too(sheet: Sheet, tmp_path: Path) -
         assert len(written(handout(six), tmp_path / f"{words}.pdf", words).sizes) == 2
 
 
-def test_many_lines_are_all_printed(sheet: Sheet, tmp_path: Path) -> None:
+def test_many_lines_are_all_printed(sheet: Report, tmp_path: Path) -> None:
     cut, press = sheet.cuts.rows[0], sheet.pressures[0]
     rows = tuple(replace(cut, line=f"own {k}", title=f"Own line {k}") for k in range(40))
     pressed = tuple(replace(press, line=row.line, title=row.title) for row in rows)
@@ -242,7 +242,7 @@ def test_many_lines_are_all_printed(sheet: Sheet, tmp_path: Path) -> None:
         assert all(piece.bottom <= A4[1] - MARGIN + 1.2 for piece in pdf.pieces(page))
 
 
-def test_lights_are_told_apart_without_colour(sheet: Sheet, tmp_path: Path) -> None:
+def test_lights_are_told_apart_without_colour(sheet: Report, tmp_path: Path) -> None:
     lights = {}
     for light in ("green", "amber", "red"):
         same = tuple(replace(row, light=light, notes=()) for row in sheet.pressures)
@@ -264,13 +264,13 @@ def test_lights_are_told_apart_without_colour(sheet: Sheet, tmp_path: Path) -> N
     assert not np.array_equal(lights["amber"], lights["red"])
 
 
-def test_a_sheet_is_whole_or_not_there(sheet: Sheet, tmp_path: Path) -> None:
+def test_a_sheet_is_whole_or_not_there(sheet: Report, tmp_path: Path) -> None:
     with pytest.raises(UserError):
         write_pdf(tmp_path / "no folder" / "sheet.pdf", pages_of(handout(sheet), "en"), "sheet")
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_disk_that_gets_full_leaves_the_former_sheet(sheet: Sheet, tmp_path: Path) -> None:
+def test_a_disk_that_gets_full_leaves_the_former_sheet(sheet: Report, tmp_path: Path) -> None:
     resource = pytest.importorskip("resource")
     path = tmp_path / "sheet.pdf"
     path.write_bytes(b"the former one")
@@ -284,7 +284,7 @@ def test_a_disk_that_gets_full_leaves_the_former_sheet(sheet: Sheet, tmp_path: P
     assert [each.read_bytes() for each in tmp_path.iterdir()] == [b"the former one"]
 
 
-def test_the_language_of_the_window_stays(sheet: Sheet) -> None:
+def test_the_language_of_the_window_stays(sheet: Report) -> None:
     use_language("en")
     pages_of(handout(sheet), "ja")
     assert language() == "en"

@@ -9,9 +9,9 @@ from shapes import torso
 from app.cli.main import main
 from app.research.control_study import CONTROLS, TURNS, Subject, _stays_below, trials
 from app.research.sphere import sphere_control
-from core.mechanics.options import LAWS, Mechanics
+from core.mechanics.options import LAWS, ModelOptions
 
-TORSO = Subject("torso", torso(), "mid-bust", Mechanics(volume_of="both"))
+TORSO = Subject("torso", torso(), "mid-bust", ModelOptions(volume_of="both"))
 
 
 def test_the_rows_of_one_length():
@@ -32,14 +32,14 @@ def test_the_rows_of_one_length():
 
 
 def test_an_adaptive_run_is_followed_until_it_rests():
-    subject = Subject("torso", torso(), "mid-bust", Mechanics(line_stiffness=200.0, volume_of="both"))
+    subject = Subject("torso", torso(), "mid-bust", ModelOptions(line_stiffness=200.0, volume_of="both"))
     (slow,) = trials(subject, (0.7,), ("adaptive",))
     assert slow.motion == "settling"
     assert slow.rest_at > slow.turns == TURNS
 
 
 def test_a_free_sphere_may_drift_and_turn():
-    sphere = Subject("sphere", sphere_control(), "horizontal", Mechanics("co-rotated", volume_of="both"))
+    sphere = Subject("sphere", sphere_control(), "horizontal", ModelOptions("co-rotated", volume_of="both"))
     (made,) = trials(sphere, (0.9,), ("adaptive",))
     assert made.away < 0.05
 

@@ -9,17 +9,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.presenters.scan_comparison import better_words
+from app.presenters.scan_comparison import improvement_text
 from benchmarks.worn_pairs import scanned, worn_mesh, written
-from core.analysis.calibration.api import CalibrationResult, Worn, calibrate, read_worn
-from core.analysis.calibration.fit import exact_answer
-from core.analysis.calibration.identifiability import not_told
-from core.analysis.calibration.parameters import MOST, Number, candidates, precision_before, rates_by
+from core.analysis.calibration.api import CalibrationResult, FittingScan, calibrate, read_fitting_scan
+from core.analysis.calibration.fit import solve_from
+from core.analysis.calibration.identifiability import unidentifiable
+from core.analysis.calibration.parameters import (
+    MOST,
+    Parameter,
+    candidate_parameters,
+    point_sensitivities,
+    prior_precision,
+)
 from core.analysis.calibration.registration import align
-from core.analysis.calibration.residuals import laid_on
-from core.analysis.calibration.robust_least_squares import Normal
-from core.analysis.calibration.surface_distance import WornSkin
-from core.document.calibration_record import Calibration, FoundNumber
+from core.analysis.calibration.residuals import aligned_fitting_scan
+from core.analysis.calibration.robust_least_squares import NormalEquations
+from core.analysis.calibration.surface_distance import ScanSurface
+from core.document.calibration_record import Calibration, FittedParameter
 from core.document.design import Design, ScanSource
 from core.document.serialization import from_json, to_json
 from core.document.storage.project_file import open_project
@@ -52,15 +58,15 @@ VARIANTS = {
 def test_slopes_by_numbers_are_those_of_differences(name: str) -> None:
     plan = VARIANTS[name]
     stages = build(plan)
-    here = exact_answer(stages)
-    numbers = candidates(stages, lengths=True, each=True)
+    here = solve_from(stages)
+    numbers = candidate_parameters(stages, lengths=True, each=True)
     assert 4 <= len(numbers) <= 6
-    rates = rates_by(stages, here, numbers)
+    rates = point_sensitivities(stages, here, numbers)
     for column, number in enumerate(numbers):
 
-        def moved(change: float, number: Number = number) -> np.ndarray:
-            there = build(number.found(plan, number.sought(plan) + change), stages)
-            return exact_answer(there, here.balance).balance.state.moved.ravel()
+        def moved(change: float, number: Parameter = number) -> np.ndarray:
+            there = build(number.from_unknown(plan, number.to_unknown(plan) + change), stages)
+            return solve_from(there, here.balance).balance.state.moved.ravel()
 
         far, near = (moved(2.0 * STEP) - moved(-2.0 * STEP)), (moved(STEP) - moved(-STEP))
         expected = (8.0 * near - far) / (12.0 * STEP)
@@ -68,7 +74,7 @@ def test_slopes_by_numbers_are_those_of_differences(name: str) -> None:
 
 
 @pytest.fixture(scope="module")
-def pair(tmp_path_factory: pytest.TempPathFactory) -> tuple[Stages, Worn, Design]:
+def pair(tmp_path_factory: pytest.TempPathFactory) -> tuple[Stages, FittingScan, Design]:
     """A design, a scan with the garment on that it knows nothing of, and the design that made it."""
     plan = design(firm_chest=0.03)
     truth = replace(plan, line_stiffness=7.0, firm_chest=0.07)
@@ -76,20 +82,20 @@ def pair(tmp_path_factory: pytest.TempPathFactory) -> tuple[Stages, Worn, Design
     rng = np.random.default_rng(8)
     mesh, _ = scanned(worn_mesh(stages, truth), stages, rng, noise=0.3, resampled=False, hole=15.0)
     path = written(mesh, tmp_path_factory.mktemp("worn") / "worn.ply")
-    return stages, read_worn(stages, ScanSource(path)), truth
+    return stages, read_fitting_scan(stages, ScanSource(path)), truth
 
 
 @pytest.fixture(scope="module")
-def found(pair: tuple[Stages, Worn, Design]) -> CalibrationResult:
+def found(pair: tuple[Stages, FittingScan, Design]) -> CalibrationResult:
     return calibrate(*pair[:2])
 
 
 def test_the_numbers_of_a_made_pair_are_found(
-    pair: tuple[Stages, Worn, Design], found: CalibrationResult
+    pair: tuple[Stages, FittingScan, Design], found: CalibrationResult
 ) -> None:
     _, _, truth = pair
-    assert found.helped
-    assert found.after.all_of_it.rms < 0.35 < found.before.all_of_it.rms
+    assert found.is_improved
+    assert found.after.total.rms < 0.35 < found.before.total.rms
     after = {number.name: number for number in found.calibration.numbers}
     for name in ("stiffness of mid-bust", "stiffness of full-bust"):
         assert after[name].after == pytest.approx(truth.line_stiffness, rel=0.1)
@@ -98,7 +104,7 @@ def test_the_numbers_of_a_made_pair_are_found(
 
 
 def test_lines_of_one_roll_share_a_stiffness_that_is_told_better(
-    pair: tuple[Stages, Worn, Design], found: CalibrationResult
+    pair: tuple[Stages, FittingScan, Design], found: CalibrationResult
 ) -> None:
     one = calibrate(*pair[:2], one_roll=True)
     told = {number.name: number for number in one.calibration.numbers}
@@ -115,56 +121,64 @@ def test_the_design_has_the_numbers_and_a_record(found: CalibrationResult) -> No
     assert kept.worn == "worn.ply"
     told = {number.name: number.after for number in kept.numbers}
     assert found.design.firm_chest == told["firm_chest"]
-    assert found.design.traits_of("mid-bust").stiffness == told["stiffness of mid-bust"]
+    assert found.design.line_settings("mid-bust").stiffness == told["stiffness of mid-bust"]
     assert found.design.ratio("mid-bust") == 0.85, "lengths stay as they were designed"
     assert from_json(to_json(found.design)) == found.design
 
 
 def test_what_was_found_is_found_again_and_helps_no_more(
-    pair: tuple[Stages, Worn, Design], found: CalibrationResult
+    pair: tuple[Stages, FittingScan, Design], found: CalibrationResult
 ) -> None:
     stages = build(found.design, pair[0])
     again = calibrate(stages, pair[1])
-    assert not again.helped
+    assert not again.is_improved
     for number in again.calibration.numbers:
         assert number.after == pytest.approx(number.before, rel=0.01)
 
 
-def test_length_and_stiffness_of_a_glued_line_are_not_told_apart(pair: tuple[Stages, Worn, Design]) -> None:
+def test_length_and_stiffness_of_a_glued_line_are_not_told_apart(
+    pair: tuple[Stages, FittingScan, Design],
+) -> None:
     stages = build(pair[0].design.with_line("full-bust", None), pair[0])
     both = calibrate(stages, pair[1], lengths=True)
-    assert both.confused["length of mid-bust"] == "line_stiffness"
+    assert both.confounded["length of mid-bust"] == "line_stiffness"
     stayed = next(number for number in both.calibration.numbers if number.name == "length of mid-bust")
     assert stayed.kept
     assert stayed.after == stayed.before == 0.85
     assert min(both.singular) < 1.0 < max(both.singular)
 
 
-def test_without_a_line_that_moves_the_body_nothing_is_found(pair: tuple[Stages, Worn, Design]) -> None:
+def test_without_a_line_that_moves_the_body_nothing_is_found(
+    pair: tuple[Stages, FittingScan, Design],
+) -> None:
     bare = build(replace(pair[0].design, lines=()), pair[0])
     with pytest.raises(UserError, match="No line that moves the body is worn"):
         calibrate(bare, pair[1])
 
 
-def test_the_scan_without_the_garment_tells_nothing_of_its_lines(pair: tuple[Stages, Worn, Design]) -> None:
+def test_the_scan_without_the_garment_tells_nothing_of_its_lines(
+    pair: tuple[Stages, FittingScan, Design],
+) -> None:
     stages = pair[0]
-    worn = Worn("bare.ply", stages.body, align(stages, stages.body), WornSkin(stages.body.mesh), {}, {})
+    worn = FittingScan(
+        "bare.ply", stages.body, align(stages, stages.body), ScanSurface(stages.body.mesh), {}, {}
+    )
     found = calibrate(stages, worn)
-    assert found.after.all_of_it.rms < 0.5 * found.before.all_of_it.rms, "it fits, by numbers of no line"
+    assert found.after.total.rms < 0.5 * found.before.total.rms, "it fits, by numbers of no line"
     assert found.at_end
-    assert not found.helped
-    assert better_words(found, stages.design).startswith("Not found: ")
+    assert not found.is_improved
+    assert improvement_text(found, stages.design).startswith("Not found: ")
 
 
 def test_where_most_remains_it_is_not_of_the_numbers(
-    pair: tuple[Stages, Worn, Design], found: CalibrationResult
+    pair: tuple[Stages, FittingScan, Design], found: CalibrationResult
 ) -> None:
     stages, worn, _ = pair
     wider = worn.body.mesh.moved(worn.body.mesh.vertices * (1.02, 1.02, 1.0))
     body = replace(worn.body, mesh=wider)
-    other = calibrate(stages, laid_on("wider.ply", body, align(stages, body)))
-    assert other.explains_little
-    assert not found.explains_little
+    other = calibrate(stages, aligned_fitting_scan("wider.ply", body, align(stages, body)))
+    assert other.has_large_residual
+    assert not found.has_large_residual
 
 
 def test_numbers_that_are_all_told_weakly_are_a_hint(found: CalibrationResult) -> None:
@@ -174,12 +188,15 @@ def test_numbers_that_are_all_told_weakly_are_a_hint(found: CalibrationResult) -
         return replace(found, design=replace(found.design, calibration=replace(record, numbers=numbers)))
 
     well, weakly = told(0.04), told(0.06)
-    assert [(each.helped, each.weak) for each in (well, weakly)] == [(True, False), (True, True)]
-    assert better_words(well, well.design).endswith(" mm."), "the plain outcome"
-    assert better_words(weakly, weakly.design).endswith("take them as a hint.")
+    assert [(each.is_improved, each.is_poorly_determined) for each in (well, weakly)] == [
+        (True, False),
+        (True, True),
+    ]
+    assert improvement_text(well, well.design).endswith(" mm."), "the plain outcome"
+    assert improvement_text(weakly, weakly.design).endswith("take them as a hint.")
 
 
-def test_a_calibration_is_cancelled(pair: tuple[Stages, Worn, Design]) -> None:
+def test_a_calibration_is_cancelled(pair: tuple[Stages, FittingScan, Design]) -> None:
     def stop(what: str, share: float) -> None:
         raise Cancelled
 
@@ -189,13 +206,13 @@ def test_a_calibration_is_cancelled(pair: tuple[Stages, Worn, Design]) -> None:
 
 def test_each_line_or_one_stiffness_for_all() -> None:
     stages = build(VARIANTS["glued"])
-    both = [candidates(stages, lengths=False, each=each) for each in (True, False)]
+    both = [candidate_parameters(stages, lengths=False, each=each) for each in (True, False)]
     assert [[number.name for number in numbers] for numbers in both] == [
         ["stiffness of mid-bust", "stiffness of full-bust", "firm_chest"],
         ["line_stiffness", "firm_chest"],
     ]
     elastic = build(VARIANTS["elastic"])
-    assert [number.name for number in candidates(elastic, lengths=False, each=True)] == [
+    assert [number.name for number in candidate_parameters(elastic, lengths=False, each=True)] == [
         "line_stiffness",
         "tissue_stiffness",
         "firm_chest",
@@ -204,8 +221,12 @@ def test_each_line_or_one_stiffness_for_all() -> None:
 
 
 def test_lines_are_taken_to_be_somewhat_alike_before_a_scan_tells_more() -> None:
-    numbers = Number("stiffness", ("mid-bust",)), Number("stiffness", ("full-bust",)), Number("firm_chest")
-    known = np.linalg.inv(precision_before(numbers))
+    numbers = (
+        Parameter("stiffness", ("mid-bust",)),
+        Parameter("stiffness", ("full-bust",)),
+        Parameter("firm_chest"),
+    )
+    known = np.linalg.inv(prior_precision(numbers))
     one, other, chest = np.sqrt(np.diag(known))
     assert [one, other] == pytest.approx([np.sqrt(1.25)] * 2)
     assert np.sqrt(known[0, 0] + known[1, 1] - 2.0 * known[0, 1]) == pytest.approx(0.5 * np.sqrt(2.0))
@@ -219,33 +240,33 @@ def test_many_lines_share_one_stiffness() -> None:
     for line in stages.model.lines:
         if line.constrains:
             plan = plan.with_line(line.name, 0.95)
-    many = candidates(build(plan, stages), lengths=False)
+    many = candidate_parameters(build(plan, stages), lengths=False)
     assert len(many) <= MOST
     assert "firm_chest" in [number.name for number in many]
 
 
 def test_a_number_stays_where_the_scans_say_next_to_nothing_of_it() -> None:
-    numbers = Number("line_stiffness"), Number("firm_chest")
-    sure = Normal(np.eye(2), np.zeros(2), np.diag([0.7, 0.07]) ** 2)
-    unsure = Normal(np.eye(2), np.zeros(2), np.diag([0.7, 0.09]) ** 2)
-    assert not_told(sure, numbers).tolist() == [False, False]
-    assert not_told(unsure, numbers).tolist() == [False, True]
+    numbers = Parameter("line_stiffness"), Parameter("firm_chest")
+    sure = NormalEquations(np.eye(2), np.zeros(2), np.diag([0.7, 0.07]) ** 2)
+    unsure = NormalEquations(np.eye(2), np.zeros(2), np.diag([0.7, 0.09]) ** 2)
+    assert unidentifiable(sure, numbers).tolist() == [False, False]
+    assert unidentifiable(unsure, numbers).tolist() == [False, True]
 
 
 def test_a_number_is_told_well_by_its_plus_minus() -> None:
-    assert FoundNumber("firm_chest", 0.05, 0.1, 0.005).told
-    assert not FoundNumber("firm_chest", 0.05, 0.1, 0.006).told
-    assert not FoundNumber("firm_chest", 0.05, 0.05, 0.0, kept=True).told
+    assert FittedParameter("firm_chest", 0.05, 0.1, 0.005).is_well_determined
+    assert not FittedParameter("firm_chest", 0.05, 0.1, 0.006).is_well_determined
+    assert not FittedParameter("firm_chest", 0.05, 0.05, 0.0, kept=True).is_well_determined
 
 
 def test_a_design_without_a_calibration_is_written_as_ever() -> None:
     plain = Design(ScanSource("a.ply"))
     assert "calibration" not in json.loads(to_json(plain))
-    record = Calibration("worn.ply", 3.1, 1.4, (FoundNumber("firm_chest", 0.0, 0.1, 0.01),), 1.0)
+    record = Calibration("worn.ply", 3.1, 1.4, (FittedParameter("firm_chest", 0.0, 0.1, 0.01),), 1.0)
     kept = replace(plain, calibration=record)
     assert json.loads(to_json(kept))["format"] == 1, "a program that knows nothing of it keeps it"
     assert from_json(to_json(kept)) == kept
-    assert kept.acts_as(plain)
+    assert kept.is_equivalent(plain)
 
 
 @pytest.mark.parametrize(

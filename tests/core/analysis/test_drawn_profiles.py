@@ -8,11 +8,17 @@ import numpy as np
 import pytest
 
 from app.presenters.samples import sample_design
-from core.analysis.inverse_design.profile_curve import FARTHEST, Drawn, drawn, from_table, outline
+from core.analysis.inverse_design.profile_curve import (
+    FARTHEST,
+    ProfileCurve,
+    profile_at,
+    profile_from_table,
+    profile_points,
+)
 from core.analysis.inverse_design.quantities import profile_name, reading
 from core.document.presets import built_in, with_preset
 from core.pipeline.build import Stages, build
-from core.pipeline.exact import answer_of
+from core.pipeline.exact import exact_solution
 
 
 def body(name: str) -> Stages:
@@ -25,11 +31,11 @@ def stages() -> Stages:
 
 
 @pytest.fixture(scope="module")
-def profile(stages: Stages) -> Drawn:
-    return drawn(stages, "left", stages.control.mesh.vertices)
+def profile(stages: Stages) -> ProfileCurve:
+    return profile_at(stages, "left", stages.control.mesh.vertices)
 
 
-def test_it_begins_with_the_skin_and_asks_for_nothing(stages: Stages, profile: Drawn) -> None:
+def test_it_begins_with_the_skin_and_asks_for_nothing(stages: Stages, profile: ProfileCurve) -> None:
     points = stages.control.mesh.vertices
     for height, out in profile.base[::8].tolist():
         assert out == pytest.approx(reading(stages, profile_name("left", height))(points).value, abs=1e-3)
@@ -38,17 +44,17 @@ def test_it_begins_with_the_skin_and_asks_for_nothing(stages: Stages, profile: D
     assert 3 <= len(profile.handles) <= 6
     foremost = profile.base[:, 1].argmax()
     assert foremost in profile.handles
-    places = outline(stages, profile, points)
+    places = profile_points(stages, profile, points)
     assert places[:, 2] == pytest.approx(profile.base[:, 0])
     assert -places[:, 1] == pytest.approx(profile.base[:, 1])
     assert np.ptp(places[:, 0]) == 0.0
 
 
-def test_a_pulled_handle_takes_the_curve_along_softly(stages: Stages, profile: Drawn) -> None:
-    pulled = profile.pulled(1, 4.0, -3.0)
+def test_a_pulled_handle_takes_the_curve_along_softly(stages: Stages, profile: ProfileCurve) -> None:
+    pulled = profile.with_moved_handle(1, 4.0, -3.0)
     before, here, after = profile.handles[:3]
-    assert pulled.spots[1] == pytest.approx(profile.base[here] + [4.0, -3.0])
-    assert pulled.curve[here] == pytest.approx(pulled.spots[1])
+    assert pulled.handle_positions[1] == pytest.approx(profile.base[here] + [4.0, -3.0])
+    assert pulled.curve[here] == pytest.approx(pulled.handle_positions[1])
     moved = pulled.curve - profile.base
     assert moved[[before, after]] == pytest.approx(np.full((2, 2), [2.0, -1.5])), "those beside it follow"
     assert np.abs(moved[profile.handles[3] :]).max() == 0.0, "no further"
@@ -64,17 +70,17 @@ def test_a_pulled_handle_takes_the_curve_along_softly(stages: Stages, profile: D
     assert outs == pytest.approx(np.interp(heights, *pulled.curve.T), abs=1e-6)
 
 
-def test_a_handle_that_a_hand_has_set_stays(profile: Drawn) -> None:
-    pulled = profile.pulled(1, 0.0, 4.0).pulled(2, 0.0, 6.0)
+def test_a_handle_that_a_hand_has_set_stays(profile: ProfileCurve) -> None:
+    pulled = profile.with_moved_handle(1, 0.0, 4.0).with_moved_handle(2, 0.0, 6.0)
     assert pulled.steps[:, 1] == pytest.approx([2.0, 4.0, 8.0, 3.0])
-    again = pulled.pulled(1, 0.0, -4.0)
+    again = pulled.with_moved_handle(1, 0.0, -4.0)
     assert again.steps[:3, 1] == pytest.approx([0.0, 0.0, 8.0])
 
 
-def test_a_handle_goes_only_so_far_and_the_ends_stay(profile: Drawn) -> None:
+def test_a_handle_goes_only_so_far_and_the_ends_stay(profile: ProfileCurve) -> None:
     far = profile
     for _ in range(3):
-        far = far.pulled(0, 0.0, 40.0)
+        far = far.with_moved_handle(0, 0.0, 40.0)
     assert far.steps[0].tolist() == [0.0, FARTHEST]
     assert far.curve[[0, -1]] == pytest.approx(profile.base[[0, -1]])
     assert profile.steps.max() == 0.0, "the one before is as it was"
@@ -82,24 +88,24 @@ def test_a_handle_goes_only_so_far_and_the_ends_stay(profile: Drawn) -> None:
 
 def test_where_a_breast_hangs_over_the_lower_end_is_a_handle() -> None:
     stages = body("person")
-    profile = drawn(stages, "left", stages.control.mesh.vertices)
+    profile = profile_at(stages, "left", stages.control.mesh.vertices)
     assert profile.handles[0] == 0
     assert profile.base[0, 0] > stages.control.mesh.vertices[~stages.control.fixed, 2].min() + 2.0
-    assert profile.pulled(0, 0.0, 5.0).curve[0, 1] == pytest.approx(profile.base[0, 1] + 5.0)
+    assert profile.with_moved_handle(0, 0.0, 5.0).curve[0, 1] == pytest.approx(profile.base[0, 1] + 5.0)
     # Lifted it hangs over further up: its outline ends there, and does not jump to the chest.
     lifted = with_preset(stages.design, next(each for each in built_in() if each.title == "Bra"))
     for name in ("strap left", "strap right"):
         lifted = lifted.with_line(name, 0.86)
-    places = outline(stages, profile, answer_of(build(lifted, stages)).place.points)
+    places = profile_points(stages, profile, exact_solution(build(lifted, stages)).place.points)
     assert len(places) > 0.5 * len(profile.base)
     assert np.abs(np.diff(places[:, 1])).max() < 3.0 * np.diff(places[:, 2]).max()
 
 
-def test_a_table_is_asked_for_as_it_is_and_can_be_dragged_on(stages: Stages, profile: Drawn) -> None:
+def test_a_table_is_asked_for_as_it_is_and_can_be_dragged_on(stages: Stages, profile: ProfileCurve) -> None:
     table = profile.base[::2] + np.array([0.0, 1.0])
-    given = from_table(stages, "left", table)
+    given = profile_from_table(stages, "left", table)
     goals = given.goals(stages)
     assert [goal.value for goal in goals] == pytest.approx(table[:, 1].tolist())
-    pulled = given.pulled(1, 0.0, 4.0)
+    pulled = given.with_moved_handle(1, 0.0, 4.0)
     assert max(goal.value for goal in pulled.goals(stages)) > max(goal.value for goal in goals) + 3.0
-    assert len(from_table(stages, "left", table[:3]).handles) == 0
+    assert len(profile_from_table(stages, "left", table[:3]).handles) == 0

@@ -10,7 +10,7 @@ from slopes import doubled, slope
 
 from app.presenters.samples import sample_design
 from core.analysis.inverse_design.quantities import Figures
-from core.analysis.inverse_design.sensitivities import Answers
+from core.analysis.inverse_design.sensitivities import LinearizedSolutions
 from core.document.presets import built_in, with_preset
 from core.pipeline.active_lines import free_lines
 from core.pipeline.build import Stages, build
@@ -37,38 +37,38 @@ def plain() -> Stages:
 @pytest.mark.parametrize("choice", CHOICES, ids=str)
 def test_slopes_are_those_of_differences(plain: Stages, choice: dict[str, str | bool]) -> None:
     stages = doubled(build(replace(plain.design, **choice), plain))
-    answers = Answers(stages, GROUPS, Figures(stages).of(("lift", "out left", "girth", *HEIGHTS)))
+    answers = LinearizedSolutions(stages, GROUPS, Figures(stages).of(("lift", "out left", "girth", *HEIGHTS)))
     look = answers(HERE)
     for column, way in enumerate(np.eye(2)):
 
         def figures(t: float, way: np.ndarray = way) -> np.ndarray:
             there = answers(HERE + t * way)
-            return np.concatenate([there.values, there.pulls, there.margins, [there.least_margin()[0]]])
+            return np.concatenate([there.values, there.tensions, there.margins, [there.least_margin()[0]]])
 
         expected = slope(figures, 0.01)
-        slopes = look.by_values, look.by_pulls, look.by_margins, look.least_margin()[1][None]
+        slopes = look.by_values, look.by_tensions, look.by_margins, look.least_margin()[1][None]
         told = np.concatenate(slopes)[:, column]
         assert told == pytest.approx(expected, rel=1e-6, abs=1e-6 * np.abs(expected).max())
 
 
 def test_answers_are_those_from_rest_and_worked_out_once(plain: Stages) -> None:
-    answers = Answers(plain, GROUPS, Figures(plain).of(["out"]))
+    answers = LinearizedSolutions(plain, GROUPS, Figures(plain).of(["out"]))
     assert answers(HERE) is answers(HERE.copy())
     assert len(answers) == 1
-    assert answers.checked(HERE)
+    assert answers.is_reachable_from_original(HERE)
 
 
 def test_locked_kept_and_still_lines_stay_and_linked_ones_go_together(plain: Stages) -> None:
     straps = next(each for each in built_in() if any("strap" in line.line for line in each.lines))
     design = with_preset(plain.design, straps)
-    for name in sorted(design.worn()):
+    for name in sorted(design.active_lines()):
         design = design.with_line(name, 0.95)
     stages = build(design, plain)
     groups = free_lines(stages)
     assert ("strap left", "strap right") in groups
     assert all(line.constrains for group in groups for line in stages.model.lines if line.name in group)
     assert ("strap left", "strap right") not in free_lines(stages, ["strap right"])
-    locked = design.with_traits(replace(design.traits_of("mid-bust"), locked=True))
+    locked = design.with_line_settings(replace(design.line_settings("mid-bust"), locked=True))
     assert ("mid-bust",) in groups
     assert ("mid-bust",) not in free_lines(build(locked, stages))
     alone = design.with_line("strap right", 0.9)

@@ -9,12 +9,12 @@ import core.analysis.length_limits.limits
 from core.analysis.length_limits.bracketing import _worth_a_look
 from core.analysis.length_limits.criteria import COSTLY
 from core.analysis.length_limits.limits import limits_of
-from core.analysis.length_limits.samples import Length, Stop, guess, nearest
-from core.document.lines import WornLine
+from core.analysis.length_limits.samples import Length, Sample, extrapolate, nearest
+from core.document.lines import ActiveLine
 from core.garment.elastic_library import find_elastic
 from core.mechanics.solver_comparison import shape_of
 from core.pipeline.build import build
-from core.pipeline.exact import balance_of
+from core.pipeline.exact import exact_equilibrium
 
 
 def stops_with(margin, ratios):
@@ -25,7 +25,7 @@ def stops_with(margin, ratios):
         asked.append(found)
         return margin(found)
 
-    return [Stop(Length(ratio, 0.0), ratio, {"vibrating": look}) for ratio in ratios], asked
+    return [Sample(Length(ratio, 0.0), ratio, {"vibrating": look}) for ratio in ratios], asked
 
 
 def test_a_margin_that_runs_straight_is_looked_at_three_times() -> None:
@@ -65,21 +65,21 @@ def walked(stages, name, monkeypatch):
     """The limits of a line, and the walk that told them."""
     walks = []
 
-    class Noted(core.analysis.length_limits.limits.Walk):
+    class Noted(core.analysis.length_limits.limits.LineSearch):
         def __init__(self, *given):
             super().__init__(*given)
             walks.append(self)
 
-    monkeypatch.setattr(core.analysis.length_limits.limits, "Walk", Noted)
+    monkeypatch.setattr(core.analysis.length_limits.limits, "LineSearch", Noted)
     return limits_of(stages, name, through=False), walks[0]
 
 
 def test_the_way_of_an_elastic_takes_long_strides_and_few_costly_looks(built, monkeypatch) -> None:
     stages = built("person")
-    design = replace(stages.design, lines=(WornLine("mid-bust", 0.9), WornLine("full-bust", 0.95)))
+    design = replace(stages.design, lines=(ActiveLine("mid-bust", 0.9), ActiveLine("full-bust", 0.95)))
     stages = build(design.with_elastic("mid-bust", find_elastic("strap 15")), stages)
     limits, walk = walked(stages, "mid-bust", monkeypatch)
-    way = limits.rest.ratio - limits.looked.short.ratio
+    way = limits.rest.ratio - limits.evaluated.short.ratio
     assert way > 0.4
     assert len(walk.stops) < way / 0.025 * 0.7
     looked = {sign: sum(sign in stop.known for stop in walk.stops) for sign in COSTLY}
@@ -88,7 +88,7 @@ def test_the_way_of_an_elastic_takes_long_strides_and_few_costly_looks(built, mo
     begins = limits.below("pressing")
     assert begins is not None
     three = [stop for stop in walk.stops if abs(stop.length.ratio - 0.7) < 0.1][:3]
-    way_on = guess(three, 0.7).points
+    way_on = extrapolate(three, 0.7).points
     there = walk.near(0.7, three[0].found)
     assert np.abs(way_on - there.found.points).max() < 0.1, "strides are as long as guesses are good"
 
@@ -100,11 +100,11 @@ def test_zones_are_those_of_the_volume_that_a_design_holds(built, sample, contac
     """Held by the control mesh, strain begins up to half a percent away from there."""
     stages = built(sample)
     design = replace(stages.design, dense_volume=True, line_contact=contact, volume="exact")
-    dense = build(replace(design, lines=(WornLine("full-bust", 1.0),)), stages)
-    begins = limits_of(dense, "full-bust", through=False).begins[sign].ratio
+    dense = build(replace(design, lines=(ActiveLine("full-bust", 1.0),)), stages)
+    begins = limits_of(dense, "full-bust", through=False).onsets[sign].ratio
     for ratio, shown in ((begins - 1e-3, True), (begins + 1e-3, False)):
-        tried = build(replace(design, lines=(WornLine("full-bust", ratio),)), dense)
-        points = tried.model.tensegric.expand(balance_of(tried).state.moved)
-        assert getattr(shape_of(tried.model).condition(points), sign) == shown
+        tried = build(replace(design, lines=(ActiveLine("full-bust", ratio),)), dense)
+        points = tried.model.tensegric.expand(exact_equilibrium(tried).state.moved)
+        assert getattr(shape_of(tried.model).quality(points), sign) == shown
     plain = build(replace(dense.design, dense_volume=False), dense)
-    assert abs(limits_of(plain, "full-bust", through=False).begins[sign].ratio - begins) > 1.5e-3
+    assert abs(limits_of(plain, "full-bust", through=False).onsets[sign].ratio - begins) > 1.5e-3

@@ -7,23 +7,23 @@ import numpy as np
 import pytest
 
 from core.analysis.length_limits.limits import Length, Limits, Span, limits_of
-from core.analysis.length_limits.zones import Leeway, Reason, leeway, leeway_of
-from core.document.lines import WornLine
+from core.analysis.length_limits.zones import LengthLimits, Reason, length_limits_of, to_length_limits
+from core.document.lines import ActiveLine
 from core.garment.elastic_library import find_elastic
 from core.garment.pressure import pressures
-from core.garment.pressure_limits import comfort
+from core.garment.pressure_limits import pressure_limits
 from core.garment.tension import line_tensions
 from core.mechanics.constraint_lines import RATIO_LIMITS
 from core.mechanics.exact_solution import solve_exact
-from core.mechanics.iteration import Targets, iterate
-from core.pipeline.build import Stages, build, targets_of
+from core.mechanics.iteration import LineTargets, iterate
+from core.pipeline.build import Stages, build, line_targets
 
 
 def dressed(built, sample="mannequin", elastic=None, **lines) -> Stages:
     """A sample with these lines worn; ``elastic`` for the mid-bust line; other words are of the design."""
     stages = built(sample)
     ratios = {name.replace("_", "-"): lines.pop(name) for name in ("mid_bust", "full_bust") if name in lines}
-    worn = tuple(WornLine(name, ratio) for name, ratio in sorted(ratios.items(), reverse=True))
+    worn = tuple(ActiveLine(name, ratio) for name, ratio in sorted(ratios.items(), reverse=True))
     design = replace(stages.design, lines=tuple(sorted(worn, key=lambda line: line.name)), **lines)
     if elastic:
         design = design.with_elastic("mid-bust", find_elastic(elastic))
@@ -39,18 +39,18 @@ def limits_that(built, shows, looked=(0.8, 1.05), **more) -> Limits:
     return Limits(line, None, (), shows, Length(1.0, 400.0), span(*looked), **more)
 
 
-def tones(found: Leeway):
+def tones(found: LengthLimits):
     return [(zone.tone, round(zone.short, 4), round(zone.long, 4)) for zone in found.zones]
 
 
-def reason(found: Leeway | None, why: str) -> Reason:
+def reason(found: LengthLimits | None, why: str) -> Reason:
     assert found is not None
     return next(each for zone in found.zones for each in zone.reasons if each.why == why)
 
 
 def test_zones_follow_from_what_shows_where(built):
     shows = {"strained": (span(0.8, 0.94),), "folded": (span(0.8, 0.85),), "slack": (span(1.0, 1.05),)}
-    found = leeway(limits_that(built, shows))
+    found = to_length_limits(limits_that(built, shows))
     assert tones(found) == [
         ("red", 0.5, 0.85),
         ("amber", 0.85, 0.94),
@@ -70,46 +70,46 @@ def test_zones_follow_from_what_shows_where(built):
 
 
 def test_a_reason_that_comes_and_goes_is_told_where_it_is(built):
-    found = leeway(limits_that(built, {"vibrating": (span(0.88, 0.92),)}))
+    found = to_length_limits(limits_that(built, {"vibrating": (span(0.88, 0.92),)}))
     assert tones(found) == [("green", 0.5, 0.88), ("amber", 0.88, 0.92), ("green", 0.92, 1.3)]
     assert found.red_below is None
 
 
 def test_what_swings_under_any_control_is_not_told_of_the_conventional_one_too(built):
     shows = {"vibrating": (span(0.88, 0.92),), "restless": (span(0.86, 0.94),)}
-    found = leeway(limits_that(built, shows))
+    found = to_length_limits(limits_that(built, shows))
     assert tones(found) == [("green", 0.5, 0.86), ("amber", 0.86, 0.94), ("green", 0.94, 1.3)]
     assert found.at(0.9).reasons == (Reason("restless", 0.86, 0.94),)
 
 
 def test_after_the_first_red_all_is_red(built):
     shows = {"overstrained": (span(0.8, 0.82), span(0.86, 0.9)), "strained": (span(0.8, 0.95),)}
-    found = leeway(limits_that(built, shows))
+    found = to_length_limits(limits_that(built, shows))
     assert tones(found)[0] == ("red", 0.5, 0.9)
-    assert leeway(limits_that(built, shows, last=Length(0.8, 320.0))).red_below == 0.9
+    assert to_length_limits(limits_that(built, shows, last=Length(0.8, 320.0))).red_below == 0.9
 
 
 def test_what_is_red_at_rest_may_be_mended_by_a_shorter_line(built):
     shows = {"overstrained": (span(0.8, 0.85), span(0.97, 1.05)), "strained": (span(0.8, 1.05),)}
-    found = leeway(limits_that(built, shows))
+    found = to_length_limits(limits_that(built, shows))
     assert [tone for tone, *_ in tones(found)] == ["red", "amber", "red"]
     assert found.red_below == 0.85
     assert found.at(1.0).reasons[0].others
-    assert found.at(0.9).reasons[0].always
+    assert found.at(0.9).reasons[0].is_independent
 
 
 def test_no_balance_is_red_and_none_at_all_has_no_zones(built):
-    found = leeway(limits_that(built, {"strained": ()}, last=Length(0.83, 330.0)))
+    found = to_length_limits(limits_that(built, {"strained": ()}, last=Length(0.83, 330.0)))
     assert tones(found) == [("red", 0.5, 0.83), ("green", 0.83, 1.3)]
     assert found.at(0.6).reasons[0].why == "unreachable"
-    nowhere = replace(limits_that(built, {}), rest=None, looked=None, found=False)
-    assert leeway(nowhere) is None
+    nowhere = replace(limits_that(built, {}), rest=None, evaluated=None, found=False)
+    assert to_length_limits(nowhere) is None
 
 
 @pytest.mark.parametrize("contact", ["glued", "sliding"])
 @pytest.mark.parametrize("sample", ["mannequin", "person"])
 def test_zones_cover_all_lengths_once(built, sample, contact):
-    found = leeway_of(dressed(built, sample, mid_bust=0.95, line_contact=contact), "full-bust")
+    found = length_limits_of(dressed(built, sample, mid_bust=0.95, line_contact=contact), "full-bust")
     assert (found.zones[0].short, found.zones[-1].long) == RATIO_LIMITS
     for one, other in pairwise(found.zones):
         assert one.long == other.short
@@ -119,10 +119,10 @@ def test_zones_cover_all_lengths_once(built, sample, contact):
 def swings(stages: Stages, name: str, ratio: float) -> float:
     """How the flip-flop of the conventional volume error grows over 200 late turns, made from rest [1]."""
     lines = tuple(
-        WornLine(each.name, ratio if each.name == name else each.ratio) for each in stages.design.lines
+        ActiveLine(each.name, ratio if each.name == name else each.ratio) for each in stages.design.lines
     )
     stages = build(replace(stages.design, lines=lines), stages)
-    targets = Targets(targets_of(stages.design, stages).ratios, "conventional", stages.gain)
+    targets = LineTargets(line_targets(stages.design, stages).ratios, "conventional", stages.gain)
     made = iterate(stages.model, lambda: targets, turns=900)
     flips = np.abs(np.diff([record.error for _, record in made], 2))
     return float(flips[-20:].mean() / flips[-220:-200].mean())
@@ -144,7 +144,7 @@ def test_turns_swing_where_it_is_told_and_not_a_percent_away(built, sample, word
         (end.ratio, side)
         for each in found.shows["vibrating"]
         for end, side in ((each.short, -1.0), (each.long, 1.0))
-        if found.looked.short.ratio < end.ratio < found.looked.long.ratio
+        if found.evaluated.short.ratio < end.ratio < found.evaluated.long.ratio
     ]
     assert ends
     for ratio, calm in ends:
@@ -155,14 +155,14 @@ def test_turns_swing_where_it_is_told_and_not_a_percent_away(built, sample, word
 def rests(stages: Stages, ratio: float) -> bool:
     """Whether turns of the adaptive control, with the mid-bust line at this length, come to rest."""
     stages = build(stages.design.with_line("mid-bust", ratio), stages)
-    targets = Targets(targets_of(stages.design, stages).ratios)
+    targets = LineTargets(line_targets(stages.design, stages).ratios)
     return any(made.step < 1e-6 for _, made in iterate(stages.model, lambda: targets, turns=1000))
 
 
 def test_lines_that_act_one_turn_late_are_amber_where_turns_never_rest(built):
     words = {"mid_bust": 0.95, "full_bust": 0.93, "line_force": "explicit", "line_contact": "sliding"}
     stages = dressed(built, "person", **words, line_stiffness=1.0)
-    found = leeway_of(stages, "mid-bust")
+    found = length_limits_of(stages, "mid-bust")
     end = reason(found, "restless").long
     assert found.at(end - 0.01).tone != "green"
     assert not rests(stages, end - 0.01)
@@ -171,31 +171,31 @@ def test_lines_that_act_one_turn_late_are_amber_where_turns_never_rest(built):
 
 def test_lines_far_too_stiff_to_act_one_turn_late_are_green_nowhere(built):
     words = {"mid_bust": 0.95, "full_bust": 0.93, "line_force": "explicit"}
-    found = leeway_of(dressed(built, "person", **words), "mid-bust")
+    found = length_limits_of(dressed(built, "person", **words), "mid-bust")
     assert "green" not in [zone.tone for zone in found.zones]
-    assert reason(found, "restless").always
-    soft = leeway_of(dressed(built, "person", **words, line_stiffness=0.2), "mid-bust")
+    assert reason(found, "restless").is_independent
+    soft = length_limits_of(dressed(built, "person", **words, line_stiffness=0.2), "mid-bust")
     assert "green" in [zone.tone for zone in soft.zones]
 
 
 def test_a_band_of_elastic_is_amber_where_it_presses_beyond_the_red_light(built):
     stages = dressed(built, "person", elastic="strap 15", mid_bust=0.9)
-    found = leeway_of(stages, "mid-bust")
+    found = length_limits_of(stages, "mid-bust")
     end = reason(found, "pressing").long
     assert found.pressure_known
     for ratio, beyond in ((end - 0.001, True), (end + 0.001, False)):
         there = build(stages.design.with_line("mid-bust", ratio), stages)
-        balance = solve_exact(there.model, targets_of(there.design, there).ratios)
+        balance = solve_exact(there.model, line_targets(there.design, there).ratios)
         pressed = pressures(there, there.model.tensegric.expand(balance.state.moved))
-        assert (pressed["mid-bust"].largest > comfort().red_kpa) == beyond
-    assert not leeway_of(stages, "full-bust").pressure_known
+        assert (pressed["mid-bust"].largest > pressure_limits().red_kpa) == beyond
+    assert not length_limits_of(stages, "full-bust").pressure_known
 
 
 def test_lines_of_elastic_pull_at_each_length_as_they_would_be_built(built):
     stages = dressed(built, "person", elastic="strap 15", mid_bust=0.9, full_bust=0.95)
-    found = limits_of(stages, "full-bust").begins["strained"]
+    found = limits_of(stages, "full-bust").onsets["strained"]
     there = build(stages.design.with_line("full-bust", found.ratio), stages)
-    balance = solve_exact(there.model, targets_of(there.design, there).ratios)
+    balance = solve_exact(there.model, line_targets(there.design, there).ratios)
     line = next(line for line in there.model.lines if line.name == "full-bust")
     points = there.model.tensegric.expand(balance.state.moved)
     assert line.length(points) == pytest.approx(found.reached, abs=1e-3)
@@ -206,19 +206,19 @@ def test_an_elastic_round_skin_that_stays_takes_no_zones_from_the_others(built):
     one = dressed(built, "person", elastic="strap 15", mid_bust=0.9)
     two = build(one.design.with_line("under-bust", 0.97).with_elastic("under-bust", find_elastic("plush 12")))
     assert not next(line for line in two.model.lines if line.name == "under-bust").constrains
-    assert tones(leeway_of(two, "mid-bust")) == tones(leeway_of(one, "mid-bust"))
+    assert tones(length_limits_of(two, "mid-bust")) == tones(length_limits_of(one, "mid-bust"))
 
 
 @pytest.mark.parametrize("hold", ["spring", "held"])
 def test_a_line_longer_than_what_it_lies_on_is_slack(built, hold):
     """A shorter full-bust line takes length from below the mid-bust line, which would have to push."""
     stages = dressed(built, "person", full_bust=0.85, line_hold=hold)
-    end = reason(leeway_of(stages, "mid-bust"), "slack")
+    end = reason(length_limits_of(stages, "mid-bust"), "slack")
     assert end.short < 0.99
     assert end.others
     for ratio, pushes in ((end.short - 0.002, False), (end.short + 0.002, True)):
         there = build(stages.design.with_line("mid-bust", ratio), stages)
-        balance = solve_exact(there.model, targets_of(there.design, there).ratios)
+        balance = solve_exact(there.model, line_targets(there.design, there).ratios)
         tension = line_tensions(there, there.model.tensegric.expand(balance.state.moved))["mid-bust"]
         assert (tension.mean < 0.0) == pushes
 

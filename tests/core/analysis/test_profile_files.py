@@ -16,7 +16,7 @@ from core.errors import UserError
 from core.export.mesh import write_profile
 from core.geometry.planar_curves import Plane, Slicer
 from core.pipeline.build import Stages, build
-from core.pipeline.solve import run
+from core.pipeline.solve import solve
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +59,7 @@ def test_what_is_no_profile_is_refused(tmp_path: Path, text: str, sentence: str)
 
 
 def test_an_exported_section_is_the_profile_of_the_body_after(stages: Stages, tmp_path: Path) -> None:
-    points = run(stages).control_points
+    points = solve(stages).control_points
     mesh, moved = stages.body.mesh, deform(stages.binding, points)
     slicer = Slicer(mesh, Plane("x", section_at(stages, "left")))
     path = tmp_path / "section.csv"

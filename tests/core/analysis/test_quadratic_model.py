@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.analysis.inverse_design.quadratic_model import Curved, learnt, next_reach
+from core.analysis.inverse_design.quadratic_model import QuadraticModel, next_trust_radius, updated_curvature
 
 RNG = np.random.default_rng(4)
 
@@ -19,7 +19,7 @@ def test_what_is_learnt_tells_how_slopes_turned_and_stays_symmetric() -> None:
     _, _, true = quadratic(5, 3)
     bends = np.zeros_like(true)
     for step in (*np.eye(3), *RNG.normal(size=(40, 3))):
-        bends = learnt(bends, step, true @ step)
+        bends = updated_curvature(bends, step, true @ step)
         assert bends @ step == pytest.approx(true @ step)
         assert bends == pytest.approx(bends.transpose(0, 2, 1))
     assert bends == pytest.approx(true, abs=1e-6)
@@ -28,7 +28,7 @@ def test_what_is_learnt_tells_how_slopes_turned_and_stays_symmetric() -> None:
 def test_rows_after_a_step_are_those_of_the_quadratic() -> None:
     rows, slopes, bends = quadratic(4, 2)
     step = np.array([0.3, -0.7])
-    after, turned = Curved(rows, slopes, bends, 2).after(step)
+    after, turned = QuadraticModel(rows, slopes, bends, 2).at_step(step)
     assert after == pytest.approx(rows + slopes @ step + 0.5 * np.einsum("rij,i,j->r", bends, step, step))
     assert turned == pytest.approx(slopes + np.einsum("rij,j->ri", bends, step))
 
@@ -40,24 +40,26 @@ def test_the_nearest_within_a_bent_limit_is_found_at_once(wish: tuple[float, flo
     rows = np.array([*(start - wish), 1.0 - start @ start])
     slopes = np.vstack([np.eye(2), -2.0 * start])
     bends = np.stack([np.zeros((2, 2)), np.zeros((2, 2)), -2.0 * np.eye(2)])
-    step, left = Curved(rows, slopes, bends, 2).nearest(np.full(2, -8.0), np.full(2, 8.0))
+    step, left = QuadraticModel(rows, slopes, bends, 2).minimize(np.full(2, -8.0), np.full(2, 8.0))
     away = np.hypot(*wish)
     assert start + step == pytest.approx(np.array(wish) / away, abs=2e-3)
     assert left == pytest.approx((away - 1.0) ** 2, rel=0.1)  # a hair outside counts
-    straight, _ = Curved(rows, slopes, np.zeros_like(bends), 2).nearest(np.full(2, -8.0), np.full(2, 8.0))
+    straight, _ = QuadraticModel(rows, slopes, np.zeros_like(bends), 2).minimize(
+        np.full(2, -8.0), np.full(2, 8.0)
+    )
     assert np.linalg.norm(start + straight) > 1.2  # which knows of no bend, and leaves the circle
 
 
 def test_a_step_stays_between_its_ends() -> None:
     rows, slopes, bends = quadratic(6, 3)
-    step, left = Curved(np.abs(rows), slopes, bends, 3).nearest(np.full(3, -0.2), np.zeros(3))
+    step, left = QuadraticModel(np.abs(rows), slopes, bends, 3).minimize(np.full(3, -0.2), np.zeros(3))
     assert (step >= -0.2).all()
     assert (step <= 0.0).all()
-    assert left <= Curved(np.abs(rows), slopes, bends, 3).amiss(np.zeros(3))
+    assert left <= QuadraticModel(np.abs(rows), slopes, bends, 3).violation(np.zeros(3))
 
 
 def test_only_what_was_told_to_a_hair_makes_steps_bolder_than_at_first() -> None:
-    assert next_reach(8.0, 8.0, 0.999) == 16.0
-    assert next_reach(8.0, 8.0, 0.9) == 8.0
-    assert next_reach(2.0, 8.0, 0.9) == 4.0
-    assert next_reach(2.0, 8.0, 0.05) == 1.0
+    assert next_trust_radius(8.0, 8.0, 0.999) == 16.0
+    assert next_trust_radius(8.0, 8.0, 0.9) == 8.0
+    assert next_trust_radius(2.0, 8.0, 0.9) == 4.0
+    assert next_trust_radius(2.0, 8.0, 0.05) == 1.0

@@ -10,12 +10,12 @@ import pytest
 from scipy.spatial import ConvexHull
 
 from benchmarks.worn_pairs import only, other_mesh, scanned, worn_mesh
-from core.analysis.calibration.api import compare, predicted
-from core.analysis.calibration.point_to_surface import Ground
-from core.analysis.calibration.registration import align, turned
-from core.analysis.calibration.residuals import Worn, laid_on, refuse_mirrored
-from core.analysis.calibration.robust_least_squares import Beforehand, cost, normal, spread_of
-from core.analysis.calibration.surface_distance import WornSkin, curvature
+from core.analysis.calibration.api import compare, predicted_points
+from core.analysis.calibration.point_to_surface import Surface
+from core.analysis.calibration.registration import align, rotation_about
+from core.analysis.calibration.residuals import FittingScan, aligned_fitting_scan, require_not_mirrored
+from core.analysis.calibration.robust_least_squares import Prior, cost, normal_equations, robust_deviation
+from core.analysis.calibration.surface_distance import ScanSurface, curvature
 from core.deformation.incremental_normals import moving_faces
 from core.document.storage.project_file import open_project
 from core.errors import ScanError
@@ -40,11 +40,11 @@ def as_body(mesh: Mesh, pose: Pose = POSE) -> Body:
     return Body(mesh, pose, (), "worn")
 
 
-def lying(stages: Stages, seed: int = 1, **how: object) -> tuple[Worn, np.ndarray]:
+def lying(stages: Stages, seed: int = 1, **how: object) -> tuple[FittingScan, np.ndarray]:
     rng, how = np.random.default_rng(seed), {"noise": 0.4, "resampled": False} | how
     mesh, matrix = scanned(worn_mesh(stages, stages.design), stages, rng, **how)
     body = as_body(mesh)
-    return laid_on("worn.ply", body, align(stages, body)), matrix
+    return aligned_fitting_scan("worn.ply", body, align(stages, body)), matrix
 
 
 def flat(height: float) -> Mesh:
@@ -57,7 +57,7 @@ def flat(height: float) -> Mesh:
 
 
 def test_a_gap_is_the_way_along_the_normal_and_none_where_there_is_no_skin() -> None:
-    skin = WornSkin(flat(5.0))
+    skin = ScanSurface(flat(5.0))
     up, slanted = np.array([0.0, 0.0, 1.0]), np.array([0.6, 0.0, 0.8])
     places = np.array([[33.0, 44.0, 0.0], [33.0, 44.0, 9.0], [33.0, 44.0, 0.0], [150.0, 44.0, 0.0]])
     gaps = skin.gaps(places, np.array([up, up, slanted, up]))
@@ -73,7 +73,7 @@ def test_gaps_on_a_rough_skin_have_its_mean() -> None:
     x, y = rng.uniform(10.0, 90.0, (2, 4000))
     for height in (-3.0, 0.0, 3.0):
         places = np.stack([x, y, np.full(len(x), height)], axis=1)
-        gaps = WornSkin(rough).gaps(places, np.tile((0.0, 0.0, 1.0), (len(x), 1)))
+        gaps = ScanSurface(rough).gaps(places, np.tile((0.0, 0.0, 1.0), (len(x), 1)))
         # The mean of 121 vertices with a deviation of 1 mm: 0.1 mm; the nearest place would be 0.3 mm off.
         assert np.nanmean(gaps) - height == pytest.approx(-rough.vertices[:, 2].mean(), abs=0.12)
 
@@ -85,38 +85,38 @@ def test_gaps_on_a_round_skin_are_not_cut_short_by_its_triangles() -> None:
     mesh = Mesh(scan[0], np.ascontiguousarray(scan[2].T))
     curved = curvature(places, normals, corners)
     assert curved.mean() == pytest.approx(1.0 / 60.0, rel=0.02)
-    clean = WornSkin(mesh)
+    clean = ScanSurface(mesh)
     assert np.nanmean(clean.gaps(places, normals)) > 0.56, "triangles cut the corners"
     assert np.nanmean(clean.gaps(places, normals, curved)) == pytest.approx(0.5, abs=0.005)
-    noisy = WornSkin(mesh.moved(mesh.vertices + rng.normal(size=mesh.vertices.shape)))
+    noisy = ScanSurface(mesh.moved(mesh.vertices + rng.normal(size=mesh.vertices.shape)))
     assert np.nanmean(noisy.gaps(places, normals, curved)) == pytest.approx(0.5, abs=0.04)
 
 
 def test_every_point_tells_how_far_a_round_skin_stands_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
     rng = np.random.default_rng(7)
-    ground = Ground(*ball(rng, 60.0))
+    ground = Surface(*ball(rng, 60.0))
     facing = rng.normal(size=(20_000, 3))
     facing /= np.linalg.norm(facing, axis=1)[:, None]
-    clean = ground.feet(59.5 * facing, facing)
+    clean = ground.project(59.5 * facing, facing)
     assert len(clean.rows) > 0.998 * len(facing)
     assert clean.gaps.mean() == pytest.approx(0.5, abs=0.005), "no corner of a triangle is cut"
     assert clean.gaps.std() < 0.02
-    assert np.linalg.norm(clean.of(ground.places), axis=1).mean() == pytest.approx(60.0, abs=0.1)
-    assert not len(ground.feet(59.5 * facing, -facing).rows), "the back of a skin is none"
+    assert np.linalg.norm(clean.interpolate(ground.places), axis=1).mean() == pytest.approx(60.0, abs=0.1)
+    assert not len(ground.project(59.5 * facing, -facing).rows), "the back of a skin is none"
     monkeypatch.setattr(closest_point, "_AT_ONCE", 7000)
-    assert (ground.feet(59.5 * facing, facing).gaps == clean.gaps).all(), "in several goes"
+    assert (ground.project(59.5 * facing, facing).gaps == clean.gaps).all(), "in several goes"
     rough = 59.5 * facing + rng.normal(scale=2.0, size=facing.shape)
-    told = ground.feet(rough, facing, 2.0).gaps.mean()
+    told = ground.project(rough, facing, 2.0).gaps.mean()
     assert told == pytest.approx(0.5, abs=3.0 * 2.0 / np.sqrt(len(facing)))
     # Noise along a round skin lifts points off it, by its square over the radius.
-    assert told - ground.feet(rough, facing).gaps.mean() == pytest.approx(4.0 / 60.0, rel=0.03)
+    assert told - ground.project(rough, facing).gaps.mean() == pytest.approx(4.0 / 60.0, rel=0.03)
 
 
 def test_points_beside_a_skin_have_no_foot_on_it() -> None:
     mesh = flat(0.0)
-    ground = Ground(mesh.vertices, np.tile((0.0, 0.0, 1.0), (121, 1)), mesh.faces.T)
+    ground = Surface(mesh.vertices, np.tile((0.0, 0.0, 1.0), (121, 1)), mesh.faces.T)
     points = np.array([[50.0, 50.0, 3.0], [103.0, 50.0, 3.0], [50.0, 50.0, 45.0], [5.0, 7.0, -2.0]])
-    stood = ground.feet(points, np.tile((0.0, 0.0, 1.0), (4, 1)))
+    stood = ground.project(points, np.tile((0.0, 0.0, 1.0), (4, 1)))
     assert stood.rows.tolist() == [0, 3]
     assert stood.gaps == pytest.approx([-3.0, 2.0])
 
@@ -126,7 +126,7 @@ def test_a_fine_skin_with_noise_still_looks_outward() -> None:
     mesh = flat(0.0)
     rough = mesh.moved(mesh.vertices + rng.normal(scale=5.0, size=mesh.vertices.shape))
     assert (rough.vertex_normals[:, 2] < 0.6).any()
-    assert (WornSkin(rough).facing[:, 2] > 0.6).all()
+    assert (ScanSurface(rough).vertex_directions[:, 2] > 0.6).all()
 
 
 def ball(rng: np.random.Generator, radius: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -143,7 +143,7 @@ def test_huber_counts_far_gaps_by_their_distance() -> None:
     gaps = np.array([-1.0, 1.0, -1.0, 1.0, 0.0])
     assert cost(gaps, 1.0) == pytest.approx(4.0)
     assert cost(np.array([30.0, -30.0]), 1.0) == pytest.approx(2.0 * (2.0 * 2.0 * 30.0 - 4.0))
-    assert spread_of(np.array([-3.0, 3.0, -3.0, 3.0])) == pytest.approx(1.4826 * 3.0)
+    assert robust_deviation(np.array([-3.0, 3.0, -3.0, 3.0])) == pytest.approx(1.4826 * 3.0)
 
 
 def test_the_spread_of_an_answer_is_wider_where_neighbours_are_off_together() -> None:
@@ -151,7 +151,8 @@ def test_the_spread_of_an_answer_is_wider_where_neighbours_are_off_together() ->
     slopes, patches = np.ones((400, 1)), np.repeat(np.arange(20), 20)
     alone, together = rng.normal(size=400), np.repeat(rng.normal(size=20), 20)
     sure, unsure = (
-        float(np.sqrt(normal(gaps, slopes, 10.0, [patches]).covariance[0, 0])) for gaps in (alone, together)
+        float(np.sqrt(normal_equations(gaps, slopes, 10.0, [patches]).covariance[0, 0]))
+        for gaps in (alone, together)
     )
     assert sure == pytest.approx(1.0 / 20.0, rel=0.5)
     assert unsure == pytest.approx(1.0 / np.sqrt(20.0), rel=0.5)
@@ -161,14 +162,14 @@ def test_what_is_known_beforehand_counts_as_much_as_it_is_sure() -> None:
     rng = np.random.default_rng(6)
     slopes = np.stack([np.ones(400), np.zeros(400)], axis=1)
     gaps = rng.normal(size=400)
-    known = Beforehand(np.diag([400.0, 4.0]), np.zeros(2))  # 0.05 as 400 gaps of 1 mm tell, and 0.5
-    assert normal(gaps + 3.0, slopes, 1e3, known=known).step()[0] == pytest.approx(0.0, abs=1e-4)
-    assert normal(gaps + 0.6, slopes, 1.0, known=known).step()[0] == pytest.approx(-0.3, abs=0.05)
-    equations = normal(gaps, slopes, 1.0, [np.arange(400) // 20], known)
+    known = Prior(np.diag([400.0, 4.0]), np.zeros(2))  # 0.05 as 400 gaps of 1 mm tell, and 0.5
+    assert normal_equations(gaps + 3.0, slopes, 1e3, known=known).step()[0] == pytest.approx(0.0, abs=1e-4)
+    assert normal_equations(gaps + 0.6, slopes, 1.0, known=known).step()[0] == pytest.approx(-0.3, abs=0.05)
+    equations = normal_equations(gaps, slopes, 1.0, [np.arange(400) // 20], known)
     assert np.sqrt(equations.covariance[0, 0]) == pytest.approx(0.05 / np.sqrt(2.0), rel=0.2)
     assert np.sqrt(equations.covariance[1, 1]) == pytest.approx(0.5), "what no gap tells stays as unsure"
     assert known.cost(1.0) == 0.0
-    assert Beforehand(known.precision, np.array([0.0, 2.0])).cost(3.0) == pytest.approx(9.0 * 16.0)
+    assert Prior(known.precision, np.array([0.0, 2.0])).cost(3.0) == pytest.approx(9.0 * 16.0)
 
 
 def test_a_worn_scan_is_laid_on_the_first_by_still_skin(stages: Stages) -> None:
@@ -181,20 +182,20 @@ def test_a_worn_scan_is_laid_on_the_first_by_still_skin(stages: Stages) -> None:
     assert np.linalg.norm((back @ middle - middle)[:3]) < 0.15
     assert laid.met > 0.99
     assert 0.2 < laid.rms < 0.5, "0.4 mm at each vertex, less between vertices"
-    assert (laid.turns < 0.05).all()
+    assert (laid.rotation_deviations < 0.05).all()
 
 
 def test_predicted_less_real_is_the_noise_where_the_prediction_is_right(stages: Stages) -> None:
     worn, _ = lying(stages, hole=25.0)
-    right = compare(stages, predicted(stages), worn)
-    assert abs(right.all_of_it.mean) < 0.15
-    assert right.all_of_it.rms < 0.5
-    assert 0.8 < right.all_of_it.seen < 0.99, "there is a hole"
+    right = compare(stages, predicted_points(stages), worn)
+    assert abs(right.total.mean) < 0.15
+    assert right.total.rms < 0.5
+    assert 0.8 < right.total.seen < 0.99, "there is a hole"
     assert np.isnan(right.values).any()
-    thick = compare(stages, predicted(stages), worn, thickness=2.0)
-    assert thick.all_of_it.mean == pytest.approx(right.all_of_it.mean + 2.0)
+    thick = compare(stages, predicted_points(stages), worn, thickness=2.0)
+    assert thick.total.mean == pytest.approx(right.total.mean + 2.0)
     rest = compare(stages, stages.control.mesh.vertices, worn)
-    assert rest.all_of_it.rms > 1.5 * right.all_of_it.rms
+    assert rest.total.rms > 1.5 * right.total.rms
     assert rest.sides["left"].rms == pytest.approx(rest.sides["right"].rms, rel=0.2)
 
 
@@ -219,12 +220,12 @@ def test_a_mirror_image_is_refused_where_left_and_right_differ(stages: Stages) -
     flipped = Mesh(places * MIRROR, mesh.faces[:, ::-1])
     for there, fits in ((uneven, True), (flipped, False)):
         body = as_body(there)
-        worn = laid_on("worn.ply", body, align(stages, body))
+        worn = aligned_fitting_scan("worn.ply", body, align(stages, body))
         if fits:
-            refuse_mirrored(first, worn)
+            require_not_mirrored(first, worn)
         else:
             with pytest.raises(ScanError, match="mirror image"):
-                refuse_mirrored(first, worn)
+                require_not_mirrored(first, worn)
 
 
 def test_arms_held_otherwise_matter_little(stages: Stages) -> None:
@@ -237,7 +238,7 @@ def test_arms_held_otherwise_matter_little(stages: Stages) -> None:
 
 
 def test_turned_is_a_rotation_about_its_middle() -> None:
-    matrix = turned(np.array([0.0, 0.0, np.pi / 2.0]), np.array([1.0, 0.0, 0.0]))
+    matrix = rotation_about(np.array([0.0, 0.0, np.pi / 2.0]), np.array([1.0, 0.0, 0.0]))
     assert matrix @ [2.0, 0.0, 3.0, 1.0] == pytest.approx([1.0, 1.0, 3.0, 1.0])
 
 
@@ -246,4 +247,4 @@ def test_another_mesh_is_the_same_skin() -> None:
     other = other_mesh(body)
     assert not np.isin(other.vertices, body.vertices).all()
     places = body.vertices[(np.abs(body.vertices[:, :2] - 50.0) < 40.0).all(axis=1)] + (0.0, 0.0, 1.0)
-    assert WornSkin(other).gaps(places, np.tile((0.0, 0.0, 1.0), (len(places), 1))) == pytest.approx(1.0)
+    assert ScanSurface(other).gaps(places, np.tile((0.0, 0.0, 1.0), (len(places), 1))) == pytest.approx(1.0)

@@ -12,12 +12,12 @@ from core.analysis.diagnosis.candidate_changes import Change
 from core.analysis.diagnosis.diagnose import Diagnosis, diagnose
 from core.analysis.diagnosis.pressure_fixes import WIDEST
 from core.analysis.diagnosis.search import Search
-from core.analysis.diagnosis.trial_run import standing
+from core.analysis.diagnosis.trial_run import run_trial
 from core.document.design import Design
 from core.document.elastic import OverstretchedError
-from core.garment.assessment import BAD, assessed
+from core.garment.assessment import BAD, assess
 from core.pipeline.build import Stages, build
-from core.pipeline.solve import run
+from core.pipeline.solve import solve
 from core.progress import quiet
 
 Built = Callable[[str], Stages]
@@ -29,7 +29,7 @@ def ends(found: Diagnosis) -> list[tuple[str, str]]:
 
 def level_of(design: Design, stages: Stages) -> str:
     """The worst that a change can end, of a design that is solved anew."""
-    findings = assessed(run(build(design, stages))).findings
+    findings = assess(solve(build(design, stages))).findings
     return next((each.level for each in findings if each.topic not in ("landmarks", "fit")), "good")
 
 
@@ -37,7 +37,7 @@ def test_adaptive_comes_first_where_the_conventional_control_alone_vibrates(buil
     stages = built("mannequin")
     design = replace(stages.design.with_line("mid-bust", 0.95), volume="conventional", gain=1.7)
     found = diagnose(build(design, stages))
-    assert found.complaint == "vibrating"
+    assert found.problem == "vibrating"
     assert found.fixes[0].change.setting == ("volume", "adaptive")
     assert found.fixes[0].change.kind == "setting"
     assert len(found.fixes) > 1
@@ -49,7 +49,7 @@ def test_a_fix_without_a_warning_stands_before_one_with_another(
 ) -> None:
     stages = built(sample)
     found = diagnose(build(stages.design.with_line("mid-bust", ratio), stages))
-    assert found.complaint == "overstrained"
+    assert found.problem == "overstrained"
     assert len(found.fixes) > 1, "several are offered"
     assert [cure.rank for cure in found.fixes] == sorted(cure.rank for cure in found.fixes)
     assert found.fixes[0].level == "good"
@@ -61,13 +61,13 @@ def test_a_fix_without_a_warning_stands_before_one_with_another(
 def test_a_calm_design_that_presses_too_much_is_widened_or_lengthened(built: Built) -> None:
     stages = built("mannequin")
     found = diagnose(build(stages.design.with_line("mid-bust", 0.95), stages))
-    assert found.complaint == ""
+    assert found.problem == ""
     assert [each.topic for each in found.findings] == ["pressure"]
     assert ends(found) == [("length", "good"), ("width", "caution")], "wider, the shape stays"
     assert all(level_of(cure.change.design, stages) == cure.level for cure in found.fixes)
     wide = found.fixes[1].change.design
     assert wide.ratio("mid-bust") == 0.95
-    assert 12.0 < (wide.traits_of("mid-bust").width or 0.0) <= WIDEST
+    assert 12.0 < (wide.line_settings("mid-bust").width or 0.0) <= WIDEST
 
 
 def test_a_tight_elastic_is_made_longer_though_shorter_is_beyond_its_table() -> None:
@@ -77,7 +77,7 @@ def test_a_tight_elastic_is_made_longer_though_shorter_is_beyond_its_table() -> 
     with pytest.raises(OverstretchedError):
         build(design.with_line("mid-bust", 0.51), stages)
     found = diagnose(tight)
-    assert found.complaint == ""
+    assert found.problem == ""
     assert {each.topic for each in found.findings} == {"band", "pressure"}
     assert found.fixes
     assert [cure.change.kind for cure in found.fixes] == ["length"], "a band that lifts is not taken off"
@@ -89,11 +89,11 @@ def test_a_fix_that_is_refused_is_left_out() -> None:
     design = lifted_sample()
     stages = build(design)
     tight = build(design.with_line("mid-bust", 0.53), stages)
-    search = Search(standing(tight, quiet), quiet)
+    search = Search(run_trial(tight, quiet), quiet)
     shorter = Change("length", design.with_line("mid-bust", 0.51), 2.0, ("mid-bust",))
     longer = Change("length", design.with_line("mid-bust", 0.7), 17.0, ("mid-bust",))
-    assert [cure.change for cure in search.tried_all([shorter, longer])] == [longer]
-    assert search.first_of(iter([shorter, longer])).change is longer
+    assert [cure.change for cure in search.run_changes([shorter, longer])] == [longer]
+    assert search.first_verified(iter([shorter, longer])).change is longer
 
 
 def test_a_slack_line_is_taken_off(built: Built) -> None:

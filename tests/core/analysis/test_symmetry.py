@@ -11,9 +11,9 @@ from shapes import mirrored as mirrored_control
 
 from app.presenters.samples import sample_design
 from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER, reading
-from core.analysis.symmetry.compare import NO_BREAST, evenness
-from core.analysis.symmetry.mirrored_surface import Mirrored
-from core.deformation.blend_region import patch_fade
+from core.analysis.symmetry.compare import NO_BREAST, compare_sides
+from core.analysis.symmetry.mirrored_surface import MirroredSurface
+from core.deformation.blend_region import blend_weights
 from core.deformation.incremental_normals import moving_faces
 from core.deformation.tffd import bind
 from core.geometry.mesh import Mesh, Points
@@ -21,8 +21,8 @@ from core.geometry.mirror_plane import MIRROR
 from core.landmarks.bust_point import ACROSS
 from core.landmarks.types import Landmarks
 from core.pipeline.build import Stages, build
-from core.pipeline.observables import BodyWatch
-from core.pipeline.solve import run
+from core.pipeline.observables import BodyObservables
+from core.pipeline.solve import solve
 
 BALL_AT = 12.0
 
@@ -52,34 +52,34 @@ def bulged(out: float, side: float = 1.0) -> tuple[Points, float]:
 
 
 @pytest.fixture(scope="module")
-def mirrored() -> Mirrored:
-    return Mirrored(BALL, ~FRONT, FRONT, 9.0)
+def mirrored() -> MirroredSurface:
+    return MirroredSurface(BALL, ~FRONT, FRONT, 9.0)
 
 
-def test_an_even_body_has_nothing_between_its_sides(mirrored: Mirrored) -> None:
+def test_an_even_body_has_nothing_between_its_sides(mirrored: MirroredSurface) -> None:
     assert mirrored.middle == pytest.approx(BALL_AT, abs=1e-6)
     gap = mirrored.gap(BALL.vertices)
     assert gap is not None
-    assert (gap.mean, gap.largest, gap.apart) == pytest.approx((0.0, 0.0, 0.0), abs=1e-6)
+    assert (gap.mean, gap.largest, gap.absolute_total) == pytest.approx((0.0, 0.0, 0.0), abs=1e-6)
     assert gap.seen == 1.0
 
 
 @pytest.mark.parametrize("out", [0.5, 3.0, 8.0, -3.0])
 @pytest.mark.parametrize("side", [1.0, -1.0])
-def test_a_known_bulge_is_read_back_in_ml_and_mm(mirrored: Mirrored, out: float, side: float) -> None:
+def test_a_known_bulge_is_read_back_in_ml_and_mm(mirrored: MirroredSurface, out: float, side: float) -> None:
     places, ml = bulged(out, side)
     gap = mirrored.gap(places)
     assert gap is not None
     assert gap.left_more - gap.right_more == pytest.approx(side * ml, rel=0.02)
-    assert gap.in_all == gap.left_more - gap.right_more
-    assert gap.apart == pytest.approx(abs(ml), rel=0.03)
+    assert gap.total == gap.left_more - gap.right_more
+    assert gap.absolute_total == pytest.approx(abs(ml), rel=0.03)
     assert gap.largest == pytest.approx(abs(out), rel=0.06)
     # What stands out is the bulge itself, or the other side where there is a dent.
     assert gap.side == ("left" if side * out > 0.0 else "right")
     assert abs(places[gap.vertex, 0] - BALL_AT) == pytest.approx(60.0, abs=8.0)
 
 
-def test_a_mirror_changes_the_sides_and_nothing_else(mirrored: Mirrored) -> None:
+def test_a_mirror_changes_the_sides_and_nothing_else(mirrored: MirroredSurface) -> None:
     left, right = (mirrored.gap(bulged(4.0, side)[0]) for side in (1.0, -1.0))
     assert left is not None
     assert right is not None
@@ -88,11 +88,11 @@ def test_a_mirror_changes_the_sides_and_nothing_else(mirrored: Mirrored) -> None
     assert (left.side, right.side) == ("left", "right")
 
 
-def test_skin_without_counterpart_does_not_count(mirrored: Mirrored) -> None:
+def test_skin_without_counterpart_does_not_count(mirrored: MirroredSurface) -> None:
     kept = (BALL.vertices[BALL.faces][..., 0] > BALL_AT - 60.0).all(axis=1)
     used, faces = np.unique(BALL.faces[kept], return_inverse=True)
     cut = Mesh(BALL.vertices[used], faces.reshape(-1, 3))
-    gap = Mirrored(cut, ~FRONT[used], FRONT[used], BALL_AT).gap(cut.vertices)
+    gap = MirroredSurface(cut, ~FRONT[used], FRONT[used], BALL_AT).gap(cut.vertices)
     assert gap is not None
     assert 0.4 < gap.seen < 0.95
     assert gap.mean < 0.25  # by the cut the nearest skin across lies beside the place itself
@@ -112,10 +112,10 @@ def in_the_mirror(stages: Stages, control_points: Points) -> tuple[Stages, Point
         )
     landmarks = replace(stages.landmarks, points=points)
     control, was = mirrored_control(stages.control)
-    patch = patch_fade(body.mesh, control)
+    patch = blend_weights(body.mesh, control)
     binding = bind(body.mesh, control.mesh, patch.fade, fixed=control.fixed)
     moving = moving_faces(body.mesh, binding.moving, -stages.moving.middle)
-    watch = BodyWatch(binding, control, landmarks)
+    watch = BodyObservables(binding, control, landmarks)
     made = {"control": control, "patch": patch, "binding": binding, "moving": moving, "watch": watch}
     twin = replace(stages, body=body, landmarks=landmarks, **made)
     return twin, control_points[was] * MIRROR
@@ -127,30 +127,30 @@ def person() -> Stages:
 
 
 def test_figures_are_those_of_marks_measures_and_what_can_be_asked_for(person: Stages) -> None:
-    points = run(person).control_points
-    told = evenness(person, points)
+    points = solve(person).control_points
+    told = compare_sides(person, points)
     marks, rest = person.watch(points), person.rest_marks
-    assert told.before.higher == pytest.approx(rest.nipple_left_z - rest.nipple_right_z)
-    assert told.after.higher == pytest.approx(marks.nipple_left_z - marks.nipple_right_z)
-    assert told.after.further_out == pytest.approx(marks.nipple_left_out - marks.nipple_right_out)
+    assert told.before.higher == pytest.approx(rest.bust_point_left_z - rest.bust_point_right_z)
+    assert told.after.higher == pytest.approx(marks.bust_point_left_z - marks.bust_point_right_z)
+    assert told.after.further_out == pytest.approx(marks.bust_point_left_out - marks.bust_point_right_out)
     assert told.after.higher == pytest.approx(reading(person, HIGHER)(points).value)
     assert told.after.further_out == pytest.approx(reading(person, FURTHER_OUT)(points).value)
     left, right = person.body_change(points) / 1000.0
     assert told.before.skin is not None
     assert told.after.skin is not None
     # Where one breast sits 12 mm lower, the volume between the skins is known within 4 ml.
-    assert told.after.skin.in_all - told.before.skin.in_all == pytest.approx(left - right, abs=4.0)
-    assert told.before.furthest == abs(told.before.higher)
+    assert told.after.skin.total - told.before.skin.total == pytest.approx(left - right, abs=4.0)
+    assert told.before.largest_difference == abs(told.before.higher)
     assert told.notes == ()
 
 
 def test_a_body_in_the_mirror_has_all_with_the_other_sign(person: Stages) -> None:
-    points = run(person).control_points
-    told, twin = evenness(person, points), evenness(*in_the_mirror(person, points))
+    points = solve(person).control_points
+    told, twin = compare_sides(person, points), compare_sides(*in_the_mirror(person, points))
     for here, there in ((told.before, twin.before), (told.after, twin.after)):
         assert there.higher == pytest.approx(-here.higher, abs=1e-3)
         assert there.further_out == pytest.approx(-here.further_out, abs=1e-3)
-        assert there.further_aside == pytest.approx(-here.further_aside, abs=0.01)
+        assert there.further_lateral == pytest.approx(-here.further_lateral, abs=0.01)
         assert here.skin is not None
         assert there.skin is not None
         assert there.skin.mean == pytest.approx(here.skin.mean, rel=1e-3)
@@ -160,13 +160,13 @@ def test_a_body_in_the_mirror_has_all_with_the_other_sign(person: Stages) -> Non
 
 def test_an_even_sample_is_even_within_a_tenth(built: Callable[[str], Stages]) -> None:
     stages = built("mannequin")
-    told = evenness(stages, stages.control.mesh.vertices).before
+    told = compare_sides(stages, stages.control.mesh.vertices).before
     assert abs(told.higher) < 0.1
     assert abs(told.further_out) < 0.1
-    assert abs(told.further_aside) < 0.1
+    assert abs(told.further_lateral) < 0.1
     assert told.skin is not None
     assert told.skin.mean < 0.1
-    assert told.skin.apart < 1.0
+    assert told.skin.absolute_total < 1.0
 
 
 def test_what_is_not_known_is_said(built: Callable[[str], Stages]) -> None:
@@ -176,5 +176,5 @@ def test_what_is_not_known_is_said(built: Callable[[str], Stages]) -> None:
     one = Landmarks(
         {**marks.points, "bust_point_left": across}, marks.bust_level, marks.underbust_level, marks.warnings
     )
-    told = evenness(replace(stages, landmarks=one), stages.control.mesh.vertices)
+    told = compare_sides(replace(stages, landmarks=one), stages.control.mesh.vertices)
     assert told.notes == (NO_BREAST,)

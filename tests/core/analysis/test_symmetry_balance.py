@@ -8,17 +8,17 @@ import pytest
 
 from app.presenters.samples import sample_design
 from core.analysis.inverse_design.quantities import reading
-from core.analysis.symmetry.balance import EVEN, even_goals, make_even
-from core.analysis.symmetry.compare import NO_BREAST, evenness
-from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, partable, parted
+from core.analysis.symmetry.balance import EVEN, balance_goals, make_even
+from core.analysis.symmetry.compare import NO_BREAST, compare_sides
+from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, split_sides, splittable_lines
 from core.control_mesh.template import read_template
-from core.document.line_notation import ready_made
-from core.document.lines import LineTraits
+from core.document.line_notation import ready_made_lines
+from core.document.lines import LineSettings
 from core.document.split_lines import split
 from core.errors import UserError
 from core.landmarks.bust_point import ACROSS
 from core.pipeline.build import Stages, build
-from core.pipeline.solve import run
+from core.pipeline.solve import solve
 
 TEMPLATE = read_template("168")
 
@@ -27,8 +27,8 @@ TEMPLATE = read_template("168")
 def plain() -> Stages:
     """The mannequin with a pair of straps, nothing worn."""
     design = replace(sample_design("mannequin"), volume="exact", lines=())
-    for line in ready_made(TEMPLATE)["straps"]:
-        design = design.with_own_line(line)
+    for line in ready_made_lines(TEMPLATE)["straps"]:
+        design = design.with_custom_line(line)
     return build(design)
 
 
@@ -46,40 +46,46 @@ def test_lines_across_both_sides_and_pairs_move_no_side_alone(plain: Stages) -> 
     for name in ("strap left", "strap right"):
         design = design.with_line(name, 0.95)
     assert not moves_one_side(build(design, plain))
-    assert partable(design, TEMPLATE) == ("mid-bust", "strap left", "strap right")
-    after = parted(design, TEMPLATE)
-    assert after.worn() == {"mid-bust left", "mid-bust right", "strap left", "strap right", "under-bust"}
+    assert splittable_lines(design, TEMPLATE) == ("mid-bust", "strap left", "strap right")
+    after = split_sides(design, TEMPLATE)
+    assert after.active_lines() == {
+        "mid-bust left",
+        "mid-bust right",
+        "strap left",
+        "strap right",
+        "under-bust",
+    }
     assert moves_one_side(build(after, plain))
-    assert not any(len(after.linked(name)) > 1 for name in after.worn())
+    assert not any(len(after.linked_pair(name)) > 1 for name in after.active_lines())
     apart = design.with_line("strap left", 0.9)
     assert moves_one_side(build(apart, plain))
-    locked = design.with_traits(LineTraits("mid-bust", locked=True))
-    assert "mid-bust" not in partable(locked, TEMPLATE)
-    assert "mid-bust" in parted(locked, TEMPLATE).worn()
+    locked = design.with_line_settings(LineSettings("mid-bust", locked=True))
+    assert "mid-bust" not in splittable_lines(locked, TEMPLATE)
+    assert "mid-bust" in split_sides(locked, TEMPLATE).active_lines()
 
 
 def test_lift_and_way_out_are_to_stay_however_few_lines_there_are(plain: Stages, uneven: Stages) -> None:
-    points = run(uneven).control_points
-    goals = even_goals(uneven, points)
+    points = solve(uneven).control_points
+    goals = balance_goals(uneven, points)
     assert goals[:2] == EVEN
     assert [goal.name for goal in goals[2:]] == ["lift", "out"]
     assert all(goal.value == reading(uneven, goal.name)(points).value for goal in goals[2:])
     two = build(split(plain.design.with_line("mid-bust", 0.95), TEMPLATE, "mid-bust"), plain)
-    assert [goal.name for goal in even_goals(two, points)[2:]] == ["lift", "out"]
+    assert [goal.name for goal in balance_goals(two, points)[2:]] == ["lift", "out"]
 
 
 def test_an_uneven_design_is_made_even_and_keeps_its_lift(uneven: Stages) -> None:
-    here = run(uneven).control_points
-    assert evenness(uneven, here).after.furthest > 2.0 * ENOUGH
+    here = solve(uneven).control_points
+    assert compare_sides(uneven, here).after.largest_difference > 2.0 * ENOUGH
     made = make_even(uneven)
-    assert made.parted == ()
-    assert made.even
-    solved = run(build(made.reply.design, uneven)).control_points
-    told = evenness(uneven, solved).after
-    assert told.furthest < 0.1
+    assert made.split == ()
+    assert made.is_balanced
+    solved = solve(build(made.result.design, uneven)).control_points
+    told = compare_sides(uneven, solved).after
+    assert told.largest_difference < 0.1
     assert made.after.higher == pytest.approx(told.higher, abs=1e-6)
-    assert made.before == evenness(uneven, here).after
-    assert made.reply.design.volume == uneven.design.volume
+    assert made.before == compare_sides(uneven, here).after
+    assert made.result.design.volume == uneven.design.volume
     for name in ("lift", "out"):
         was, now = (reading(uneven, name)(points).value for points in (here, solved))
         assert now == pytest.approx(was, abs=0.1)
@@ -95,32 +101,32 @@ def person() -> Stages:
 def test_what_brings_less_than_it_takes_away_is_not_worth_it(person: Stages) -> None:
     # At any price 0.5 mm of 11.4 could be had, with the line drawn from 94 to 88 % and the shape strained.
     made = make_even(build(person.design.with_line("full-bust", 0.94), person))
-    assert not made.worth
-    assert not made.reply.strained
-    assert made.gained < made.lost < 1.0
-    assert min(line.ratio for line in made.reply.design.lines) > 0.92
+    assert not made.is_worthwhile
+    assert not made.result.strained
+    assert made.gain < made.loss < 1.0
+    assert min(line.ratio for line in made.result.design.lines) > 0.92
 
 
 def test_what_is_to_stay_is_let_go_of_for_what_is_even(person: Stages) -> None:
     design = person.design.with_line("mid-bust", 0.97).with_line("full-bust", 0.97)
-    for line in ready_made(TEMPLATE)["straps"]:
-        design = design.with_own_line(replace(line, over_shoulder=False)).with_line(line.name, 0.97)
+    for line in ready_made_lines(TEMPLATE)["straps"]:
+        design = design.with_custom_line(replace(line, over_shoulder=False)).with_line(line.name, 0.97)
     made = make_even(build(design, person))
-    assert made.even
+    assert made.is_balanced
     assert made.goals == EVEN
-    assert made.worth
+    assert made.is_worthwhile
     # With the lift kept it would be even too, and the bust points 8 mm further in.
-    assert made.lost < 0.5 * made.gained
+    assert made.loss < 0.5 * made.gain
 
 
 def test_what_hinders_is_parted_first_and_what_remains_is_told(person: Stages) -> None:
     whole = build(replace(person.design, line_contact="sliding").with_line("mid-bust", 0.93), person)
     made = make_even(whole)
-    assert made.worth
-    assert made.parted == ("mid-bust",)
-    assert made.reply.design.worn() == {"mid-bust left", "mid-bust right"}
-    assert not made.even
-    assert made.reply.strained or made.reply.at_end
+    assert made.is_worthwhile
+    assert made.split == ("mid-bust",)
+    assert made.result.design.active_lines() == {"mid-bust left", "mid-bust right"}
+    assert not made.is_balanced
+    assert made.result.strained or made.result.at_limit
     assert abs(made.after.higher) < abs(made.before.higher)
     assert made.rest.higher == pytest.approx(-11.8, abs=0.1)
 
@@ -129,7 +135,7 @@ def test_without_a_line_for_one_side_it_is_refused(plain: Stages) -> None:
     for design in (
         plain.design,
         plain.design.with_line("under-bust", 0.95),
-        plain.design.with_line("mid-bust", 0.95).with_traits(LineTraits("mid-bust", locked=True)),
+        plain.design.with_line("mid-bust", 0.95).with_line_settings(LineSettings("mid-bust", locked=True)),
     ):
         with pytest.raises(UserError, match="one side alone"):
             make_even(build(design, plain))

@@ -13,10 +13,10 @@ from app.cli.commands.target import goals_of
 from app.cli.main import main
 from app.cli.output import NOT_CONVERGED
 from app.presenters.samples import sample_design
-from core.analysis.inverse_design.line_selection import LineSelection, optional_lines, switched_on
-from core.analysis.inverse_design.objective import NEAR, weights_of
+from core.analysis.inverse_design.line_selection import LineSelection, activated, optional_lines
+from core.analysis.inverse_design.objective import NEAR, goal_weights
 from core.analysis.inverse_design.quantities import PRIORITIES, Goal, tolerance
-from core.analysis.inverse_design.solve import Asking, ask
+from core.analysis.inverse_design.solve import InverseSolver, solve_targets
 from core.garment.elastic_library import find_elastic
 from core.pipeline.build import Stages, build
 
@@ -37,7 +37,8 @@ def conflicting(lift: str = "normal", girth: str = "normal") -> list[Goal]:
 
 def test_a_higher_priority_brings_its_target_nearer_and_the_other_gives_way(both: Stages) -> None:
     favoured = {
-        priority: ask(both, conflicting(lift=priority)).reached for priority in ("low", "normal", "high")
+        priority: solve_targets(both, conflicting(lift=priority)).reached
+        for priority in ("low", "normal", "high")
     }
     lifts = [favoured[priority]["lift"] for priority in ("low", "normal", "high")]
     girths = [abs(favoured[priority]["girth"] - 840.0) for priority in ("low", "normal", "high")]
@@ -48,32 +49,34 @@ def test_a_higher_priority_brings_its_target_nearer_and_the_other_gives_way(both
 
 def test_the_priority_of_one_target_or_of_all_alike_changes_nothing(both: Stages) -> None:
     for goals in ([Goal("girth", 840.0)], conflicting()):
-        plain = ask(both, goals)
+        plain = solve_targets(both, goals)
         for priority in PRIORITIES:
-            same = ask(both, [replace(goal, priority=priority) for goal in goals])
+            same = solve_targets(both, [replace(goal, priority=priority) for goal in goals])
             assert same.reached == pytest.approx(plain.reached, abs=1e-6)
 
 
 def test_targets_that_can_all_be_met_are_met_whatever_their_priorities(both: Stages) -> None:
-    truth = Asking(build(both.design.with_line("mid-bust", 0.95).with_line("full-bust", 0.97), both))
-    values, _ = truth.now(["lift", "girth"])
+    truth = InverseSolver(build(both.design.with_line("mid-bust", 0.95).with_line("full-bust", 0.97), both))
+    values, _ = truth.current_values(["lift", "girth"])
     goals = [Goal("lift", values["lift"], "low"), Goal("girth", values["girth"], "high")]
-    assert ask(both, goals).reachable
-    assert ask(both, [Goal("lift", values["lift"], "high"), Goal("girth", values["girth"], "low")]).reachable
+    assert solve_targets(both, goals).reachable
+    assert solve_targets(
+        both, [Goal("lift", values["lift"], "high"), Goal("girth", values["girth"], "low")]
+    ).reachable
 
 
 def test_weights_are_priorities_over_tolerances() -> None:
-    weights = weights_of([Goal("lift", 1.0, "low"), Goal("girth", 800.0, "high")])
+    weights = goal_weights([Goal("lift", 1.0, "low"), Goal("girth", 800.0, "high")])
     expected = PRIORITIES["low"] / tolerance("lift"), PRIORITIES["high"] / tolerance("girth")
     assert weights[0] / weights[1] == pytest.approx(expected[0] / expected[1])
     assert weights.max() == 1.0
 
 
 def test_a_conflict_names_what_is_reached_alone_and_its_price(both: Stages) -> None:
-    solver, goals = Asking(both), conflicting()
-    reply = solver.reply(goals)
+    solver, goals = InverseSolver(both), conflicting()
+    reply = solver.solve(goals)
     conflict = next(each for each in solver.conflicts(reply, goals) if each.name == "lift")
-    alone = ask(both, [Goal("lift", 12.0)])
+    alone = solve_targets(both, [Goal("lift", 12.0)])
     assert conflict.against == "girth"
     assert conflict.reached == pytest.approx(reply.reached["lift"], abs=1e-4)  # ratios have six decimals
     assert conflict.alone == pytest.approx(alone.reached["lift"], abs=2.0 * NEAR)
@@ -81,14 +84,14 @@ def test_a_conflict_names_what_is_reached_alone_and_its_price(both: Stages) -> N
     lost = abs(conflict.lost - 840.0) - abs(conflict.kept - 840.0)
     assert conflict.price == pytest.approx(lost / (conflict.alone - conflict.reached), rel=1e-6)
     reached = Goal("girth", reply.reached["girth"])
-    again = solver.reply([reached, Goal("lift", reply.reached["lift"])])
+    again = solver.solve([reached, Goal("lift", reply.reached["lift"])])
     assert solver.conflicts(again, [reached, goals[0]]) == ()
 
 
 def test_a_target_that_is_no_nearer_alone_has_no_opponent(both: Stages) -> None:
     goals = [Goal("lift", 60.0), Goal("girth", 1200.0)]
-    solver = Asking(both)
-    for conflict in solver.conflicts(solver.reply(goals), goals):
+    solver = InverseSolver(both)
+    for conflict in solver.conflicts(solver.solve(goals), goals):
         assert conflict.against or conflict.alone == pytest.approx(conflict.reached, abs=2.0 * NEAR)
 
 
@@ -96,15 +99,15 @@ def test_a_line_that_is_off_is_switched_on_only_where_it_helps(both: Stages) -> 
     start = build(both.design.with_line("full-bust", None), both)
     assert optional_lines(start) == (("full-bust",),)
     goals = [Goal("girth", 840.0)]
-    without, solver = ask(start, goals), LineSelection(start, ["full-bust"])
-    better = solver.reply(goals)
+    without, solver = solve_targets(start, goals), LineSelection(start, ["full-bust"])
+    better = solver.solve(goals)
     assert better.miss < without.miss - 1.0
-    assert switched_on(start.design, better.design) == ("full-bust",)
-    near = LineSelection(start, ["full-bust"]).reply([Goal("girth", without.reached["girth"])])
-    assert switched_on(start.design, near.design) == ()
+    assert activated(start.design, better.design) == ("full-bust",)
+    near = LineSelection(start, ["full-bust"]).solve([Goal("girth", without.reached["girth"])])
+    assert activated(start.design, near.design) == ()
     nothing = build(start.design.with_line("mid-bust", None), start)
-    from_nothing = LineSelection(nothing, ["mid-bust", "full-bust"]).reply(goals)
-    assert switched_on(nothing.design, from_nothing.design)
+    from_nothing = LineSelection(nothing, ["mid-bust", "full-bust"]).solve(goals)
+    assert activated(nothing.design, from_nothing.design)
 
 
 def test_without_a_limit_of_pressure_elastics_may_press_harder(both: Stages) -> None:
@@ -113,9 +116,12 @@ def test_without_a_limit_of_pressure_elastics_may_press_harder(both: Stages) -> 
         design = design.with_line(name, 0.9).with_elastic(name, plush)
     start = build(design, both)
     goals = [Goal("girth", 840.0)]
-    kept, free = Asking(start, most_kpa=1.0).reply(goals), Asking(start, most_kpa=math.inf).reply(goals)
+    kept, free = (
+        InverseSolver(start, most_kpa=1.0).solve(goals),
+        InverseSolver(start, most_kpa=math.inf).solve(goals),
+    )
     assert max(kept.pressure.values()) < 1.05 < max(free.pressure.values())
-    assert not free.pressing
+    assert not free.at_pressure_limit
 
 
 def test_the_command_reads_priorities_and_reports_conflicts(capsys: pytest.CaptureFixture[str]) -> None:
@@ -137,10 +143,10 @@ def test_the_command_reads_priorities_and_reports_conflicts(capsys: pytest.Captu
 
 def test_what_the_limit_of_pressure_costs_is_told(both: Stages) -> None:
     solver, goals = LineSelection(both, most_kpa=4.0), [Goal("lift", 3.0)]
-    reply = solver.reply(goals)
+    reply = solver.solve(goals)
     free = solver.unlimited(reply, goals)
     assert free is not None
     assert free.miss < reply.miss - 1.0
     assert max(free.pressure.values()) > 4.0 > max(reply.pressure.values())
-    met = solver.reply([Goal("lift", reply.reached["lift"])])
+    met = solver.solve([Goal("lift", reply.reached["lift"])])
     assert solver.unlimited(met, [Goal("lift", reply.reached["lift"])]) is None

@@ -15,7 +15,7 @@ from core.errors import UserError
 from core.geometry.planar_curves import Plane, Slicer
 from core.measurements.table import before_after
 from core.pipeline.build import Stages, build
-from core.pipeline.solve import run
+from core.pipeline.solve import solve
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +28,7 @@ PROFILES = ("profile left 340", "profile right 320.125", "profile 60.5 375")
 
 @pytest.mark.parametrize("name", [*NAMES, *PROFILES])
 def test_slopes_are_those_of_differences(stages: Stages, name: str) -> None:
-    here = run(stages).control_points
+    here = solve(stages).control_points
     way = np.random.default_rng(4).normal(size=here.shape) * ~stages.control.fixed[:, None]
     read = reading(doubled(stages), name)
     expected = float(slope(lambda t: read(here + t * way).value, 1e-4))
@@ -36,13 +36,13 @@ def test_slopes_are_those_of_differences(stages: Stages, name: str) -> None:
 
 
 def test_figures_are_those_of_the_marks_and_measures(stages: Stages) -> None:
-    points = run(stages).control_points
+    points = solve(stages).control_points
     marks, rest = stages.watch(points), stages.rest_marks
     figures = {name: reading(stages, name)(points).value for name in NAMES}
-    assert figures["lift left"] == pytest.approx(marks.nipple_left_z - rest.nipple_left_z)
-    assert figures["lift right"] == pytest.approx(marks.nipple_right_z - rest.nipple_right_z)
-    assert figures["out left"] == pytest.approx(marks.nipple_left_out - rest.nipple_left_out)
-    assert figures["out right"] == pytest.approx(marks.nipple_right_out - rest.nipple_right_out)
+    assert figures["lift left"] == pytest.approx(marks.bust_point_left_z - rest.bust_point_left_z)
+    assert figures["lift right"] == pytest.approx(marks.bust_point_right_z - rest.bust_point_right_z)
+    assert figures["out left"] == pytest.approx(marks.bust_point_left_out - rest.bust_point_left_out)
+    assert figures["out right"] == pytest.approx(marks.bust_point_right_out - rest.bust_point_right_out)
     for what in ("lift", "out"):
         assert figures[what] == pytest.approx(0.5 * (figures[f"{what} left"] + figures[f"{what} right"]))
     _, after = before_after(stages, points)
@@ -50,7 +50,7 @@ def test_figures_are_those_of_the_marks_and_measures(stages: Stages) -> None:
 
 
 def test_apexes_are_those_of_the_marks(stages: Stages) -> None:
-    points = run(stages).control_points
+    points = solve(stages).control_points
     marks, rest = stages.watch(points), stages.rest_marks
     assert reading(stages, "apex lift")(points).value == pytest.approx(marks.apex_z - rest.apex_z)
     out = marks.apex_protrusion - rest.apex_protrusion
@@ -62,7 +62,7 @@ def test_apexes_are_those_of_the_marks(stages: Stages) -> None:
 
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_a_profile_is_the_foremost_skin_of_the_section(stages: Stages, side: str) -> None:
-    points, at = run(stages).control_points, section_at(stages, side)
+    points, at = solve(stages).control_points, section_at(stages, side)
     mesh = stages.body.mesh.moved(deform(stages.binding, points))
     curves = Slicer(mesh, Plane("x", at)).curves(mesh.vertices)
     middle = stages.landmarks.position(f"bust_point_{side}")[2]

@@ -9,7 +9,7 @@ from core.control_mesh.fit import ControlMesh, fit_control_mesh
 from core.control_mesh.template import read_template
 from core.errors import FitError
 from core.geometry.mesh import Mesh
-from core.scan.repair.denoise import calmed
+from core.scan.repair.denoise import denoise
 
 
 def ends_only(points):
@@ -46,7 +46,7 @@ def test_the_drawn_back_goes_from_the_left_end_round_to_the_right():
 def test_noise_of_the_scanner_does_not_lengthen_the_back():
     mesh = analytic_body()
     noise = np.random.default_rng(3).normal(scale=1.0, size=mesh.vertices.shape)
-    length = back_of(calmed(mesh.moved(mesh.vertices + noise)), tube_ends(80.0, 200.0), "band").length
+    length = back_of(denoise(mesh.moved(mesh.vertices + noise)), tube_ends(80.0, 200.0), "band").length
     assert length == pytest.approx(RADIUS * np.radians(200.0), rel=0.01)
 
 

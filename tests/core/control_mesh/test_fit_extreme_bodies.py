@@ -6,7 +6,7 @@ from fit_bodies import SAMPLES, body_of, landmarks_at, sample_of
 from scipy.spatial import cKDTree
 
 from core.control_mesh.fit import fit_control_mesh
-from core.control_mesh.surface_projection import NearSkin
+from core.control_mesh.surface_projection import SurfaceProjector
 from core.control_mesh.template import TEMPLATES, read_template
 from core.control_mesh.torso_frame import measure_torso
 from core.geometry.mesh import Mesh
@@ -105,7 +105,7 @@ def test_both_templates_fit_an_extreme_body(name, sample):
             assert quality.smallest_angle > 8.0
             assert quality.bust_off < (0.5 if "misplaced" not in name else 20.0)
             # Control points are on the skin, but for those over holes: the deviation is that of the flats.
-            off_skin = np.linalg.norm(NearSkin(body.calm).nearest(points) - points, axis=1)
+            off_skin = np.linalg.norm(SurfaceProjector(body.smoothed).project(points) - points, axis=1)
             assert (off_skin.mean() if "hole" not in name else np.median(off_skin)) < 1e-6
             # Rows: collar under the breasts, fold, line and bust row in this order; the collar is outside.
             rows = points.reshape(len(template.rows), -1, 3)
@@ -114,7 +114,7 @@ def test_both_templates_fit_an_extreme_body(name, sample):
                 assert rows[0, part][breast[part], 2].max() < places[f"lowest_{side}"][2] - 5.0
             ways = np.linalg.norm(np.diff(rows[1:4], axis=0), axis=2)
             assert ways.min() > 7.0
-            axis = measure_torso(body.calm, landmarks).axis
+            axis = measure_torso(body.smoothed, landmarks).axis
             bearing = np.degrees(np.arctan2(points[:, 0] - axis[0], axis[1] - points[:, 1]))
             sides = np.abs(bearing[(np.abs(template.column) == template.half) & (template.row < 4)])
             assert sides.min() > 80.0

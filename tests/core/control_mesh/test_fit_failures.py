@@ -7,7 +7,7 @@ from fit_bodies import analytic_body, analytic_landmarks, body_of, hanging, land
 from core.control_mesh.fit import fit_control_mesh
 from core.control_mesh.template import TEMPLATES, read_template
 from core.control_mesh.validation import agreement, bends, corner_angles
-from core.deformation.blend_region import patch_fade
+from core.deformation.blend_region import blend_weights
 from core.deformation.tffd import bind, deform
 from core.errors import FitError
 from core.geometry.mesh import Mesh
@@ -123,14 +123,14 @@ def test_body_reshapes_sanely_where_the_control_mesh_bridges_a_fold(template, sa
     body, landmarks = hanging(sag)
     control = fit_control_mesh(template, body, landmarks)
     assert agreement(control.mesh, body.mesh).min() < 0.0  # some triangles do face backward
-    fade = patch_fade(body.mesh, control)
+    fade = blend_weights(body.mesh, control)
     assert fade.rule == "flood"
     binding = bind(body.mesh, control.mesh, fade.fade, fixed=control.fixed)
     model = constrained_model(control, worn=frozenset(["mid-bust"]))
     ratios = tuple(0.97 if line.name == "mid-bust" else 1.0 for line in model.lines)
     answer = solve_exact(model, ratios)
     shaped = body.mesh.moved(deform(binding, model.tensegric.expand(answer.state.moved)))
-    assert answer.found
+    assert answer.is_converged
     moved = np.linalg.norm(shaped.vertices - body.mesh.vertices, axis=1)
     assert 1.0 < moved.max() < 4.0
     assert moved[fade.fade == 0.0].max() == 0.0

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from fit_bodies import RADIUS, analytic_body, body_of
 
-from core.control_mesh.missing_points import rebuilt
+from core.control_mesh.missing_points import interpolate_missing
 from core.control_mesh.quality import FitQuality, deviations, measure_fit
-from core.control_mesh.relaxation import eased
-from core.control_mesh.surface_projection import NearSkin
-from core.control_mesh.validation import corner_angles, crossing_faces, find_faults
+from core.control_mesh.relaxation import relax
+from core.control_mesh.surface_projection import SurfaceProjector
+from core.control_mesh.validation import corner_angles, crossing_faces, find_mesh_faults
 from core.geometry.mesh import Mesh
 
 FLAT = [(0.0, 0.0, 0.0), (4.0, 0.0, 0.0), (0.0, 4.0, 0.0)]
@@ -65,7 +65,7 @@ def test_deviation_of_a_patch_of_flat_strips_on_a_cylinder():
     # r (sin a / a - cos a), a being 10 degrees, where distances are across the flat.
     points, faces = cylinder_patch(RADIUS, 20.0)
     mesh = Mesh(points.reshape(-1, 3), faces)
-    away, area = deviations(mesh, NearSkin(analytic_body(bump=0.0)))
+    away, area = deviations(mesh, SurfaceProjector(analytic_body(bump=0.0)))
     half = np.radians(10.0)
     assert away.max() == pytest.approx(RADIUS * (1.0 - np.cos(half)), abs=0.02)
     expected = RADIUS * (np.sin(half) / half - np.cos(half))
@@ -78,7 +78,7 @@ def test_figures_of_a_patch_that_lies_off_the_skin():
     points, faces = cylinder_patch(RADIUS + 3.0, 4.0)
     mesh = Mesh(points.reshape(-1, 3), faces)
     fold = np.zeros(len(mesh.vertices), dtype=bool)
-    quality = measure_fit(mesh, NearSkin(analytic_body(bump=0.0)), fold, 0.5, 7.0)
+    quality = measure_fit(mesh, SurfaceProjector(analytic_body(bump=0.0)), fold, 0.5, 7.0)
     assert quality.deviation_mean == pytest.approx(3.0, abs=0.06)
     assert quality.deviation_95 == pytest.approx(3.0, abs=0.1)
     width = 2.0 * (RADIUS + 3.0) * np.sin(np.radians(2.0))
@@ -102,10 +102,10 @@ def test_poor_figures_are_told():
 
 def test_mesh_turned_inside_out_is_folded():
     points, faces = cylinder_patch(RADIUS, 10.0)
-    skin = NearSkin(analytic_body(bump=0.0))
+    skin = SurfaceProjector(analytic_body(bump=0.0))
     none = np.zeros(points[..., 0].size, dtype=bool)
-    assert not find_faults(Mesh(points.reshape(-1, 3), faces), skin, none).any.any()
-    assert find_faults(Mesh(points.reshape(-1, 3), faces[:, ::-1]), skin, none).folded.all()
+    assert not find_mesh_faults(Mesh(points.reshape(-1, 3), faces), skin, none).any.any()
+    assert find_mesh_faults(Mesh(points.reshape(-1, 3), faces[:, ::-1]), skin, none).folded.all()
 
 
 def test_holes_of_one_side_take_the_shape_of_the_other():
@@ -115,7 +115,7 @@ def test_holes_of_one_side_take_the_shape_of_the_other():
     points[..., 0] += 7.0
     holed = points.copy()
     holed[2:6, 4:] = np.nan
-    filled = rebuilt(holed, 7.0)
+    filled = interpolate_missing(holed, 7.0)
     np.testing.assert_allclose(filled, points, atol=3.0)
     known = ~np.isnan(holed)
     np.testing.assert_array_equal(filled[known], holed[known])
@@ -126,18 +126,18 @@ def test_holes_of_both_sides_go_on_as_the_skin_bends():
     holed = points.copy()
     holed[3:5, 2:5] = np.nan
     holed[0, :] = np.nan
-    np.testing.assert_allclose(rebuilt(holed, 0.0), points, atol=2.0)
+    np.testing.assert_allclose(interpolate_missing(holed, 0.0), points, atol=2.0)
 
 
 def test_easing_widens_pointed_triangles_on_the_skin_and_leaves_good_ones_alone():
-    skin = NearSkin(analytic_body(bump=0.0))
+    skin = SurfaceProjector(analytic_body(bump=0.0))
     points, faces = cylinder_patch(RADIUS, 15.0)
     free = np.ones(points.shape[:2], dtype=bool)
     free[[0, -1]] = free[:, [0, -1]] = False
-    assert eased(points, faces, skin, free, free) is points
+    assert relax(points, faces, skin, free, free) is points
     squeezed = points.copy()
     squeezed[3, 2:6, 2] -= 24.0
-    better = eased(squeezed, faces, skin, free & False, free)
+    better = relax(squeezed, faces, skin, free & False, free)
     angles = [corner_angles(Mesh(each.reshape(-1, 3), faces)).min() for each in (squeezed, better)]
     assert angles[0] < 12.0
     assert angles[1] > 15.0
@@ -152,7 +152,7 @@ def test_body_without_skin_in_front_gives_no_figure():
     behind = body_of(analytic_body(bump=0.0)).mesh
     behind = Mesh(behind.vertices, behind.faces[behind.vertices[behind.faces][:, :, 1].min(axis=1) > 20.0])
     quality = measure_fit(
-        Mesh(points.reshape(-1, 3), faces), NearSkin(behind), np.zeros(63, dtype=bool), 0.0, 0.0
+        Mesh(points.reshape(-1, 3), faces), SurfaceProjector(behind), np.zeros(63, dtype=bool), 0.0, 0.0
     )
     assert np.isnan(quality.deviation_mean)
     assert quality.deviation_max == 0.0

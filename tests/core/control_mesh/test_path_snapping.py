@@ -7,13 +7,15 @@ import pytest
 from shapes import fitted
 
 from core.control_mesh.fit import ControlMesh
-from core.control_mesh.path_snapping import both_ways, off_by, resampled, snap
+from core.control_mesh.path_snapping import directed_edges, max_deviation, resampled, snap
 from core.control_mesh.template import read_template
-from core.document.line_notation import mirrored, ready_made
+from core.document.line_notation import mirrored, ready_made_lines
 from core.errors import LineError
 
 TEMPLATE = read_template("168")
-KNOWN = {line.name: line for kind in ("straps", "slings", "rings") for line in ready_made(TEMPLATE)[kind]}
+KNOWN = {
+    line.name: line for kind in ("straps", "slings", "rings") for line in ready_made_lines(TEMPLATE)[kind]
+}
 
 
 def control() -> ControlMesh:
@@ -40,7 +42,9 @@ def test_a_curve_along_a_known_path_gives_that_path(name: str, amplitude: float)
     found = snap(control(), curve[:-1] if closed else curve, closed)
     assert (*found.path, *found.path[:1] * closed) == tuple(path)
     assert found.closed == closed
-    assert 0.5 * amplitude <= found.off <= amplitude + 2.0, "points 4 mm apart cut corners by up to 2 mm"
+    assert 0.5 * amplitude <= found.deviation <= amplitude + 2.0, (
+        "points 4 mm apart cut corners by up to 2 mm"
+    )
 
 
 def test_a_curve_drawn_from_its_other_end_gives_the_same_path_backwards() -> None:
@@ -49,7 +53,7 @@ def test_a_curve_drawn_from_its_other_end_gives_the_same_path_backwards() -> Non
 
 
 def test_a_path_goes_along_edges() -> None:
-    edges = {tuple(edge) for edge in both_ways(control().mesh.faces).tolist()}
+    edges = {tuple(edge) for edge in directed_edges(control().mesh.faces).tolist()}
     random = np.random.default_rng(4)
     for _ in range(12):
         corners = points()[random.choice(np.flatnonzero(~control().fixed), 4, replace=False)]
@@ -59,21 +63,21 @@ def test_a_path_goes_along_edges() -> None:
 
 def test_the_distance_is_the_largest_from_the_curve_to_the_path() -> None:
     corners = np.array([[0.0, 0.0, 0.0], [100.0, 0.0, 0.0], [100.0, 100.0, 0.0]])
-    assert off_by(np.array([[50.0, 3.0, 4.0], [104.0, -3.0, 0.0]]), corners) == pytest.approx(5.0)
-    assert off_by(np.array([[100.0, 130.0, 40.0]]), corners) == pytest.approx(50.0)
+    assert max_deviation(np.array([[50.0, 3.0, 4.0], [104.0, -3.0, 0.0]]), corners) == pytest.approx(5.0)
+    assert max_deviation(np.array([[100.0, 130.0, 40.0]]), corners) == pytest.approx(50.0)
 
 
 def test_what_lies_outside_the_control_mesh_is_told_by_the_distance() -> None:
     down = points()[KNOWN["strap left"].points[0]] + np.linspace([0.0, 0.0, 0.0], [0.0, 0.0, -200.0], 20)
-    assert snap(control(), down).off > 100.0
+    assert snap(control(), down).deviation > 100.0
 
 
 def test_a_line_that_cannot_move_finds_the_nearest_path_that_can() -> None:
     still = control().paths["under-bust"]
     curve = wavy(tuple(still), 2.0)
-    assert not snap(control(), curve).pulls
+    assert not snap(control(), curve).is_movable
     moved = snap(control(), curve, pulling=True)
-    assert moved.pulls
+    assert moved.is_movable
     assert not any(control().fixed[list(step)].all() for step in pairwise(moved.path))
     strap = KNOWN["strap left"].points
     assert snap(control(), points()[list(strap)], pulling=True).path == strap, (
@@ -90,7 +94,7 @@ def test_a_curve_that_is_too_short_is_refused() -> None:
 
 
 def test_a_path_is_mirrored_to_the_other_side() -> None:
-    for kind in ready_made(TEMPLATE).values():
+    for kind in ready_made_lines(TEMPLATE).values():
         left, right = kind
         assert mirrored(left.points, TEMPLATE) == right.points
         assert mirrored(mirrored(left.points, TEMPLATE), TEMPLATE) == left.points

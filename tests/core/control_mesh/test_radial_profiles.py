@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from core.control_mesh.radial_profiles import Profile, exits, find_fold, heading, profile
+from core.control_mesh.radial_profiles import Profile, azimuth_direction, find_fold, profile, ray_exits
 from core.geometry.mesh import Mesh
 from core.geometry.plane_sections import arc_length
 
@@ -30,15 +30,15 @@ def profile_through(corners):
 
 
 def test_heading_is_forward_at_zero_and_left_at_ninety_degrees():
-    np.testing.assert_allclose(heading(0.0), (0.0, -1.0, 0.0), atol=1e-15)
-    np.testing.assert_allclose(heading(np.pi / 2), (1.0, 0.0, 0.0), atol=1e-15)
+    np.testing.assert_allclose(azimuth_direction(0.0), (0.0, -1.0, 0.0), atol=1e-15)
+    np.testing.assert_allclose(azimuth_direction(np.pi / 2), (1.0, 0.0, 0.0), atol=1e-15)
 
 
 @pytest.mark.parametrize("degrees", [0.0, 17.0, 45.0, -90.0, 180.0])
 @pytest.mark.parametrize("height", [0.0, 3.0])
 def test_ray_out_of_a_box_also_through_its_edges_and_corners(degrees, height):
-    direction = heading(np.radians(degrees))
-    (ways,) = exits(box(20.0, 20.0, 40.0), np.array([[0.0, 0.0, height]]), direction[None])
+    direction = azimuth_direction(np.radians(degrees))
+    (ways,) = ray_exits(box(20.0, 20.0, 40.0), np.array([[0.0, 0.0, height]]), direction[None])
     np.testing.assert_allclose(ways, 10.0 / np.abs(direction).max())
     assert len(ways) >= 1
 
@@ -46,7 +46,9 @@ def test_ray_out_of_a_box_also_through_its_edges_and_corners(degrees, height):
 def test_exits_of_nested_bodies_come_in_order_and_entries_do_not_count():
     arm = box(2.0, 2.0, 2.0)
     mesh = joined(box(10.0, 10.0, 10.0), arm.moved(arm.vertices + np.array([20.0, 0.0, 0.0])))
-    ways = exits(mesh, np.array([[0.1, 0.2, 0.3], [0.1, 0.2, 0.3]]), np.array([[3.0, 0, 0], [-3.0, 0, 0]]))
+    ways = ray_exits(
+        mesh, np.array([[0.1, 0.2, 0.3], [0.1, 0.2, 0.3]]), np.array([[3.0, 0, 0], [-3.0, 0, 0]])
+    )
     np.testing.assert_allclose(np.unique(ways[0]), [4.9, 20.9])
     np.testing.assert_allclose(np.unique(ways[1]), [5.1])
 
@@ -54,7 +56,7 @@ def test_exits_of_nested_bodies_come_in_order_and_entries_do_not_count():
 def test_ray_through_a_hole_finds_nothing():
     closed = box(20.0, 20.0, 20.0)
     holed = Mesh(closed.vertices, closed.faces[closed.face_normals[:, 1] > -0.5])
-    ways = exits(holed, np.array([[1.0, 0.0, 2.0]]), heading(0.0)[None])
+    ways = ray_exits(holed, np.array([[1.0, 0.0, 2.0]]), azimuth_direction(0.0)[None])
     assert len(ways[0]) == 0
 
 

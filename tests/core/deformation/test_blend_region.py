@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from core.control_mesh.fit import ControlMesh, fit_control_mesh
 from core.control_mesh.template import read_template
-from core.deformation.blend_region import Patch, patch_fade, smooth_step
+from core.deformation.blend_region import BlendRegion, blend_weights, smooth_step
 from core.deformation.tffd import bind, deform
 from core.errors import FitError
 from core.geometry.mesh import Mesh
@@ -68,7 +68,7 @@ def test_smooth_step_by_hand():
 
 @pytest.mark.parametrize("width", [10.0, 25.0, 40.0])
 def test_the_fade_on_a_sheet_is_the_smooth_step_of_the_way_to_the_border(width):
-    patch = patch_fade(SHEET, CONTROL, width)
+    patch = blend_weights(SHEET, CONTROL, width)
     assert patch.rule == "flood"
     assert patch.reason == ""
     assert patch.fade == pytest.approx(smooth_step(inside(SHEET.vertices) / width), abs=1e-12)
@@ -77,7 +77,7 @@ def test_the_fade_on_a_sheet_is_the_smooth_step_of_the_way_to_the_border(width):
 def test_a_hole_within_the_patch_is_no_border():
     hole = np.linalg.norm(centres(SHEET) - [0.0, 0.0, 10.0], axis=1) < 18.0
     scan = without(SHEET, hole)
-    patch = patch_fade(scan, CONTROL)
+    patch = blend_weights(scan, CONTROL)
     assert patch.rule == "flood"
     assert len(scan.vertices) < len(SHEET.vertices)
     assert patch.fade == pytest.approx(smooth_step(inside(scan.vertices) / 25.0), abs=1e-12)
@@ -86,7 +86,7 @@ def test_a_hole_within_the_patch_is_no_border():
 def test_a_small_hole_on_the_border_is_walked_round():
     hole = np.linalg.norm(centres(SHEET) - [100.0, 0.0, 10.0], axis=1) < 12.0
     scan = without(SHEET, hole)
-    patch = patch_fade(scan, CONTROL)
+    patch = blend_weights(scan, CONTROL)
     assert patch.rule == "flood"
     far = np.linalg.norm(scan.vertices - [100.0, 0.0, 10.0], axis=1) > 45.0
     assert patch.fade[far] == pytest.approx(smooth_step(inside(scan.vertices[far]) / 25.0), abs=1e-12)
@@ -101,7 +101,7 @@ CUTS = {
 @pytest.mark.parametrize("cut", CUTS)
 def test_a_broken_scan_fades_by_distance_and_says_so(cut):
     scan = without(SHEET, CUTS[cut](centres(SHEET)))
-    patch = patch_fade(scan, CONTROL)
+    patch = blend_weights(scan, CONTROL)
     assert patch.rule == "distance"
     assert patch.reason.endswith(".")
     assert patch.fade == pytest.approx(smooth_step(inside(scan.vertices) / 25.0), abs=1e-9)
@@ -117,10 +117,10 @@ def test_the_distance_rule_leaves_an_arm_before_the_patch_alone():
         np.concatenate([broken.vertices, near.vertices, far.vertices]),
         np.concatenate([broken.faces, near.faces[:, ::-1] + first, far.faces + second]),
     )
-    patch = patch_fade(scan, CONTROL)
+    patch = blend_weights(scan, CONTROL)
     assert patch.rule == "distance"
     assert patch.fade[first:].max() == 0.0
-    assert patch.fade[:first] == pytest.approx(patch_fade(broken, CONTROL).fade, abs=1e-9)
+    assert patch.fade[:first] == pytest.approx(blend_weights(broken, CONTROL).fade, abs=1e-9)
 
 
 def test_a_fence_that_does_not_close_is_noticed():
@@ -137,7 +137,7 @@ def test_a_fence_that_does_not_close_is_noticed():
         CONTROL.border,
         (),
     )
-    assert patch_fade(SHEET, control).rule == "distance"
+    assert blend_weights(SHEET, control).rule == "distance"
 
 
 def test_a_control_mesh_whose_border_triangles_move_is_refused():
@@ -154,10 +154,10 @@ SAMPLES = pytest.mark.parametrize("name", ["mannequin", "person"])
 
 
 @cache
-def sample(name: str) -> tuple[Body, ControlMesh, Patch]:
+def sample(name: str) -> tuple[Body, ControlMesh, BlendRegion]:
     body = read_scan(str(files("resources") / "samples" / f"{name}.ply"))
     control = fit_control_mesh(read_template("168"), body, find_landmarks(body))
-    return body, control, patch_fade(body.mesh, control)
+    return body, control, blend_weights(body.mesh, control)
 
 
 def loosened(control: ControlMesh) -> np.ndarray:
@@ -195,7 +195,7 @@ def test_nothing_outside_the_patch_of_a_sample_moves(name, weights):
 @SAMPLES
 def test_a_wider_fade_is_never_higher_and_neighbours_differ_little(name):
     body, control, patch = sample(name)
-    wide = patch_fade(body.mesh, control, 40.0)
+    wide = blend_weights(body.mesh, control, 40.0)
     assert (wide.fade <= patch.fade).all()
     assert (wide.fade < patch.fade).any()
     a, b = body.mesh.edges.T
@@ -219,7 +219,7 @@ def test_a_mirrored_sample_has_the_same_patch(name):
         control.border[::-1],
         (),
     )
-    assert np.abs(patch_fade(mesh, mirrored).fade - patch.fade).max() < 1e-9
+    assert np.abs(blend_weights(mesh, mirrored).fade - patch.fade).max() < 1e-9
 
 
 @SAMPLES
@@ -227,7 +227,7 @@ def test_a_punched_sample_still_has_a_patch(name):
     body, control, patch = sample(name)
     spot = control.mesh.vertices[control.border[5]]
     scan = without(body.mesh, np.linalg.norm(centres(body.mesh) - spot, axis=1) < 60.0)
-    punched = patch_fade(scan, control)
+    punched = blend_weights(scan, control)
     assert punched.rule == "distance"
     assert punched.fade[under_free_points(scan, control)].min() == pytest.approx(1.0)
     assert (punched.fade > 0.0).sum() < (patch.fade > 0.0).sum()

@@ -18,7 +18,7 @@ def test_slopes_by_control_points_are_those_of_differences(weights: str, scaled:
     rng = np.random.default_rng(8)
     here, way = shaken(CONTROL), rng.normal(size=CONTROL.vertices.shape)
     by_places = rng.normal(size=binding.rest_moving.shape)
-    by_points = binding.pulled(here, by_places)
+    by_points = binding.gradient(here, by_places)
     expected = slope(
         lambda t: float(np.sum(by_places * deform_moving(binding, here + t * way * ~RING[:, None])))
     )

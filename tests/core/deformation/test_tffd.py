@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from core.deformation.tffd import bind, deform, deform_moving, uncollared
+from core.deformation.tffd import bind, deform, deform_moving, movable_border_triangles
 from core.geometry import kernels
 from core.geometry.mesh import Mesh
 
@@ -148,7 +148,7 @@ def test_a_few_rows_as_a_matrix_and_all_of_them_before_others(weights):
     ours = binding.rest_moving[rows] + binding.operator.of_rows(rows) @ binding.change(moved)
     assert np.abs(ours - deform_moving(binding, moved)[rows]).max() < 1e-11
     longer = np.concatenate([binding.rest_moving, BODY.vertices[:5]])
-    places = binding.operator.added(binding.change(moved), longer)
+    places = binding.operator.apply(binding.change(moved), longer)
     assert np.array_equal(places[:-5], deform_moving(binding, moved))
     assert np.array_equal(places[-5:], BODY.vertices[:5])
 
@@ -252,10 +252,12 @@ def test_the_smooth_weights_end_without_a_step():
 def test_the_outermost_ring_must_not_move():
     grid = np.abs(CONTROL.vertices[:, :2])
     two_rings = (grid[:, 0] > 66.0) | (grid[:, 1] > 59.0)
-    assert len(uncollared(CONTROL, two_rings)) == 0
+    assert len(movable_border_triangles(CONTROL, two_rings)) == 0
     # The triangles of the outer cells (6 x 5 of them, 4 x 3 within), but for those fixed at the corners.
     outer = np.array([RING[face].any() for face in CONTROL.faces])
-    assert np.array_equal(uncollared(CONTROL, RING), np.flatnonzero(outer & ~RING[CONTROL.faces].all(axis=1)))
-    assert uncollared(CONTROL, two_rings & (np.arange(42) != 8)).tolist() != []
+    assert np.array_equal(
+        movable_border_triangles(CONTROL, RING), np.flatnonzero(outer & ~RING[CONTROL.faces].all(axis=1))
+    )
+    assert movable_border_triangles(CONTROL, two_rings & (np.arange(42) != 8)).tolist() != []
     closed = Mesh(np.eye(4, 3), np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]))
-    assert len(uncollared(closed, np.zeros(4, dtype=bool))) == 0
+    assert len(movable_border_triangles(closed, np.zeros(4, dtype=bool))) == 0

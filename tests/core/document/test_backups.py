@@ -10,7 +10,7 @@ from small_project import DESIGN, PICTURE, SCAN, write_project
 
 import core.document.storage.backups
 from core.document.document import Document
-from core.document.storage.backups import back_up, backed_up, backups
+from core.document.storage.backups import back_up, backup_before_write, backups
 from core.document.storage.project_file import open_project, save_project
 from core.errors import ProjectError
 
@@ -24,8 +24,8 @@ def own_base(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def save(path: Path, ratio: float, most: int = 3) -> None:
-    with backed_up(path, most):
-        save_project(path, Document.of(DESIGN.with_line("mid-bust", ratio)), SCAN, PICTURE)
+    with backup_before_write(path, most):
+        save_project(path, Document.single(DESIGN.with_line("mid-bust", ratio)), SCAN, PICTURE)
 
 
 def kept() -> list[float]:
@@ -51,7 +51,7 @@ def test_saves_that_fail_take_no_good_backup_away(tmp_path: Path, monkeypatch: p
     for ratio in (0.9, 0.8, 0.7, 0.6):
         save(path, ratio)
     for _ in range(6):
-        with pytest.raises(RuntimeError), backed_up(path, 3):
+        with pytest.raises(RuntimeError), backup_before_write(path, 3):
             raise RuntimeError("the program is killed")
     with monkeypatch.context() as patch:
         patch.setattr(os, "fsync", fail_to_sync)

@@ -30,7 +30,7 @@ def test_every_truncation_is_refused_in_a_sentence(project):
 @given(changes=st.lists(st.tuples(st.integers(0, 10**6), st.integers(0, 255)), min_size=1, max_size=4))
 def test_no_flipped_byte_does_worse_than_a_refusal(tmp_path, changes):
     path = tmp_path / "anna.busk"
-    save_project(path, Document.of(DESIGN), SCAN, PICTURE)
+    save_project(path, Document.single(DESIGN), SCAN, PICTURE)
     broken = bytearray(path.read_bytes())
     for place, value in changes:
         broken[place % len(broken)] = value
@@ -98,7 +98,7 @@ def test_a_scan_with_a_hostile_name_gets_a_harmless_one(tmp_path, member):
     ).design
     scan = read_scan_file(design.scan)
     assert scan.data == b"ply"
-    save_project(tmp_path / "again.busk", Document.of(design), scan, None)
+    save_project(tmp_path / "again.busk", Document.single(design), scan, None)
     with zipfile.ZipFile(tmp_path / "again.busk") as archive:
         _, kept = archive.namelist()
     assert kept.startswith("scan/")

@@ -10,13 +10,13 @@ import pytest
 
 from core.control_mesh.template import read_template
 from core.document.design import Design, ScanSource
-from core.document.line_notation import own_line, place_of, with_own_lines
-from core.document.lines import OwnLine
+from core.document.line_notation import format_point, parse_line, with_custom_lines
+from core.document.lines import CustomLine
 from core.document.serialization import from_json, to_json
 from core.errors import LineError
 from core.mechanics.exact_solution import solve_exact
 from core.pipeline.build import Stages, build
-from core.pipeline.warnings import still_lines
+from core.pipeline.warnings import immovable_lines
 
 BIG, SMALL = read_template("168"), read_template("120")
 
@@ -34,11 +34,11 @@ BIG, SMALL = read_template("168"), read_template("120")
     ],
 )
 def test_points_are_named_by_number_or_by_place(text: str, points: tuple[int, ...]) -> None:
-    assert own_line(text, BIG) == OwnLine("strap", points)
+    assert parse_line(text, BIG) == CustomLine("strap", points)
 
 
 def test_a_closed_line_ends_where_it_begins() -> None:
-    line = own_line("ring=r3c1:r3c3,r4c3:r4c1,closed", BIG)
+    line = parse_line("ring=r3c1:r3c3,r4c3:r4c1,closed", BIG)
     assert line.closed
     assert line.path[0] == line.path[-1] == line.points[0]
     assert len(line.path) == len(line.points) + 1 == 7
@@ -48,7 +48,7 @@ def test_places_and_numbers_say_the_same() -> None:
     for template in (BIG, SMALL):
         for point in range(len(template.row)):
             other = 0 if point else 1
-            assert own_line(f"a={place_of(point, template)},{other}", template).points == (point, other)
+            assert parse_line(f"a={format_point(point, template)},{other}", template).points == (point, other)
 
 
 @pytest.mark.parametrize(
@@ -74,29 +74,29 @@ def test_places_and_numbers_say_the_same() -> None:
 )
 def test_what_is_no_line_is_refused_in_a_sentence(text: str, sentence: str) -> None:
     with pytest.raises(LineError, match=sentence) as refused:
-        own_line(text, BIG)
+        parse_line(text, BIG)
     assert refused.value.hint
 
 
 def test_own_lines_lie_beside_those_of_the_template(built: Callable[[str], Stages]) -> None:
     control = built("mannequin").control
-    ring = OwnLine("ring", (45, 46, 59, 58), closed=True)
-    laid = with_own_lines(control, (OwnLine("strap", (48, 61, 74)), ring))
+    ring = CustomLine("ring", (45, 46, 59, 58), closed=True)
+    laid = with_custom_lines(control, (CustomLine("strap", (48, 61, 74)), ring))
     assert list(laid.paths) == [*control.paths, "strap", "ring"]
     assert laid.paths["ring"] == (45, 46, 59, 58, 45)
-    for wrong in (OwnLine("mid-bust", (1, 2)), OwnLine("far", (1, 104)), OwnLine("far", (-1, 2))):
+    for wrong in (CustomLine("mid-bust", (1, 2)), CustomLine("far", (1, 104)), CustomLine("far", (-1, 2))):
         with pytest.raises(LineError):
-            with_own_lines(control, (wrong,))
+            with_custom_lines(control, (wrong,))
 
 
 def test_a_strap_lifts_and_one_on_fixed_points_is_measured_only(built: Callable[[str], Stages]) -> None:
     before = built("mannequin")
-    strap, edge = own_line("strap=r2c3:r6c3", BIG), own_line("edge=r6c-2:r6c2", BIG)
+    strap, edge = parse_line("strap=r2c3:r6c3", BIG), parse_line("edge=r6c-2:r6c2", BIG)
     design = replace(before.design, lines=(), own_lines=(strap, edge))
     stages = build(design.with_line("strap", 0.95).with_line("edge", 0.9), before)
     assert stages.model.lines[-1].name == "edge"
     assert not stages.model.lines[-1].constrains
-    [sentence] = still_lines(stages)
+    [sentence] = immovable_lines(stages)
     assert sentence.startswith("edge lies on points that do not move")
     assert stages.model.lines[-2].back_length == 0.0
     answer = solve_exact(stages.model, (1.0, 1.0, 1.0, 0.95, 0.9))
@@ -110,14 +110,14 @@ def test_a_strap_lifts_and_one_on_fixed_points_is_measured_only(built: Callable[
 
 
 def test_own_lines_are_saved_and_keep_their_template() -> None:
-    design = Design(ScanSource("a.ply")).with_own_line(own_line("ring=r3c1:r3c3,r4c2,closed", BIG))
+    design = Design(ScanSource("a.ply")).with_custom_line(parse_line("ring=r3c1:r3c3,r4c2,closed", BIG))
     again = from_json(to_json(design.with_line("ring", 0.9)))
     assert again.own_lines == design.own_lines
     assert again.ratio("ring") == 0.9
     assert again.with_template("168") == again
     with pytest.raises(LineError, match="168 polygons"):
         again.with_template("120")
-    assert again.without_own_line("ring") == Design(ScanSource("a.ply"))
-    assert again.without_own_line("ring").with_template("120").template == "120"
-    longer = again.with_own_line(OwnLine("ring", (1, 2)))
-    assert longer.own_lines == (OwnLine("ring", (1, 2)),)
+    assert again.without_custom_line("ring") == Design(ScanSource("a.ply"))
+    assert again.without_custom_line("ring").with_template("120").template == "120"
+    longer = again.with_custom_line(CustomLine("ring", (1, 2)))
+    assert longer.own_lines == (CustomLine("ring", (1, 2)),)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from core.document.custom_measures import OwnMeasure
+from core.document.custom_measures import CustomMeasurement
 from core.document.design import Design, ScanSource
 from core.document.document import Document
 from core.document.document_text import from_texts, to_texts
@@ -22,7 +22,7 @@ ANNA = replace(PLAIN, customer="Anna K., 0412 \N{EM DASH} 佐藤")
 
 
 def test_the_customer_is_saved_with_every_variant(tmp_path: Path) -> None:
-    document = Document.of(PLAIN).showing("B").with_design(ANNA.with_line("mid-bust", 0.9))
+    document = Document.single(PLAIN).with_shown("B").with_design(ANNA.with_line("mid-bust", 0.9))
     assert [design.customer for _, design in document.designs] == [ANNA.customer] * 2
     path = tmp_path / "anna.busk"
     save_project(path, document, ScanFile("a.ply", b"ply"), None)
@@ -39,8 +39,8 @@ def test_projects_of_nobody_are_as_they_were() -> None:
 
 def test_what_her_tape_takes_off_is_hers_too(tmp_path: Path) -> None:
     tight = replace(PLAIN, worn_tight_mm=12.5)
-    assert tight.acts_as(PLAIN)
-    document = Document.of(PLAIN).showing("B").with_design(tight)
+    assert tight.is_equivalent(PLAIN)
+    document = Document.single(PLAIN).with_shown("B").with_design(tight)
     assert {design.worn_tight_mm for _, design in from_texts(to_texts(document)).designs} == {12.5}
     assert "worn_tight_mm" not in json.loads(to_json(PLAIN))
     with pytest.raises(UserError):
@@ -55,7 +55,7 @@ def test_a_customer_that_cannot_be_printed_is_refused(name: str) -> None:
 
 def test_wide_spaces_are_part_of_names() -> None:
     assert replace(PLAIN, customer="山田\u3000花子").customer == "山田\u3000花子"
-    assert OwnMeasure("胸\u3000幅", "girth", (), 900.0).name == "胸\u3000幅"
+    assert CustomMeasurement("胸\u3000幅", "girth", (), 900.0).name == "胸\u3000幅"
 
 
 def test_a_customer_that_is_no_text_is_refused() -> None:
@@ -64,17 +64,17 @@ def test_a_customer_that_is_no_text_is_refused() -> None:
 
 
 def test_a_document_is_read_as_it_was_written() -> None:
-    document = Document.of(ANNA).showing("C")
+    document = Document.single(ANNA).with_shown("C")
     assert from_texts(to_texts(document)) == document
 
 
 @pytest.mark.usefixtures("qapp")
 def test_naming_the_customer_is_one_step_that_leaves_the_run_alone() -> None:
     editing = _Editing()
-    editing.document = Document.of(PLAIN)
+    editing.document = Document.single(PLAIN)
     editing.change({"customer": "Anna"}, "Customer Anna")
     assert editing.document.customer == "Anna"
     assert editing.design is not None
-    assert editing.design.acts_as(PLAIN)
+    assert editing.design.is_equivalent(PLAIN)
     editing.undo_stack.undo()
-    assert editing.document == Document.of(PLAIN)
+    assert editing.document == Document.single(PLAIN)

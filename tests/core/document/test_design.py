@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from made_designs import KNOWN, PLAIN, anything, designs
 
 from core.document.design import Design, ScanSource
-from core.document.lines import LineTraits, OwnLine
+from core.document.lines import CustomLine, LineSettings
 from core.document.serialization import FORMAT, from_json, to_json
 from core.errors import LineError, ProjectError, UserError
-from core.pipeline.exact import NoBalanceError
+from core.pipeline.exact import NoEquilibriumError
 
 
 @settings(deadline=None, max_examples=50)
@@ -154,7 +154,7 @@ def test_a_line_out_of_range_is_refused(ratio):
         {"prestress": 0.09},
         {"firm_chest": 1.1},
         {"firm_chest": float("nan")},
-        {"own_lines": (OwnLine("a", (1, 2)), OwnLine("a", (3, 4)))},
+        {"own_lines": (CustomLine("a", (1, 2)), CustomLine("a", (3, 4)))},
     ],
 )
 def test_settings_out_of_range_are_refused(change):
@@ -166,9 +166,9 @@ def test_lines_are_put_on_changed_and_taken_off():
     worn = PLAIN.with_line("mid-bust", 0.97).with_line("full-bust", 1.0).with_line("mid-bust", 0.9)
     assert [line.name for line in worn.lines] == ["full-bust", "mid-bust"]
     assert worn.ratio("mid-bust") == 0.9
-    assert worn.worn() == {"mid-bust", "full-bust"}
+    assert worn.active_lines() == {"mid-bust", "full-bust"}
     bare = worn.with_line("mid-bust", None)
-    assert bare.worn() == {"full-bust"}
+    assert bare.active_lines() == {"full-bust"}
     assert bare.ratio("mid-bust") == 1.0
     assert PLAIN.lines == ()
 
@@ -193,46 +193,50 @@ def test_a_scan_is_called_by_its_file_name():
 @pytest.mark.parametrize(("force", "advice"), [("implicit", "nearer to 100 %"), ("explicit", "act in step")])
 def test_a_length_that_cannot_be_held_comes_with_the_advice_that_helps(force, advice):
     design = replace(Design(ScanSource("a.ply")), line_hold="held", line_force=force)
-    refusal = NoBalanceError(design.with_line("mid-bust", 0.7))
+    refusal = NoEquilibriumError(design.with_line("mid-bust", 0.7))
     assert "mid-bust cannot be held at 70.0 %" in refusal.message
     assert advice in refusal.hint
 
 
 def test_a_locked_line_keeps_its_length_and_stays():
-    own = PLAIN.with_own_line(OwnLine("strap left", (35, 48))).with_line("strap left", 0.9)
-    locked = own.with_traits(LineTraits("strap left", locked=True))
+    own = PLAIN.with_custom_line(CustomLine("strap left", (35, 48))).with_line("strap left", 0.9)
+    locked = own.with_line_settings(LineSettings("strap left", locked=True))
     with pytest.raises(LineError, match="locked"):
         locked.with_line("strap left", 0.8)
     with pytest.raises(LineError, match="locked"):
-        locked.without_own_line("strap left")
-    assert locked.at_rest().worn() == {"strap left"}
-    assert not own.at_rest().lines
+        locked.without_custom_line("strap left")
+    assert locked.with_lines_reset().active_lines() == {"strap left"}
+    assert not own.with_lines_reset().lines
     assert from_json(to_json(locked)) == locked
-    assert locked.with_traits(LineTraits("strap left")) == own
+    assert locked.with_line_settings(LineSettings("strap left")) == own
 
 
 def test_a_linked_line_shares_its_length():
-    both = PLAIN.with_own_line(OwnLine("strap left", (35, 48))).with_own_line(
-        OwnLine("strap right", (36, 49))
+    both = PLAIN.with_custom_line(CustomLine("strap left", (35, 48))).with_custom_line(
+        CustomLine("strap right", (36, 49))
     )
-    assert both.with_linked("strap right", 0.9).worn() == {"strap left", "strap right"}
-    alone = both.with_traits(LineTraits("strap right", linked=False))
-    assert alone.with_linked("strap right", 0.9).worn() == {"strap right"}
-    assert PLAIN.with_linked("mid-bust", 0.9).worn() == {"mid-bust"}
-    assert both.with_line("strap left", 0.9).linked("strap left") == ("strap left",), "it is not shared yet"
+    assert both.with_linked("strap right", 0.9).active_lines() == {"strap left", "strap right"}
+    alone = both.with_line_settings(LineSettings("strap right", linked=False))
+    assert alone.with_linked("strap right", 0.9).active_lines() == {"strap right"}
+    assert PLAIN.with_linked("mid-bust", 0.9).active_lines() == {"mid-bust"}
+    assert both.with_line("strap left", 0.9).linked_pair("strap left") == ("strap left",), (
+        "it is not shared yet"
+    )
 
 
 def test_a_pair_is_linked_from_both_sides_and_its_lock_is_for_both():
-    both = PLAIN.with_own_line(OwnLine("strap left", (35, 48))).with_own_line(
-        OwnLine("strap right", (36, 49))
+    both = PLAIN.with_custom_line(CustomLine("strap left", (35, 48))).with_custom_line(
+        CustomLine("strap right", (36, 49))
     )
     apart = both.with_line("strap left", 0.9).with_line("strap right", 0.9)
-    apart = apart.with_traits(LineTraits("strap right", locked=True, linked=False))
-    assert apart.linked("strap left") == ("strap left",), "as seen from the other side"
-    assert apart.with_traits(LineTraits("strap right", locked=True)).linked("strap left") == ("strap left",)
+    apart = apart.with_line_settings(LineSettings("strap right", locked=True, linked=False))
+    assert apart.linked_pair("strap left") == ("strap left",), "as seen from the other side"
+    assert apart.with_line_settings(LineSettings("strap right", locked=True)).linked_pair("strap left") == (
+        "strap left",
+    )
     linked = apart.with_link("strap left")
-    assert linked.linked("strap left") == ("strap left", "strap right")
-    assert linked.traits_of("strap left").locked
+    assert linked.linked_pair("strap left") == ("strap left", "strap right")
+    assert linked.line_settings("strap left").locked
     assert apart.with_line("strap left", 0.8).with_link("strap right").ratio("strap left") == 0.9
     with pytest.raises(LineError, match="strap right is locked"):
         apart.with_line("strap left", 0.8).with_link("strap left")
@@ -243,4 +247,4 @@ def test_a_pair_is_linked_from_both_sides_and_its_lock_is_for_both():
 )
 def test_traits_that_cannot_be_are_refused(wrong):
     with pytest.raises(LineError):
-        LineTraits("mid-bust", **wrong)
+        LineSettings("mid-bust", **wrong)

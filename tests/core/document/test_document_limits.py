@@ -11,7 +11,7 @@ from made_designs import documents
 from small_project import DESIGN, PICTURE, SCAN
 
 import core.document.storage.project_file
-from core.document.custom_measures import OwnMeasure
+from core.document.custom_measures import CustomMeasurement
 from core.document.document import Document
 from core.document.document_limits import (
     LARGEST_TEXT,
@@ -29,7 +29,7 @@ from core.document.document_limits import (
 )
 from core.document.document_text import from_texts, to_texts
 from core.document.elastic import MOST_POINTS, Elastic
-from core.document.lines import LineTraits, OwnLine, WornLine
+from core.document.lines import ActiveLine, CustomLine, LineSettings
 from core.document.serialization import from_json, to_json
 from core.document.storage.project_file import open_project, save_project
 from core.errors import ProjectError, UserError
@@ -69,21 +69,21 @@ def test_the_largest_document_fits() -> None:
     points = MOST_POINTS_OF_LINES // MOST_LINES
     largest = replace(
         DESIGN,
-        lines=tuple(WornLine(name, ROW / 2.0) for name in names),
-        own_lines=tuple(OwnLine(name, tuple(range(100, 100 + points))) for name in names),
+        lines=tuple(ActiveLine(name, ROW / 2.0) for name in names),
+        own_lines=tuple(CustomLine(name, tuple(range(100, 100 + points))) for name in names),
         traits=tuple(
-            LineTraits(
+            LineSettings(
                 name, wide * 60, "#e5536b", stiffness=ROW, width=12.0 * ROW, elastic=rolls[k % 200].name
             )
             for k, name in enumerate(names)
         ),
-        own_measures=tuple(OwnMeasure(f"{k}", "girth", (), ROW) for k in range(MOST_MEASURES)),
+        own_measures=tuple(CustomMeasurement(f"{k}", "girth", (), ROW) for k in range(MOST_MEASURES)),
         elastics=tuple(rolls),
         unknown={"later": ["x" * 40] * (LARGEST_UNKNOWN // 60)},
     )
-    document = Document.of(largest)
+    document = Document.single(largest)
     for name in "BC":
-        document = document.showing(name)
+        document = document.with_shown(name)
     for text in to_texts(document).values():
         check_values(text)
         assert len(text) <= LARGEST_TEXT
@@ -93,10 +93,10 @@ def test_more_than_a_document_holds_is_refused_where_it_is_made_and_where_it_is_
     rolls = (Elastic(str(k), 12.0, curve(MOST_POINTS)) for k in range(MOST_ROWS // MOST_POINTS))
     full = replace(DESIGN, elastics=tuple(rolls))
     too_many = {
-        "lines": [WornLine(str(k), 0.9) for k in range(MOST_LINES + 1)],
-        "own_lines": [OwnLine(str(k), (1, 2)) for k in range(MOST_LINES + 1)],
-        "traits": [LineTraits(str(k), "t") for k in range(MOST_LINES + 1)],
-        "own_measures": [OwnMeasure(str(k), "girth") for k in range(MOST_MEASURES + 1)],
+        "lines": [ActiveLine(str(k), 0.9) for k in range(MOST_LINES + 1)],
+        "own_lines": [CustomLine(str(k), (1, 2)) for k in range(MOST_LINES + 1)],
+        "traits": [LineSettings(str(k), "t") for k in range(MOST_LINES + 1)],
+        "own_measures": [CustomMeasurement(str(k), "girth") for k in range(MOST_MEASURES + 1)],
         "elastics": [*full.elastics, Elastic("one more", 12.0, curve(2))],
     }
     for key, values in too_many.items():
@@ -115,7 +115,7 @@ def test_what_could_not_be_opened_is_not_saved_and_nothing_is_touched(
 ) -> None:
     before = project.read_bytes()
     with pytest.raises(ProjectError, match="could not be opened again"):
-        save_project(project, Document.of(replace(DESIGN, unknown=unknown)), SCAN, None)
+        save_project(project, Document.single(replace(DESIGN, unknown=unknown)), SCAN, None)
     assert (project.read_bytes(), [each.name for each in project.parent.iterdir()]) == (before, ["anna.busk"])
     with pytest.raises(ProjectError, match=r"nested too deeply|holds too much"):
         from_json(json.dumps({**json.loads(to_json(DESIGN)), **unknown}))
@@ -123,7 +123,7 @@ def test_what_could_not_be_opened_is_not_saved_and_nothing_is_touched(
 
 def test_what_later_versions_nest_is_kept_as_deep_as_it_is_read(project: Path) -> None:
     kept = {"later": nested(MOST_NESTED - 2)}
-    document = Document.of(replace(DESIGN, unknown=kept)).showing("B")
+    document = Document.single(replace(DESIGN, unknown=kept)).with_shown("B")
     for _ in range(2):
         document = save_project(project, document, SCAN, None)
         document = open_project(project)
@@ -157,7 +157,7 @@ def test_a_picture_that_would_not_be_shown_is_left_out(
     project: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(core.document.storage.project_file, "LARGEST_PICTURE", 3)
-    save_project(project, Document.of(DESIGN), SCAN, PICTURE)
+    save_project(project, Document.single(DESIGN), SCAN, PICTURE)
     with zipfile.ZipFile(project) as archive:
         assert "preview.png" not in archive.namelist()
 
@@ -173,8 +173,8 @@ def test_a_text_of_far_too_many_values_is_refused_before_it_takes_memory() -> No
 
 def test_the_same_names_are_read_in_one_pass() -> None:
     """As many as there may be, and they are compared with each other once."""
-    lines = tuple(LineTraits(f"line {k}", "t") for k in range(MOST_LINES))
+    lines = tuple(LineSettings(f"line {k}", "t") for k in range(MOST_LINES))
     with pytest.raises(UserError, match="in two ways"):
         replace(DESIGN, traits=(*lines[:-1], lines[0]))
-    document = Document.of(replace(DESIGN, traits=lines))
+    document = Document.single(replace(DESIGN, traits=lines))
     assert from_texts(to_texts(document)) == document

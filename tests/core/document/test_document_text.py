@@ -20,9 +20,9 @@ def written(document: Document) -> int:
 
 
 def test_the_format_is_that_of_the_newest_variant() -> None:
-    two = replace(Document.of(PLAIN), designs=(("A", PLAIN), ("B", PLAIN.with_line("mid-bust", 0.8))))
+    two = replace(Document.single(PLAIN), designs=(("A", PLAIN), ("B", PLAIN.with_line("mid-bust", 0.8))))
     hidden = replace(two, designs=(("A", PLAIN), ("B", ELASTIC)))
-    assert written(Document.of(PLAIN)) == 1
+    assert written(Document.single(PLAIN)) == 1
     assert written(two) == WITH_VARIANTS
     assert written(hidden) == WITH_ELASTICS
     assert written(replace(hidden, shown="B")) == WITH_ELASTICS

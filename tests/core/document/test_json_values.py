@@ -12,31 +12,31 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from made_designs import anything, designs
 
-from core.document.calibration_record import Calibration, FoundNumber
-from core.document.custom_measures import OwnMeasure
+from core.document.calibration_record import Calibration, FittedParameter
+from core.document.custom_measures import CustomMeasurement
 from core.document.design import Design, ScanSource
 from core.document.document import Document
 from core.document.document_text import from_texts, to_texts
 from core.document.elastic import Elastic
 from core.document.json_values import parsed, value_of
-from core.document.lines import LineTraits, OwnLine, WornLine
+from core.document.lines import ActiveLine, CustomLine, LineSettings
 from core.document.serialization import from_json, to_json
 from core.errors import ProjectError, UserError
 from core.landmarks.manual import PlacedMark
 
 WHOLE = Design(
     ScanSource("", "scan/body.ply", "cm", "+z", "-y"),
-    lines=(WornLine("strap", 0.9),),
+    lines=(ActiveLine("strap", 0.9),),
     gain=0.5,
-    own_lines=(OwnLine("strap", (1, 2, 3), closed=True),),
-    traits=(LineTraits("strap", "Strap", "#e5536b", True, False, 3.0, 12.0, "plush"),),
+    own_lines=(CustomLine("strap", (1, 2, 3), closed=True),),
+    traits=(LineSettings("strap", "Strap", "#e5536b", True, False, 3.0, 12.0, "plush"),),
     placed=(PlacedMark("bust_point_left", (1.0, 2.0, 3.0)),),
-    own_measures=(OwnMeasure("Ribs", "girth", ("waist_front",), 20.0),),
+    own_measures=(CustomMeasurement("Ribs", "girth", ("waist_front",), 20.0),),
     elastics=(Elastic("plush", 12.0, ((0.0, 0.0), (0.5, 6.0)), 10.0, "measured", False),),
     tissue_stiffness=400.0,
     customer="Anna",
     worn_tight_mm=5.0,
-    calibration=Calibration("worn.ply", 3.0, 1.0, (FoundNumber("tissue", 1.0, 2.0, 0.1, True),), 0.5),
+    calibration=Calibration("worn.ply", 3.0, 1.0, (FittedParameter("tissue", 1.0, 2.0, 0.1, True),), 0.5),
     unknown={"later": {"a": [1]}},
 )
 ODD: tuple[Any, ...] = (
@@ -84,7 +84,7 @@ def test_any_value_in_any_place_of_a_design_is_read_or_refused() -> None:
 
 
 def test_any_value_in_any_place_of_the_variants_is_read_or_refused() -> None:
-    document = Document.of(WHOLE).showing("B").with_design(replace(WHOLE, gain=0.7))
+    document = Document.single(WHOLE).with_shown("B").with_design(replace(WHOLE, gain=0.7))
     texts = to_texts(document)
     variants = json.loads(texts["variants.json"])
     for way in places(variants):

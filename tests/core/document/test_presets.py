@@ -6,26 +6,26 @@ from dataclasses import replace
 import pytest
 
 from core.control_mesh.template import read_template
-from core.document.line_notation import ready_made, text_of
-from core.document.lines import LineTraits, OwnLine
+from core.document.line_notation import format_path, ready_made_lines
+from core.document.lines import CustomLine, LineSettings
 from core.document.presets import (
     FORMAT,
     Preset,
     PresetLine,
     built_in,
-    own_folder,
-    own_presets,
     preset_from,
     preset_of,
     read_preset,
     save_preset,
+    user_folder,
+    user_presets,
     with_preset,
 )
 from core.errors import LineError
 from core.garment.elastic_library import find_elastic
 from core.mechanics.exact_solution import solve_exact
 from core.mechanics.solver_comparison import shape_of
-from core.pipeline.build import build, targets_of
+from core.pipeline.build import build, line_targets
 
 GOOD = {"format": FORMAT, "title": "X", "lines": [{"line": "mid-bust", "length": 0.97}]}
 
@@ -39,62 +39,64 @@ def test_every_shipped_preset_can_be_worn(preset, sample, built):
     assert preset.leaves_out
     assert with_preset(design, preset) == design
     worn = build(design, stages)
-    balance = solve_exact(worn.model, targets_of(design, worn).ratios)
-    assert balance.found
+    balance = solve_exact(worn.model, line_targets(design, worn).ratios)
+    assert balance.is_converged
     condition = worn_condition(worn, balance)
     shown = [sign for sign in ("overstrained", "folded", "inverted") if getattr(condition, sign)]
     assert shown == []
 
 
 def worn_condition(stages, balance):
-    return shape_of(stages.model).condition(stages.model.tensegric.expand(balance.state.moved))
+    return shape_of(stages.model).quality(stages.model.tensegric.expand(balance.state.moved))
 
 
 def test_a_preset_takes_other_lines_off_but_keeps_them_and_leaves_locked_ones(built):
-    left, right = ready_made(read_template("168"))["slings"]
-    design = replace(built("mannequin").design, lines=()).with_own_line(left).with_own_line(right)
+    left, right = ready_made_lines(read_template("168"))["slings"]
+    design = replace(built("mannequin").design, lines=()).with_custom_line(left).with_custom_line(right)
     design = design.with_line("sling left", 0.9).with_line("full-bust", 0.95).with_line("mid-bust", 0.92)
-    design = design.with_traits(LineTraits("mid-bust", locked=True))
+    design = design.with_line_settings(LineSettings("mid-bust", locked=True))
     after = with_preset(
         design,
         Preset("X", (PresetLine("full-bust", length=0.98, width=9.0), PresetLine("mid-bust", length=0.99))),
     )
-    assert after.worn() == {"full-bust", "mid-bust"}
+    assert after.active_lines() == {"full-bust", "mid-bust"}
     assert (after.ratio("full-bust"), after.ratio("mid-bust")) == (0.98, 0.92)
     assert after.own_lines == design.own_lines
-    assert after.traits_of("full-bust").width == 9.0
+    assert after.line_settings("full-bust").width == 9.0
 
 
 def test_a_ready_made_line_stays_as_it_was_led_and_one_through_places_goes_through_them(built):
     template = read_template("168")
-    left, right = ready_made(template)["straps"]
-    led = OwnLine("strap left", left.points[1:])
-    design = replace(built("mannequin").design, lines=()).with_own_line(led).with_own_line(right)
+    left, right = ready_made_lines(template)["straps"]
+    led = CustomLine("strap left", left.points[1:])
+    design = replace(built("mannequin").design, lines=()).with_custom_line(led).with_custom_line(right)
     after = with_preset(design, Preset("X", (PresetLine("straps", length=0.95),)))
     assert after.own_lines == design.own_lines
     assert after.ratio("strap left") == 0.95
-    through = PresetLine("strap left", text_of(left, template))
+    through = PresetLine("strap left", format_path(left, template))
     assert with_preset(design, Preset("X", (through,), template="168")).own_lines == (left, right)
 
 
 def test_the_lines_of_a_design_come_back_from_their_preset(built, monkeypatch, tmp_path):
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
     bare = replace(built("mannequin").design, lines=())
-    design = bare.with_own_line(OwnLine("v", (81, 45, 87))).with_line("v", 0.95).with_line("mid-bust", 0.97)
-    design = design.with_own_line(OwnLine("ring", (34, 35, 49, 48), closed=True))
-    traits = LineTraits("v", title="My V", colour="#112233", width=7.5, stiffness=4.0)
-    design = design.with_traits(traits)
-    for line, ratio in zip(ready_made(read_template("168"))["straps"], (0.95, 0.9), strict=True):
-        design = design.with_own_line(line).with_line(line.name, ratio)
-        design = design.with_traits(LineTraits(line.name, linked=False))
+    design = (
+        bare.with_custom_line(CustomLine("v", (81, 45, 87))).with_line("v", 0.95).with_line("mid-bust", 0.97)
+    )
+    design = design.with_custom_line(CustomLine("ring", (34, 35, 49, 48), closed=True))
+    traits = LineSettings("v", title="My V", colour="#112233", width=7.5, stiffness=4.0)
+    design = design.with_line_settings(traits)
+    for line, ratio in zip(ready_made_lines(read_template("168"))["straps"], (0.95, 0.9), strict=True):
+        design = design.with_custom_line(line).with_line(line.name, ratio)
+        design = design.with_line_settings(LineSettings(line.name, linked=False))
     save_preset(preset_from(design, "Mine / ours"))
-    (preset,), problems = own_presets()
+    (preset,), problems = user_presets()
     assert (preset.title, problems) == ("Mine / ours", [])
     assert with_preset(bare, preset) == design
     with pytest.raises(LineError, match="control mesh of 168"):
         with_preset(replace(bare, template="120"), preset)
-    (own_folder() / "broken.json").write_text("{", encoding="utf-8")
-    presets, problems = own_presets()
+    (user_folder() / "broken.json").write_text("{", encoding="utf-8")
+    presets, problems = user_presets()
     assert (len(presets), len(problems)) == (1, 1)
     assert problems[0].message.startswith("The preset broken.json cannot be read")
     with pytest.raises(LineError, match="no lines"):

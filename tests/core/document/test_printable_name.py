@@ -16,9 +16,9 @@ from small_project import DESIGN
 
 from app.cli.environment import PlainStream, set_up_streams
 from core.document.calibration_record import Calibration
-from core.document.custom_measures import OwnMeasure
+from core.document.custom_measures import CustomMeasurement
 from core.document.elastic import Elastic
-from core.document.lines import LineTraits, OwnLine, WornLine
+from core.document.lines import ActiveLine, CustomLine, LineSettings
 from core.document.presets import Preset, PresetLine, preset_of
 from core.document.printable_name import is_printable, printable, repeated, shown
 from core.document.serialization import from_json, to_json
@@ -26,7 +26,7 @@ from core.errors import UserError
 from core.export.band_geometry import Strip
 from core.export.csv_cells import cell, csv_text
 from core.export.drawings import write_strips
-from core.export.measurement_files import MeasuresSheet, write_measures
+from core.export.measurement_files import MeasurementTable, write_measurements
 from core.garment.elastic_csv import elastic_from_csv
 
 BAD = ("a\ud800b", "a\x01b", "a\x1b[31mb", "a\nb", "a\x7f", "a\x9bb", "\u202egnp.exe", "\u2066a")
@@ -45,12 +45,12 @@ GOOD = (
 )
 
 MAKERS: dict[str, Callable[[str], object]] = {
-    "worn line": lambda name: WornLine(name, 0.9),
-    "own line": lambda name: OwnLine(name, (1, 2)),
-    "line's title": lambda name: LineTraits("strap", name),
-    "traits": LineTraits,
+    "worn line": lambda name: ActiveLine(name, 0.9),
+    "own line": lambda name: CustomLine(name, (1, 2)),
+    "line's title": lambda name: LineSettings("strap", name),
+    "traits": LineSettings,
     "elastic": lambda name: Elastic(name, 12.0, ((0.0, 0.0), (0.5, 6.0))),
-    "measure": lambda name: OwnMeasure(name, "girth"),
+    "measure": lambda name: CustomMeasurement(name, "girth"),
     "customer": lambda name: replace(DESIGN, customer=name),
     "calibration": lambda name: Calibration(name, 1.0, 1.0),
     "preset": lambda name: Preset(name, (PresetLine("mid-bust", length=0.9),)),
@@ -72,7 +72,7 @@ def test_everything_that_has_a_name_has_one_that_can_be_shown(what: str) -> None
 
 @pytest.mark.parametrize("name", ["a\ud800b", "a\x01b", "\u202ea", "n" * 2000])
 def test_names_in_projects_and_tables_are_refused_as_typed_ones_are(name: str) -> None:
-    values = json.loads(to_json(replace(DESIGN, own_lines=(OwnLine("strap", (1, 2)),))))
+    values = json.loads(to_json(replace(DESIGN, own_lines=(CustomLine("strap", (1, 2)),))))
     for key, part in (("own_lines", 0), ("lines", 0)):
         changed = json.loads(json.dumps(values))
         changed[key][part]["name"] = name
@@ -126,7 +126,7 @@ def test_drawings_and_measures_of_a_file_with_any_name_are_whole(tmp_path: Path)
     Xml.parse(tmp_path / "strips.svg")
     write_strips(tmp_path / "strips.dxf", [strip], odd)
     for kind in ("csv", "json", "smis", "vit"):
-        write_measures(tmp_path / f"m.{kind}", MeasuresSheet({"bust": (900.0, "mm")}, "cm", {}, odd))
+        write_measurements(tmp_path / f"m.{kind}", MeasurementTable({"bust": (900.0, "mm")}, "cm", {}, odd))
     Xml.parse(tmp_path / "m.smis")
     Xml.parse(tmp_path / "m.vit")
     assert np.all([b"\x1b" not in each.read_bytes() for each in tmp_path.iterdir()])

@@ -37,12 +37,12 @@ def test_what_is_saved_is_opened_again(project):
 
 def test_saving_returns_what_opening_returns(tmp_path):
     path = tmp_path / "anna.busk"
-    assert save_project(path, Document.of(DESIGN), SCAN, None) == open_project(path)
+    assert save_project(path, Document.single(DESIGN), SCAN, None) == open_project(path)
 
 
 def test_variants_are_kept_on_one_body(tmp_path):
     path = tmp_path / "anna.busk"
-    short = Document.of(DESIGN).showing("B").with_design(DESIGN.with_line("mid-bust", 0.8))
+    short = Document.single(DESIGN).with_shown("B").with_design(DESIGN.with_line("mid-bust", 0.8))
     assert save_project(path, short, SCAN, None) == open_project(path)
     again = open_project(path)
     assert (again.shown, again.variants["A"].lines) == ("B", DESIGN.lines)
@@ -90,7 +90,9 @@ def test_a_project_is_saved_over_itself(project):
     design = open_project(project).design
     scan = read_scan_file(design.scan)
     for ratio in (0.95, 0.9):
-        design = save_project(project, Document.of(design.with_line("mid-bust", ratio)), scan, None).design
+        design = save_project(
+            project, Document.single(design.with_line("mid-bust", ratio)), scan, None
+        ).design
     again = open_project(project).design
     assert again == design
     assert again.ratio("mid-bust") == 0.9
@@ -111,7 +113,7 @@ def test_a_failure_at_the_end_leaves_the_old_file_whole(project, monkeypatch, st
     before = project.read_bytes()
     monkeypatch.setattr(os, step, failure)
     with pytest.raises(ProjectError, match="cannot be written"):
-        save_project(project, Document.of(DESIGN.with_line("mid-bust", 0.8)), SCAN, PICTURE)
+        save_project(project, Document.single(DESIGN.with_line("mid-bust", 0.8)), SCAN, PICTURE)
     assert project.read_bytes() == before
     assert left_over(project.parent) == ["anna.busk"]
 
@@ -128,7 +130,7 @@ def test_a_disk_that_fills_up_leaves_the_old_file_whole(project, monkeypatch, me
 
     monkeypatch.setattr(zipfile.ZipFile, "writestr", full)
     with pytest.raises(ProjectError, match=r"No space left.*make room"):
-        save_project(project, Document.of(DESIGN), SCAN, PICTURE)
+        save_project(project, Document.single(DESIGN), SCAN, PICTURE)
     assert project.read_bytes() == before
     assert left_over(project.parent) == ["anna.busk"]
 
@@ -141,7 +143,7 @@ def test_an_interruption_leaves_the_old_file_whole(project, monkeypatch):
 
     monkeypatch.setattr(os, "fsync", interrupt)
     with pytest.raises(KeyboardInterrupt):
-        save_project(project, Document.of(DESIGN.with_line("mid-bust", 0.8)), SCAN, None)
+        save_project(project, Document.single(DESIGN.with_line("mid-bust", 0.8)), SCAN, None)
     assert project.read_bytes() == before
     assert left_over(project.parent) == ["anna.busk"]
 
@@ -151,14 +153,14 @@ def test_a_place_that_cannot_be_written_to_is_named(tmp_path, place):
     (tmp_path / "file").write_text("a file, no folder")
     (tmp_path / "folder").mkdir()
     with pytest.raises(ProjectError, match=r"cannot be written.*Choose another folder"):
-        save_project(tmp_path / place, Document.of(DESIGN), SCAN, None)
+        save_project(tmp_path / place, Document.single(DESIGN), SCAN, None)
     assert left_over(tmp_path) == ["file", "folder"]
 
 
 @pytest.mark.parametrize("name", ["体.ply", "K\udcf6rper.ply", "a:b|c?.ply", "x" * 200 + ".ply", "..."])
 def test_scans_with_odd_names_are_saved_and_come_back(tmp_path, name):
     path = tmp_path / "anna.busk"
-    save_project(path, Document.of(DESIGN), ScanFile(name, b"ply"), None)
+    save_project(path, Document.single(DESIGN), ScanFile(name, b"ply"), None)
     design = open_project(path).design
     scan = read_scan_file(design.scan)
     assert scan.data == b"ply"

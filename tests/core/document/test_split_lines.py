@@ -10,13 +10,13 @@ import pytest
 from app.presenters.samples import sample_design
 from core.control_mesh.template import read_template
 from core.document.design import Design, ScanSource
-from core.document.line_notation import mirrored, ready_made
-from core.document.lines import LineTraits, OwnLine
+from core.document.line_notation import mirrored, ready_made_lines
+from core.document.lines import CustomLine, LineSettings
 from core.document.split_lines import can_split, halves, is_split, split
 from core.errors import LineError
 from core.garment.elastic_library import find_elastic
 from core.pipeline.build import Stages, build
-from core.pipeline.solve import run
+from core.pipeline.solve import solve
 
 TEMPLATE = read_template("168")
 PLAIN = Design(ScanSource("a.ply"), lines=()).with_line("mid-bust", 0.93)
@@ -34,7 +34,7 @@ def test_halves_meet_at_the_front_centre_and_make_the_whole() -> None:
 
 
 def test_what_has_no_two_halves_is_refused() -> None:
-    ring, strap = ready_made(TEMPLATE)["rings"][0], ready_made(TEMPLATE)["straps"][0]
+    ring, strap = ready_made_lines(TEMPLATE)["rings"][0], ready_made_lines(TEMPLATE)["straps"][0]
     with pytest.raises(LineError, match="goes round"):
         halves(ring.name, ring.path, TEMPLATE)
     for path in (strap.points, TEMPLATE.paths["mid-bust"][:6], TEMPLATE.paths["mid-bust"][5:]):
@@ -50,41 +50,41 @@ def test_what_has_no_two_halves_is_refused() -> None:
 
 
 def test_halves_are_worn_and_treated_as_the_whole_was() -> None:
-    traits = LineTraits("mid-bust", title="Belt", colour="#112233", stiffness=40.0, width=9.0)
-    after = split(PLAIN.with_traits(traits), TEMPLATE, "mid-bust")
-    assert after.worn() == {"mid-bust left", "mid-bust right"}
-    for name in after.worn():
+    traits = LineSettings("mid-bust", title="Belt", colour="#112233", stiffness=40.0, width=9.0)
+    after = split(PLAIN.with_line_settings(traits), TEMPLATE, "mid-bust")
+    assert after.active_lines() == {"mid-bust left", "mid-bust right"}
+    for name in after.active_lines():
         assert after.ratio(name) == 0.93
-        assert after.traits_of(name) == replace(traits, name=name, linked=False)
-        assert after.linked(name) == (name,)
+        assert after.line_settings(name) == replace(traits, name=name, linked=False)
+        assert after.linked_pair(name) == (name,)
     assert is_split(after, "mid-bust")
     assert is_split(after.with_line("mid-bust left", None), "mid-bust"), "one half is worn"
     assert not is_split(after.with_line("mid-bust", 0.9), "mid-bust"), "it is worn besides"
     assert not is_split(PLAIN.with_line("mid-bust", None), "mid-bust"), "it is off, and nothing in its place"
     tied = split(PLAIN, TEMPLATE, "mid-bust", linked=True)
-    assert tied.linked("mid-bust left") == ("mid-bust left", "mid-bust right")
+    assert tied.linked_pair("mid-bust left") == ("mid-bust left", "mid-bust right")
     elastic = find_elastic("picot 10")
     made = split(PLAIN.with_elastic("mid-bust", elastic), TEMPLATE, "mid-bust")
-    assert made.worn_elastics() == {"mid-bust left": elastic, "mid-bust right": elastic}
-    assert split(replace(PLAIN, lines=()), TEMPLATE, "mid-bust").worn() == set()
+    assert made.active_elastics() == {"mid-bust left": elastic, "mid-bust right": elastic}
+    assert split(replace(PLAIN, lines=()), TEMPLATE, "mid-bust").active_lines() == set()
 
 
 def test_an_own_line_goes_and_a_locked_or_named_one_stays() -> None:
     path = tuple(TEMPLATE.point(row, column) for row, column in ((3, -3), (4, 0), (3, 3)))
-    own = PLAIN.with_own_line(OwnLine("sash", path)).with_line("sash", 0.9)
+    own = PLAIN.with_custom_line(CustomLine("sash", path)).with_line("sash", 0.9)
     after = split(own, TEMPLATE, "sash")
     assert [line.name for line in after.own_lines] == ["sash left", "sash right"]
     assert after.ratio("sash left") == 0.9
     for name in ("mid-bust", "sash"):
-        locked = own.with_traits(LineTraits(name, locked=True))
+        locked = own.with_line_settings(LineSettings(name, locked=True))
         with pytest.raises(LineError, match="is locked"):
             split(locked, TEMPLATE, name)
         assert not can_split(locked, TEMPLATE, name)
-    other = own.with_own_line(OwnLine("sash left", path[:2]))
+    other = own.with_custom_line(CustomLine("sash left", path[:2]))
     with pytest.raises(LineError, match="another line"):
         split(other, TEMPLATE, "sash")
     # Halves that are there already, from an earlier time, are worn again.
-    again = split(after.with_own_line(OwnLine("sash", path)), TEMPLATE, "sash")
+    again = split(after.with_custom_line(CustomLine("sash", path)), TEMPLATE, "sash")
     assert [line.name for line in again.own_lines] == ["sash left", "sash right"]
 
 
@@ -101,7 +101,7 @@ def plain() -> Stages:
 def test_equal_halves_do_what_the_whole_does(plain: Stages, choice: dict[str, str], near: float) -> None:
     whole = build(replace(plain.design, **choice).with_line("mid-bust", 0.93), plain)
     parts = build(split(whole.design, TEMPLATE, "mid-bust"), whole)
-    moves = [run(stages).control_points - plain.control.mesh.vertices for stages in (whole, parts)]
+    moves = [solve(stages).control_points - plain.control.mesh.vertices for stages in (whole, parts)]
     off = np.linalg.norm(moves[1] - moves[0], axis=1).max()
     assert np.linalg.norm(moves[0], axis=1).max() > 5.0
     assert off < near

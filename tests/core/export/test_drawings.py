@@ -15,16 +15,16 @@ from PySide6.QtSvg import QSvgRenderer
 
 from core.control_mesh.template import read_template
 from core.document.design import Design, ScanSource
-from core.document.line_notation import ready_made
+from core.document.line_notation import ready_made_lines
 from core.errors import LineError, UserError
-from core.export.band_geometry import AS_WORN, Strip, strips, worn_curves
-from core.export.drawings import SCALE_BAR, told, write_curves, write_strips
-from core.export.units_and_axes import UNITS, Space
+from core.export.band_geometry import AS_WORN, Strip, line_curves, strips
+from core.export.drawings import SCALE_BAR, strip_label, write_curves, write_strips
+from core.export.units_and_axes import UNITS, FileSpace
 from core.garment.cut_list import cut_list
 from core.garment.elastic_library import find_elastic
 from core.geometry.plane_sections import arc_length
 from core.pipeline.build import build
-from core.pipeline.solve import run
+from core.pipeline.solve import solve
 
 SAMPLES = Path(__file__).parents[3] / "resources" / "samples"
 SVG = {"s": "http://www.w3.org/2000/svg"}
@@ -34,12 +34,12 @@ ODD = (Strip("a/b", 'Sling <left> & "ours"', 312.345, 12.0), Strip("A_b", "æ–œã‚
 @pytest.fixture(scope="module")
 def solution():
     design = Design(ScanSource(str(SAMPLES / "mannequin.ply"))).with_line("mid-bust", 0.95)
-    return run(build(design.with_line("under-bust", 0.97)))
+    return solve(build(design.with_line("under-bust", 0.97)))
 
 
 @pytest.fixture(scope="module")
 def curves(solution):
-    return worn_curves(solution.stages, solution.control_points, {"mid-bust": "Mid-bust"}, {})
+    return line_curves(solution.stages, solution.control_points, {"mid-bust": "Mid-bust"}, {})
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +76,7 @@ def test_a_curve_is_as_long_as_the_band_up_to_the_skin_between_control_points(so
 
 @pytest.mark.parametrize("unit", UNITS)
 def test_a_dxf_holds_each_part_on_a_layer_of_its_own_in_its_unit(tmp_path, curves, unit):
-    write_curves(tmp_path / "lines.dxf", curves, Space(unit, "y-up"))
+    write_curves(tmp_path / "lines.dxf", curves, FileSpace(unit, "y-up"))
     drawing = ezdxf.readfile(tmp_path / "lines.dxf")
     found = {each.dxf.layer: np.array(list(each.points())) for each in drawing.modelspace().query("POLYLINE")}
     assert drawing.dxfversion == "AC1024"
@@ -90,7 +90,7 @@ def test_a_dxf_holds_each_part_on_a_layer_of_its_own_in_its_unit(tmp_path, curve
 
 
 def test_an_obj_of_lines_is_read_by_another_library(tmp_path, curves):
-    write_curves(tmp_path / "lines.obj", curves, Space("cm", "z-up"))
+    write_curves(tmp_path / "lines.obj", curves, FileSpace("cm", "z-up"))
     read = pv.read(tmp_path / "lines.obj")
     parts = [places for curve in curves for places in curve.parts.values()]
     assert (read.n_lines, read.n_points) == (len(parts), sum(map(len, parts)))
@@ -113,7 +113,7 @@ def test_a_strip_of_elastic_is_as_long_as_it_is_to_be_cut(solution):
     stages = solution.stages
     elastic = replace(find_elastic("plush 12"), allowance_mm=30.0)
     design = stages.design.with_line("mid-bust", 0.75).with_elastic("mid-bust", elastic)
-    stretched = run(build(design, stages))
+    stretched = solve(build(design, stages))
     points = stretched.control_points
     row = next(row for row in cut_list(stretched.stages, points).rows if row.line == "mid-bust")
     flat = strips(stretched.stages, points, {}, {})
@@ -129,11 +129,11 @@ def test_a_strip_of_elastic_is_as_long_as_it_is_to_be_cut(solution):
     share = (left[0] - 15.0) / (cut.length - 30.0)
     assert share == pytest.approx(row.reached_front_mm / row.reached_whole_mm)
     assert 15.0 < centre[0] < left[0]
-    assert "stretched by" in told(cut)
+    assert "stretched by" in strip_label(cut)
 
 
 def test_the_ends_of_a_strap_are_told_apart(solution):
-    whole = ready_made(read_template("168"))["straps"]
+    whole = ready_made_lines(read_template("168"))["straps"]
     own = tuple(replace(strap, over_shoulder=False) for strap in whole)
     stages = solution.stages
     stages = build(replace(stages.design, own_lines=own).with_line("strap left", 0.98), stages)
@@ -151,7 +151,7 @@ def test_the_ends_of_a_strap_are_told_apart(solution):
     at = {name: place for place, name in worn.marks}
     assert at["shoulder"] == pytest.approx(strap.length + tail.top)
     assert at["back, at the under-bust band"] == pytest.approx(worn.length)
-    curve = next(each for each in worn_curves(stages, points, {}, {}) if each.name == "strap left")
+    curve = next(each for each in line_curves(stages, points, {}, {}) if each.name == "strap left")
     assert len(curve.parts) == 1, "one band from end to end"
     assert curve.front[-1, 1] > curve.front[0, 1] + 100.0
     assert curve.length == pytest.approx(worn.length, rel=0.05)
@@ -170,7 +170,7 @@ def test_an_svg_is_at_its_size_in_millimetres(tmp_path, flat):
     ]
     assert boxes == [(pytest.approx(strip.length, abs=0.1), strip.width) for strip in flat]
     words = "\n".join(each.text for each in root.iterfind(".//s:text", SVG))
-    assert all(told(strip) in words for strip in flat)
+    assert all(strip_label(strip) in words for strip in flat)
     assert words.count("centre front") == len(flat)
     assert "anna" in words
 
@@ -222,11 +222,11 @@ def test_any_letters_come_through_and_layers_stay_apart(tmp_path, kind):
         words = [each.dxf.text for each in drawing.modelspace().query("TEXT")]
         outlines = [each.dxf.layer for each in drawing.modelspace().query("LWPOLYLINE")]
         assert outlines == ["a_b", "A_b 2"]
-    assert {told(strip) for strip in ODD} <= set(words)
+    assert {strip_label(strip) for strip in ODD} <= set(words)
 
 
 @pytest.mark.parametrize(
-    "write", [lambda path: write_curves(path, (), Space()), lambda p: write_strips(p, ())]
+    "write", [lambda path: write_curves(path, (), FileSpace()), lambda p: write_strips(p, ())]
 )
 def test_other_endings_are_refused_with_a_choice(tmp_path, write):
     with pytest.raises(UserError, match="dxf"):
@@ -258,7 +258,7 @@ def test_nothing_else_is_left_in_the_folders_of_the_user(tmp_path):
 def test_a_design_without_worn_lines_is_refused(solution):
     stages = build(Design(solution.stages.design.scan), solution.stages)
     with pytest.raises(LineError, match="No line is worn"):
-        worn_curves(stages, solution.control_points, {}, {})
+        line_curves(stages, solution.control_points, {}, {})
 
 
 def flat_length(solution, name):

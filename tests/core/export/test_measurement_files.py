@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 import pytest
 
 from core.errors import UserError
-from core.export.measurement_files import MeasuresSheet, seamly_names, write_measures
+from core.export.measurement_files import MeasurementTable, seamly_names, write_measurements
 from core.measurements.definitions import KEYS
 
 VALUES = {
@@ -38,7 +38,7 @@ def read(path):
 
 
 def test_known_measures_have_the_names_that_patterns_use(tmp_path, kind):
-    write_measures(tmp_path / f"anna.{kind}", MeasuresSheet(VALUES, "cm"))
+    write_measurements(tmp_path / f"anna.{kind}", MeasurementTable(VALUES, "cm"))
     _, found = read(tmp_path / f"anna.{kind}")
     assert found["bust_circ"] == pytest.approx(91.234)
     assert found["lowbust_circ"] == pytest.approx(75.22)
@@ -49,7 +49,7 @@ def test_known_measures_have_the_names_that_patterns_use(tmp_path, kind):
 
 
 def test_every_name_is_one_that_a_formula_can_hold_and_comes_once(tmp_path, kind):
-    write_measures(tmp_path / f"anna.{kind}", MeasuresSheet(VALUES, "mm", TITLES))
+    write_measurements(tmp_path / f"anna.{kind}", MeasurementTable(VALUES, "mm", TITLES))
     root, found = read(tmp_path / f"anna.{kind}")
     names = [m.get("name") for m in root.iterfind("body-measurements/m")]
     assert len(names) == len(set(names)) == len(VALUES)  # the volume goes, the mean of both folds comes
@@ -65,14 +65,14 @@ def test_every_name_is_one_that_a_formula_can_hold_and_comes_once(tmp_path, kind
     ("unit", "word", "length"), [("mm", "mm", 912.34), ("cm", "cm", 91.234), ("in", "inch", 35.919)]
 )
 def test_the_unit_is_told_and_kept(tmp_path, kind, unit, word, length):
-    write_measures(tmp_path / f"anna.{kind}", MeasuresSheet(VALUES, unit))
+    write_measurements(tmp_path / f"anna.{kind}", MeasurementTable(VALUES, unit))
     root, found = read(tmp_path / f"anna.{kind}")
     assert root.findtext("unit") == word
     assert found["bust_circ"] == pytest.approx(length)
 
 
 def test_the_parts_stand_in_the_order_that_the_format_asks_for(tmp_path, kind):
-    write_measures(tmp_path / f"anna.{kind}", MeasuresSheet(VALUES, note="reshaped < & >"))
+    write_measurements(tmp_path / f"anna.{kind}", MeasurementTable(VALUES, note="reshaped < & >"))
     root, _ = read(tmp_path / f"anna.{kind}")
     heading = ["version", "read-only", "notes", "unit", "pm_system", "personal", "body-measurements"]
     names = ["family-name", "given-name"] if kind == "smis" else ["customer"]
@@ -92,9 +92,9 @@ def test_every_measure_that_has_a_name_there_is_one_of_busk():
 
 
 def test_a_table_and_json_hold_everything_with_its_unit(tmp_path):
-    sheet = MeasuresSheet(VALUES, "cm", TITLES, "reshaped")
-    write_measures(tmp_path / "anna.csv", sheet)
-    write_measures(tmp_path / "anna.json", sheet)
+    sheet = MeasurementTable(VALUES, "cm", TITLES, "reshaped")
+    write_measurements(tmp_path / "anna.csv", sheet)
+    write_measurements(tmp_path / "anna.json", sheet)
     with open(tmp_path / "anna.csv", newline="", encoding="utf-8") as file:
         rows = {row["measure"]: row for row in csv.DictReader(file)}
     told = json.loads((tmp_path / "anna.json").read_text("utf-8"))
@@ -114,5 +114,5 @@ def test_a_table_and_json_hold_everything_with_its_unit(tmp_path):
 )
 def test_what_cannot_be_is_refused_with_a_choice(tmp_path, name, unit, said):
     with pytest.raises(UserError, match=said):
-        write_measures(tmp_path / name, MeasuresSheet(VALUES, unit))
+        write_measurements(tmp_path / name, MeasurementTable(VALUES, unit))
     assert list(tmp_path.iterdir()) == []

@@ -7,7 +7,7 @@ from shapes import octahedron, torso
 
 from core.errors import UserError
 from core.export.mesh import FORMATS, write_mesh
-from core.export.units_and_axes import Space
+from core.export.units_and_axes import FileSpace
 from core.geometry.mesh import Mesh
 
 
@@ -15,7 +15,7 @@ from core.geometry.mesh import Mesh
 def test_another_library_reads_the_same_shape(tmp_path, kind):
     mesh = torso().mesh
     path = tmp_path / f"body.{kind}"
-    write_mesh(path, mesh, space=Space())
+    write_mesh(path, mesh, space=FileSpace())
     read = trimesh.load_mesh(path, process=False)
     corners = np.asarray(read.vertices)[np.asarray(read.faces)]
     np.testing.assert_allclose(corners, mesh.vertices[mesh.faces], atol=1e-5)

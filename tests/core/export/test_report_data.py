@@ -11,15 +11,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.export.report_data import Heading, Sheet, sheet_of
-from core.export.report_data_file import COLUMNS, sheet_csv, sheet_json
+from core.export.report_data import Heading, Report, make_report
+from core.export.report_data_file import COLUMNS, report_csv, report_json
 from core.garment.cut_list import cut_list
 from core.garment.elastic_library import find_elastic
-from core.garment.pressure_list import press_list
-from core.landmarks.warnings import doubts
+from core.garment.pressure_list import pressure_list
+from core.landmarks.warnings import collect_warnings
 from core.measurements.table import before_after, measure_rows
 from core.pipeline.build import Stages, build
-from core.pipeline.solve import Solution, run
+from core.pipeline.solve import Solution, solve
 
 HEADING = Heading("Anna", "2026-11-22", "Customer 0412", system="uk", allowance_mm=5.0)
 Built = Callable[[str], Stages]
@@ -29,31 +29,31 @@ Built = Callable[[str], Stages]
 def worn(built: Built) -> Solution:
     stages = built("mannequin")
     design = replace(stages.design, volume="exact").with_line("mid-bust", 0.7).with_line("full-bust", 0.98)
-    return run(build(design.with_elastic("mid-bust", find_elastic("plush 12")), stages))
+    return solve(build(design.with_elastic("mid-bust", find_elastic("plush 12")), stages))
 
 
 @pytest.fixture(scope="module")
-def sheet(worn: Solution) -> Sheet:
-    return sheet_of(worn, worn.records, HEADING)
+def sheet(worn: Solution) -> Report:
+    return make_report(worn, worn.records, HEADING)
 
 
-def test_a_customer_is_no_formula_in_the_table(sheet: Sheet) -> None:
+def test_a_customer_is_no_formula_in_the_table(sheet: Report) -> None:
     named = replace(sheet, heading=replace(HEADING, customer="=1+1"))
-    rows = list(csv.DictReader(io.StringIO(sheet_csv(named))))
+    rows = list(csv.DictReader(io.StringIO(report_csv(named))))
     assert next(row["after"] for row in rows if row["key"] == "customer") == "'=1+1"
 
 
-def test_the_sheet_holds_what_others_work_out(worn: Solution, sheet: Sheet) -> None:
+def test_the_sheet_holds_what_others_work_out(worn: Solution, sheet: Report) -> None:
     points = worn.control_points
     assert sheet.measures == tuple(measure_rows(*before_after(worn.stages, points)))
     assert sheet.cuts == cut_list(worn.stages, points)
-    found = press_list(worn.stages, points)
+    found = pressure_list(worn.stages, points)
     assert sheet.pressures == found.rows
     assert sheet.limits == found.as_data()["limits"]
     assert [row.line for row in sheet.pressures] == [row.line for row in sheet.cuts.rows]
 
 
-def test_the_chosen_system_comes_first_and_the_allowance_counts(worn: Solution, sheet: Sheet) -> None:
+def test_the_chosen_system_comes_first_and_the_allowance_counts(worn: Solution, sheet: Report) -> None:
     assert [each["key"] for each in sheet.sizes][:3] == ["uk", "jp", "eu"]
     assert len(sheet.sizes) == 7
     assert sheet.sizes[0]["allowance_mm"] == 5.0
@@ -61,11 +61,11 @@ def test_the_chosen_system_comes_first_and_the_allowance_counts(worn: Solution, 
     assert sheet.sizes[0]["underbust_mm"] == girth
 
 
-def test_lift_and_volume_are_those_of_the_run(worn: Solution, sheet: Sheet) -> None:
+def test_lift_and_volume_are_those_of_the_run(worn: Solution, sheet: Report) -> None:
     rest, now = worn.stages.rest_marks, worn.last.marks
     assert now is not None
     assert sheet.lift is not None
-    assert sheet.lift.left_up == pytest.approx(now.nipple_left_z - rest.nipple_left_z)
+    assert sheet.lift.left_up == pytest.approx(now.bust_point_left_z - rest.bust_point_left_z)
     assert sheet.lift.up == pytest.approx(0.5 * (sheet.lift.left_up + sheet.lift.right_up))
     assert sheet.volume.error_ml == pytest.approx(worn.last.error_ml)
     assert sheet.volume.error_percent == pytest.approx(100.0 * worn.last.error)
@@ -74,20 +74,20 @@ def test_lift_and_volume_are_those_of_the_run(worn: Solution, sheet: Sheet) -> N
 
 def test_turns_end_where_the_lift_does_and_a_fold_has_none(built: Built) -> None:
     stages = built("mannequin")
-    turned = run(build(replace(stages.design, volume="adaptive"), stages))
-    sheet = sheet_of(turned, turned.records, HEADING)
+    turned = solve(build(replace(stages.design, volume="adaptive"), stages))
+    sheet = make_report(turned, turned.records, HEADING)
     assert sheet.lift is not None
-    assert sheet.turns.turn == tuple(row.turn for row in turned.records)
+    assert sheet.turns.turn == tuple(row.iteration for row in turned.records)
     assert sheet.turns.up_mm[-1] == pytest.approx(sheet.lift.up)
     assert sheet.turns.error_percent[-1] == pytest.approx(100.0 * turned.last.error)
-    folded = run(build(stages.design.with_line("mid-bust", 0.55), stages), turns=30)
-    told = sheet_of(folded, folded.records, HEADING)
+    folded = solve(build(stages.design.with_line("mid-bust", 0.55), stages), turns=30)
+    told = make_report(folded, folded.records, HEADING)
     assert told.state not in ("settled", "strained", "settling")
     assert told.lift is None
     assert any("does not tell how a body would look" in each for each in told.warnings)
 
 
-def test_the_sections_go_through_the_bust(worn: Solution, sheet: Sheet) -> None:
+def test_the_sections_go_through_the_bust(worn: Solution, sheet: Report) -> None:
     side, level = sheet.sections
     left = worn.stages.landmarks.points["bust_point_left"].position
     assert (side.name, side.axis, side.at_mm) == ("side", "x", left[0])
@@ -103,7 +103,7 @@ def test_the_sections_go_through_the_bust(worn: Solution, sheet: Sheet) -> None:
         assert isinstance(up, float)
 
 
-def test_the_side_is_cut_through_the_bust_point_before_and_after(worn: Solution, sheet: Sheet) -> None:
+def test_the_side_is_cut_through_the_bust_point_before_and_after(worn: Solution, sheet: Report) -> None:
     side, lift = sheet.sections[0], sheet.lift
     assert lift is not None
     assert abs(side.after_at_mm - side.at_mm) > 0.3, "it has moved aside"
@@ -120,8 +120,8 @@ def test_the_side_is_cut_through_the_bust_point_before_and_after(worn: Solution,
 
 def test_a_body_at_rest_has_an_empty_cut_list(built: Built) -> None:
     stages = built("mannequin")
-    bare = run(build(replace(stages.design, volume="exact", lines=()), stages))
-    sheet = sheet_of(bare, bare.records, HEADING)
+    bare = solve(build(replace(stages.design, volume="exact", lines=()), stages))
+    sheet = make_report(bare, bare.records, HEADING)
     assert sheet.cuts.rows == ()
     assert sheet.pressures == ()
     assert sheet.lift is not None
@@ -132,16 +132,16 @@ def test_doubts_are_told_apart_from_what_else_is_warned_of(built: Built) -> None
     stages = built("mannequin")
     marks = {name: replace(mark, confidence=0.3) for name, mark in stages.landmarks.points.items()}
     stages = replace(stages, landmarks=replace(stages.landmarks, points=marks))
-    solution = run(stages)
-    sheet = sheet_of(solution, solution.records, HEADING)
-    assert sheet.doubts == tuple(doubts(stages.body, stages.landmarks)) != ()
+    solution = solve(stages)
+    sheet = make_report(solution, solution.records, HEADING)
+    assert sheet.doubts == tuple(collect_warnings(stages.body, stages.landmarks)) != ()
     assert not set(sheet.doubts) & set(sheet.warnings)
-    rows = csv.DictReader(io.StringIO(sheet_csv(sheet)))
+    rows = csv.DictReader(io.StringIO(report_csv(sheet)))
     assert sheet.doubts[0] in [row["note"] for row in rows if row["section"] == "warning"]
 
 
-def test_json_is_the_whole_sheet(sheet: Sheet) -> None:
-    told = json.loads(sheet_json(sheet))
+def test_json_is_the_whole_sheet(sheet: Report) -> None:
+    told = json.loads(report_json(sheet))
     assert told["heading"]["customer"] == "Customer 0412"
     assert told["measures"] == list(sheet.measures)
     assert told["cuts"]["rows"][0]["cut_mm"] == sheet.cuts.rows[0].cut_mm
@@ -152,8 +152,8 @@ def test_json_is_the_whole_sheet(sheet: Sheet) -> None:
     assert set(told["versions"]) == {"busk", "python", "numpy"}
 
 
-def test_the_table_has_every_figure_once(sheet: Sheet) -> None:
-    rows = list(csv.DictReader(io.StringIO(sheet_csv(sheet))))
+def test_the_table_has_every_figure_once(sheet: Report) -> None:
+    rows = list(csv.DictReader(io.StringIO(report_csv(sheet))))
     assert tuple(rows[0]) == COLUMNS
     keys = [(row["section"], row["key"]) for row in rows]
     assert len(set(keys)) == len(keys)

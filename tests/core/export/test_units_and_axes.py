@@ -11,7 +11,7 @@ from shapes import octahedron
 
 from core.errors import UserError
 from core.export.mesh import FORMATS, write_mesh
-from core.export.units_and_axes import AXES, UNITS, Space, space_of
+from core.export.units_and_axes import AXES, UNITS, FileSpace, space_of
 from core.geometry.mesh import Mesh
 from core.progress import Cancelled
 
@@ -31,7 +31,7 @@ def told(lines: np.ndarray) -> list[list[float]]:
     ],
 )
 def test_front_up_and_left_point_where_the_axes_say(axes, front, up, left):
-    space = Space("cm", axes)
+    space = FileSpace("cm", axes)
     places = space.places(np.stack([NOSE, CROWN, LEFT]))
     assert told(places) == told(np.array([front, up, left]) * [[10.0], [30.0], [20.0]])
     assert told(space.normals(np.array([[0.0, -1.0, 0.0]]))) == [[float(x) for x in front]]
@@ -39,14 +39,14 @@ def test_front_up_and_left_point_where_the_axes_say(axes, front, up, left):
 
 def test_no_axes_turn_the_body_inside_out():
     for axes in AXES:
-        corners = Space("mm", axes).places(np.eye(3))
+        corners = FileSpace("mm", axes).places(np.eye(3))
         assert np.linalg.det(corners) == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("kind", FORMATS)
 @pytest.mark.parametrize("unit", UNITS)
 def test_another_library_reads_the_size_in_the_unit(tmp_path, kind, unit):
-    write_mesh(tmp_path / f"body.{kind}", octahedron(254.0), space=Space(unit, "z-up"))
+    write_mesh(tmp_path / f"body.{kind}", octahedron(254.0), space=FileSpace(unit, "z-up"))
     read = trimesh.load_mesh(tmp_path / f"body.{kind}", process=False)
     assert read.extents == pytest.approx(2 * 254.0 / UNITS[unit] * np.ones(3), rel=1e-6)
     assert read.volume == pytest.approx(4 / 3 * (254.0 / UNITS[unit]) ** 3, rel=1e-5)
@@ -54,7 +54,7 @@ def test_another_library_reads_the_size_in_the_unit(tmp_path, kind, unit):
 
 @pytest.mark.parametrize("kind", ["ply", "obj", "stl"])
 def test_a_second_library_reads_the_same(tmp_path, kind):
-    write_mesh(tmp_path / f"body.{kind}", octahedron(70.0), space=Space("cm", "y-up"))
+    write_mesh(tmp_path / f"body.{kind}", octahedron(70.0), space=FileSpace("cm", "y-up"))
     read = pv.read(tmp_path / f"body.{kind}")
     assert (read.n_cells, read.volume) == (8, pytest.approx(4 / 3 * 7.0**3, rel=1e-5))
 
@@ -64,8 +64,8 @@ def test_a_glb_is_in_metres_with_y_up_unless_said_otherwise(tmp_path):
     write_mesh(tmp_path / "body.glb", tall)
     low, high = trimesh.load_mesh(tmp_path / "body.glb").bounds
     assert high - low == pytest.approx([0.4, 1.7, 0.2], rel=1e-6)
-    assert (space_of("glb"), space_of("ply")) == (Space("m", "y-up"), Space("mm", "z-up"))
-    assert space_of("glb", "mm") == Space("mm", "y-up")
+    assert (space_of("glb"), space_of("ply")) == (FileSpace("m", "y-up"), FileSpace("mm", "z-up"))
+    assert space_of("glb", "mm") == FileSpace("mm", "y-up")
 
 
 def test_a_glb_is_what_gltf_2_asks_for(tmp_path):
@@ -90,7 +90,7 @@ def test_a_glb_is_what_gltf_2_asks_for(tmp_path):
 @pytest.mark.parametrize(("unit", "axes"), [("ell", "z-up"), ("mm", "x-up")])
 def test_unknown_units_and_axes_are_refused_with_a_choice(unit, axes):
     with pytest.raises(UserError, match="Choose one of"):
-        Space(unit, axes)
+        FileSpace(unit, axes)
 
 
 @pytest.mark.parametrize("kind", FORMATS)

@@ -10,7 +10,7 @@ import pytest
 
 import core.files.atomic_write
 from core.errors import ProjectError
-from core.files.atomic_write import private_folder, safe_ending, whole_file, write_text
+from core.files.atomic_write import atomic_path, private_folder, safe_ending, write_text
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="links, pipes and access rights of POSIX")
 
@@ -20,7 +20,7 @@ def left_over(folder: Path) -> list[str]:
 
 
 def write(target: Path, text: str = "new", private: bool = False) -> None:
-    with whole_file(target, private) as partial:
+    with atomic_path(target, private) as partial:
         partial.write_text(text)
 
 
@@ -31,7 +31,7 @@ def rights(path: Path) -> int:
 def test_nobody_sees_a_half_written_file(tmp_path: Path) -> None:
     target = tmp_path / "table.csv"
     target.write_text("old")
-    with whole_file(target) as partial:
+    with atomic_path(target) as partial:
         partial.write_text("new, not yet whole")
         assert target.read_text() == "old"
         assert partial.parent == target.parent
@@ -41,9 +41,9 @@ def test_nobody_sees_a_half_written_file(tmp_path: Path) -> None:
 
 def test_one_file_is_not_written_by_two_at_once(tmp_path: Path) -> None:
     target = tmp_path / "table.csv"
-    with whole_file(target) as partial:
+    with atomic_path(target) as partial:
         partial.write_text("the first")
-        with pytest.raises(ProjectError, match=r"table\.csv is still being written"), whole_file(target):
+        with pytest.raises(ProjectError, match=r"table\.csv is still being written"), atomic_path(target):
             pass
     assert target.read_text() == "the first"
     write(target, "the second")
@@ -108,13 +108,13 @@ def test_a_file_keeps_its_rights_and_a_new_private_one_is_its_owner_s(tmp_path: 
             path.chmod(mode)
             write(path, private=private)
             assert (rights(path), path.read_text()) == (mode, "new")
-        with whole_file(tmp_path / "fresh", private) as partial:
+        with atomic_path(tmp_path / "fresh", private) as partial:
             assert rights(partial) == (0o600 if private else 0o644), (
                 "never readable by others, not for a moment"
             )
             partial.write_text("new")
         assert rights(tmp_path / "fresh") == (0o600 if private else 0o644)
-        with whole_file(tmp_path / "600") as partial:
+        with atomic_path(tmp_path / "600") as partial:
             assert rights(partial) == 0o600
     finally:
         os.umask(former)
@@ -133,7 +133,7 @@ def test_no_name_beside_the_file_can_be_guessed_or_taken(
 ) -> None:
     names = []
     for _ in range(2):
-        with whole_file(tmp_path / "table.csv") as partial:
+        with atomic_path(tmp_path / "table.csv") as partial:
             names.append(partial.name)
             partial.write_text("new")
     assert len(set(names)) == 2

@@ -12,7 +12,7 @@ from core.analysis.inverse_design.profile_csv import read_profile
 from core.document.design import ScanSource
 from core.document.presets import read_preset
 from core.document.storage.project_file import open_project, picture_bytes, read_scan_file
-from core.document.storage.recovery import read_kept
+from core.document.storage.recovery import load_unsaved
 from core.errors import UserError
 from core.files.regular_file import read_regular
 from core.garment.elastic_library import read_elastic
@@ -27,7 +27,7 @@ READERS: dict[str, tuple[str, Callable[[Path], object]]] = {
     "elastic": ("anna.csv", read_elastic),
     "profile": ("anna.csv", lambda path: read_profile(str(path))),
     "truth": ("truth.json", lambda path: read_truths(path.parent)),
-    "recovery": ("document.json", lambda path: read_kept(path.parent)),
+    "recovery": ("document.json", lambda path: load_unsaved(path.parent)),
 }
 
 

@@ -9,24 +9,24 @@ import pytest
 
 from app.i18n.catalog import read_words, speaking
 from app.presenters.assessment import IDLE, assessment_lines, assessment_view
-from core.analysis.diagnosis.fix import findings
-from core.analysis.diagnosis.trial_run import standing
+from core.analysis.diagnosis.fix import fixable_findings
+from core.analysis.diagnosis.trial_run import run_trial
 from core.document.design import Design
 from core.document.elastic import Elastic
-from core.export.report_data import Heading, sheet_of
-from core.garment.assessment import BAD, CAUTION, GOOD, PENDING, PUSHES, Assessment, assessed, assessment_of
+from core.export.report_data import Heading, make_report
+from core.garment.assessment import BAD, CAUTION, GOOD, PENDING, PUSHES, Assessment, assess, assess_with
 from core.garment.cut_list import CutList, CutRow, cut_list
 from core.garment.pressure import mmhg
-from core.garment.pressure_limits import comfort
-from core.garment.pressure_list import PressList, PressRow, press_list
+from core.garment.pressure_limits import pressure_limits
+from core.garment.pressure_list import PressureList, PressureRow, pressure_list
 from core.garment.tension import line_tensions
-from core.mechanics.convergence import Verdict
-from core.mechanics.mesh_quality import Condition
+from core.mechanics.convergence import Convergence
+from core.mechanics.mesh_quality import MeshQuality
 from core.pipeline.build import Stages, build
-from core.pipeline.solve import Solution, run
+from core.pipeline.solve import Solution, solve
 
 Built = Callable[[str], Stages]
-CALM = Condition(0.99, 0.95, 1.05)
+CALM = MeshQuality(0.99, 0.95, 1.05)
 
 
 @pytest.fixture(scope="module")
@@ -36,15 +36,15 @@ def sure(built: Built) -> Solution:
     points = {name: replace(mark, confidence=1.0) for name, mark in stages.landmarks.points.items()}
     landmarks = replace(stages.landmarks, points=points, warnings=())
     design = stages.design.with_line("mid-bust", 0.98)
-    return run(replace(build(design, stages), landmarks=landmarks))
+    return solve(replace(build(design, stages), landmarks=landmarks))
 
 
-def row(kpa: float, line: str = "mid-bust") -> PressRow:
-    return PressRow(line, line, "", max_kpa=kpa, max_mmhg=mmhg(kpa), light=comfort().light(kpa))
+def row(kpa: float, line: str = "mid-bust") -> PressureRow:
+    return PressureRow(line, line, "", max_kpa=kpa, max_mmhg=mmhg(kpa), light=pressure_limits().rating(kpa))
 
 
-def pressed(*rows: PressRow) -> PressList:
-    return PressList(rows, {})
+def pressed(*rows: PressureRow) -> PressureList:
+    return PressureList(rows, {})
 
 
 def cuts(**changes: object) -> CutList:
@@ -62,7 +62,7 @@ def levels(of: Assessment) -> list[tuple[str, str]]:
     ids=["green", "amber", "red", "far"],
 )
 def test_pressure_alone_decides_where_all_else_is_well(sure: Solution, kpa: float, level: str) -> None:
-    found = assessment_of(sure, cuts(), pressed(row(kpa)))
+    found = assess_with(sure, cuts(), pressed(row(kpa)))
     assert found.level == level
     if level != GOOD:
         assert found.findings[0].topic == "pressure"
@@ -72,14 +72,14 @@ def test_pressure_alone_decides_where_all_else_is_well(sure: Solution, kpa: floa
 
 
 def test_it_is_never_good_before_the_pressure_is_known(sure: Solution) -> None:
-    assert assessment_of(sure, cuts(), None).level == PENDING
-    assert assessment_of(sure, cuts(), None).pending == "pressure"
-    assert assessment_of(sure, None, None, running=True).pending == "convergence"
-    unknown = assessment_of(sure, cuts(), None, failed=True)
+    assert assess_with(sure, cuts(), None).level == PENDING
+    assert assess_with(sure, cuts(), None).pending == "pressure"
+    assert assess_with(sure, None, None, running=True).pending == "convergence"
+    unknown = assess_with(sure, cuts(), None, failed=True)
     assert (unknown.level, unknown.pending) == (CAUTION, ""), "no pressure is no good pressure"
-    slack = assessment_of(sure, cuts(slack=True, push_n=2.0), None)
+    slack = assess_with(sure, cuts(slack=True, push_n=2.0), None)
     assert slack.level == BAD, "what is bad already is shown at once"
-    mild = assessment_of(sure, cuts(slack=True, push_n=0.1), None)
+    mild = assess_with(sure, cuts(slack=True, push_n=0.1), None)
     assert mild.level == PENDING, "it may become worse"
 
 
@@ -89,17 +89,17 @@ def test_it_is_never_good_before_the_pressure_is_known(sure: Solution) -> None:
         ("diverging", CALM, BAD, "convergence"),
         ("vibrating", CALM, BAD, "convergence"),
         ("settling", CALM, BAD, "convergence"),
-        ("settled", replace(CALM, turned=0.0), BAD, "shape"),
+        ("settled", replace(CALM, least_cosine=0.0), BAD, "shape"),
         ("settled", replace(CALM, longest=1.4), BAD, "shape"),
         ("settled", replace(CALM, shortest=0.75), CAUTION, "shape"),
         ("settled", CALM, GOOD, ""),
     ],
 )
 def test_convergence_and_shape_decide_too(
-    sure: Solution, motion: str, condition: Condition, level: str, topic: str
+    sure: Solution, motion: str, condition: MeshQuality, level: str, topic: str
 ) -> None:
-    run_so = replace(sure, verdict=Verdict(motion, 100, 0.0, condition=condition))
-    found = assessment_of(run_so, cuts(), pressed(row(0.5)))
+    run_so = replace(sure, verdict=Convergence(motion, 100, 0.0, condition=condition))
+    found = assess_with(run_so, cuts(), pressed(row(0.5)))
     assert found.level == level
     assert [each.topic for each in found.findings] == ([topic] if topic else [])
 
@@ -107,7 +107,7 @@ def test_convergence_and_shape_decide_too(
 def test_what_is_worst_stands_first_and_the_hardest_press_before_others(sure: Solution) -> None:
     rows = row(2.5, "full-bust"), row(5.0, "under-bust"), row(30.0)
     slack = cuts(slack=True, push_n=0.5 * PUSHES)
-    found = assessment_of(sure, slack, pressed(*rows))
+    found = assess_with(sure, slack, pressed(*rows))
     assert levels(found) == [("pressure", BAD), ("pressure", BAD), ("band", CAUTION), ("pressure", CAUTION)]
     assert [each.lines for each in found.findings] == [
         *(("mid-bust",), ("under-bust",), ("mid-bust",), ("full-bust",)),
@@ -121,7 +121,7 @@ def test_a_fit_far_off_the_body_is_no_good_result(sure: Solution, what: str, far
     assert control.quality is not None
     quality = replace(control.quality, **{what: far})
     stages = replace(sure.stages, control=replace(control, quality=quality))
-    found = assessment_of(replace(sure, stages=stages), cuts(), pressed(row(0.5)))
+    found = assess_with(replace(sure, stages=stages), cuts(), pressed(row(0.5)))
     assert found.level == level
     if level == CAUTION:
         assert f"{far:.0f} mm off the " in found.findings[0].message
@@ -131,60 +131,60 @@ def test_a_pressure_that_is_not_known_is_no_good_one(sure: Solution, built: Buil
     """A band on the rib cage moves nothing, so without an elastic nobody knows how it presses."""
     design = built("mannequin").design.with_line("mid-bust", None).with_line("under-bust", 0.6)
     stages = replace(build(design, built("mannequin")), landmarks=sure.stages.landmarks)
-    found = assessed(run(stages))
+    found = assess(solve(stages))
     assert levels(found) == [("pressure", CAUTION)]
     assert "elastic" in found.findings[0].action
-    assert findings(standing(stages)) == (), "no change of its length makes it known"
+    assert fixable_findings(run_trial(stages)) == (), "no change of its length makes it known"
 
 
 def test_doubtful_landmarks_are_in_it(sure: Solution) -> None:
     points = {name: replace(mark, confidence=0.1) for name, mark in sure.stages.landmarks.points.items()}
     stages = replace(sure.stages, landmarks=replace(sure.stages.landmarks, points=points))
-    found = assessment_of(replace(sure, stages=stages), cuts(), pressed(row(0.5)))
+    found = assess_with(replace(sure, stages=stages), cuts(), pressed(row(0.5)))
     assert ("landmarks", CAUTION) in levels(found)
 
 
 def test_a_band_that_would_have_to_push_is_slack_everywhere(built: Built) -> None:
     stages = built("person")
     design = stages.design.with_line("mid-bust", 0.97).with_line("full-bust", 1.03)
-    solution = run(build(design, stages))
+    solution = solve(build(design, stages))
     points = solution.control_points
     assert line_tensions(solution.stages, points)["full-bust"].mean < -1.0, "the model pushes"
     listed = {each.line: each for each in cut_list(solution.stages, points).rows}
-    presses = {each.line: each for each in press_list(solution.stages, points).rows}
+    presses = {each.line: each for each in pressure_list(solution.stages, points).rows}
     assert listed["full-bust"].tension_n == presses["full-bust"].tension_n == 0.0
     assert listed["full-bust"].slack
     assert listed["full-bust"].push_n > 1.0
     assert not listed["mid-bust"].slack
-    sheet = sheet_of(solution, solution.records, Heading("anna", "2026-01-31"))
+    sheet = make_report(solution, solution.records, Heading("anna", "2026-01-31"))
     assert all((each.tension_n or 0.0) >= 0.0 for each in sheet.cuts.rows)
     assert not any("-" in note.partition("from ")[2][:3] for each in sheet.cuts.rows for note in each.notes)
     slack = [each for each in sheet.assessment.findings if each.topic == "band"]
     assert [each.lines for each in slack] == [("full-bust",)]
-    assert sheet.assessment == assessed(solution), "one verdict on the sheet and for every command"
+    assert sheet.assessment == assess(solution), "one verdict on the sheet and for every command"
 
 
 def test_an_elastic_beyond_its_table_is_in_it(built: Built) -> None:
     stages = built("mannequin")
     weak = Elastic("weak", 10.0, ((0.0, 0.0), (0.3, 2.0)))
     design = replace(stages.design.with_line("mid-bust", 0.97), line_hold="held", volume="exact")
-    solution = run(build(design.with_elastic("mid-bust", weak), stages))
+    solution = solve(build(design.with_elastic("mid-bust", weak), stages))
     (listed,) = cut_list(solution.stages, solution.control_points).rows
     assert "its table ends at 2 N" in listed.refused
-    band = [each for each in assessed(solution).findings if each.topic == "band"]
+    band = [each for each in assess(solution).findings if each.topic == "band"]
     assert [(each.level, each.message) for each in band] == [(BAD, listed.refused)]
 
 
 def test_no_line_is_no_result_yet(sure: Solution) -> None:
     bare = replace(sure, stages=replace(sure.stages, design=replace(sure.stages.design, lines=())))
-    found = assessment_of(bare, CutList((), 530.0, 1.0, ()), None)
+    found = assess_with(bare, CutList((), 530.0, 1.0, ()), None)
     assert (found.level, found.active) == (GOOD, False)
     assert assessment_view(found, bare.stages.design).level == IDLE
 
 
 @pytest.mark.parametrize("code", ["en", "ja"])
 def test_it_is_worded_once_in_every_language(sure: Solution, code: str) -> None:
-    found = assessment_of(sure, cuts(slack=True, push_n=2.0), pressed(row(47.7), row(2.5, "full-bust")))
+    found = assess_with(sure, cuts(slack=True, push_n=2.0), pressed(row(47.7), row(2.5, "full-bust")))
     design: Design = sure.stages.design
     with speaking(code):
         view, lines = assessment_view(found, design), assessment_lines(found, design)

@@ -8,11 +8,11 @@ import numpy as np
 
 from app.presenters.samples import sample_design
 from core.deformation.tffd import deform
-from core.garment.band_path import course_of, courses
-from core.garment.curve_smoothing import USUAL_WIDTH, Surface
+from core.garment.band_path import band_path, band_paths
+from core.garment.curve_smoothing import USUAL_WIDTH, LocalPlanes
 from core.garment.tension import line_tensions
 from core.pipeline.build import build
-from core.pipeline.solve import run
+from core.pipeline.solve import solve
 
 
 def test_a_course_that_was_laid_before_is_that_of_the_shape_that_is_asked_for() -> None:
@@ -20,14 +20,14 @@ def test_a_course_that_was_laid_before_is_that_of_the_shape_that_is_asked_for() 
     stages = build(design)
     other = build(design.with_line("mid-bust", 1.0), stages)
     for each in (other, stages):
-        points = run(each).control_points
+        points = solve(each).control_points
         tensions = line_tensions(each, points)
         lines = {line.name: line for line in each.model.lines}
-        surface, moved = Surface(each.body.mesh), deform(each.binding, points)
-        for name, course, width in courses(each, points, tensions):
+        surface, moved = LocalPlanes(each.body.mesh), deform(each.binding, points)
+        for name, course, width in band_paths(each, points, tensions):
             route = each.routes[name]
             assert np.array_equal(route.path, lines[name].places(each.control.mesh.vertices))
-            anew = course_of(route.path, tensions[name], surface, moved, USUAL_WIDTH, route.back)
+            anew = band_path(route.path, tensions[name], surface, moved, USUAL_WIDTH, route.back)
             assert width == USUAL_WIDTH
             assert np.allclose(course.points, anew.points, atol=1e-9)
             assert np.allclose(course.normals, anew.normals, atol=1e-9)

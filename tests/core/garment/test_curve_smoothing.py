@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from core.garment.curve_smoothing import STEP, Surface, centre_line
+from core.garment.curve_smoothing import STEP, LocalPlanes, centre_line
 from core.geometry.mesh import Mesh
 from core.geometry.plane_sections import arc_length
 
@@ -29,7 +29,7 @@ def around(start: float, end: float, count: int, z: float = 100.0) -> np.ndarray
 
 def test_a_band_round_a_cylinder_is_as_long_as_the_cylinder_is_round():
     front, back = around(-90, 90, 7), around(90, 270, 40)
-    line = centre_line(front, Surface(cylinder()), back)
+    line = centre_line(front, LocalPlanes(cylinder()), back)
     length = arc_length(np.concatenate([line.points, line.points[:1]]))[-1]
     assert line.closed
     assert length == pytest.approx(2 * np.pi * RADIUS, rel=2e-3)
@@ -39,7 +39,7 @@ def test_a_band_round_a_cylinder_is_as_long_as_the_cylinder_is_round():
 
 
 def test_places_lie_evenly_and_normals_point_outward():
-    line = centre_line(around(-80, 80, 6), Surface(cylinder()))
+    line = centre_line(around(-80, 80, 6), LocalPlanes(cylinder()))
     steps = np.linalg.norm(np.diff(line.points, axis=0), axis=1)
     assert not line.closed
     assert steps == pytest.approx(STEP, rel=0.1)
@@ -49,7 +49,7 @@ def test_places_lie_evenly_and_normals_point_outward():
 def test_a_wide_band_lies_straighter_than_a_thread_over_a_path_with_a_kink():
     path = around(-60, 60, 13)
     path[6, 2] += 6.0
-    surface = Surface(cylinder())
+    surface = LocalPlanes(cylinder())
     thread, band = (centre_line(path, surface, width=width) for width in (0.0, 20.0))
     assert np.ptp(band.points[:, 2]) < 0.7 * np.ptp(thread.points[:, 2])
     assert np.abs(band.points[:, 2] - 100.0).max() < 6.0 + 0.4 * 20.0
@@ -57,7 +57,7 @@ def test_a_wide_band_lies_straighter_than_a_thread_over_a_path_with_a_kink():
 
 def test_a_line_follows_the_body_that_moves():
     mesh = cylinder()
-    surface = Surface(mesh)
+    surface = LocalPlanes(mesh)
     line = centre_line(around(-80, 80, 6), surface)
-    moved = surface.follow(line.points) @ np.tile([3.0, -2.0, 1.0], (len(mesh.vertices), 1))
+    moved = surface.displacement_weights(line.points) @ np.tile([3.0, -2.0, 1.0], (len(mesh.vertices), 1))
     np.testing.assert_allclose(moved, np.tile([3.0, -2.0, 1.0], (len(line.points), 1)), atol=1e-12)

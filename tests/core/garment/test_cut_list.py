@@ -14,26 +14,28 @@ from app.cli.main import main
 from app.presenters.cut_list import as_table
 from core.control_mesh.template import read_template
 from core.document.elastic import Elastic
-from core.document.line_notation import ready_made
-from core.document.lines import LineTraits, OwnLine, WornLine
+from core.document.line_notation import ready_made_lines
+from core.document.lines import ActiveLine, CustomLine, LineSettings
 from core.errors import LineError
 from core.garment.cut_list import FAR, FRONT_ONLY, SLACK, cut_list
 from core.garment.elastic_library import find_elastic, write_elastic
 from core.garment.pressure import NOT_FOR_STRAPS
-from core.garment.pressure_list import press_list
+from core.garment.pressure_list import pressure_list
 from core.garment.tension import line_tensions
 from core.mechanics.exact_solution import solve_exact
 from core.mechanics.force_units import newtons_per_unit
-from core.mechanics.iteration import Targets, iterate
-from core.pipeline.build import build, targets_of
-from core.pipeline.solve import run
+from core.mechanics.iteration import LineTargets, iterate
+from core.pipeline.build import build, line_targets
+from core.pipeline.solve import solve
 
 EDGE = Elastic("edge", 10.0, ((0.0, 0.0), (0.2, 0.8), (0.5, 1.8), (1.0, 4.0)), 15.0)
 HOOKE = Elastic("straight", 10.0, ((0.0, 0.0), (1.0, 6.0)), 20.0, "by hand", estimate=False)
 
 
 def stages_of(stages, lines, elastics=(), **choices):
-    design = replace(stages.design, lines=tuple(WornLine(*line) for line in lines), volume="exact", **choices)
+    design = replace(
+        stages.design, lines=tuple(ActiveLine(*line) for line in lines), volume="exact", **choices
+    )
     for name, elastic in elastics:
         design = design.with_elastic(name, elastic)
     return build(design, stages)
@@ -41,9 +43,9 @@ def stages_of(stages, lines, elastics=(), **choices):
 
 def listed(stages):
     """The cut list of the exact answer, its rows by line."""
-    ratios = targets_of(stages.design, stages).ratios
+    ratios = line_targets(stages.design, stages).ratios
     balance = solve_exact(stages.model, ratios)
-    assert balance.found
+    assert balance.is_converged
     points = stages.model.tensegric.expand(balance.state.moved)
     cuts = cut_list(stages, points)
     return cuts, {row.line: row for row in cuts.rows}, points, balance
@@ -78,7 +80,7 @@ def test_an_elastic_near_the_end_of_its_table_is_told(built, ratio, far):
     assert any("its table ends at 70 %: 30 to 50 % are usual" in note for note in row.notes) == far
 
 
-@pytest.mark.parametrize("list_of", [cut_list, press_list])
+@pytest.mark.parametrize("list_of", [cut_list, pressure_list])
 @pytest.mark.parametrize("hold", ["spring", "held"])
 @pytest.mark.parametrize("place", [np.nan, np.inf, 0.0])
 def test_points_that_are_no_shape_are_refused(built, list_of, hold, place):
@@ -114,7 +116,7 @@ def test_the_tension_of_held_lines_is_the_multiplier_of_the_exact_answer(built, 
 def test_turns_without_a_force_on_the_volume_balance_held_lines_alone(built):
     stages = stages_of(built("mannequin"), [("mid-bust", 0.98)], line_hold="held")
     stages = build(replace(stages.design, volume="none"), stages)
-    targets = Targets(targets_of(stages.design, stages).ratios, "none")
+    targets = LineTargets(line_targets(stages.design, stages).ratios, "none")
     *_, (state, _) = iterate(stages.model, lambda: targets, turns=2000)
     at = [line.name for line in stages.model.lines].index("mid-bust")
     points = stages.model.tensegric.expand(state.moved)
@@ -162,7 +164,7 @@ def test_a_held_line_on_the_rib_cage_is_not_refused_and_has_no_known_tension(bui
 
 def test_an_open_line_is_its_own_whole_and_a_ring_is_closed(built):
     path = built("mannequin").control.paths["mid-bust"]
-    own = (OwnLine("arc", tuple(path[2:-2])),)
+    own = (CustomLine("arc", tuple(path[2:-2])),)
     stages = stages_of(built("mannequin"), [("arc", 0.8)], own_lines=own)
     stages = stages_of(stages, [("arc", 0.8)], [("arc", EDGE)])
     _, rows, _, _ = listed(stages)
@@ -175,21 +177,23 @@ def test_an_open_line_is_its_own_whole_and_a_ring_is_closed(built):
 def test_a_piece_that_goes_on_beyond_the_control_mesh_is_told_from_a_whole_one(built):
     stages = built("mannequin")
     template = read_template("168")
-    ready = ready_made(template)
-    upright = OwnLine("upright", tuple(template.point(row, 3) for row in range(1, 4)))  # from the under-bust
+    ready = ready_made_lines(template)
+    upright = CustomLine(
+        "upright", tuple(template.point(row, 3) for row in range(1, 4))
+    )  # from the under-bust
     chest = tuple(replace(strap, over_shoulder=False) for strap in ready["straps"])
     own = (*chest, *ready["rings"], upright)
     worn = [(line.name, 0.98) for line in own]
     stages = stages_of(stages, [("mid-bust", 0.97), *worn], [("strap left", EDGE)], own_lines=own)
     _, rows, points, _ = listed(stages)
     assert {name for name, row in rows.items() if row.front_only} == {"strap left", "strap right"}
-    pressed = {row.line for row in press_list(stages, points).rows if NOT_FOR_STRAPS in row.notes}
+    pressed = {row.line for row in pressure_list(stages, points).rows if NOT_FOR_STRAPS in row.notes}
     assert pressed == {"strap left", "strap right"}  # the light was not made for them
     assert {name for name, row in rows.items() if FRONT_ONLY in row.notes} == {"strap left", "strap right"}
 
 
 def test_a_strap_is_cut_as_long_as_it_is_over_the_shoulder(built):
-    own = ready_made(read_template("168"))["straps"]
+    own = ready_made_lines(read_template("168"))["straps"]
     stages = stages_of(built("mannequin"), [("strap left", 0.9)], [("strap left", EDGE)], own_lines=own)
     _, rows, points, _ = listed(stages)
     row, line, tail = rows["strap left"], line_of(stages, "strap left"), stages.tails["strap left"]
@@ -201,7 +205,7 @@ def test_a_strap_is_cut_as_long_as_it_is_over_the_shoulder(built):
     assert row.cut_mm == pytest.approx(0.9 * (rest + tail.length) + 15.0, rel=1e-12)
     assert not row.front_only
     assert any("over the shoulder" in note for note in row.notes)
-    [pressed] = [each for each in press_list(stages, points).rows if each.line == "strap left"]
+    [pressed] = [each for each in pressure_list(stages, points).rows if each.line == "strap left"]
     assert NOT_FOR_STRAPS in pressed.notes
 
 
@@ -215,8 +219,8 @@ def test_a_slack_elastic_is_listed_as_slack(built):
 
 def test_a_line_of_nothing_in_particular_has_a_tension_and_asks_for_an_elastic(built):
     stages = stages_of(built("mannequin"), [("mid-bust", 0.97)])
-    traits = LineTraits("mid-bust", title="Middle")
-    cuts, rows, points, _ = listed(build(stages.design.with_traits(traits), stages))
+    traits = LineSettings("mid-bust", title="Middle")
+    cuts, rows, points, _ = listed(build(stages.design.with_line_settings(traits), stages))
     row = rows["mid-bust"]
     assert (row.title, row.elastic, row.cut_mm, row.estimate) == ("Middle", "", None, True)
     assert row.tension_n == pytest.approx(line_tensions(stages, points)["mid-bust"].mean)
@@ -252,7 +256,7 @@ def test_the_command_prints_what_python_says(mannequin, built, capsys, tmp_path)
     made = [("mid-bust", find_elastic("picot 10")), ("under-bust", EDGE)]
     stages = stages_of(built("mannequin"), lines, made, tissue_stiffness=400.0)
     stages = build(replace(stages.design, volume="adaptive"), stages)
-    by_hand = cut_list(stages, run(stages).control_points)
+    by_hand = cut_list(stages, solve(stages).control_points)
     assert told["rows"] == json.loads(json.dumps(by_hand.as_data()))["rows"]
     assert told["tissue_stiffness"] == 400.0
     assert main([*words, "--csv", "--out", str(tmp_path / "cut.csv")]) == 0
@@ -283,7 +287,7 @@ def test_the_list_leaves_in_the_order_of_the_window_with_what_presses(built):
     lines = [("under-bust", 0.8), ("mid-bust", 0.98), ("full-bust", 0.98)]
     stages = stages_of(built("mannequin"), lines, [("under-bust", EDGE)])
     cuts, _, points, _ = listed(stages)
-    pressed = press_list(stages, points)
+    pressed = pressure_list(stages, points)
     heading, *rows = as_table(stages, cuts, pressed)
     assert [row[0] for row in rows] == ["Full bust", "Mid-bust", "Under-bust"]
     most = {row.line: f"{row.max_kpa:.1f}" for row in pressed.rows}

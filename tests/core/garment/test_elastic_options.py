@@ -13,7 +13,7 @@ from app.cli import solved_design
 from app.cli.commands import cut
 from app.cli.main import main
 from core.document.elastic import Elastic
-from core.document.lines import WornLine
+from core.document.lines import ActiveLine
 from core.garment.elastic_library import built_in, find_elastic
 from core.garment.elastic_options import (
     FIRST_STRETCH,
@@ -25,7 +25,7 @@ from core.garment.elastic_options import (
     outcome_of,
     strongest,
 )
-from core.garment.match_shape import fitted, reached_points
+from core.garment.match_shape import match_reached_lengths, reached_points
 from core.pipeline.build import Stages, build
 
 STRAP = find_elastic("strap 15")
@@ -35,7 +35,7 @@ NAMES = ("mid-bust",)
 
 
 def worn_at(stages: Stages, ratio: float, line: str = "mid-bust", **choices: object) -> Stages:
-    design = replace(stages.design, lines=(WornLine(line, ratio),), **choices)  # type: ignore[arg-type]
+    design = replace(stages.design, lines=(ActiveLine(line, ratio),), **choices)  # type: ignore[arg-type]
     return build(design, stages)
 
 
@@ -69,9 +69,11 @@ def test_one_that_is_too_weak_is_cut_as_short_as_it_can_be(
     excess = row.reached_front_mm - before.reached_front_mm
     assert f"{excess:.1f} mm too long" in option.reason
     ratio = option.closest.design.ratio("mid-bust")
-    assert ratio == pytest.approx(0.5) or row.elongation == pytest.approx(0.99 * elastic.reach, rel=1e-3)
+    assert ratio == pytest.approx(0.5) or row.elongation == pytest.approx(
+        0.99 * elastic.max_elongation, rel=1e-3
+    )
     assert row.elongation is not None
-    assert row.elongation <= elastic.reach
+    assert row.elongation <= elastic.max_elongation
 
 
 def test_the_length_that_a_refusal_names_works(built: Callable[[str], Stages]) -> None:
@@ -89,11 +91,11 @@ def test_the_length_that_a_refusal_names_works(built: Callable[[str], Stages]) -
 
 
 def test_numbers_that_round_alike_are_told_apart() -> None:
-    message = STRAP.overstretched(0.7004, "mid-bust").message
+    message = STRAP.overstretch_error(0.7004, "mid-bust").message
     assert "stretched by 70.04 % as mid-bust; its table ends at 70 %" in message
     assert (
         "pulled with 9.95 N as mid-bust; its table ends at 9.9 N"
-        in STRAP.overpulled(9.949, "mid-bust").message
+        in STRAP.overload_error(9.949, "mid-bust").message
     )
 
 
@@ -127,13 +129,13 @@ def test_a_band_on_the_ribs_is_put_on(built: Callable[[str], Stages]) -> None:
     assert option.outcome.rows["under-bust"].elongation == pytest.approx(FIRST_STRETCH)
     off = elastic_option(build(option.outcome.design, stages), ("under-bust",), None, KEEP_FIT)
     assert off.outcome is not None
-    assert not off.outcome.design.worn()
+    assert not off.outcome.design.active_lines()
 
 
 def test_a_locked_line_is_refused_before_it_is_chosen(built: Callable[[str], Stages]) -> None:
     stages = worn_at(built("mannequin"), 0.97)
-    traits = replace(stages.design.traits_of("mid-bust"), locked=True)
-    stages = build(stages.design.with_traits(traits), stages)
+    traits = replace(stages.design.line_settings("mid-bust"), locked=True)
+    stages = build(stages.design.with_line_settings(traits), stages)
     assert "locked" in elastic_option(stages, NAMES, STRAP, KEEP_FIT).reason
     assert elastic_option(stages, NAMES, STRAP, KEEP_CUT).outcome is not None
 
@@ -158,7 +160,7 @@ def test_the_nearest_is_alike_and_the_strongest_reaches_furthest(built: Callable
 def test_the_search_is_not_led_astray_by_its_first_guesses(built: Callable[[str], Stages]) -> None:
     """Guesses beyond the curve or the shortest cut once ended the search though a length was there."""
     stages = worn_at(built("mannequin"), 0.94, line_contact="sliding")
-    found = fitted(stages, reached_points(stages), {"mid-bust": find_elastic("strap 20")})
+    found = match_reached_lengths(stages, reached_points(stages), {"mid-bust": find_elastic("strap 20")})
     assert found.excess == {}
     row = outcome_of(build(found.design, stages)).rows["mid-bust"]
     assert row.elongation == pytest.approx(0.69, abs=0.01), "close to its end at 70 %"

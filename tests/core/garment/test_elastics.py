@@ -9,7 +9,7 @@ from core.document.design import Design, ScanSource
 from core.document.document import Document
 from core.document.document_text import DESIGN, VARIANTS, from_texts, to_texts
 from core.document.elastic import Elastic
-from core.document.lines import LineTraits
+from core.document.lines import LineSettings
 from core.document.serialization import from_json, to_json
 from core.errors import LineError, UserError
 from core.garment.elastic_csv import TEMPLATE, csv_of, elastic_from_csv
@@ -18,11 +18,11 @@ from core.garment.elastic_library import (
     built_in,
     find_elastic,
     library,
-    own_elastics,
-    own_folder,
     read_elastic,
     save_elastic,
-    told_allowance,
+    specified_allowance,
+    user_elastics,
+    user_folder,
     write_elastic,
 )
 
@@ -49,7 +49,7 @@ def test_a_slack_elastic_does_not_pull_and_begins_as_its_first_piece():
 
 
 def test_beyond_its_end_a_curve_goes_on_for_those_who_look_at_its_reach():
-    assert (ROLL.reach, ROLL.strength) == (0.5, 4.0)
+    assert (ROLL.max_elongation, ROLL.max_force) == (0.5, 4.0)
     assert ROLL.force(0.6) == pytest.approx(5.0)
 
 
@@ -165,10 +165,10 @@ def test_a_spreadsheet_is_asked_for_as_a_table(tmp_path):
 def test_a_table_without_an_allowance_is_known_by_it(tmp_path):
     path = tmp_path / "roll.csv"
     path.write_text("# width: 12\n" + HEAD + "10,1\n20,2\n")
-    assert not told_allowance(path)
+    assert not specified_allowance(path)
     assert read_elastic(path).allowance_mm == ALLOWANCE
     write_elastic(path, ROLL)
-    assert told_allowance(path)
+    assert specified_allowance(path)
 
 
 @pytest.mark.parametrize("name", ["Roll 7,", "Roll; ", ' "Roll" ', '"Roll"', '"', "a: 1, b"])
@@ -180,11 +180,11 @@ def test_names_with_marks_of_cells_at_their_ends_are_read_back(name, tmp_path):
 
 @pytest.mark.parametrize("letters", [5, 200_000])
 def test_a_quotation_mark_that_stays_open_spoils_no_more_than_its_line(letters):
-    own_folder().mkdir(parents=True)
+    user_folder().mkdir(parents=True)
     heap = "x" * letters
-    (own_folder() / "torn.csv").write_text(f'# width: 12\n{HEAD}10,1\n20,"2{heap}\n30,3\n')
+    (user_folder() / "torn.csv").write_text(f'# width: 12\n{HEAD}10,1\n20,"2{heap}\n30,3\n')
     save_elastic(ROLL)
-    elastics, problems = own_elastics()
+    elastics, problems = user_elastics()
     assert elastics == [ROLL]
     assert [str(each).split(".")[0] for each in problems] == ["Line 4 of the table torn has no two numbers"]
 
@@ -193,28 +193,28 @@ def test_an_elastic_takes_the_place_of_its_name_and_of_no_other():
     one, other = (replace(ROLL, name=name) for name in ("Roll 1/2", "Roll 1:2"))
     save_elastic(one)
     save_elastic(other)
-    assert own_elastics()[0] == [other, one]
+    assert user_elastics()[0] == [other, one]
     wider = replace(one, width_mm=15.0)
     save_elastic(wider)
-    assert own_elastics()[0] == [other, wider]
-    write_elastic(own_folder() / "zz.csv", replace(ROLL, name="Foo"))
+    assert user_elastics()[0] == [other, wider]
+    write_elastic(user_folder() / "zz.csv", replace(ROLL, name="Foo"))
     foo = replace(ROLL, name="Foo", width_mm=33.0)
     save_elastic(foo)
     assert library()["Foo"] == foo
-    assert len(own_elastics()[0]) == 3
+    assert len(user_elastics()[0]) == 3
 
 
 def test_spreadsheets_of_japan_are_read(tmp_path):
     (tmp_path / "sjis.csv").write_bytes("# width: 12\n伸び %,荷重 N\n10,1\n20,2\n".encode("cp932"))
-    assert read_elastic(tmp_path / "sjis.csv").strength == 2.0
+    assert read_elastic(tmp_path / "sjis.csv").max_force == 2.0
 
 
 def test_own_elastics_join_the_library_and_a_broken_one_does_not_spoil_it():
     mine = replace(ROLL, name="Strap 10 mm")
     save_elastic(mine)
-    (own_folder() / "broken.csv").write_text("nothing")
+    (user_folder() / "broken.csv").write_text("nothing")
     assert library()["Strap 10 mm"] == mine
-    elastics, problems = own_elastics()
+    elastics, problems = user_elastics()
     assert elastics == [mine]
     assert "broken" in str(problems[0])
 
@@ -233,9 +233,9 @@ def test_no_elastic_or_more_than_one_is_said():
 
 def test_a_design_keeps_what_its_lines_are_made_of_and_no_more():
     design = WORN.with_elastic("mid-bust", ROLL)
-    assert design.worn_elastics() == {"mid-bust": ROLL}
-    assert design.traits_of("mid-bust").width == 12.0
-    assert design.with_line("mid-bust", None).worn_elastics() == {}
+    assert design.active_elastics() == {"mid-bust": ROLL}
+    assert design.line_settings("mid-bust").width == 12.0
+    assert design.with_line("mid-bust", None).active_elastics() == {}
     assert design.with_elastic("mid-bust", None) == WORN
     other = design.with_elastic("mid-bust", built_in()[0])
     assert other.elastics == (built_in()[0],)
@@ -252,7 +252,7 @@ def test_a_project_opens_elsewhere_with_its_elastics():
 
 
 def test_what_uses_no_elastic_is_written_as_before():
-    design = WORN.with_traits(LineTraits("mid-bust", title="Middle"))
+    design = WORN.with_line_settings(LineSettings("mid-bust", title="Middle"))
     values = json.loads(to_json(design))
     assert values["format"] == 1
     assert not {"elastics", "tissue_stiffness"} & values.keys()
@@ -261,7 +261,7 @@ def test_what_uses_no_elastic_is_written_as_before():
 
 
 def test_variants_may_be_made_of_different_elastics_on_the_same_tissue():
-    document = Document.of(WORN.with_elastic("mid-bust", ROLL)).showing("B")
+    document = Document.single(WORN.with_elastic("mid-bust", ROLL)).with_shown("B")
     document = document.with_design(
         replace(document.design.with_elastic("mid-bust", None), tissue_stiffness=400.0)
     )

@@ -9,34 +9,34 @@ import pytest
 from app.cli.main import main
 from core.control_mesh.template import read_template
 from core.document.elastic import Elastic
-from core.document.line_notation import ready_made
-from core.document.lines import WornLine
+from core.document.line_notation import ready_made_lines
+from core.document.lines import ActiveLine
 from core.errors import LineError
 from core.garment.cut_list import cut_list
 from core.garment.elastic_library import find_elastic
-from core.garment.match_shape import as_worn, reached_points
+from core.garment.match_shape import match_lengths, reached_points
 from core.garment.tension import line_tensions
 from core.mechanics.exact_solution import solve_exact
-from core.pipeline.build import build, targets_of
-from core.pipeline.exact import balance_of
+from core.pipeline.build import build, line_targets
+from core.pipeline.exact import exact_equilibrium
 
 STRAP, BAND = find_elastic("strap 15"), find_elastic("plush 12")
 
 
 def exactly_as_worn(stages, elastics):
-    return as_worn(stages, reached_points(stages), elastics)
+    return match_lengths(stages, reached_points(stages), elastics)
 
 
 def worn_at(stages, lines, **choices):
     return build(
-        replace(stages.design, lines=tuple(WornLine(*line) for line in lines), volume="exact", **choices),
+        replace(stages.design, lines=tuple(ActiveLine(*line) for line in lines), volume="exact", **choices),
         stages,
     )
 
 
 def points_of(stages):
-    balance = solve_exact(stages.model, targets_of(stages.design, stages).ratios)
-    assert balance.found
+    balance = solve_exact(stages.model, line_targets(stages.design, stages).ratios)
+    assert balance.is_converged
     return stages.model.tensegric.expand(balance.state.moved)
 
 
@@ -45,7 +45,7 @@ def test_lines_of_elastic_reach_what_the_lines_reached(built, contact):
     lines = [("full-bust", 0.985), ("mid-bust", 0.97), ("under-bust", 0.9)]
     stages = worn_at(built("mannequin"), lines, line_contact=contact)
     before = points_of(stages)
-    design = as_worn(stages, before, {"mid-bust": STRAP, "full-bust": BAND})
+    design = match_lengths(stages, before, {"mid-bust": STRAP, "full-bust": BAND})
     after = points_of(build(design, stages))
     for line in stages.model.lines:
         if line.constrains:
@@ -59,18 +59,18 @@ def test_the_elastic_pulls_as_the_line_did(built):
     stages = worn_at(built("mannequin"), [("mid-bust", 0.97)])
     before = points_of(stages)
     told = line_tensions(stages, before)["mid-bust"].mean
-    made = build(as_worn(stages, before, {"mid-bust": STRAP}), stages)
+    made = build(match_lengths(stages, before, {"mid-bust": STRAP}), stages)
     row = cut_list(made, points_of(made)).rows[0]
     assert row.tension_n == pytest.approx(told, rel=0.05)
 
 
 def test_lines_that_cannot_move_or_are_held_keep_their_lengths(built):
     ribs = worn_at(built("mannequin"), [("under-bust", 0.8)])
-    assert as_worn(ribs, points_of(ribs), {"under-bust": BAND}) == ribs.design.with_elastic(
+    assert match_lengths(ribs, points_of(ribs), {"under-bust": BAND}) == ribs.design.with_elastic(
         "under-bust", BAND
     )
     held = worn_at(built("mannequin"), [("mid-bust", 0.98)], line_hold="held")
-    assert as_worn(held, points_of(held), {"mid-bust": BAND}).lines == held.design.lines
+    assert match_lengths(held, points_of(held), {"mid-bust": BAND}).lines == held.design.lines
 
 
 @pytest.mark.parametrize(
@@ -86,7 +86,7 @@ def test_lines_that_cannot_move_or_are_held_keep_their_lengths(built):
 def test_an_elastic_that_cannot_do_it_is_refused(built, curve, sentence):
     stages = worn_at(built("mannequin"), [("mid-bust", 0.95)])
     with pytest.raises(LineError, match=sentence):
-        as_worn(stages, points_of(stages), {"mid-bust": Elastic("weak", 10.0, curve)})
+        match_lengths(stages, points_of(stages), {"mid-bust": Elastic("weak", 10.0, curve)})
 
 
 def test_the_command_cuts_for_the_shape_that_is_there(mannequin, capsys):
@@ -105,7 +105,7 @@ def test_lines_of_elastic_reach_the_same_where_the_body_keeps_its_volume(built):
     stages = worn_at(built("mannequin"), [("mid-bust", 0.96)], dense_volume=True)
     reached = []
     for each in (stages, build(exactly_as_worn(stages, {"mid-bust": STRAP}), stages)):
-        points = each.model.tensegric.expand(balance_of(each).state.moved)
+        points = each.model.tensegric.expand(exact_equilibrium(each).state.moved)
         reached += [line.length(points) for line in each.model.lines if line.name == "mid-bust"]
     assert reached[1] == pytest.approx(reached[0], rel=2e-5)
 
@@ -117,7 +117,7 @@ def test_a_line_of_elastic_becomes_one_of_the_model_again(built, contact):
     elastics = {"mid-bust": STRAP, "full-bust": BAND}
     made = build(exactly_as_worn(stages, elastics), stages)
     bare = exactly_as_worn(made, dict.fromkeys(elastics))
-    assert bare.worn_elastics() == {}
+    assert bare.active_elastics() == {}
     assert bare.elastics == ()
     for name, ratio in lines:
         assert bare.ratio(name) == pytest.approx(ratio, abs=2e-4)
@@ -125,11 +125,11 @@ def test_a_line_of_elastic_becomes_one_of_the_model_again(built, contact):
 
 def test_a_linked_pair_stays_one_though_its_sides_are_uneven(built):
     stages = built("person")
-    design = replace(stages.design, own_lines=ready_made(read_template("168"))["straps"], lines=())
+    design = replace(stages.design, own_lines=ready_made_lines(read_template("168"))["straps"], lines=())
     design = design.with_line("strap left", 0.99).with_line("strap right", 0.99)
     made = exactly_as_worn(build(design, stages), {"strap left": STRAP, "strap right": STRAP})
     assert made.ratio("strap left") == made.ratio("strap right") < 0.85
-    assert made.linked("strap left") == ("strap left", "strap right")
+    assert made.linked_pair("strap left") == ("strap left", "strap right")
     alone = exactly_as_worn(build(design, stages), {"strap left": STRAP})
     assert alone.ratio("strap right") == 0.99
     assert alone.ratio("strap left") < 0.85

@@ -13,14 +13,14 @@ from shapes import SAMPLES
 from core.deformation.tffd import deform
 from core.document.design import Design, ScanSource
 from core.document.presets import built_in, with_preset
-from core.garment.band_path import Course, course_of
-from core.garment.curve_smoothing import Surface
+from core.garment.band_path import BandPath, band_path
+from core.garment.curve_smoothing import LocalPlanes
 from core.garment.pressure import LinePressure, band_pressure, mmhg, pressures
 from core.garment.tension import LineTension, line_tensions
 from core.geometry.mesh import Mesh, unit
-from core.geometry.plane_sections import arc_length, chains, cut, hull_perimeter, resample
+from core.geometry.plane_sections import arc_length, cut, hull_perimeter, join_segments, resample
 from core.pipeline.build import build
-from core.pipeline.solve import Solution, run
+from core.pipeline.solve import Solution, solve
 
 WIDTH = 15.0
 LOBED = 35.0
@@ -36,8 +36,8 @@ def solution() -> Solution:
     design = Design(ScanSource(str(SAMPLES / "mannequin.ply")))
     for name in ("under-bust", "mid-bust"):
         design = design.with_line(name, 0.95)
-    traits = replace(design.traits_of("mid-bust"), width=20.0)
-    return run(build(design.with_traits(traits)))
+    traits = replace(design.line_settings("mid-bust"), width=20.0)
+    return solve(build(design.with_line_settings(traits)))
 
 
 @pytest.mark.parametrize("radius", [30.0, 60.0, 120.0, 400.0])
@@ -85,7 +85,7 @@ def test_over_a_hollow_the_band_goes_straight_and_does_not_press() -> None:
     band = polar(lambda t: 100.0 + LOBED * np.cos(2.0 * t))
     worn = band_pressure(band, WIDTH)
     assert len(worn.bridges) == 2
-    over = worn.off > 0.5
+    over = worn.gap > 0.5
     assert over.any()
     assert (worn.kpa[over] == 0.0).all()
     assert np.isinf(worn.radius[over]).all()
@@ -110,9 +110,9 @@ def test_a_band_that_also_swings_sideways_comes_down_smoothly_beside_a_hollow(wa
     ways = unit(np.roll(smooth.points, -1, axis=0) - smooth.points)
     bend = np.einsum("kx,kx->k", np.roll(ways, 1, axis=0) - ways, smooth.normals)
     assert len(worn.bridges) == 2
-    assert (worn.turns <= np.maximum(bend, 0.0) + 1e-9).all()
+    assert (worn.bends <= np.maximum(bend, 0.0) + 1e-9).all()
     # Off the skin or on it, the turns towards it go round as often.
-    assert worn.turns.sum() == pytest.approx(bend.sum(), rel=1e-6)
+    assert worn.bends.sum() == pytest.approx(bend.sum(), rel=1e-6)
 
 
 @pytest.mark.parametrize("share", [0.6, 0.7, 0.75])
@@ -120,14 +120,15 @@ def test_a_level_band_round_a_body_goes_as_the_hull_of_its_section(share: float)
     mesh = solution().body
     low, high = mesh.vertices[:, 2].min(), mesh.vertices[:, 2].max()
     outline = max(
-        chains(cut(mesh, [0.0, 0.0, low + share * (high - low)], [0.0, 0.0, 1.0])), key=lambda c: len(c[0])
+        join_segments(cut(mesh, [0.0, 0.0, low + share * (high - low)], [0.0, 0.0, 1.0])),
+        key=lambda c: len(c[0]),
     )
     points = resample(outline[0], STEP)[:-1]
     ahead = np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0)
     normals = unit(np.cross(ahead, [0.0, 0.0, 1.0]))
     normals *= np.sign(np.einsum("kx,kx->k", normals, points - points.mean(axis=0)).sum())
     even = np.ones(len(points))
-    worn = band_pressure(Course(points, normals, NEWTONS * even, even > 0.0, closed=True), WIDTH)
+    worn = band_pressure(BandPath(points, normals, NEWTONS * even, even > 0.0, closed=True), WIDTH)
     ring = np.concatenate([worn.places, worn.places[:1]])
     assert arc_length(ring)[-1] == pytest.approx(hull_perimeter(points), rel=0.0005)
     assert worn.force == pytest.approx(2.0 * np.pi * NEWTONS, rel=0.002)
@@ -141,7 +142,7 @@ def test_a_hollow_at_the_seam_of_a_closed_band_is_one_hollow() -> None:
 
 def test_a_hollow_that_hardly_shows_is_not_told_and_counts_as_skin() -> None:
     worn = band_pressure(polar(lambda t: 100.0 + 25.0 * np.cos(2.0 * t)), WIDTH)
-    assert 0.0 < worn.off.max() < 1.5
+    assert 0.0 < worn.gap.max() < 1.5
     assert worn.bridges == ()
     assert worn.mean == pytest.approx(1000.0 * worn.force / (WIDTH * worn.step * len(worn.kpa)))
 
@@ -155,7 +156,7 @@ def test_a_hollow_that_hardly_shows_is_not_told_and_counts_as_skin() -> None:
         parallel(80.0, 0.0),
     ],
 )
-def test_the_forces_of_a_closed_level_band_are_in_balance(band: Course) -> None:
+def test_the_forces_of_a_closed_level_band_are_in_balance(band: BandPath) -> None:
     worn = band_pressure(band, WIDTH)
     area = worn.width * worn.step
     force = -(worn.kpa[:, None] * worn.normals).sum(axis=0) * area / 1000.0
@@ -227,7 +228,7 @@ def round_cylinder(radius: float, noise: float = 0.0) -> LinePressure:
     mesh, t = cylinder(radius, noise), np.linspace(0.0, 2.0 * np.pi, 25)
     ring = radius * flat(np.cos(t), np.sin(t))
     tension = LineTension(np.full(12, NEWTONS), NEWTONS, estimate=False)
-    band = course_of(ring[:13], tension, Surface(mesh), mesh.vertices, WIDTH, ring[12:])
+    band = band_path(ring[:13], tension, LocalPlanes(mesh), mesh.vertices, WIDTH, ring[12:])
     return band_pressure(band, WIDTH)
 
 
@@ -252,8 +253,8 @@ def test_noise_hardly_changes_the_mean_on_a_real_body(name: str) -> None:
     path, back = line.places(stages.control.mesh.vertices), stages.backs[name].path
 
     def worn(noise: np.ndarray) -> LinePressure:
-        skin = Surface(mesh.moved(mesh.vertices + noise))
-        return band_pressure(course_of(path, even, skin, moved + noise, WIDTH, back), WIDTH)
+        skin = LocalPlanes(mesh.moved(mesh.vertices + noise))
+        return band_pressure(band_path(path, even, skin, moved + noise, WIDTH, back), WIDTH)
 
     along = np.random.default_rng(7).normal(0.0, 0.5, (len(moved), 1))
     calm, rough = worn(np.zeros((1, 3))), worn(along * mesh.vertex_normals)
@@ -273,7 +274,7 @@ def test_worn_lines_press_with_their_tensions_on_the_reshaped_body() -> None:
     assert worn.tension[~worn.front] == pytest.approx(tension.mean)
     assert set(worn.tension[worn.front].round(9)) <= set(np.maximum(tension.segments, 0.0).round(9))
     assert worn.notes[0] == "Its tension follows from the stiffness of tissue alone, an estimate."
-    touching = worn.places[worn.off == 0.0]
+    touching = worn.places[worn.gap == 0.0]
     far = np.linalg.norm(solution().body.vertices[:, None] - touching[None, ::9], axis=2).min(axis=0)
     assert far.max() < 6.0
     assert worn.largest > worn.mean > 0.0
@@ -282,7 +283,8 @@ def test_worn_lines_press_with_their_tensions_on_the_reshaped_body() -> None:
 def test_a_band_of_no_told_width_is_taken_as_wide_as_it_is_drawn() -> None:
     stages = solution().stages
     plain = replace(
-        stages, design=stages.design.with_traits(replace(stages.design.traits_of("mid-bust"), width=None))
+        stages,
+        design=stages.design.with_line_settings(replace(stages.design.line_settings("mid-bust"), width=None)),
     )
     worn = pressures(plain, solution().control_points)["mid-bust"]
     assert worn.width == 12.0
@@ -291,7 +293,7 @@ def test_a_band_of_no_told_width_is_taken_as_wide_as_it_is_drawn() -> None:
 
 def test_straps_of_a_preset_are_open_and_press_below_the_shoulder() -> None:
     design = with_preset(solution().stages.design, built_in()[0])
-    solved = run(build(design, solution().stages))
+    solved = solve(build(design, solution().stages))
     told = pressures(solved.stages, solved.control_points)
     straps = [worn for name, worn in told.items() if "strap" in name]
     assert [worn.closed for worn in straps] == [False, False]

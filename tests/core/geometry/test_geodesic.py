@@ -7,7 +7,7 @@ import pytest
 import trimesh
 
 from core.errors import LineError
-from core.geometry.geodesic import SkinWays, shortest_way, unpinched
+from core.geometry.geodesic import SurfacePaths, shortest_path, split_pinched_vertices
 from core.geometry.mesh import Mesh
 
 Pair = tuple[float, float]
@@ -21,13 +21,13 @@ def length(way: np.ndarray) -> float:
 
 
 def test_a_way_over_a_ball_is_an_arc() -> None:
-    ways = SkinWays(Mesh(np.asarray(BALL.vertices), np.asarray(BALL.faces)))
+    ways = SurfacePaths(Mesh(np.asarray(BALL.vertices), np.asarray(BALL.faces)))
     start, end = np.array([100.0, 0.0, 0.0]), np.array([0.0, 60.0, 80.0])
-    way = ways.way(start, end)
+    way = ways.path(start, end)
     assert np.array_equal(way[[0, -1]], [start, end])
     assert length(way) == pytest.approx(50.0 * np.pi, rel=0.01)
     assert np.linalg.norm(way, axis=1) == pytest.approx(100.0, rel=0.01)
-    assert length(ways.way(start, start + np.array([0.0, 0.5, 0.0]))) == pytest.approx(0.5)
+    assert length(ways.path(start, start + np.array([0.0, 0.5, 0.0]))) == pytest.approx(0.5)
 
 
 def sheet(place: Callable[[np.ndarray, np.ndarray], np.ndarray], u: np.ndarray, v: np.ndarray) -> Mesh:
@@ -64,12 +64,12 @@ def test_ways_on_cylinder_and_cone_are_straight_when_rolled_out(du: float, dv: f
     around = np.linspace(-0.5, 2.6, 90)
     mesh = sheet(tube, around, np.linspace(0.0, 400.0, 81))
     start, end = between(tube, (0.123, 100.7), (0.123 + du, 100.7 + dv))
-    assert length(shortest_way(mesh, start, end)) == pytest.approx(np.hypot(120.0 * du, dv), rel=0.002)
+    assert length(shortest_path(mesh, start, end)) == pytest.approx(np.hypot(120.0 * du, dv), rel=0.002)
     mesh = sheet(cone, around, np.linspace(60.0, 360.0, 81))
     start, end = between(cone, (0.123, 160.7), (0.123 + du, 160.7 + dv))
     a, b = 160.7, 160.7 + dv
     exact = np.sqrt(a * a + b * b - 2.0 * a * b * np.cos(0.5 * du))
-    assert length(shortest_way(mesh, start, end)) == pytest.approx(exact, rel=0.002)
+    assert length(shortest_path(mesh, start, end)) == pytest.approx(exact, rel=0.002)
 
 
 def test_ways_on_a_ball_and_a_torus_are_arcs() -> None:
@@ -79,12 +79,12 @@ def test_ways_on_a_ball_and_a_torus_are_arcs() -> None:
         start, end = np.random.default_rng(seed).normal(size=(2, 3))
         start, end = (100.0 * each / np.linalg.norm(each) for each in (start, end))
         exact = 100.0 * np.arccos(start @ end / 1e4)
-        assert length(shortest_way(mesh, start, end)) == pytest.approx(exact, rel=0.002)
+        assert length(shortest_path(mesh, start, end)) == pytest.approx(exact, rel=0.002)
     mesh = sheet(ring, np.linspace(-0.6, 0.9, 60), np.linspace(-2.2, 2.2, 80))
     start, end = between(ring, (0.111, -1.53), (0.111, 1.02))
-    assert length(shortest_way(mesh, start, end)) == pytest.approx(50.0 * 2.55, rel=0.002)
+    assert length(shortest_path(mesh, start, end)) == pytest.approx(50.0 * 2.55, rel=0.002)
     start, end = between(ring, (-0.21, 0.0), (0.31, 0.0))
-    assert length(shortest_way(mesh, start, end)) == pytest.approx(200.0 * 0.52, rel=0.002)
+    assert length(shortest_path(mesh, start, end)) == pytest.approx(200.0 * 0.52, rel=0.002)
 
 
 def test_a_skin_whose_holes_meet_at_a_corner_can_be_walked_on() -> None:
@@ -95,12 +95,12 @@ def test_a_skin_whose_holes_meet_at_a_corner_can_be_walked_on() -> None:
     high = (np.abs(turn - 0.75) < 0.05) & (np.abs(middle[:, 2] - 105.0) < 5.0)
     torn = Mesh(mesh.vertices, mesh.faces[~(low | high)])
     assert (low.sum(), high.sum()) == (2, 2)
-    assert len(unpinched(torn).vertices) == len(torn.vertices) + 1
-    assert unpinched(mesh) is mesh
+    assert len(split_pinched_vertices(torn).vertices) == len(torn.vertices) + 1
+    assert split_pinched_vertices(mesh) is mesh
     start, end = between(tube, (0.2, 50.0), (1.2, 150.0))
-    way = length(shortest_way(torn, start, end))
+    way = length(shortest_path(torn, start, end))
     assert np.hypot(120.0, 100.0) * 0.999 < way < np.hypot(120.0, 100.0) + 5.0
-    assert length(SkinWays(torn).way(start, end)) == pytest.approx(way, rel=0.02)
+    assert length(SurfacePaths(torn).path(start, end)) == pytest.approx(way, rel=0.02)
 
 
 def test_a_way_goes_round_a_wide_hole_however_far() -> None:
@@ -108,7 +108,7 @@ def test_a_way_goes_round_a_wide_hole_however_far() -> None:
     middle = mesh.vertices[mesh.faces].mean(axis=1)
     slit = (np.abs(np.arctan2(middle[:, 1], middle[:, 0]) - 1.5) < 0.05) & (middle[:, 2] > 20.0)
     start, end = between(tube, (1.4, 380.0), (1.6, 380.0))
-    assert length(shortest_way(Mesh(mesh.vertices, mesh.faces[~slit]), start, end)) > 700.0
+    assert length(shortest_path(Mesh(mesh.vertices, mesh.faces[~slit]), start, end)) > 700.0
 
 
 def test_there_is_no_way_from_one_part_to_another() -> None:
@@ -116,12 +116,12 @@ def test_there_is_no_way_from_one_part_to_another() -> None:
     faces = np.asarray(BALL.faces)
     two = Mesh(np.concatenate([BALL.vertices, apart]), np.concatenate([faces, faces + len(apart)]))
     with pytest.raises(LineError, match="no way over the skin"):
-        SkinWays(two).way(np.array([100.0, 0.0, 0.0]), np.array([400.0, 0.0, 0.0]))
+        SurfacePaths(two).path(np.array([100.0, 0.0, 0.0]), np.array([400.0, 0.0, 0.0]))
     with pytest.raises(LineError, match="no way over the skin"):
-        shortest_way(two, np.array([100.0, 0.0, 0.0]), np.array([400.0, 0.0, 0.0]))
+        shortest_path(two, np.array([100.0, 0.0, 0.0]), np.array([400.0, 0.0, 0.0]))
 
 
 def test_a_skin_that_branches_cannot_be_drawn_on() -> None:
     points = np.array([[0, 0, 0], [0, 0, 9], [9, 0, 0], [-9, 0, 0], [0, 9, 0]], dtype=float)
     with pytest.raises(LineError, match="cannot be drawn on"):
-        SkinWays(Mesh(points, np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4]])))
+        SurfacePaths(Mesh(points, np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4]])))

@@ -13,7 +13,7 @@ from app.research.sphere import sphere
 from core.errors import UserError
 from core.export.mesh import write_profile
 from core.geometry.mesh import Mesh
-from core.geometry.planar_curves import Plane, Slicer, apexes, mirrored, nearest, stand_out
+from core.geometry.planar_curves import Plane, Slicer, apexes, mirrored, nearest, protrusion
 from core.pipeline.build import Stages
 
 
@@ -52,7 +52,7 @@ def test_curves_tell_how_far_skin_stands_out_with_its_sign() -> None:
         foot = nearest(before.curves(tube(radius).vertices), np.array([0.0, -150.0]))
         assert foot is not None
         assert foot.place == pytest.approx([0.0, -radius], abs=0.05)
-        found = stand_out(foot, rest)
+        found = protrusion(foot, rest)
         assert found is not None
         assert found[0] == pytest.approx([0.0, -100.0], abs=0.1)
         assert found[1] == pytest.approx(gap, abs=0.02)

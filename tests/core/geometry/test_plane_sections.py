@@ -8,7 +8,7 @@ from shapes import octahedron, torso
 
 from app.research.sphere import sphere
 from core.geometry.mesh import Mesh
-from core.geometry.plane_sections import arc_length, chains, cut, hull_perimeter, resample
+from core.geometry.plane_sections import arc_length, cut, hull_perimeter, join_segments, resample
 
 BALL = sphere(rings=31, spokes=64)
 
@@ -23,7 +23,7 @@ def length_of(section):
 
 def test_an_octahedron_is_cut_in_a_square():
     section = cut_level(octahedron(10.0), 4.0)
-    ((curve, closed),) = chains(section)
+    ((curve, closed),) = join_segments(section)
     assert closed
     assert arc_length(curve)[-1] == pytest.approx(4 * 6 * np.sqrt(2), rel=1e-14)
     np.testing.assert_allclose(np.abs(curve).sum(axis=1), 10.0, atol=1e-13)
@@ -31,7 +31,7 @@ def test_an_octahedron_is_cut_in_a_square():
 
 @pytest.mark.parametrize("z", [-77.0, 0.0, 3.5, 50.0])
 def test_a_ball_is_cut_in_circles(z):
-    ((curve, closed),) = chains(cut_level(BALL, z))
+    ((curve, closed),) = join_segments(cut_level(BALL, z))
     assert closed
     round_it = 2 * np.pi * np.sqrt(100.0**2 - z**2)
     assert arc_length(curve)[-1] == pytest.approx(round_it, rel=5e-3)
@@ -43,14 +43,14 @@ def test_a_ball_is_cut_in_circles(z):
 def test_every_plane_through_a_ball_gives_one_closed_curve_in_that_plane(offset, polar, turn):
     normal = np.array([np.sin(polar) * np.cos(turn), np.sin(polar) * np.sin(turn), np.cos(polar)])
     section = cut(BALL, offset * normal, normal)
-    ((curve, closed),) = chains(section)
+    ((curve, closed),) = join_segments(section)
     assert closed
     np.testing.assert_allclose(curve @ normal, offset, atol=1e-9)
     assert arc_length(curve)[-1] == pytest.approx(length_of(section), rel=1e-9)
 
 
 def test_a_plane_through_vertices_still_gives_one_closed_curve():
-    ((curve, closed),) = chains(cut_level(BALL, float(BALL.vertices[15 * 64, 2])))
+    ((curve, closed),) = join_segments(cut_level(BALL, float(BALL.vertices[15 * 64, 2])))
     assert closed
     assert len(curve) == 129
 
@@ -65,13 +65,13 @@ def test_both_faces_at_an_edge_give_the_very_same_point():
 def test_a_plane_beside_the_body_cuts_nothing():
     section = cut_level(BALL, 101.0)
     assert section.segments.shape == (0, 2, 3)
-    assert chains(section) == []
+    assert join_segments(section) == []
 
 
 def test_an_open_patch_gives_an_open_curve_from_border_to_border():
     mesh = torso().mesh
     shuffled = Mesh(mesh.vertices, np.random.default_rng(4).permutation(mesh.faces))
-    ((curve, closed),) = chains(cut_level(shuffled, 10.0))
+    ((curve, closed),) = join_segments(cut_level(shuffled, 10.0))
     assert not closed
     assert np.abs(curve[[0, -1], 0]).min() > 120.0
 
@@ -79,7 +79,7 @@ def test_an_open_patch_gives_an_open_curve_from_border_to_border():
 def test_two_bodies_give_two_curves_the_longer_first():
     far = BALL.vertices * 0.5 + [300.0, 0.0, 0.0]
     both = Mesh(np.concatenate([far, BALL.vertices]), np.concatenate([BALL.faces, BALL.faces + len(far)]))
-    (big, _), (small, _) = chains(cut_level(both, 0.0))
+    (big, _), (small, _) = join_segments(cut_level(both, 0.0))
     assert arc_length(big)[-1] == pytest.approx(2 * arc_length(small)[-1], rel=1e-9)
     assert big[:, 0].max() < 101.0
 

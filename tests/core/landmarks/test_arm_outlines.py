@@ -12,7 +12,7 @@ from core.geometry.plane_sections import resample
 from core.landmarks.torso.arm_removal import necks
 from core.landmarks.torso.cross_sections import trunk_levels
 from core.landmarks.torso.gap_filling import bridge
-from core.landmarks.torso_landmarks import trunk_marks
+from core.landmarks.torso_landmarks import torso_landmarks
 from core.landmarks.types import SIDES, Landmark, Landmarks
 
 TRUNK = 280.0, 140.0
@@ -98,7 +98,7 @@ def armpit(body: Mesh, bust: float) -> Landmark:
     points = [Landmark(f"bust_point_{side}", np.array([x, -70.0, bust]), 1.0, "") for side, x in BUSTS]
     return next(
         mark
-        for mark in trunk_marks(body, Landmarks({mark.name: mark for mark in points}, bust, bust - 30.0))
+        for mark in torso_landmarks(body, Landmarks({mark.name: mark for mark in points}, bust, bust - 30.0))
         if mark.name == "armpit_left"
     )
 

@@ -14,7 +14,7 @@ from posed_bodies import POSES, apart, arms, grown
 from scipy.special import ellipe
 
 from core.geometry.mesh import Mesh
-from core.landmarks.torso.cross_sections import survey, trunk_levels
+from core.landmarks.torso.cross_sections import scan_torso, trunk_levels
 
 ROOT = Path(__file__).parents[3]
 TRUTH = json.loads((ROOT / "tests/data/truth.json").read_text(encoding="utf-8"))["person"]
@@ -130,7 +130,7 @@ def test_legs_are_no_trunk_apart_or_touching():
     legs = [((sign * 80.0, 0.0, -300.0), (sign * 80.0, 0.0, -900.0), 60.0) for sign in (1.0, -1.0)]
     walking = apart(column(), legs)
     assert tape(walking, -600.0) == 0.0
-    assert survey(walking).tape[:80].max() == 0.0
+    assert scan_torso(walking).tape[:80].max() == 0.0
 
 
 def test_above_the_armpits_the_trunk_is_no_wider_than_below_them():

@@ -15,7 +15,7 @@ from core.landmarks.anchor import Anchor, find_anchor
 from core.landmarks.bust_point import NIPPLE, SMOOTH
 from core.landmarks.chest import forward_places
 from core.landmarks.nipple import in_front
-from core.landmarks.torso.cross_sections import survey
+from core.landmarks.torso.cross_sections import scan_torso
 from core.landmarks.types import CERTAIN
 from core.landmarks.validation import check_anchor
 from tests.core.landmarks.test_landmarks import SIDES, found, landmarks_of, sample, truth
@@ -31,7 +31,7 @@ def test_a_bulge_at_one_side_does_not_draw_the_pair_away():
     at = truth("mannequin", "nipple", "left") + np.array([55.0, 45.0, 75.0])
     share = np.exp(-0.5 * (np.linalg.norm(v - at, axis=1) / 22.0) ** 2)
     bulged = mesh.moved(v + 30.0 * np.outer(share, [0.6, -0.8, 0.0]))  # cloth that bunches at an arm-pit
-    places = forward_places(survey(bulged), find_anchor(survey(bulged)))
+    places = forward_places(scan_torso(bulged), find_anchor(scan_torso(bulged)))
     for side, place in zip(SIDES, places, strict=True):
         assert np.linalg.norm(place - truth("mannequin", "nipple", side)) < 25.0
     assert max(off(landmarks_of(bulged), "mannequin", side) for side in SIDES) < 10.0
@@ -91,7 +91,7 @@ def in_a_bra() -> Mesh:
 
 
 def test_a_bridge_between_the_breasts_is_a_bust_all_the_same():
-    bare, clad = (find_anchor(survey(mesh)) for mesh in (sample("mannequin"), in_a_bra()))
+    bare, clad = (find_anchor(scan_torso(mesh)) for mesh in (sample("mannequin"), in_a_bra()))
     assert clad.middle_kink > bare.middle_kink + 5.0
     assert clad.z == pytest.approx(bare.z, abs=5.0)
     landmarks = landmarks_of(in_a_bra())

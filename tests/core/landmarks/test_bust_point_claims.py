@@ -14,9 +14,9 @@ from core.landmarks.anchor import find_anchor
 from core.landmarks.breast_profiles import OFFSETS, OWN, Profile
 from core.landmarks.inframammary_fold import trace
 from core.landmarks.lower_breast import CREASE
-from core.landmarks.torso.cross_sections import survey
+from core.landmarks.torso.cross_sections import scan_torso
 from core.landmarks.types import CERTAIN
-from core.landmarks.warnings import landmark_doubts
+from core.landmarks.warnings import landmark_warnings
 from tests.core.landmarks.test_landmarks import SIDES, found, landmarks_of, part, sample
 
 
@@ -71,7 +71,7 @@ def test_a_breast_that_was_taken_away_wholly_leaves_the_other_where_it_is():
     flat = v.copy()
     flat[inner] = spsolve(weights[inner][:, inner].tocsc(), -(weights[inner][:, ~inner] @ v[~inner]))
     seen = landmarks_of(mesh.moved(flat))  # a membrane over the chest: only ribs are left to stand out
-    (said,) = (doubt for doubt in landmark_doubts(seen) if "right" in doubt)
+    (said,) = (doubt for doubt in landmark_warnings(seen) if "right" in doubt)
     assert said.startswith("On the right side no breast stands out")
     assert np.linalg.norm(seen.position("bust_point_left") - whole.position("bust_point_left")) < 2.0
     assert seen.points["bust_point_left"].confidence > CERTAIN
@@ -80,7 +80,7 @@ def test_a_breast_that_was_taken_away_wholly_leaves_the_other_where_it_is():
 
 
 def test_a_chin_over_the_chest_is_no_bust():
-    trunk, above = survey(sample("mannequin")), found("mannequin").bust_level + 60.0
+    trunk, above = scan_torso(sample("mannequin")), found("mannequin").bust_level + 60.0
     forward = [200.0 * np.clip((z - above) / 60.0, 0.0, 1.0) for z in (trunk.samples[:, 2], trunk.z)]
     samples = trunk.samples - np.outer(forward[0], [0.0, 1.0, 0.0])
     stooping = replace(trunk, samples=samples, front=trunk.front - forward[1])

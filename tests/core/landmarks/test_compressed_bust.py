@@ -7,7 +7,7 @@ import pytest
 
 from core.geometry.mesh import Mesh
 from core.landmarks.anchor import find_anchor
-from core.landmarks.torso.cross_sections import survey
+from core.landmarks.torso.cross_sections import scan_torso
 from tests.core.landmarks.test_landmarks import SIDES, landmarks_of
 
 FOLD = -40.0
@@ -46,7 +46,7 @@ def trunk(out: float, belly: float = 0.0, head: float = 0.0) -> Mesh:
 
 @pytest.mark.parametrize("out", [14.0, 22.0, 40.0])
 def test_the_crease_under_a_pressed_bust_is_below_it_and_not_beside_the_arm_pits(out):
-    anchor = find_anchor(survey(trunk(out)))
+    anchor = find_anchor(scan_torso(trunk(out)))
     assert FOLD - 35.0 < anchor.z < FOLD + 5.0
 
 
@@ -57,7 +57,7 @@ def test_a_belly_under_a_pressed_bust_is_no_bust():
 
 
 def test_a_head_as_wide_as_the_trunk_is_none_of_it():
-    full = survey(trunk(22.0, head=130.0))
+    full = scan_torso(trunk(22.0, head=130.0))
     _, usable = full.trunk()
     assert usable[full.z < 100.0].any()
     assert not usable[full.z > 200.0].any()

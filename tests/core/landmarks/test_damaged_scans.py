@@ -17,8 +17,8 @@ from core.landmarks.chest import find_poles
 from core.landmarks.detect import find_landmarks
 from core.landmarks.inframammary_fold import Trace, _rival
 from core.landmarks.lower_breast import CREASE, MIRRORED, _apart, _confidence, _less_sure
-from core.landmarks.manual import laid_on
-from core.landmarks.torso.cross_sections import survey
+from core.landmarks.manual import project_to_skin
+from core.landmarks.torso.cross_sections import scan_torso
 from core.landmarks.types import Landmark, Landmarks
 from core.landmarks.validation import check
 from core.scan.body import Body
@@ -56,7 +56,7 @@ def test_holes_under_both_breasts_are_no_refusal() -> None:
 
 def test_a_narrow_gap_all_round_under_the_fold_loses_nothing() -> None:
     whole = sample("person")
-    trunk = survey(whole)
+    trunk = scan_torso(whole)
     height = find_anchor(trunk).z - 12.0
     level = trunk.z[np.abs(trunk.z - height).argmin()]  # what prominence is measured from
     apart = np.abs(whole.vertices[whole.faces, 2].mean(axis=1) - level) > 1.5
@@ -166,7 +166,7 @@ def test_swapped_sides_are_called_swapped(more: tuple[str, ...]) -> None:
 )
 def test_what_cannot_be_a_bust_is_refused_for_its_reason(shift: tuple[float, ...], why: str) -> None:
     mesh, before = sample("person"), found("person")
-    trunk = survey(mesh)
+    trunk = scan_torso(mesh)
     points = dict(before.points)
     for k, side in enumerate(SIDES):
         mark = points[f"bust_point_{side}"]
@@ -238,10 +238,10 @@ def test_a_point_is_laid_on_the_skin_from_30_mm_off_and_no_further(off: float, t
     wall = Mesh(np.array([[0.0, 0.0, 0.0], [90.0, 0.0, 0.0], [0.0, 0.0, 90.0]]), np.array([[0, 1, 2]]))
     place = {"fold_left": np.array([20.0, off, 20.0])}
     if taken:
-        assert laid_on(wall, place)["fold_left"].position == pytest.approx([20.0, 0.0, 20.0])
+        assert project_to_skin(wall, place)["fold_left"].position == pytest.approx([20.0, 0.0, 20.0])
     else:
         with pytest.raises(LandmarkError, match="more than 30 mm off"):
-            laid_on(wall, place)
+            project_to_skin(wall, place)
 
 
 def test_placed_points_let_a_body_in_whose_bust_is_not_found() -> None:

@@ -12,11 +12,11 @@ import trimesh
 
 from core.geometry.mesh import Mesh
 from core.landmarks.torso.cross_sections import stable_level, trunk_levels
-from core.landmarks.torso.girths import Girth, girth_at, girth_doubts, girths
+from core.landmarks.torso.girths import Girth, girth_at, girth_warnings, girths
 from core.landmarks.types import Landmark, Landmarks
 from core.scan.body import Body
 from core.scan.orientation.pose import Pose
-from core.scan.repair.denoise import calmed
+from core.scan.repair.denoise import denoise
 
 ROOT = Path(__file__).parents[3]
 TRUTH = json.loads((ROOT / "tests/data/truth.json").read_text(encoding="utf-8"))
@@ -116,8 +116,8 @@ def test_underbust_is_read_where_the_breast_is_no_longer_in_the_way(name):
 
 def test_the_under_bust_girth_is_no_surer_than_the_folds():
     girth = Girth(0.0, 800.0, 800.0)
-    assert girth_doubts({"underbust": girth}) == []
-    assert "folds" in girth_doubts({"underbust": replace(girth, confidence=0.3)})[0]
+    assert girth_warnings({"underbust": girth}) == []
+    assert "folds" in girth_warnings({"underbust": replace(girth, confidence=0.3)})[0]
     marks = [Landmark(name, np.zeros(3), 0.3, "") for name in ("fold_left", "fold_right")]
     body = Body(cylinder(130.0), Pose("mm", "+z", "-y", np.eye(4), True, "", 1.0), (), "a tube")
     found = girths(body, Landmarks({mark.name: mark for mark in marks}, 20.0, 0.0))
@@ -129,10 +129,10 @@ def test_the_under_bust_girth_is_no_surer_than_the_folds():
 
 def test_a_clean_body_is_left_alone_and_the_noise_of_a_scan_is_not_measured():
     mesh = sample("mannequin")
-    assert calmed(mesh) is mesh
+    assert denoise(mesh) is mesh
     rough = np.random.default_rng(7).normal(0.0, 1.0, (len(mesh.vertices), 1))
     noisy = mesh.moved(mesh.vertices + mesh.vertex_normals * rough)
     z = TRUTH["mannequin"]["girths"]["bust"]["level_z"]
-    clean, raw, calm = (girth_at(m, z).tape_mm for m in (mesh, noisy, calmed(noisy)))
+    clean, raw, calm = (girth_at(m, z).tape_mm for m in (mesh, noisy, denoise(noisy)))
     assert raw > clean + 3.0
     assert calm == pytest.approx(clean, abs=2.5)

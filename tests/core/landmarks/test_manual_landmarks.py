@@ -18,7 +18,7 @@ from core.document.design import Design, ScanSource
 from core.document.serialization import from_json, to_json
 from core.errors import LandmarkError, ProjectError
 from core.landmarks.manual import PlacedMark, in_file, in_mm, placed_mark
-from core.pipeline.build import Stages, build, find
+from core.pipeline.build import Stages, build, detect_landmarks
 
 Built = Callable[[str], Stages]
 
@@ -96,7 +96,9 @@ def test_the_command_line_places_as_the_design_does_in_any_frame(
     assert np.linalg.norm(np.array(mark["file"]) - place) * 25.4 < 4.0, "it is laid on the skin nearby"
     stages = build(Design(ScanSource(str(path), up="+y", front="+x")).with_placed("fold_left", tuple(place)))
     assert stages.landmarks.position("fold_left") == pytest.approx(mark["mm"], abs=1e-9)
-    assert find(stages.body, stages.design.placed).position("fold_left") == pytest.approx(mark["mm"])
+    assert detect_landmarks(stages.body, stages.design.placed).position("fold_left") == pytest.approx(
+        mark["mm"]
+    )
 
 
 @pytest.mark.parametrize(
@@ -106,7 +108,7 @@ def test_what_is_wrong_with_placed_points_is_said_in_words(
     built: Built, name: str, place: tuple[float, float, float]
 ) -> None:
     with pytest.raises(LandmarkError) as wrong:
-        find(built("mannequin").body, (PlacedMark(name, place),))
+        detect_landmarks(built("mannequin").body, (PlacedMark(name, place),))
     assert "_" not in wrong.value.message
     use_language("ja")
     said = say(wrong.value.message)

@@ -12,7 +12,7 @@ from core.geometry.mesh import Mesh
 from core.landmarks.detect import find_landmarks
 from core.landmarks.torso.cross_sections import trunk_levels
 from core.landmarks.torso.gap_filling import over_strips
-from core.landmarks.torso.girths import girth_doubts, girths
+from core.landmarks.torso.girths import girth_warnings, girths
 from core.landmarks.types import Landmarks
 from core.scan.body import Body, read_scan
 
@@ -46,7 +46,7 @@ def test_a_strip_all_round_on_a_girth_is_bridged_and_said(
         assert np.linalg.norm(away) < 4.0
     assert found[name].tape_mm == pytest.approx(known[name].tape_mm, rel=0.01)
     assert found[name].bridged_mm > 500.0
-    assert any("estimate" in doubt for doubt in girth_doubts(found))
+    assert any("estimate" in doubt for doubt in girth_warnings(found))
 
 
 def test_a_patch_that_is_left_of_a_level_does_not_lead_it_astray(whole: tuple[Body, Landmarks]) -> None:

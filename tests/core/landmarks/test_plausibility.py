@@ -15,16 +15,16 @@ from app.cli.commands.detect import landmarks_text
 from core.errors import LandmarkError
 from core.geometry.mesh import Mesh, Points
 from core.landmarks.as_dict import detection
-from core.landmarks.body_build import Build, build_of
+from core.landmarks.body_build import Build, measure_build
 from core.landmarks.body_scale import size_hint, whole_figure
 from core.landmarks.detect import find_landmarks
 from core.landmarks.lean import lean_hint
-from core.landmarks.plausibility import SMALL, clothes_hint, flat_hint, refuse_angular
+from core.landmarks.plausibility import SMALL, clothes_hint, flat_hint, require_not_angular
 from core.landmarks.torso.cross_sections import stable_level, trunk_levels
 from core.landmarks.types import CERTAIN, Hint, Landmarks
 from core.scan.body import Body
 from core.scan.orientation.pose import Pose
-from core.scan.repair.clipping import above
+from core.scan.repair.clipping import clip_above
 
 ROOT = Path(__file__).parents[3]
 FACTOR = {"mm": 1.0, "inch": 25.4}
@@ -58,7 +58,7 @@ def leant(degrees: float) -> Build:
     a, marks = np.radians(degrees), found("mannequin")
     turn = np.array([[1.0, 0.0, 0.0], [0.0, np.cos(a), -np.sin(a)], [0.0, np.sin(a), np.cos(a)]])
     points = {name: replace(mark, position=turn @ mark.position) for name, mark in marks.points.items()}
-    return build_of(
+    return measure_build(
         sample("mannequin").moved(sample("mannequin").vertices @ turn.T), replace(marks, points=points)
     )
 
@@ -87,7 +87,7 @@ def test_a_small_body_in_inches_is_not_called_large():
     factor, marks = np.array([1.0, 1.0, 0.5]), found()
     points = {name: replace(mark, position=factor * mark.position) for name, mark in marks.points.items()}
     body = body_of(factor * sample().vertices, "inch")
-    (hint,) = size_hint(build_of(body.mesh, replace(marks, points=points)), body.pose)
+    (hint,) = size_hint(measure_build(body.mesh, replace(marks, points=points)), body.pose)
     assert "unusually small" in hint.sentence
 
 
@@ -167,8 +167,8 @@ def wrinkled(top: float) -> Points:
 
 def test_wrinkles_of_a_loose_shirt_are_told():
     marks = found()
-    assert clothes_hint(build_of(sample(), marks), marks) == ()
-    shirt = build_of(sample().moved(wrinkled(marks.underbust_level)), marks)
+    assert clothes_hint(measure_build(sample(), marks), marks) == ()
+    shirt = measure_build(sample().moved(wrinkled(marks.underbust_level)), marks)
     assert [hint.kind for hint in clothes_hint(shirt, marks)] == ["clothes"]
 
 
@@ -179,15 +179,15 @@ def test_wrinkles_are_told_of_a_scan_that_ends_at_the_bust():
         (sample(), []),
         (sample().moved(wrinkled(marks.bust_level + 80.0)), ["clothes"]),
     ):
-        short, _ = above(mesh, 2, level)
-        assert [hint.kind for hint in clothes_hint(build_of(short, marks), marks)] == kinds_told
+        short, _ = clip_above(mesh, 2, level)
+        assert [hint.kind for hint in clothes_hint(measure_build(short, marks), marks)] == kinds_told
 
 
 def test_an_angular_trunk_is_refused():
     v, marks = sample().vertices.copy(), found()
-    refuse_angular(build_of(sample(), marks), marks)
+    require_not_angular(measure_build(sample(), marks), marks)
     middle, half = np.array([0.0, -90.0]), np.array([150.0, 100.0])
     flat = (v[:, :2] - middle) / half
     v[:, :2] = middle + flat / np.abs(flat).max(axis=1, keepdims=True).clip(1e-9) * half
     with pytest.raises(LandmarkError, match="block"):
-        refuse_angular(build_of(sample().moved(v), marks), marks)
+        require_not_angular(measure_build(sample().moved(v), marks), marks)

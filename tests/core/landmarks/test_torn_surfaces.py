@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from core.errors import LandmarkError, ScanError
-from core.geometry.level_outlines import Pieces, reach, ring
+from core.geometry.level_outlines import Pieces, radii, ring
 from core.geometry.mesh import Mesh
 from core.geometry.plane_sections import hull_corners, hull_perimeter, hull_slopes
 from core.landmarks.anchor import ABOVE, find_anchor
@@ -17,7 +17,7 @@ from core.landmarks.chest import Pole, find_poles
 from core.landmarks.nipple import breast_patch
 from core.landmarks.torso.arm_removal import necks
 from core.landmarks.torso.contour_classification import GAP, _linked, limbs
-from core.landmarks.torso.cross_sections import Level, survey
+from core.landmarks.torso.cross_sections import Level, scan_torso
 from core.measurements.tape import skin_ring, tape_ring
 from core.scan.body import body_of, read_scan
 from core.scan.reconstruction.isosurface import distinct
@@ -114,7 +114,7 @@ def test_what_lies_on_a_line_has_no_convex_outline():
 
 
 def test_points_on_the_border_of_the_search_for_poles_are_inside():
-    trunk = survey(read_scan(PERSON).calm)
+    trunk = scan_torso(read_scan(PERSON).smoothed)
     anchor = find_anchor(trunk)
     down = anchor.z + 60.0  # so small heights have more digits than their distance from the anchor
     trunk = replace(trunk, z=trunk.z - down, samples=trunk.samples - [0.0, 0.0, down])
@@ -175,13 +175,13 @@ def test_triangles_right_through_the_body_are_refused():
     rise = np.array([[0.0, 0.0, 0.0], [0.3, 0.2, 0.0], [0.0, 0.0, 600.0]])
     needles = Mesh((foot[:, None] + rise).reshape(-1, 3), np.arange(3 * count).reshape(-1, 3))
     with pytest.raises(LandmarkError, match="run right through the body"):
-        survey(needles)
+        scan_torso(needles)
 
 
 def test_the_reach_of_many_segments_is_worked_out_in_parts(monkeypatch):
     chance = np.random.default_rng(7)
     segments = np.concatenate([chance.uniform(-200.0, 200.0, (500, 2, 2)), np.zeros((500, 2, 1))], axis=2)
     level, centre = chance.integers(0, 3, 500), np.zeros((3, 2))
-    whole = reach(segments, level, centre)
+    whole = radii(segments, level, centre)
     monkeypatch.setattr("core.geometry.level_outlines.BLOCK", 37)
-    assert np.array_equal(reach(segments, level, centre), whole, equal_nan=True)
+    assert np.array_equal(radii(segments, level, centre), whole, equal_nan=True)

@@ -17,9 +17,9 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
 
 from core.geometry.mesh import Mesh
-from core.landmarks.breast_root import root_marks
+from core.landmarks.breast_root import breast_root_landmarks
 from core.landmarks.torso.girths import girth_levels
-from core.landmarks.torso_landmarks import trunk_marks
+from core.landmarks.torso_landmarks import torso_landmarks
 from core.landmarks.types import NAMES, SIDES, Landmark, Landmarks
 
 ROOT = Path(__file__).parents[3]
@@ -47,7 +47,7 @@ def bust(name: str, turn: np.ndarray, shift: np.ndarray) -> Landmarks:
 
 
 def marks_of(mesh: Mesh, found: Landmarks) -> dict[str, Landmark]:
-    return {mark.name: mark for mark in (*trunk_marks(mesh, found), *root_marks(mesh, found))}
+    return {mark.name: mark for mark in (*torso_landmarks(mesh, found), *breast_root_landmarks(mesh, found))}
 
 
 @cache
@@ -177,7 +177,7 @@ def test_waist_hip_and_neck_of_a_whole_figure():
         for side, x in zip(SIDES, (70.0, -70.0), strict=True)
     }
     found_bust = Landmarks(MappingProxyType(points), 20.0, -10.0)
-    marks = {mark.name: mark for mark in trunk_marks(figure, found_bust)}
+    marks = {mark.name: mark for mark in torso_landmarks(figure, found_bust)}
     assert marks["waist_front"].position == pytest.approx([0.0, -85.0, -130.0], abs=4.0)
     assert marks["hip_front"].position == pytest.approx([0.0, -115.0, -330.0], abs=4.0)
     assert marks["neck_front"].position[2] == pytest.approx(220.0, abs=8.0)

@@ -10,7 +10,7 @@ import pytest
 import trimesh
 from shapes import SAMPLES
 
-from core.document.custom_measures import OwnMeasure
+from core.document.custom_measures import CustomMeasurement
 from core.document.design import Design, ScanSource
 from core.geometry.mesh import Mesh
 from core.geometry.plane_sections import arc_length
@@ -21,12 +21,12 @@ from core.landmarks.torso.cross_sections import Level, trunk_levels
 from core.landmarks.torso.girths import UNDER, girth_at, girths
 from core.landmarks.types import Landmarks
 from core.measurements.definitions import DEFINITIONS, KEYS, definition_of
-from core.measurements.table import before_after, calm_moves, measure_rows, measures
+from core.measurements.table import before_after, measure_rows, measures, smoothed_moves
 from core.measurements.tape import enclosed, skin_ring, tape_ring
-from core.measurements.tracked_points import carried, riders
+from core.measurements.tracked_points import moved_landmarks, track_points
 from core.pipeline.build import build
 from core.pipeline.observables import Tapes
-from core.pipeline.solve import Solution, run
+from core.pipeline.solve import Solution, solve
 from core.scan.body import read_scan
 
 
@@ -60,19 +60,19 @@ def test_landmarks_ride_on_the_skin() -> None:
     body = read_scan(SAMPLES / "mannequin.ply")
     found = find_landmarks(body)
     places = np.array([mark.position for mark in found.points.values()])
-    bound = riders(body.calm, places)
-    still = carried(found, bound.moved(np.zeros_like(body.calm.vertices)))
+    bound = track_points(body.smoothed, places)
+    still = moved_landmarks(found, bound.moved(np.zeros_like(body.smoothed.vertices)))
     for name, mark in found.points.items():
         assert np.array_equal(mark.position, still.position(name))
     assert (still.bust_level, still.underbust_level) == (found.bust_level, found.underbust_level)
-    up = carried(found, bound.moved(np.full_like(body.calm.vertices, 5.0)))
+    up = moved_landmarks(found, bound.moved(np.full_like(body.smoothed.vertices, 5.0)))
     assert up.bust_level == pytest.approx(found.bust_level + 5.0)
     assert up.underbust_level == pytest.approx(found.underbust_level + 5.0)
 
 
 def test_a_rider_keeps_its_place_on_its_triangle() -> None:
     mesh = Mesh(np.array([[0, 0, 0], [10, 0, 0], [0, 10, 0]], dtype=float), np.array([[0, 1, 2]]))
-    rider = riders(mesh, np.array([[2.0, 3.0, 1.0]]))
+    rider = track_points(mesh, np.array([[2.0, 3.0, 1.0]]))
     assert rider.shares == pytest.approx(np.array([[0.5, 0.2, 0.3]]))
     assert rider.moved(np.array([[0, 0, 0], [0, 0, 5], [0, 0, 10]], dtype=float)) == pytest.approx(
         np.array([[2.0, 3.0, 5.0]])
@@ -82,7 +82,7 @@ def test_a_rider_keeps_its_place_on_its_triangle() -> None:
 @pytest.fixture(scope="module")
 def person() -> tuple[Mesh, Landmarks]:
     body = read_scan(SAMPLES / "person.ply")
-    return body.calm, find_landmarks(body)
+    return body.smoothed, find_landmarks(body)
 
 
 def test_every_measure_is_there_with_its_curves(person: tuple[Mesh, Landmarks]) -> None:
@@ -103,7 +103,7 @@ def test_every_measure_is_there_with_its_curves(person: tuple[Mesh, Landmarks]) 
 def test_girths_are_those_that_are_detected() -> None:
     body = read_scan(SAMPLES / "mannequin.ply")
     landmarks = find_landmarks(body)
-    found = measures(body.calm, landmarks)
+    found = measures(body.smoothed, landmarks)
     for name, girth in girths(body, landmarks).items():
         assert found[f"{name}_girth"].value == girth.tape_mm
         assert found[f"{name}_girth_skin"].value == girth.skin_mm
@@ -180,7 +180,7 @@ def test_a_hole_at_a_level_makes_an_estimate(person: tuple[Mesh, Landmarks]) -> 
 
 def test_even_breasts_measure_alike_and_volumes_tell_how_unsure_they_are() -> None:
     body = read_scan(SAMPLES / "mannequin.ply")
-    found = measures(body.calm, find_landmarks(body))
+    found = measures(body.smoothed, find_landmarks(body))
     left, right = (found[f"breast_volume_{side}"] for side in ("left", "right"))
     assert left.value == pytest.approx(right.value, rel=0.01)
     assert left.estimate
@@ -194,12 +194,12 @@ def test_even_breasts_measure_alike_and_volumes_tell_how_unsure_they_are() -> No
 
 def test_own_measures_of_each_kind(person: tuple[Mesh, Landmarks]) -> None:
     own = (
-        OwnMeasure("Span", "straight", ("bust_point_left", "bust_point_right")),
-        OwnMeasure("Fall", "skin", ("bust_point_left", "fold_left")),
-        OwnMeasure("Ribs", "girth", ("fold_left",), -30.0),
-        OwnMeasure("Up", "girth", (), 200.0),
-        OwnMeasure("Low", "girth", (), -5000.0 + 2100.0),
-        OwnMeasure("Neck", "skin", ("neck_front", "bust_point_left")),
+        CustomMeasurement("Span", "straight", ("bust_point_left", "bust_point_right")),
+        CustomMeasurement("Fall", "skin", ("bust_point_left", "fold_left")),
+        CustomMeasurement("Ribs", "girth", ("fold_left",), -30.0),
+        CustomMeasurement("Up", "girth", (), 200.0),
+        CustomMeasurement("Low", "girth", (), -5000.0 + 2100.0),
+        CustomMeasurement("Neck", "skin", ("neck_front", "bust_point_left")),
     )
     mesh, landmarks = person
     found = measures(mesh, landmarks, own)
@@ -217,9 +217,9 @@ def test_own_measures_of_each_kind(person: tuple[Mesh, Landmarks]) -> None:
 @pytest.fixture(scope="module")
 def worn() -> Solution:
     scan = ScanSource(str(SAMPLES / "mannequin.ply"))
-    own = OwnMeasure("Span", "straight", ("bust_point_left", "bust_point_right"))
-    design = Design(scan, volume="exact").with_line("mid-bust", 0.95).with_own_measure(own)
-    return run(build(design))
+    own = CustomMeasurement("Span", "straight", ("bust_point_left", "bust_point_right"))
+    design = Design(scan, volume="exact").with_line("mid-bust", 0.95).with_custom_measurement(own)
+    return solve(build(design))
 
 
 def test_before_and_after_agree_with_what_is_followed_live(worn: Solution) -> None:
@@ -233,7 +233,7 @@ def test_before_and_after_agree_with_what_is_followed_live(worn: Solution) -> No
     for side, gained in zip(("left", "right"), stages.body_change(control) / 1000.0, strict=True):
         key = f"breast_volume_{side}"
         assert after[key].value - before[key].value == pytest.approx(gained)
-    level = 0.5 * (now.nipple_left_z + now.nipple_right_z)
+    level = 0.5 * (now.bust_point_left_z + now.bust_point_right_z)
     tape = Tapes(stages.moving, [level])(stages.shape(control)[0])
     assert after["bust_girth"].value == pytest.approx(float(tape[0]), abs=0.1)
     assert after["bust_girth"].value < before["bust_girth"].value - 2.0
@@ -253,11 +253,11 @@ def test_at_rest_after_is_before_to_the_bit(worn: Solution) -> None:
 def test_a_thinner_calm_skin_moves_as_the_scan_does(worn: Solution) -> None:
     body = worn.stages.body
     moves = body.mesh.vertices * 0.01
-    assert calm_moves(body, moves) is moves
+    assert smoothed_moves(body, moves) is moves
     thin = replace(body)
     rows = np.arange(0, len(body.mesh.vertices), 3)
     thin.__dict__["calm"] = Mesh(body.mesh.vertices[rows], np.array([[0, 1, 2]]))
-    assert np.array_equal(calm_moves(thin, moves), moves[rows])
+    assert np.array_equal(smoothed_moves(thin, moves), moves[rows])
 
 
 def test_rows_tell_all_of_it(worn: Solution) -> None:

@@ -10,7 +10,7 @@ import pytest
 from app.i18n.catalog import say, use_language
 from core.errors import SizeError
 from core.measurements.size_table_file import read_table, table_of
-from core.measurements.sizes import built_in, own_folder, own_tables, sizes
+from core.measurements.sizes import built_in, sizes, user_folder, user_tables
 
 ROOT = Path(__file__).parents[3]
 GOOD = {
@@ -39,7 +39,7 @@ def without(key):
 
 @pytest.fixture
 def folder(own_data, tmp_path):
-    folder = own_folder()
+    folder = user_folder()
     assert folder.is_relative_to(tmp_path)
     folder.mkdir(parents=True)
     return folder
@@ -70,7 +70,7 @@ def test_own_tables_that_cannot_be_read_are_told_and_left_out(folder):
     (folder / "bad.json").write_text("[", encoding="utf-8")
     (folder / "eu.json").write_text(changed(), encoding="utf-8")
     (folder / "latin.json").write_bytes(b"\xff\xfe\xff")
-    tables, problems = own_tables()
+    tables, problems = user_tables()
     assert [table.key for table in tables] == ["good"]
     told = [str(problem) for problem in problems]
     assert "bad.json cannot be read" in told[0]

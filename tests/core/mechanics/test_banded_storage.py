@@ -10,7 +10,7 @@ from core.mechanics.banded_matrix import Band, Entries, band_of, compact, joined
 from core.mechanics.exact_solution import solve_exact
 from core.mechanics.hessian_layout import sliding_entries
 from core.mechanics.model import constrained_model
-from core.mechanics.options import Mechanics
+from core.mechanics.options import ModelOptions
 
 SEEDS = pytest.mark.parametrize("seed", range(6))
 
@@ -137,7 +137,7 @@ def test_a_small_matrix_is_kept_full_and_a_large_one_sparse():
 
 @pytest.mark.parametrize("contact", ["glued", "sliding"])
 def test_the_order_of_the_coordinates_is_irrelevant_to_the_answer(contact, monkeypatch):
-    choice = Mechanics(line_contact=contact)
+    choice = ModelOptions(line_contact=contact)
     one = solve_exact(small(choice, worn=("mid-bust",)), (1.0, 0.95, 1.0))
 
     def plain(count, first, second):
@@ -153,4 +153,4 @@ def test_the_order_of_the_coordinates_is_irrelevant_to_the_answer(contact, monke
     np.testing.assert_allclose(
         other.state.moved, solve_exact(same, mid_bust(same, 0.95)).state.moved, atol=1e-10
     )
-    assert one.found
+    assert one.is_converged

@@ -6,7 +6,7 @@ import pytest
 from core.mechanics.dense_volume import PRECISION, solve_body_exact
 from core.mechanics.exact_solution import solve_exact
 from core.mechanics.model import constrained_model
-from core.mechanics.options import Mechanics
+from core.mechanics.options import ModelOptions
 
 RATIOS = (1.0, 0.8, 1.0)
 
@@ -19,12 +19,12 @@ def body_change(stages):
 @pytest.mark.parametrize("volume_of", ["each", "both"])
 def test_the_body_keeps_its_volume(built, sample, volume_of):
     stages = built(sample)
-    model = constrained_model(stages.control, worn=["mid-bust"], mechanics=Mechanics(volume_of=volume_of))
+    model = constrained_model(stages.control, worn=["mid-bust"], mechanics=ModelOptions(volume_of=volume_of))
     change, rest = body_change(stages), model.volume.rest_volume
     plain = change(model.tensegric.expand(solve_exact(model, RATIOS).state.moved)) / rest
     balance = solve_body_exact(model, RATIOS, change)
     held = change(model.tensegric.expand(balance.state.moved)) / rest
-    assert balance.found
+    assert balance.is_converged
     assert abs(plain.sum()) > 1e-4  # what the control mesh holds, the body holds only nearly
     assert abs(held.sum()) < 2 * PRECISION
     if volume_of == "each":
@@ -48,4 +48,4 @@ def test_what_the_body_lacks_is_given_to_the_control_mesh(built):
 def test_a_body_that_never_keeps_its_volume_is_said_so(built):
     stages = built("mannequin")
     model = constrained_model(stages.control, worn=["mid-bust"])
-    assert not solve_body_exact(model, RATIOS, lambda points: np.array([1e4, 1e4])).found
+    assert not solve_body_exact(model, RATIOS, lambda points: np.array([1e4, 1e4])).is_converged

@@ -7,13 +7,13 @@ import pytest
 from models import pairs_of
 
 from core.document.elastic import Elastic
-from core.document.lines import LineTraits, WornLine
+from core.document.lines import ActiveLine, LineSettings
 from core.errors import LineError
 from core.mechanics.dense_volume import solve_body_exact
 from core.mechanics.exact_solution import solve_exact
 from core.mechanics.force_units import newtons_per_unit
-from core.pipeline.build import build, targets_of
-from core.pipeline.solve import run
+from core.pipeline.build import build, line_targets
+from core.pipeline.solve import solve
 
 
 def hooke(ea, reach=1.0):
@@ -27,7 +27,7 @@ def bent(power, strength, name="bent"):
 
 KINKED = Elastic("kinked", 10.0, ((0.0, 0.0), (0.02, 0.3), (0.05, 3.0), (0.1, 60.0), (1.0, 900.0)))
 CURVES = {"straight": hooke(6.0), "stiffer": bent(3.0, 60.0), "softer": bent(0.3, 5.0), "kinked": KINKED}
-DRESS = (WornLine("full-bust", 0.85), WornLine("mid-bust", 0.7))
+DRESS = (ActiveLine("full-bust", 0.85), ActiveLine("mid-bust", 0.7))
 
 
 def made_of(stages, elastics, lines=DRESS, **choices):
@@ -43,7 +43,7 @@ def worn_so(stages, name, points):
     model = stages.model
     at = [line.name for line in model.lines].index(name)
     here = model.owner == at
-    natural = model.natural_lengths(targets_of(stages.design, stages).ratios)[here]
+    natural = model.natural_lengths(line_targets(stages.design, stages).ratios)[here]
     first, second = np.array(pairs_of(model.segments.across))[here].T
     lengths = np.linalg.norm(points[first] - points[second], axis=1)
     newtons = newtons_per_unit(model, stages.design.tissue_stiffness)
@@ -52,9 +52,9 @@ def worn_so(stages, name, points):
 
 
 def exact_points(stages):
-    ratios = targets_of(stages.design, stages).ratios
+    ratios = line_targets(stages.design, stages).ratios
     balance = solve_exact(stages.model, ratios)
-    assert balance.found
+    assert balance.is_converged
     return stages.model.tensegric.expand(balance.state.moved)
 
 
@@ -63,7 +63,7 @@ def exact_points(stages):
 def test_force_and_length_are_a_point_of_the_curve(built, curve, choices):
     stages = made_of(built("mannequin"), {"mid-bust": CURVES[curve], "full-bust": bent(1.5, 4.0)}, **choices)
     points = exact_points(stages)
-    for name, elastic in stages.design.worn_elastics().items():
+    for name, elastic in stages.design.active_elastics().items():
         elongation, tension = worn_so(stages, name, points)
         assert 0.0 < elongation < elastic.reach
         assert tension == pytest.approx(elastic.force(elongation), rel=1e-6)
@@ -71,26 +71,26 @@ def test_force_and_length_are_a_point_of_the_curve(built, curve, choices):
 
 def test_a_straight_elastic_is_the_line_of_its_stiffness_at_once(built):
     ea, ratio = 6.0, 0.7
-    lines = (WornLine("mid-bust", ratio),)
+    lines = (ActiveLine("mid-bust", ratio),)
     stages = made_of(built("mannequin"), {"mid-bust": hooke(ea)}, lines)
     model = stages.model
     line = next(line for line in model.lines if line.name == "mid-bust")
     newtons = newtons_per_unit(model, 530.0)
     unit = newtons * model.tensegric.mean_stiffness * line.rest_lengths.mean()
-    traits = LineTraits("mid-bust", stiffness=ea / ratio / unit)
+    traits = LineSettings("mid-bust", stiffness=ea / ratio / unit)
     plain = replace(stages.design, traits=(traits,), elastics=())
     np.testing.assert_allclose(exact_points(stages), exact_points(build(plain, stages)), atol=1e-9)
 
 
 def test_a_stiff_elastic_comes_to_the_length_at_which_a_line_is_held(built):
-    lines = (WornLine("mid-bust", 0.95),)
+    lines = (ActiveLine("mid-bust", 0.95),)
     gaps = []
     for ea in (1e2, 1e3, 1e4, 1e5):
         stages = made_of(built("mannequin"), {"mid-bust": hooke(ea, 0.1)}, lines)
         elongation, tension = worn_so(stages, "mid-bust", exact_points(stages))
         gaps.append(elongation)
     held = made_of(built("mannequin"), {"mid-bust": hooke(1e5, 0.1)}, lines, line_hold="held")
-    ratios = targets_of(held.design, held).ratios
+    ratios = line_targets(held.design, held).ratios
     balance = solve_exact(held.model, ratios)
     at = [line.name for line in held.model.lines].index("mid-bust")
     of_held = balance.tensions[at] * newtons_per_unit(held.model, 530.0)
@@ -108,7 +108,7 @@ def test_twice_the_tissue_and_twice_the_elastic_give_the_same_shape(built):
 
 def test_the_body_s_own_volume_is_held_too_where_that_is_wished(built):
     stages = made_of(built("mannequin"), {"mid-bust": bent(1.5, 4.0)}, dense_volume=True)
-    ratios = targets_of(stages.design, stages).ratios
+    ratios = line_targets(stages.design, stages).ratios
     balance = solve_body_exact(stages.model, ratios, stages.body_change)
     elongation, tension = worn_so(stages, "mid-bust", stages.model.tensegric.expand(balance.state.moved))
     assert tension == pytest.approx(bent(1.5, 4.0).force(elongation), rel=1e-6)
@@ -116,7 +116,7 @@ def test_the_body_s_own_volume_is_held_too_where_that_is_wished(built):
 
 def test_turns_end_on_the_curve_as_well(built):
     stages = made_of(built("mannequin"), {"mid-bust": bent(1.5, 4.0)})
-    turned = run(build(replace(stages.design, volume="adaptive"), stages), turns=600)
+    turned = solve(build(replace(stages.design, volume="adaptive"), stages), turns=600)
     elongation, tension = worn_so(stages, "mid-bust", turned.control_points)
     assert tension == pytest.approx(bent(1.5, 4.0).force(elongation), rel=1e-3)
 
@@ -128,8 +128,8 @@ def test_what_is_stretched_beyond_its_curve_is_refused(built):
 
 def test_a_line_that_no_elastic_is_chosen_for_keeps_its_own_stiffness(built):
     stages = made_of(built("mannequin"), {"mid-bust": hooke(6.0)})
-    own = replace(stages.design.traits_of("full-bust"), stiffness=4.0)
-    softer = build(stages.design.with_traits(own), stages)
+    own = replace(stages.design.line_settings("full-bust"), stiffness=4.0)
+    softer = build(stages.design.with_line_settings(own), stages)
     at = [line.name for line in stages.model.lines].index("full-bust")
     usual = stages.model.segments.stiffness[stages.model.owner == at]
     np.testing.assert_allclose(softer.model.segments.stiffness[softer.model.owner == at], usual / 4.0)

@@ -8,25 +8,25 @@ from shapes import fitted, mid_bust, run, tent, torso
 
 from core.mechanics.exact_solution import solve_exact
 from core.mechanics.gain_limit import gain_limit
-from core.mechanics.iteration import Targets
+from core.mechanics.iteration import LineTargets
 from core.mechanics.model import constrained_model
-from core.mechanics.options import Mechanics
-from core.mechanics.tensegrity import tensegric_model, tissue_depth
+from core.mechanics.options import ModelOptions
+from core.mechanics.tensegrity import tensegrity_model, tissue_depth
 
-FIRM = Mechanics(firm_chest=0.1)
+FIRM = ModelOptions(firm_chest=0.1)
 SAMPLES = ("mannequin", "person")
 
 
 def test_the_film_under_a_tent_is_flat():
     mesh, fixed = tent(height=3.0)
-    model = tensegric_model(mesh, fixed)
+    model = tensegrity_model(mesh, fixed)
     # The four ridges meet above the middle of their feet: there the film passes, and the tip's normal is up.
     np.testing.assert_allclose(tissue_depth(model, mesh), [3.0], atol=1e-12)
 
 
 def test_a_tent_is_tied_by_hand():
     mesh, fixed = tent(height=36.0)
-    free, firm = (tensegric_model(mesh, fixed, Mechanics(firm_chest=beta)) for beta in (0.0, 0.3))
+    free, firm = (tensegrity_model(mesh, fixed, ModelOptions(firm_chest=beta)) for beta in (0.0, 0.3))
     # 36 mm deep: 0.3 times the mean stiffness times (40 / (36 + 4)) squared.
     np.testing.assert_allclose(firm.ground, 0.3 * free.mean_stiffness)
     np.testing.assert_allclose(firm.stiffness, 1.3 * free.stiffness)
@@ -37,7 +37,7 @@ def test_a_tent_is_tied_by_hand():
 def test_the_film_is_the_least_of_its_energy():
     """A general optimiser lays the film: cables without length of their own between the fixed points."""
     control = torso(skew=0.3)
-    model = tensegric_model(control.mesh, control.fixed)
+    model = tensegrity_model(control.mesh, control.fixed)
 
     def energy(flat):
         points = model.rest.copy()
@@ -58,7 +58,7 @@ def test_the_film_is_the_least_of_its_energy():
 @pytest.mark.parametrize("sample", SAMPLES)
 def test_tissue_is_nowhere_less_than_none_and_deepest_at_the_bust_points(sample):
     control = fitted(sample)
-    model = tensegric_model(control.mesh, control.fixed)
+    model = tensegrity_model(control.mesh, control.fixed)
     depth = dict(zip(model.free.tolist(), tissue_depth(model, control.mesh), strict=True))
     assert min(depth.values()) >= 0.0
     deepest = sorted(depth.values())[-6:]
@@ -73,19 +73,19 @@ def test_the_film_touches_fixed_points():
     """Points of a flat patch lie in the film of its border, however few are free."""
     control = torso()
     flat = control.mesh.moved(control.mesh.vertices * [1.0, 0.0, 1.0])
-    depth = tissue_depth(tensegric_model(flat, control.fixed), flat)
+    depth = tissue_depth(tensegrity_model(flat, control.fixed), flat)
     np.testing.assert_allclose(depth, 0.0, atol=1e-10)
 
 
 @pytest.mark.parametrize("law", ["force-density", "prestressed", "co-rotated"])
 def test_a_firm_chest_is_balanced_at_rest_and_turns_come_to_the_exact_answer(law):
-    model = small(Mechanics(law, firm_chest=0.1, volume_of="both"), worn=("mid-bust",))
-    state, _ = run(model, Targets((1.0,) * 3), 100)
+    model = small(ModelOptions(law, firm_chest=0.1, volume_of="both"), worn=("mid-bust",))
+    state, _ = run(model, LineTargets((1.0,) * 3), 100)
     assert np.abs(state.moved).max() < 1e-10
     ratios = (1.0, 0.9, 1.0)
     exact = solve_exact(model, ratios)
-    assert exact.found
-    np.testing.assert_allclose(settled(model, Targets(ratios)).moved, exact.state.moved, atol=1e-8)
+    assert exact.is_converged
+    np.testing.assert_allclose(settled(model, LineTargets(ratios)).moved, exact.state.moved, atol=1e-8)
 
 
 @pytest.mark.parametrize("sample", SAMPLES)
@@ -95,7 +95,7 @@ def test_the_sternum_moves_less_on_a_firm_chest(sample, contact):
     sternum = (control.column == 0) & ~control.fixed
     moves = []
     for firm in (0.0, 0.02, 0.1):
-        choice = Mechanics(firm_chest=firm, line_contact=contact)
+        choice = ModelOptions(firm_chest=firm, line_contact=contact)
         model = constrained_model(control, worn=["mid-bust"], mechanics=choice)
         points = model.tensegric.expand(solve_exact(model, mid_bust(model, 0.95)).state.moved)
         moves.append(np.linalg.norm(points - model.tensegric.rest, axis=1)[sternum].max())
@@ -109,6 +109,6 @@ def test_the_gain_limit_is_lower_on_a_firm_chest(sample, template):
     control = fitted(sample, template)
     soft, firm = (
         gain_limit(constrained_model(control, worn=["mid-bust"], mechanics=choice))
-        for choice in (Mechanics(), FIRM)
+        for choice in (ModelOptions(), FIRM)
     )
     assert 1.0 < firm < 0.95 * soft

@@ -12,14 +12,14 @@ from shapes import fitted, mid_bust, run, tent, torso
 from app.research.sphere import sphere_model
 from core.mechanics.constraint_lines import line_on
 from core.mechanics.exact_solution import newton, solve_exact
-from core.mechanics.iteration import Targets
+from core.mechanics.iteration import LineTargets
 from core.mechanics.model import assemble, constrained_model
-from core.mechanics.options import Mechanics
+from core.mechanics.options import ModelOptions
 from core.mechanics.potential import Potential
-from core.mechanics.tensegrity import tensegric_model
+from core.mechanics.tensegrity import tensegrity_model
 from core.mechanics.volume import volume_measure
 
-HELD = Mechanics(line_hold="held")
+HELD = ModelOptions(line_hold="held")
 RATIOS = (1.0, 0.9, 0.97)
 
 
@@ -34,9 +34,9 @@ def rest_lengths(model):
 @pytest.mark.parametrize("law", LAWS, ids=law_of)
 @pytest.mark.parametrize("ratios", [(1.0, 0.9, 1.0), (1.0, 1.08, 0.95), (1.0, 0.93, 0.95)])
 def test_several_lines_have_exactly_the_lengths_asked_for(law, ratios):
-    model = small(Mechanics(law.member_law, line_hold="held"))
+    model = small(ModelOptions(law.member_law, line_hold="held"))
     balance = solve_exact(model, ratios)
-    assert balance.found
+    assert balance.is_converged
     asked = np.array(ratios) * rest_lengths(model)
     np.testing.assert_allclose(lengths(model, balance.state.moved), asked, rtol=1e-9)
 
@@ -44,7 +44,7 @@ def test_several_lines_have_exactly_the_lengths_asked_for(law, ratios):
 def test_a_stay_held_on_a_tent_by_hand():
     """The tip keeps its height for the volume, and slides level until the stay has its length."""
     mesh, fixed = tent(height=3.0)
-    tensegric = tensegric_model(mesh, fixed, HELD)
+    tensegric = tensegrity_model(mesh, fixed, HELD)
     line = line_on("stay", (0, 4), mesh.vertices, tensegric.free)
     model = assemble(tensegric, (line,), volume_measure(mesh, tensegric.free), ("stay",))
     natural = 0.7 * np.sqrt(41.0)
@@ -59,7 +59,7 @@ def test_a_stay_held_on_a_tent_by_hand():
 @pytest.mark.parametrize("law", LAWS, ids=law_of)
 def test_the_tension_is_what_the_body_pays_for_a_millimetre(law):
     """Minus the tension is the derivative of the body's energy by the length, by differences of answers."""
-    model = small(Mechanics(law.member_law, line_hold="held"))
+    model = small(ModelOptions(law.member_law, line_hold="held"))
     rest = rest_lengths(model)
     balance = solve_exact(model, RATIOS)
 
@@ -88,10 +88,10 @@ def test_a_longer_line_pushes_and_a_shorter_one_pulls():
 @pytest.mark.parametrize("contact", ["glued", "sliding"])
 def test_turns_come_to_the_exact_answer(law, contact):
     """The method of multipliers: the tension grows by what the line is still too long."""
-    choice = Mechanics(law.member_law, line_contact=contact, line_hold="held", volume_of="both")
+    choice = ModelOptions(law.member_law, line_contact=contact, line_hold="held", volume_of="both")
     model = small(choice, worn=("mid-bust",))
     ratios = (1.0, 0.97, 1.0)
-    state, balance = settled(model, Targets(ratios)), solve_exact(model, ratios)
+    state, balance = settled(model, LineTargets(ratios)), solve_exact(model, ratios)
     np.testing.assert_allclose(state.moved, balance.state.moved, atol=1e-7)
     np.testing.assert_allclose(state.tensions, balance.tensions, rtol=1e-6)
 
@@ -99,25 +99,25 @@ def test_turns_come_to_the_exact_answer(law, contact):
 @pytest.mark.parametrize("stiffness", [4.0, 16.0, 64.0])
 def test_turns_bring_a_held_line_to_its_length_without_long_swings(stiffness):
     """Without its damping such a line still misses its length by more than 0.01 % after 100 to 400 turns."""
-    choice = Mechanics(line_hold="held", line_stiffness=stiffness)
+    choice = ModelOptions(line_hold="held", line_stiffness=stiffness)
     model = constrained_model(fitted("person"), worn=["mid-bust"], mechanics=choice)
-    _, records = run(model, Targets(mid_bust(model, 0.97)), 100)
+    _, records = run(model, LineTargets(mid_bust(model, 0.97)), 100)
     reached = np.array([measured.lengths[1] for measured in records]) / model.lines[1].rest_length
     assert np.abs(reached[60:] - 0.97).max() < 1e-4
 
 
 def test_short_held_lines_do_not_run_away():
     """Pulling three times as hard came to its length sooner, and tore this mesh apart."""
-    choice = Mechanics("prestressed", line_hold="held", line_stiffness=51.0)
+    choice = ModelOptions("prestressed", line_hold="held", line_stiffness=51.0)
     model = constrained_model(fitted("person", "120"), worn=["mid-bust"], mechanics=choice)
-    _, records = run(model, Targets(mid_bust(model, 0.6)), 1200)
+    _, records = run(model, LineTargets(mid_bust(model, 0.6)), 1200)
     assert len(records) == 1200
     assert max(measured.step for measured in records) < 50.0  # it comes to 17,752 mm otherwise
 
 
 def test_a_soft_spring_gives_way_a_stiff_one_less_and_a_held_line_not_at_all():
     reached = []
-    for choice in (*(Mechanics(line_stiffness=k) for k in (4.0, 16.0, 64.0, 256.0)), HELD):
+    for choice in (*(ModelOptions(line_stiffness=k) for k in (4.0, 16.0, 64.0, 256.0)), HELD):
         model = small(choice, worn=("mid-bust",))
         moved = solve_exact(model, (1.0, 0.95, 1.0)).state.moved
         reached.append((lengths(model, moved) / rest_lengths(model))[1])
@@ -128,10 +128,10 @@ def test_a_soft_spring_gives_way_a_stiff_one_less_and_a_held_line_not_at_all():
 @pytest.mark.parametrize("sample", ["mannequin", "person"])
 def test_a_real_line_is_3_percent_shorter_when_asked_to_be(sample):
     for contact in ("glued", "sliding"):
-        choice = Mechanics(line_contact=contact, line_hold="held")
+        choice = ModelOptions(line_contact=contact, line_hold="held")
         model = constrained_model(fitted(sample), worn=["mid-bust"], mechanics=choice)
         balance = solve_exact(model, mid_bust(model, 0.97))
-        assert balance.found
+        assert balance.is_converged
         assert balance.steps <= 12
         reached = lengths(model, balance.state.moved)[1] / model.lines[1].rest_length
         assert reached == pytest.approx(0.97, abs=1e-9)
@@ -141,7 +141,7 @@ def test_closed_held_lines_on_the_sphere():
     model = sphere_model(worn=["horizontal", "vertical"], mechanics=HELD).model
     for ratios in ((0.93, 1.0), (0.95, 0.97), (1.0, 1.05)):
         balance = solve_exact(model, ratios)
-        assert balance.found
+        assert balance.is_converged
         asked = np.array(ratios) * rest_lengths(model)
         np.testing.assert_allclose(lengths(model, balance.state.moved), asked, rtol=1e-9)
         points = model.tensegric.expand(balance.state.moved)
@@ -155,14 +155,14 @@ def shortest_way(line, points):
 
 @pytest.mark.parametrize("contact", ["glued", "sliding"])
 def test_a_length_out_of_reach_is_not_found_and_all_stays_finite(contact):
-    choice = Mechanics(line_contact=contact, line_hold="held")
+    choice = ModelOptions(line_contact=contact, line_hold="held")
     model = small(choice, worn=("mid-bust",))
     line = model.lines[1]
     ratio = 0.9 * shortest_way(line, model.tensegric.rest) / line.rest_length
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         balances = list(newton(model, (1.0, ratio, 1.0)))
-    assert not balances[-1].found
+    assert not balances[-1].is_converged
     for balance in balances:
         assert np.isfinite(balance.state.moved).all()
         assert np.isfinite(balance.pressures).all()
@@ -173,7 +173,7 @@ def test_turns_towards_a_length_out_of_reach_stop_or_stay_finite():
     model = small(HELD, worn=("mid-bust",))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        _, records = run(model, Targets((1.0, 0.5, 1.0)), 300)
+        _, records = run(model, LineTargets((1.0, 0.5, 1.0)), 300)
     assert all(np.isfinite([measured.error, measured.step, *measured.lengths]).all() for measured in records)
 
 

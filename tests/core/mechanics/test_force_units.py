@@ -7,8 +7,8 @@ from models import LAWS, law_of
 from core.geometry.mesh import Mesh
 from core.mechanics.force_units import net_stiffness, newtons_per_unit
 from core.mechanics.model import assemble
-from core.mechanics.options import Mechanics
-from core.mechanics.tensegrity import TensegricModel, tensegric_model
+from core.mechanics.options import ModelOptions
+from core.mechanics.tensegrity import TensegrityModel, tensegrity_model
 from core.mechanics.volume import volume_measure
 
 SIDE = 7.0
@@ -24,9 +24,9 @@ def lattice(count: int, side: float = SIDE) -> Mesh:
     return Mesh(points.reshape(-1, 3), faces)
 
 
-def net(mesh: Mesh, mechanics: Mechanics | None = None) -> TensegricModel:
+def net(mesh: Mesh, mechanics: ModelOptions | None = None) -> TensegrityModel:
     """The net of a mesh of which every point is free."""
-    return tensegric_model(mesh, np.zeros(len(mesh.vertices), dtype=bool), mechanics)
+    return tensegrity_model(mesh, np.zeros(len(mesh.vertices), dtype=bool), mechanics)
 
 
 def model_of(mesh, mechanics=None):
@@ -57,7 +57,7 @@ def test_a_stretched_net_of_equilateral_triangles_answers_with_the_stiffness_tol
 def test_the_stiffness_of_lattices_has_its_known_values():
     assert net_stiffness(model_of(lattice(4))) == pytest.approx(np.sqrt(3.0), rel=1e-12)
     # Cables that hardly pull at rest are nearly plain springs: 3 sqrt(3) / 4 at held width.
-    plain = Mechanics(member_law="prestressed", prestress=0.1)
+    plain = ModelOptions(member_law="prestressed", prestress=0.1)
     assert net_stiffness(model_of(lattice(4), plain)) == pytest.approx(
         0.9 * 0.75 * np.sqrt(3.0) + 0.1 * np.sqrt(3.0), rel=1e-12
     )

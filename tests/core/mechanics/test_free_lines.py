@@ -8,36 +8,38 @@ import pytest
 from models import LAWS, cable_force, check_sliding_derivative, energy_of, law_of, settled, volume_slopes
 from shapes import central_difference, mirrored, run, torso
 
-from core.control_mesh.embedding import embed, weighted
+from core.control_mesh.embedding import embed, locate_on_grid
 from core.control_mesh.fit import ControlMesh
-from core.document.line_notation import with_own_lines
-from core.document.lines import OwnLine
+from core.document.line_notation import with_custom_lines
+from core.document.lines import CustomLine
 from core.mechanics.exact_solution import newton, solve_exact
-from core.mechanics.gain_limit import Swing, gain_limit
-from core.mechanics.iteration import Targets, at_rest, iterate, turn
+from core.mechanics.gain_limit import OscillationLimit, gain_limit
+from core.mechanics.iteration import LineTargets, initial_state, iterate, step
 from core.mechanics.model import ConstrainedModel, constrained_model
-from core.mechanics.options import CONTACTS, HOLDS, Mechanics
+from core.mechanics.options import CONTACTS, LINE_HOLDS, ModelOptions
 from core.mechanics.potential import Potential
 
 RNG = np.random.default_rng(7)
-DIAGONAL = OwnLine("diagonal", places=((1.4, -4.3), (2.3, -2.2), (3.6, -0.4), (4.9, 2.6)))
+DIAGONAL = CustomLine("diagonal", places=((1.4, -4.3), (2.3, -2.2), (3.6, -0.4), (4.9, 2.6)))
 """A line that passes no control point, and is bent within two triangles."""
 
 
-def model_with(line: OwnLine = DIAGONAL, control: ControlMesh | None = None, **choices) -> ConstrainedModel:
-    control = with_own_lines(control or torso(skew=0.3), (line,))
-    return constrained_model(control, worn=[line.name], mechanics=Mechanics(**choices))
+def model_with(
+    line: CustomLine = DIAGONAL, control: ControlMesh | None = None, **choices
+) -> ConstrainedModel:
+    control = with_custom_lines(control or torso(skew=0.3), (line,))
+    return constrained_model(control, worn=[line.name], mechanics=ModelOptions(**choices))
 
 
 def ratios_of(model: ConstrainedModel, ratio: float) -> tuple[float, ...]:
-    return tuple(ratio if at in model.pulling else 1.0 for at in range(len(model.lines)))
+    return tuple(ratio if at in model.acting_lines else 1.0 for at in range(len(model.lines)))
 
 
 def plain_line_force(model: ConstrainedModel, points: np.ndarray, ratio: float) -> np.ndarray:
     """What the worn line does at all control points: Hooke's law vertex by vertex, spread by weights."""
-    line, force = model.lines[model.pulling[0]], np.zeros_like(points)
+    line, force = model.lines[model.acting_lines[0]], np.zeros_like(points)
     weights = line.weights.toarray()
-    unit = model.mechanics.line_stiffness * model.tensegric.mean_stiffness
+    unit = model.options.line_stiffness * model.tensegric.mean_stiffness
     for a, b in pairwise(weights):
         rest = np.linalg.norm(a @ model.tensegric.rest - b @ model.tensegric.rest)
         span = a @ points - b @ points
@@ -50,7 +52,7 @@ def plain_line_force(model: ConstrainedModel, points: np.ndarray, ratio: float) 
 def test_a_place_has_the_weights_of_its_triangle():
     grid = torso().grid
     at = {(r, c): i for i, (r, c) in enumerate(zip(grid.row.tolist(), grid.column.tolist(), strict=True))}
-    corners, weights = weighted(grid, np.array([[4.25, 1.5], [4.0, 1.0], [3.0, -2.5]]))
+    corners, weights = locate_on_grid(grid, np.array([[4.25, 1.5], [4.0, 1.0], [3.0, -2.5]]))
     # This cell's diagonal rises: the place lies below it, a quarter up and half along.
     found = dict(zip(corners[0].tolist(), weights[0].tolist(), strict=True))
     assert found == pytest.approx({at[4, 1]: 0.5, at[4, 2]: 0.25, at[5, 2]: 0.25})
@@ -74,7 +76,7 @@ def test_every_triangle_is_crossed_straight():
         rng = np.random.default_rng(seed)
         curve = embed(grid, [(rng.uniform(0, 7), rng.uniform(-6, 6)) for _ in range(3)])
         middles = 0.5 * (curve.places[:-1] + curve.places[1:])
-        corners, _ = weighted(grid, middles)
+        corners, _ = locate_on_grid(grid, middles)
         for triangle, ends in zip(corners, pairwise(curve.weights.toarray()), strict=True):
             assert set(triangle) >= set(np.flatnonzero(np.any(ends, axis=0)))
         np.testing.assert_allclose(curve.weights @ grid.row, curve.places[:, 0], atol=1e-12)
@@ -82,7 +84,7 @@ def test_every_triangle_is_crossed_straight():
 
 
 @pytest.mark.parametrize("law", LAWS, ids=law_of)
-@pytest.mark.parametrize("hold", HOLDS)
+@pytest.mark.parametrize("hold", LINE_HOLDS)
 def test_gradient_and_second_derivative_are_exact(law, hold):
     model = model_with(member_law=law.member_law, line_hold=hold)
     potential = Potential(model, ratios_of(model, 0.9))
@@ -106,7 +108,7 @@ def test_gradient_and_second_derivative_are_exact(law, hold):
     np.testing.assert_allclose(energy.ravel(), potential.at(moved).gradient, atol=1e-4)
 
 
-@pytest.mark.parametrize("hold", HOLDS)
+@pytest.mark.parametrize("hold", LINE_HOLDS)
 def test_the_derivative_of_a_sliding_free_line_is_exact(hold):
     model = model_with(line_contact="sliding", line_hold=hold)
     moved = RNG.normal(size=(len(model.tensegric.free), 3))
@@ -121,25 +123,25 @@ def test_the_exact_answer_balances_forces_added_up_by_hand(ratio):
     line = plain_line_force(model, points, ratio)
     force = cable_force(model, points) + line
     force += np.tensordot(answer.pressures, volume_slopes(model, points), axes=1)
-    assert answer.found
+    assert answer.is_converged
     np.testing.assert_allclose(force[model.tensegric.free], 0.0, atol=1e-8)
     np.testing.assert_allclose(line.sum(axis=0), 0.0, atol=1e-10)  # a line pulls at itself alone
     assert np.abs(line[model.tensegric.free]).max() > 1.0
 
 
-@pytest.mark.parametrize(("contact", "hold"), list(product(CONTACTS, HOLDS)))
+@pytest.mark.parametrize(("contact", "hold"), list(product(CONTACTS, LINE_HOLDS)))
 @pytest.mark.parametrize("name", ["mid-bust", "full-bust"])
 def test_one_through_control_points_is_the_line_through_them(name, contact, hold):
     control = torso(skew=0.3)
     path = control.paths[name]
     places = tuple((float(control.row[at]), float(control.column[at])) for at in path)
-    free = model_with(OwnLine("free", places=places), line_contact=contact, line_hold=hold)
-    snapped = model_with(OwnLine("snapped", path), line_contact=contact, line_hold=hold)
+    free = model_with(CustomLine("free", places=places), line_contact=contact, line_hold=hold)
+    snapped = model_with(CustomLine("snapped", path), line_contact=contact, line_hold=hold)
     ratios = (*ratios_of(free, 0.93),)
     found, expected = (solve_exact(model, ratios) for model in (free, snapped))
     np.testing.assert_allclose(found.state.moved, expected.state.moved, atol=1e-11)
     for control_of in ("adaptive", "conventional", "integral", "none"):
-        one, other = (turn(m, Targets(ratios, control_of), at_rest(m))[0] for m in (free, snapped))
+        one, other = (step(m, LineTargets(ratios, control_of), initial_state(m))[0] for m in (free, snapped))
         np.testing.assert_allclose(one.moved, other.moved, atol=1e-12)
 
 
@@ -159,7 +161,7 @@ def test_a_curve_drawn_more_finely_comes_to_the_same():
     def answer(count):
         c = np.linspace(-4.2, 4.2, count)
         bow = tuple(zip((3.3 + 1.1 * np.sin(0.7 * c)).tolist(), c.tolist(), strict=True))
-        model = model_with(OwnLine("bow", places=bow))
+        model = model_with(CustomLine("bow", places=bow))
         return solve_exact(model, ratios_of(model, 0.92)).state.moved
 
     *coarser, finest = (answer(count) for count in (9, 17, 33, 65, 129, 1025))
@@ -168,7 +170,7 @@ def test_a_curve_drawn_more_finely_comes_to_the_same():
     assert away[-1] < 0.01
 
 
-@pytest.mark.parametrize(("contact", "hold"), list(product(CONTACTS, HOLDS)))
+@pytest.mark.parametrize(("contact", "hold"), list(product(CONTACTS, LINE_HOLDS)))
 def test_a_body_in_the_mirror_moves_as_the_mirror_image(contact, hold):
     control = torso(skew=0.3)
     twin, was = mirrored(control)
@@ -183,7 +185,7 @@ def test_a_body_in_the_mirror_moves_as_the_mirror_image(contact, hold):
 
 @pytest.mark.parametrize(
     ("contact", "hold", "force"),
-    [(*both, "implicit") for both in product(CONTACTS, HOLDS)]
+    [(*both, "implicit") for both in product(CONTACTS, LINE_HOLDS)]
     + [("glued", "spring", "explicit"), ("glued", "held", "explicit"), ("sliding", "spring", "explicit")],
 )
 def test_turns_rest_where_the_exact_answer_is(contact, hold, force):
@@ -192,9 +194,9 @@ def test_turns_rest_where_the_exact_answer_is(contact, hold, force):
     model = model_with(line_stiffness=stiffness, **choices)
     ratios = ratios_of(model, 0.95)
     exact = solve_exact(model, ratios)
-    assert exact.found
+    assert exact.is_converged
     for control in ("adaptive", "integral"):
-        state = settled(model, Targets(ratios, control))
+        state = settled(model, LineTargets(ratios, control))
         np.testing.assert_allclose(state.moved, exact.state.moved, atol=1e-6)
 
 
@@ -204,10 +206,10 @@ def test_when_an_explicit_line_runs_away_is_known_before(ratio, calm):
     model = model_with(line_stiffness=0.25, **choices)
     ratios = ratios_of(model, ratio)
     exact = solve_exact(model, ratios)
-    assert (Swing(model).overshoot(Potential(model, ratios), exact) < 2.0) == calm
-    start = replace(at_rest(model), moved=exact.state.moved, tensions=exact.tensions)
+    assert (OscillationLimit(model).overshoot(Potential(model, ratios), exact) < 2.0) == calm
+    start = replace(initial_state(model), moved=exact.state.moved, tensions=exact.tensions)
     push = replace(start, moved=start.moved + 1e-3 * RNG.normal(size=start.moved.shape))
-    *_, (_, measured) = iterate(model, lambda: Targets(ratios, "none"), push, turns=400)
+    *_, (_, measured) = iterate(model, lambda: LineTargets(ratios, "none"), push, turns=400)
     assert measured.step < 0.01 if calm else measured.step > 1.0
 
 
@@ -215,7 +217,7 @@ def test_the_gain_at_which_turns_vibrate_is_known_before():
     model = model_with(volume_of="both")
     limit, ratios = gain_limit(model), ratios_of(model, 0.999)
     for share, calm in ((0.98, True), (1.02, False)):
-        _, records = run(model, Targets(ratios, "conventional", share * limit), 300)
+        _, records = run(model, LineTargets(ratios, "conventional", share * limit), 300)
         swing = np.ptp([measured.error for measured in records[-40:]])
         assert swing < 1e-7 if calm else swing > 1e-3
 
@@ -223,9 +225,9 @@ def test_the_gain_at_which_turns_vibrate_is_known_before():
 @pytest.mark.parametrize(("law", "contact"), list(product(LAWS, CONTACTS)), ids=str)
 def test_nothing_drifts_at_rest(law, contact):
     model = model_with(member_law=law.member_law, line_contact=contact)
-    state = at_rest(model)
+    state = initial_state(model)
     for _ in range(50):
-        state, _ = turn(model, Targets(ratios_of(model, 1.0)), state)
+        state, _ = step(model, LineTargets(ratios_of(model, 1.0)), state)
     # The rotations of co-rotated cells have some round-off, whatever lines there are.
     assert np.abs(state.moved).max() <= (1e-12 if law.member_law == "co-rotated" else 0.0)
 

@@ -11,11 +11,19 @@ from shapes import mid_bust, run, tent_model, torso
 from app.research.sphere import sphere
 from core.geometry.mesh import Mesh
 from core.mechanics.constraint_lines import line_on
-from core.mechanics.iteration import Marks, State, Targets, at_rest, iterate, record, turn
+from core.mechanics.iteration import (
+    LineTargets,
+    Observables,
+    SolverState,
+    initial_state,
+    iterate,
+    record,
+    step,
+)
 from core.mechanics.model import assemble, constrained_model
 from core.mechanics.options import DEFAULT_LINE_STIFFNESS
 from core.mechanics.potential import Potential
-from core.mechanics.tensegrity import tensegric_model
+from core.mechanics.tensegrity import tensegrity_model
 from core.mechanics.volume import Pressure, volume_measure
 
 CONTROLS = ("none", "conventional", "adaptive")
@@ -88,10 +96,10 @@ def test_hooke_force_equals_the_tension_of_every_segment():
 def test_first_turn_of_the_tent_by_hand():
     model = tent_model(stiffness=2.0)
     q = model.tensegric.mean_stiffness  # 4 cables; the line adds 2 segments of 2 q each
-    state, measured = turn(model, Targets((0.8,), "none"), at_rest(model))
+    state, measured = step(model, LineTargets((0.8,), "none"), initial_state(model))
     down = -2 * (2 * q) * 0.2 * 3.0 / (q + 2 * 2 * q)
     np.testing.assert_allclose(state.moved, [[0, 0, down]], atol=1e-14)
-    assert measured.turn == state.turn == 1
+    assert measured.iteration == state.iteration == 1
     assert measured.step == pytest.approx(-down)
     assert measured.error == pytest.approx(down / 3.0)  # the tent is a pyramid: volume goes with height
     assert measured.error_ml == pytest.approx(64 * down / 3.0 / 1000)
@@ -103,8 +111,8 @@ def test_pressure_of_the_tent_by_hand():
     q = model.tensegric.mean_stiffness
     assert model.probe == pytest.approx((64 / 3) ** 2 / (5 * q))
     # One unit of pressure fills the whole volume in one turn: for a pyramid exactly so.
-    state = State(np.zeros((1, 3)), Pressure(value=0.25))
-    _, measured = turn(model, Targets((1.0,), "conventional"), state)
+    state = SolverState(np.zeros((1, 3)), Pressure(value=0.25))
+    _, measured = step(model, LineTargets((1.0,), "conventional"), state)
     assert measured.error == pytest.approx(0.25)
 
 
@@ -135,18 +143,18 @@ def plain_sweep(model, targets, state):
 
 @pytest.mark.parametrize("control", CONTROLS)
 def test_a_turn_is_a_plain_gauss_seidel_sweep(control):
-    targets = Targets((0.9, 0.85, 1.05), control, 1.2)
-    state = at_rest(SKEW)
+    targets = LineTargets((0.9, 0.85, 1.05), control, 1.2)
+    state = initial_state(SKEW)
     for _ in range(4):
         expected = plain_sweep(SKEW, targets, state)
-        state, _ = turn(SKEW, targets, state)
+        state, _ = step(SKEW, targets, state)
         np.testing.assert_allclose(SKEW.tensegric.expand(state.moved), expected, atol=1e-10)
 
 
 def test_probe_is_the_change_of_volume_in_one_turn():
     def answer(pressure):
-        state = State(np.zeros((len(SKEW.tensegric.free), 3)), Pressure(value=pressure))
-        return turn(SKEW, Targets((1.0, 1.0, 1.0), "conventional"), state)[1].error / pressure
+        state = SolverState(np.zeros((len(SKEW.tensegric.free), 3)), Pressure(value=pressure))
+        return step(SKEW, LineTargets((1.0, 1.0, 1.0), "conventional"), state)[1].error / pressure
 
     wrong = [abs(answer(pressure) - 1.0) for pressure in (1e-2, 1e-3, 1e-4)]
     # Only the volume itself is not linear: ten times less push, ten times less deviation.
@@ -158,22 +166,22 @@ def test_winding_does_not_turn_the_volume_force_round():
     control = torso()
     inside_out = replace(control, mesh=Mesh(control.mesh.vertices, control.mesh.faces[:, ::-1]))
     twin = constrained_model(inside_out, worn=["mid-bust"])
-    state, records = run(TORSO, Targets(mid_bust(TORSO, 0.9)), 40)
-    other, others = run(twin, Targets(mid_bust(TORSO, 0.9)), 40)
+    state, records = run(TORSO, LineTargets(mid_bust(TORSO, 0.9)), 40)
+    other, others = run(twin, LineTargets(mid_bust(TORSO, 0.9)), 40)
     np.testing.assert_allclose(other.moved, state.moved, atol=1e-9)
     assert others[-1].error == pytest.approx(records[-1].error, abs=1e-12)
 
 
 def test_a_shorter_line_reaches_near_its_length_and_a_longer_one_too():
     for ratio in (0.9, 1.1):
-        _, records = run(TORSO, Targets(mid_bust(TORSO, ratio)), 200)
+        _, records = run(TORSO, LineTargets(mid_bust(TORSO, ratio)), 200)
         reached = records[-1].lengths[1] / TORSO.lines[1].rest_length
         assert min(ratio, 1.0) < reached < max(ratio, 1.0)
 
 
 def test_a_line_that_is_not_worn_is_measured_but_does_not_pull():
     bare = constrained_model(torso(), worn=[])
-    state, records = run(bare, Targets((0.6, 0.6, 0.6)), 5)
+    state, records = run(bare, LineTargets((0.6, 0.6, 0.6)), 5)
     assert np.abs(state.moved).max() < 1e-12
     assert records[-1].lengths == pytest.approx([line.rest_length for line in bare.lines])
 
@@ -193,40 +201,40 @@ def test_a_run_is_asked_for_turn_by_turn_and_its_targets_too():
 
     def targets():
         asked.append(None)
-        return Targets(mid_bust(TORSO, 0.9))
+        return LineTargets(mid_bust(TORSO, 0.9))
 
     turns = list(islice(iterate(TORSO, targets, turns=50), 3))
     assert len(asked) == 3
-    assert [measured.turn for _, measured in turns] == [1, 2, 3]
+    assert [measured.iteration for _, measured in turns] == [1, 2, 3]
 
 
 def test_a_run_that_blows_up_ends():
-    _, records = run(TORSO, Targets(mid_bust(TORSO, 0.9), "conventional", 9.0), 500)
+    _, records = run(TORSO, LineTargets(mid_bust(TORSO, 0.9), "conventional", 9.0), 500)
     assert len(records) < 500
     assert abs(records[-1].error) > 10.0
     assert all(abs(measured.error) <= 10.0 for measured in records[:-1])
 
 
 def test_the_same_run_twice_is_the_same_to_the_bit():
-    one, _ = run(SKEW, Targets((1.0, 0.85, 0.9)), 30)
-    two, _ = run(constrained_model(torso(skew=0.3)), Targets((1.0, 0.85, 0.9)), 30)
+    one, _ = run(SKEW, LineTargets((1.0, 0.85, 0.9)), 30)
+    two, _ = run(constrained_model(torso(skew=0.3)), LineTargets((1.0, 0.85, 0.9)), 30)
     np.testing.assert_array_equal(one.moved, two.moved)
 
 
 def test_what_is_watched_is_recorded():
-    marks = Marks(1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
-    assert record(TORSO, at_rest(TORSO), 0.0, lambda points: marks).marks is marks
-    assert turn(TORSO, Targets((1.0,) * 3), at_rest(TORSO))[1].marks is None
+    marks = Observables(1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+    assert record(TORSO, initial_state(TORSO), 0.0, lambda points: marks).marks is marks
+    assert step(TORSO, LineTargets((1.0,) * 3), initial_state(TORSO))[1].marks is None
 
 
 def test_a_closed_line_round_a_ball_waists_it_at_constant_volume():
     """Figure 2 of the paper: the sphere-like shape with a horizontal line."""
     ball = sphere(rings=7, spokes=12)
     fixed = np.arange(len(ball.vertices)) >= 84  # the poles
-    tensegric = tensegric_model(ball, fixed)
+    tensegric = tensegrity_model(ball, fixed)
     line = line_on("equator", [*range(36, 48), 36], ball.vertices, tensegric.free)
     model = assemble(tensegric, (line,), volume_measure(ball, tensegric.free), ("equator",))
-    state, records = run(model, Targets((0.9,)), 400)
+    state, records = run(model, LineTargets((0.9,)), 400)
     assert abs(records[-1].error) < 1e-5
     radius = np.linalg.norm(tensegric.expand(state.moved)[:84, :2], axis=1).reshape(7, 12)
     assert radius[3].max() < 96.0

@@ -7,12 +7,12 @@ import pytest
 from models import cable_force, line_force, small, volume_slopes
 from shapes import fitted, run, torso
 
-from core.document.line_notation import with_own_lines
-from core.document.lines import OwnLine
+from core.document.line_notation import with_custom_lines
+from core.document.lines import CustomLine
 from core.mechanics.exact_solution import solve_exact
-from core.mechanics.iteration import Targets
+from core.mechanics.iteration import LineTargets
 from core.mechanics.model import constrained_model
-from core.mechanics.options import CONTACTS, HOLDS, LAWS, VOLUMES, Mechanics
+from core.mechanics.options import CONTACTS, LAWS, LINE_HOLDS, VOLUMES, ModelOptions
 
 
 def point(row, column):
@@ -21,25 +21,25 @@ def point(row, column):
 
 
 OWN = (
-    OwnLine("high", tuple(point(4, c) for c in range(-4, 5))),
-    OwnLine("strap", tuple(point(r, 3) for r in range(2, 7))),
-    OwnLine("oblique", (point(2, -4), point(3, -3), point(4, -2), point(5, -1))),
-    OwnLine(
+    CustomLine("high", tuple(point(4, c) for c in range(-4, 5))),
+    CustomLine("strap", tuple(point(r, 3) for r in range(2, 7))),
+    CustomLine("oblique", (point(2, -4), point(3, -3), point(4, -2), point(5, -1))),
+    CustomLine(
         "sling", (point(6, 4), point(5, 4), point(4, 4), point(3, 3), point(3, 2), point(4, 1), point(5, 1))
     ),
-    OwnLine(
+    CustomLine(
         "cup", (point(2, 2), point(2, 3), point(3, 4), point(4, 3), point(4, 2), point(3, 1)), closed=True
     ),
-    OwnLine("leap", (point(2, -3), point(4, 0), point(2, 3))),
+    CustomLine("leap", (point(2, -3), point(4, 0), point(2, 3))),
 )
 """Lines of the designer: level, upright, oblique, bent, closed, and over points that are no neighbours."""
 
-CONTROL = with_own_lines(torso(skew=0.3), OWN)
+CONTROL = with_custom_lines(torso(skew=0.3), OWN)
 NAMES = tuple(CONTROL.paths)
 
 
 def model_with(*worn, **choices):
-    return constrained_model(CONTROL, worn=worn, mechanics=Mechanics(**choices))
+    return constrained_model(CONTROL, worn=worn, mechanics=ModelOptions(**choices))
 
 
 def ratios_for(**asked):
@@ -85,7 +85,7 @@ def test_several_lines_that_cross(ratios):
 @pytest.mark.parametrize("line", OWN, ids=lambda line: line.name)
 def test_turns_keep_the_volume_under_every_line(line, contact):
     model = model_with(line.name, line_contact=contact)
-    _, records = run(model, Targets(ratios_for(**{line.name: 0.93})), 120)
+    _, records = run(model, LineTargets(ratios_for(**{line.name: 0.93})), 120)
     errors = np.array([measured.error for measured in records])
     assert np.abs(errors[60:]).max() < 1e-3
     assert np.ptp(errors[-40:]) < 1e-5
@@ -95,7 +95,7 @@ def test_a_closed_line_may_begin_anywhere_and_run_either_way():
     cup = next(line for line in OWN if line.closed)
     answers = []
     for points in (cup.points, cup.points[2:] + cup.points[:2], cup.points[::-1]):
-        control = with_own_lines(torso(skew=0.3), (OwnLine("cup", points, closed=True),))
+        control = with_custom_lines(torso(skew=0.3), (CustomLine("cup", points, closed=True),))
         model = constrained_model(control, worn=["cup"])
         assert len(model.owner) == len(points)
         answers.append(solve_exact(model, (1.0, 1.0, 1.0, 0.9)).state.moved)
@@ -115,9 +115,9 @@ def test_a_closed_line_pulls_together_what_it_goes_round():
 
 def test_two_lines_in_the_same_place_pull_as_one_twice_as_stiff():
     mid = CONTROL.paths["mid-bust"]
-    control = with_own_lines(torso(skew=0.3), (OwnLine("again", mid),))
+    control = with_custom_lines(torso(skew=0.3), (CustomLine("again", mid),))
     two = constrained_model(control, worn=["mid-bust", "again"])
-    one = constrained_model(torso(skew=0.3), worn=["mid-bust"], mechanics=Mechanics(line_stiffness=32.0))
+    one = constrained_model(torso(skew=0.3), worn=["mid-bust"], mechanics=ModelOptions(line_stiffness=32.0))
     both, stiff = solve_exact(two, (1.0, 0.9, 1.0, 0.9)), solve_exact(one, (1.0, 0.9, 1.0))
     np.testing.assert_allclose(both.state.moved, stiff.state.moved, atol=1e-9)
 
@@ -127,7 +127,7 @@ def test_half_as_many_segments_over_every_other_point():
     model = model_with("leap", line_hold="held")
     ratios = ratios_for(leap=0.97)
     balance = solve_exact(model, ratios)
-    assert balance.found
+    assert balance.is_converged
     index = NAMES.index("leap")
     chord = np.linalg.norm(
         np.diff(model.tensegric.rest[[point(2, -3), point(4, 0), point(2, 3)]], axis=0), axis=1
@@ -139,7 +139,7 @@ def test_half_as_many_segments_over_every_other_point():
 
 @pytest.mark.parametrize("sample", ["mannequin", "person"])
 def test_own_lines_on_real_bodies(sample):
-    control = with_own_lines(fitted(sample), OWN)
+    control = with_custom_lines(fitted(sample), OWN)
     for names in (*((line.name,) for line in OWN), ("mid-bust", "strap", "oblique", "cup")):
         model = constrained_model(control, worn=names)
         for ratio in (0.9, 1.05):
@@ -149,7 +149,7 @@ def test_own_lines_on_real_bodies(sample):
 
 @pytest.mark.parametrize("sample", ["mannequin", "person"])
 def test_a_strap_lifts_the_bust_point_under_it_alone(sample):
-    control = with_own_lines(fitted(sample), (OWN[1],))
+    control = with_custom_lines(fitted(sample), (OWN[1],))
     model = constrained_model(control, worn=["strap"])
     ratios = tuple(0.9 if name == "strap" else 1.0 for name in control.paths)
     points = model.tensegric.expand(solve_exact(model, ratios).state.moved)
@@ -158,20 +158,20 @@ def test_a_strap_lifts_the_bust_point_under_it_alone(sample):
     assert abs(right) < 0.2
 
 
-EVERY_CHOICE = list(product(LAWS, CONTACTS, HOLDS, VOLUMES))
+EVERY_CHOICE = list(product(LAWS, CONTACTS, LINE_HOLDS, VOLUMES))
 
 
 @pytest.mark.parametrize(("law", "contact", "hold", "volume_of"), EVERY_CHOICE)
 def test_every_choice_of_the_model_obeys_the_volume_asked_for_and_rests_without_a_line(
     law, contact, hold, volume_of
 ):
-    choice = Mechanics(law, line_contact=contact, line_hold=hold, volume_of=volume_of)
+    choice = ModelOptions(law, line_contact=contact, line_hold=hold, volume_of=volume_of)
     bare = solve_exact(small(choice, worn=()), (0.9, 0.9, 0.9))
-    assert bare.found
+    assert bare.is_converged
     np.testing.assert_allclose(bare.state.moved, 0.0, atol=1e-10)
     model, excess = small(choice, worn=("mid-bust",)), np.array([3000.0, -1000.0])
     balance = solve_exact(model, (1.0, 0.95, 1.0), excess=excess)
-    assert balance.found
+    assert balance.is_converged
     points = model.tensegric.expand(balance.state.moved)
     gained = model.volume.side_volumes(points) - model.volume.side_volumes(model.tensegric.rest)
     if volume_of == "each":
@@ -181,17 +181,17 @@ def test_every_choice_of_the_model_obeys_the_volume_asked_for_and_rests_without_
 
 
 @pytest.mark.parametrize("contact", CONTACTS)
-@pytest.mark.parametrize("hold", HOLDS)
+@pytest.mark.parametrize("hold", LINE_HOLDS)
 def test_the_way_of_a_slider_is_repeatable_and_leads_to_the_answer_from_rest(contact, hold):
     """Each answer starts from the last one; twice the same way is the same to the bit."""
-    choice = Mechanics(line_contact=contact, line_hold=hold)
+    choice = ModelOptions(line_contact=contact, line_hold=hold)
     model = small(choice, worn=("mid-bust",))
     ways = []
     for _ in range(2):
         way = [solve_exact(model, (1.0, 1.0, 1.0))]
         for ratio in (0.99, 0.98, 0.97, 0.96, 0.95, 0.96, 0.97):
             way.append(solve_exact(model, (1.0, ratio, 1.0), near=way[-1]))
-            assert way[-1].found
+            assert way[-1].is_converged
             assert way[-1].steps <= 6
         ways.append(way)
     for one, two in zip(*ways, strict=True):

@@ -7,21 +7,21 @@ import pytest
 from models import LAWS, energy_of, law_of, settled
 from shapes import central_difference, torso
 
-from core.document.lines import LineTraits, WornLine
+from core.document.lines import ActiveLine, LineSettings
 from core.mechanics.exact_solution import solve_exact
 from core.mechanics.gain_limit import gain_limit
-from core.mechanics.iteration import Targets, iterate
+from core.mechanics.iteration import LineTargets, iterate
 from core.mechanics.model import constrained_model
-from core.mechanics.options import Mechanics
+from core.mechanics.options import ModelOptions
 from core.mechanics.potential import Potential
 from core.pipeline.build import build
 
 CONTACTS = [
-    Mechanics(),
-    Mechanics(line_contact="sliding"),
-    Mechanics(line_hold="held"),
-    Mechanics("prestressed", line_hold="held"),
-    Mechanics("co-rotated", line_contact="sliding"),
+    ModelOptions(),
+    ModelOptions(line_contact="sliding"),
+    ModelOptions(line_hold="held"),
+    ModelOptions("prestressed", line_hold="held"),
+    ModelOptions("co-rotated", line_contact="sliding"),
 ]
 RATIOS = (1.0, 0.93, 0.95)
 OWN = {"mid-bust": 24.0, "full-bust": 6.0}
@@ -39,7 +39,7 @@ def test_lines_that_all_have_the_same_stiffness_of_their_own_are_the_design_s_to
     usual = model_of(replace(mechanics, line_stiffness=7.3))
     own = model_of(mechanics, dict.fromkeys(("under-bust", "mid-bust", "full-bust"), 7.3))
     assert gain_limit(own) == gain_limit(usual)
-    targets = Targets(RATIOS)
+    targets = LineTargets(RATIOS)
     for (one, _), (other, _) in zip(
         *(iterate(model, lambda: targets, turns=20) for model in (usual, own)), strict=True
     ):
@@ -55,8 +55,8 @@ def test_lines_that_all_have_the_same_stiffness_of_their_own_are_the_design_s_to
 def test_turns_end_at_the_exact_answer_whatever_each_line_s_stiffness(mechanics):
     model = model_of(replace(mechanics, volume_of="both"), OWN)
     balance = solve_exact(model, RATIOS)
-    assert balance.found
-    state = settled(model, Targets(RATIOS))
+    assert balance.is_converged
+    state = settled(model, LineTargets(RATIOS))
     np.testing.assert_allclose(state.moved, balance.state.moved, atol=1e-8)
 
 
@@ -75,10 +75,10 @@ def test_derivatives_know_each_line_s_stiffness(law):
 
 def test_a_softer_line_stays_further_from_its_length_and_the_other_lines_are_as_before(built):
     stages = built("mannequin")
-    worn = replace(stages.design, lines=(WornLine("full-bust", 0.96), WornLine("mid-bust", 0.96)))
+    worn = replace(stages.design, lines=(ActiveLine("full-bust", 0.96), ActiveLine("mid-bust", 0.96)))
     gaps = []
     for own in (64.0, None, 4.0):
-        design = worn.with_traits(LineTraits("mid-bust", stiffness=own))
+        design = worn.with_line_settings(LineSettings("mid-bust", stiffness=own))
         model = build(design, stages).model
         ratios = tuple(design.ratio(line.name) for line in model.lines)
         points = model.tensegric.expand(solve_exact(model, ratios).state.moved)
@@ -98,7 +98,7 @@ def built_stiffness(design, stages):
 
 def test_only_worn_lines_with_a_stiffness_of_their_own_say_so(built):
     off = replace(built("mannequin").design, lines=())
-    soft = off.with_traits(LineTraits("mid-bust", stiffness=2.0))
+    soft = off.with_line_settings(LineSettings("mid-bust", stiffness=2.0))
     assert soft.own_stiffness() == {}
     both = soft.with_line("mid-bust", 0.95).with_line("full-bust", 0.95)
     assert both.own_stiffness() == {"mid-bust": 2.0}

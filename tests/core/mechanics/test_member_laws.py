@@ -12,12 +12,12 @@ from shapes import central_difference, run, tent, torso
 from app.research.sphere import sphere_control
 from core.mechanics.corotated_cells import cells
 from core.mechanics.exact_solution import solve_exact
-from core.mechanics.iteration import State, Targets, at_rest, turn
+from core.mechanics.iteration import LineTargets, SolverState, initial_state, step
 from core.mechanics.model import constrained_model
-from core.mechanics.options import CONTACTS, HOLDS, Mechanics
+from core.mechanics.options import CONTACTS, LINE_HOLDS, ModelOptions
 from core.mechanics.potential import Potential
 from core.mechanics.springs import laplacian
-from core.mechanics.tensegrity import tensegric_model
+from core.mechanics.tensegrity import tensegrity_model
 from core.mechanics.volume import CONTROLS, Pressure
 
 RNG = np.random.default_rng(21)
@@ -26,11 +26,11 @@ ALL_LAWS = pytest.mark.parametrize("law", LAWS, ids=law_of)
 
 
 @ALL_LAWS
-@pytest.mark.parametrize(("contact", "hold"), list(product(CONTACTS, HOLDS)))
+@pytest.mark.parametrize(("contact", "hold"), list(product(CONTACTS, LINE_HOLDS)))
 def test_at_rest_nothing_drifts_whatever_the_choices(law, contact, hold):
     for control, firm in product(set(CONTROLS) - {"exact"}, (0.0, 0.1)):
         model = small(replace(law, line_contact=contact, line_hold=hold, firm_chest=firm))
-        state, records = run(model, Targets((1.0,) * 3, control, 1.2), 100)
+        state, records = run(model, LineTargets((1.0,) * 3, control, 1.2), 100)
         assert np.abs(state.moved).max() < 1e-10
         assert max(abs(measured.error) for measured in records) < 1e-12
     assert solve_exact(model, (1.0,) * 3).steps <= 1
@@ -72,20 +72,20 @@ def plain_cells_energy(model, moved):
 
 
 def test_a_cable_without_natural_length_is_a_force_density():
-    plain, hooke = small(), small(Mechanics(member_law="prestressed", prestress=1.0))
+    plain, hooke = small(), small(ModelOptions(member_law="prestressed", prestress=1.0))
     moved = 5.0 * RNG.normal(size=(len(plain.tensegric.free), 3))
     one, two = plain.tensegric, hooke.tensegric
     assert two.energy(moved) == pytest.approx(one.energy(moved), rel=1e-13)
     np.testing.assert_allclose(two.gradient(moved), one.gradient(moved), atol=1e-12)
     answers = [solve_exact(model, RATIOS).state.moved for model in (plain, hooke)]
     np.testing.assert_allclose(answers[1], answers[0], atol=1e-10)
-    turns = [run(model, Targets(RATIOS), 30)[0].moved for model in (plain, hooke)]
+    turns = [run(model, LineTargets(RATIOS), 30)[0].moved for model in (plain, hooke)]
     np.testing.assert_allclose(turns[1], turns[0], atol=1e-11)
 
 
 def test_a_prestressed_tent_by_hand():
     mesh, fixed = tent(height=3.0)  # four cables of sqrt(41) hold the tip
-    model = tensegric_model(mesh, fixed, Mechanics(member_law="prestressed", prestress=0.25))
+    model = tensegrity_model(mesh, fixed, ModelOptions(member_law="prestressed", prestress=0.25))
     q, length = model.density[0], np.sqrt(41.0)
     natural, lifted = 0.75 * length, 9.0  # the tip goes up from 3 to 7
     pull = 4.0 * q * ((lifted - natural) * 7.0 / lifted - (length - natural) * 3.0 / length)
@@ -100,7 +100,7 @@ def test_co_rotated_cells_of_a_free_body_do_not_feel_a_turn_but_a_stretch():
     control = sphere_control()
     rest = control.mesh.vertices
     turned, swollen = rest @ rotation(70.0).T + [5.0, -3.0, 8.0] - rest, 0.1 * rest
-    stiff, free = (tensegric_model(control.mesh, control.fixed, law) for law in (Mechanics(), LAWS[2]))
+    stiff, free = (tensegrity_model(control.mesh, control.fixed, law) for law in (ModelOptions(), LAWS[2]))
     scale = stiff.energy(turned)
     assert free.energy(turned) < 1e-24 * scale
     np.testing.assert_allclose(free.gradient(turned), 0.0, atol=1e-11)
@@ -111,7 +111,7 @@ def test_co_rotated_cells_of_a_free_body_do_not_feel_a_turn_but_a_stretch():
 def turned_border(law):
     """A small torso whose fixed points all turn by 30 degrees: model, its edges, places before and after."""
     model = small(law).tensegric
-    edges, density = np.concatenate([model.cables, model.held]), [model.density, model.held_density]
+    edges, density = np.concatenate([model.cables, model.fixed_edges]), [model.density, model.held_density]
     return model, edges, np.concatenate(density), model.rest @ rotation(30.0).T
 
 
@@ -167,7 +167,7 @@ def errors_of_differences(potential, multipliers, moved, step):
 
 
 @ALL_LAWS
-@pytest.mark.parametrize("hold", HOLDS)
+@pytest.mark.parametrize("hold", LINE_HOLDS)
 @pytest.mark.parametrize(("firm", "volume_of"), [(0.0, "each"), (0.1, "both")])
 def test_derivatives_converge_with_second_order(law, hold, firm, volume_of):
     model = small(replace(law, line_hold=hold, firm_chest=firm, volume_of=volume_of))
@@ -203,12 +203,12 @@ def test_what_is_clipped_is_positive_where_the_whole_is_not(law):
 
 def growth_of_a_turn(stiffness):
     """By how much the worst small shift of a torso grows in a turn that keeps its lines' forces."""
-    choice = Mechanics(line_force="explicit", line_stiffness=stiffness)
+    choice = ModelOptions(line_force="explicit", line_stiffness=stiffness)
     model = constrained_model(torso(), worn=["mid-bust"], mechanics=choice)
-    shape, targets = (len(model.tensegric.free), 3), Targets((1.0,) * 3, "none")
+    shape, targets = (len(model.tensegric.free), 3), LineTargets((1.0,) * 3, "none")
 
     def after(moved):
-        return turn(model, targets, State(moved.reshape(shape)))[0].moved.ravel()
+        return step(model, targets, SolverState(moved.reshape(shape)))[0].moved.ravel()
 
     loop = central_difference(after, np.zeros(shape[0] * 3), 1e-3)
     return model, float(np.abs(np.linalg.eigvals(loop)).max())
@@ -219,7 +219,7 @@ def test_explicit_lines_are_stable_at_a_fifth_and_no_more_above_a_quarter():
     assert growth_of_a_turn(0.25)[1] < 1.0
     for stiffness, settles in ((0.2, True), (0.3, False)):
         model, growth = growth_of_a_turn(stiffness)
-        _, records = run(model, Targets((1.0, 0.97, 1.0), "none"), 400)
+        _, records = run(model, LineTargets((1.0, 0.97, 1.0), "none"), 400)
         assert (growth < 1.0) == settles
         assert (records[-1].step < 1e-3) == settles
 
@@ -230,13 +230,13 @@ def test_explicit_and_implicit_lines_end_in_the_same_place(law, contact):
     places = []
     for line_force in ("implicit", "explicit"):
         choice = replace(law, line_force=line_force, line_contact=contact, line_stiffness=0.2)
-        places.append(settled(small(choice), Targets((1.0, 0.7, 0.9))).moved)
+        places.append(settled(small(choice), LineTargets((1.0, 0.7, 0.9))).moved)
     np.testing.assert_allclose(places[1], places[0], atol=1e-8)
     assert np.abs(places[0]).max() > 0.1
 
 
 def test_pressure_has_the_same_unit_under_every_law():
     for law in LAWS:
-        start = State(at_rest(small(law)).moved, Pressure(0.01))
-        _, measured = turn(small(law), Targets((1.0,) * 3, "conventional"), start)
+        start = SolverState(initial_state(small(law)).moved, Pressure(0.01))
+        _, measured = step(small(law), LineTargets((1.0,) * 3, "conventional"), start)
         assert measured.error == pytest.approx(0.01, rel=0.02)  # one turn makes the 1 % that were asked

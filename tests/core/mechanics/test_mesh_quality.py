@@ -5,9 +5,9 @@ import pytest
 from shapes import fitted, octahedron, tent, tent_model
 
 from core.mechanics.exact_solution import solve_exact
-from core.mechanics.mesh_quality import Condition, condition, rest_shape
+from core.mechanics.mesh_quality import MeshQuality, mesh_quality, original_shape
 from core.mechanics.model import constrained_model
-from core.mechanics.options import Mechanics
+from core.mechanics.options import ModelOptions
 from core.mechanics.solver_comparison import shape_of
 
 SIDE = np.sqrt(41.0)  # from a corner of the tent to its tip
@@ -17,7 +17,7 @@ def tent_with_tip(*tip):
     mesh, fixed = tent()
     points = mesh.vertices.copy()
     points[4] = tip
-    return condition(mesh, points, fixed)
+    return mesh_quality(mesh, points, fixed)
 
 
 def flags(found):
@@ -61,8 +61,8 @@ def test_an_upright_side_is_folded_but_not_inverted():
 
 def test_edges_between_fixed_points_do_not_count():
     mesh, fixed = tent()
-    assert len(rest_shape(mesh, fixed).edges) == 4
-    assert len(rest_shape(mesh).edges) == 8
+    assert len(original_shape(mesh, fixed).edges) == 4
+    assert len(original_shape(mesh).edges) == 8
 
 
 @pytest.mark.parametrize(
@@ -71,14 +71,14 @@ def test_edges_between_fixed_points_do_not_count():
 )
 def test_strain_is_amber_before_it_is_too_much(scale, strained, overstrained):
     ball = octahedron(100.0)
-    found = condition(ball, scale * ball.vertices)
-    assert (found.turned, found.shortest, found.longest) == pytest.approx((1.0, scale, scale))
+    found = mesh_quality(ball, scale * ball.vertices)
+    assert (found.least_cosine, found.shortest, found.longest) == pytest.approx((1.0, scale, scale))
     assert (found.strained, found.overstrained) == (strained, overstrained)
 
 
 def test_the_limits_themselves_are_within():
-    assert flags(Condition(0.21, 0.7, 1.3)) == (False, False, False, True)
-    assert flags(Condition(0.2, 0.8, 1.2)) == (True, False, False, False)
+    assert flags(MeshQuality(0.21, 0.7, 1.3)) == (False, False, False, True)
+    assert flags(MeshQuality(0.2, 0.8, 1.2)) == (True, False, False, False)
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, 1e200])
@@ -90,7 +90,7 @@ def test_a_shape_that_blew_up_is_folded_and_overstrained(bad):
 
 def test_a_mesh_with_nothing_free_keeps_its_shape():
     mesh, _ = tent()
-    assert condition(mesh, mesh.vertices, np.ones(5, dtype=bool)) == Condition(1.0, 1.0, 1.0)
+    assert mesh_quality(mesh, mesh.vertices, np.ones(5, dtype=bool)) == MeshQuality(1.0, 1.0, 1.0)
 
 
 def test_a_model_tells_the_same_as_its_mesh():
@@ -98,19 +98,19 @@ def test_a_model_tells_the_same_as_its_mesh():
     model = tent_model()
     points = mesh.vertices + np.array(4 * [[0.0, 0.0, 0.0]] + [[0.5, 0.2, -0.4]])
     of_model = shape_of(model)
-    assert of_model.condition(points) == condition(mesh, points, fixed)
+    assert of_model.quality(points) == mesh_quality(mesh, points, fixed)
 
 
 @pytest.mark.parametrize("sample", ["mannequin", "person"])
 def test_short_lines_strain_a_body_and_shorter_ones_fold_it(sample):
     control = fitted(sample)
-    shape = rest_shape(control.mesh, control.fixed)
-    stiff = constrained_model(control, worn=["mid-bust"], mechanics=Mechanics(line_stiffness=500.0))
+    shape = original_shape(control.mesh, control.fixed)
+    stiff = constrained_model(control, worn=["mid-bust"], mechanics=ModelOptions(line_stiffness=500.0))
     found = []
     for ratio in (0.97, 0.83, 0.65):
         moved = solve_exact(stiff, (1.0, ratio, 1.0)).state.moved
-        found.append(shape.condition(stiff.tensegric.expand(moved)))
+        found.append(shape.quality(stiff.tensegric.expand(moved)))
     assert [each.strained for each in found] == [False, True, True]
     assert [each.overstrained for each in found] == [False, True, True]
     assert [each.folded for each in found] == [False, False, True]
-    assert found[0].turned > found[1].turned > found[2].turned
+    assert found[0].least_cosine > found[1].least_cosine > found[2].least_cosine

@@ -6,7 +6,7 @@ from courses import course, motions
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.mechanics.convergence import judge
+from core.mechanics.convergence import assess_convergence
 
 LONG = np.arange(160)
 
@@ -26,7 +26,7 @@ def wave(period, growth=1.0, phase=0.0):
 )
 def test_a_swing_of_any_period_is_measured_on_top_of_a_drift(period, growth, amplitude, phase, drift):
     swing = amplitude * wave(period, growth, phase)
-    verdict = judge(course(-0.02 + drift * LONG + swing))
+    verdict = assess_convergence(course(-0.02 + drift * LONG + swing))
     assert verdict.motion == "vibrating"
     assert verdict.period == pytest.approx(period, rel=0.06)
     assert verdict.growth == pytest.approx(growth, abs=0.005)
@@ -35,7 +35,7 @@ def test_a_swing_of_any_period_is_measured_on_top_of_a_drift(period, growth, amp
 @settings(deadline=None)
 @given(st.just(2.0) | st.floats(3.5, 40.0), st.floats(2e-4, 0.1), st.floats(0.0, 0.1), st.floats(-0.1, 0.1))
 def test_the_amplitude_of_a_steady_swing_is_half_of_it(period, amplitude, phase, mean):
-    verdict = judge(course(mean + amplitude * wave(period, phase=phase)))
+    verdict = assess_convergence(course(mean + amplitude * wave(period, phase=phase)))
     assert verdict.amplitude == pytest.approx(amplitude, rel=0.06)
     assert verdict.error == pytest.approx(mean, abs=0.2 * amplitude)
 
@@ -57,12 +57,12 @@ def test_a_swing_is_seen_after_three_periods_at_the_latest(period):
 
 @pytest.mark.parametrize("period", [3, 10, 30])
 def test_a_slow_swing_is_seen_through_a_creeping_volume(period):
-    assert judge(course(0.002 * wave(period) - 0.02 * 0.95**LONG)).motion == "vibrating"
+    assert assess_convergence(course(0.002 * wave(period) - 0.02 * 0.95**LONG)).motion == "vibrating"
 
 
 @pytest.mark.parametrize("period", [9, 20, 36])
 def test_the_larger_of_two_swings_is_told(period):
-    verdict = judge(course(0.004 * wave(period) + 3e-4 * wave(2)))
+    verdict = assess_convergence(course(0.004 * wave(period) + 3e-4 * wave(2)))
     assert verdict.period == pytest.approx(period, rel=0.05)
     assert verdict.amplitude == pytest.approx(0.004, rel=0.05)
 
@@ -73,7 +73,7 @@ def test_a_loop_that_hears_its_volume_late_swings_as_its_characteristic_equation
     while len(errors) < 160:
         errors.append(errors[-1] - gain * errors[-1 - delay])
     root = max(np.roots([1.0, -1.0, *[0.0] * (delay - 1), gain]), key=abs)
-    verdict = judge(course(errors))
+    verdict = assess_convergence(course(errors))
     assert verdict.motion == "vibrating"
     assert verdict.growth == pytest.approx(abs(root), abs=0.003)
     assert verdict.period == pytest.approx(2.0 * np.pi / abs(np.angle(root)), rel=0.03)
@@ -102,9 +102,9 @@ def test_what_only_creeps_jumps_or_hums_is_settling_at_every_turn(errors):
 
 def test_a_shape_that_swings_at_constant_volume_vibrates():
     lengths = np.stack([300.0 + 0.4 * wave(12), 0.0 * LONG + 400.0], axis=1)
-    verdict = judge(course(1e-7 * wave(12), 0.2, lengths))
+    verdict = assess_convergence(course(1e-7 * wave(12), 0.2, lengths))
     assert (verdict.motion, verdict.period) == ("vibrating", pytest.approx(12.0))
     assert (verdict.amplitude, verdict.growth) == (0.0, pytest.approx(1.0))
     fading = 0.97**LONG
     lengths = np.stack([300.0 + 0.4 * fading * wave(12), 0.0 * LONG + 400.0], axis=1)
-    assert judge(course(1e-7 * wave(12), 0.5 * fading, lengths)).motion == "settling"
+    assert assess_convergence(course(1e-7 * wave(12), 0.5 * fading, lengths)).motion == "settling"

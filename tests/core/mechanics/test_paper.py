@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from core.mechanics.exact_solution import solve_exact
-from core.mechanics.iteration import Targets, iterate
+from core.mechanics.iteration import LineTargets, iterate
 from core.pipeline.build import Stages, build
-from core.pipeline.solve import Solution, run
+from core.pipeline.solve import Solution, solve
 
 Built = Callable[[str], Stages]
 SAMPLES = ("mannequin", "person")
@@ -21,7 +21,7 @@ def solved(
     stages: Stages, ratio: float, control: str, turns: int | None = None, gain: float | None = None
 ) -> Solution:
     design = replace(stages.design.with_line("mid-bust", ratio), volume=control, gain=gain)
-    return run(build(design, stages), turns)
+    return solve(build(design, stages), turns)
 
 
 def ratio_for(stages: Stages, shortening: float) -> float:
@@ -59,8 +59,8 @@ def test_the_bust_moves_upward(built: Built, sample: str) -> None:
     assert rest is not None
     assert now is not None
     assert now.apex_z - rest.apex_z > 0.5
-    assert now.nipple_left_z > rest.nipple_left_z
-    assert now.nipple_right_z > rest.nipple_right_z
+    assert now.bust_point_left_z > rest.bust_point_left_z
+    assert now.bust_point_right_z > rest.bust_point_right_z
 
 
 @pytest.mark.parametrize("sample", SAMPLES)
@@ -143,5 +143,5 @@ def test_turns_end_at_the_exact_answer(built: Built, sample: str) -> None:
     stages = built(sample)
     ratios = (1.0, 0.9, 1.0)
     exact = solve_exact(stages.model, ratios)
-    *_, (state, _) = iterate(stages.model, lambda: Targets(ratios), turns=2500)
+    *_, (state, _) = iterate(stages.model, lambda: LineTargets(ratios), turns=2500)
     assert np.abs(state.moved - exact.state.moved).max() < (0.01 if sample == "mannequin" else 0.1)

@@ -12,16 +12,16 @@ from slopes import slope
 
 from core.mechanics.exact_solution import solve_exact
 from core.mechanics.model import ConstrainedModel
-from core.mechanics.newton import Balance
-from core.mechanics.options import Mechanics
+from core.mechanics.newton import Equilibrium
+from core.mechanics.options import ModelOptions
 from core.mechanics.potential import Potential
-from core.mechanics.sensitivity import Answer
+from core.mechanics.sensitivity import Sensitivities
 
 RATIOS = (1.0, 0.93, 0.96)
 STEP = 5e-5
 
 
-def choices() -> list[Mechanics]:
+def choices() -> list[ModelOptions]:
     return [
         replace(law, line_contact=contact, line_hold=hold, volume_of=of)
         for law, contact, hold, of in product(
@@ -34,19 +34,19 @@ def answered(
     model: ConstrainedModel,
     ratios: tuple[float, ...],
     excess: np.ndarray | None = None,
-    near: Balance | None = None,
-) -> Answer:
+    near: Equilibrium | None = None,
+) -> Sensitivities:
     balance = solve_exact(model, ratios, excess=excess, near=near)
-    assert balance.found
-    return Answer(Potential(model, ratios, excess), balance)
+    assert balance.is_converged
+    return Sensitivities(Potential(model, ratios, excess), balance)
 
 
 @pytest.mark.parametrize("mechanics", choices(), ids=law_of)
-def test_rates_by_length_are_those_of_differences(mechanics: Mechanics) -> None:
+def test_rates_by_length_are_those_of_differences(mechanics: ModelOptions) -> None:
     model = small(mechanics)
     here = answered(model, RATIOS)
-    rates = here.by_ratio(model.pulling)
-    for column, line in enumerate(model.pulling):
+    rates = here.by_ratio(model.acting_lines)
+    for column, line in enumerate(model.acting_lines):
 
         def answer(change: float, line: int = line) -> np.ndarray:
             ratios = tuple(ratio + change * (at == line) for at, ratio in enumerate(RATIOS))
@@ -61,7 +61,7 @@ def test_rates_by_length_are_those_of_differences(mechanics: Mechanics) -> None:
 
 @pytest.mark.parametrize("contact", ["glued", "sliding"])
 def test_rates_by_what_a_side_is_given_are_those_of_differences(contact: str) -> None:
-    model = small(Mechanics(line_contact=contact))
+    model = small(ModelOptions(line_contact=contact))
     rates = answered(model, RATIOS).by_excess
     for side in range(2):
         unit = 1e6 * np.eye(2)[side]  # mm^3 in a step of 1

@@ -20,15 +20,15 @@ from models import (
 from shapes import fitted, mid_bust, mirrored, torso
 
 from app.research.sphere import sphere_model
-from core.document.line_notation import with_own_lines
-from core.document.lines import OwnLine
+from core.document.line_notation import with_custom_lines
+from core.document.lines import CustomLine
 from core.mechanics.exact_solution import NEWTON_LIMIT, newton, solve_exact
-from core.mechanics.iteration import State, Targets, at_rest, turn
+from core.mechanics.iteration import LineTargets, SolverState, initial_state, step
 from core.mechanics.model import constrained_model
-from core.mechanics.options import HOLDS, Mechanics
+from core.mechanics.options import LINE_HOLDS, ModelOptions
 from core.mechanics.volume import CONTROLS, Pressure
 
-SLIDING = Mechanics(line_contact="sliding")
+SLIDING = ModelOptions(line_contact="sliding")
 RATIOS = (1.0, 0.9, 1.0)
 WORN = ("mid-bust",)
 RNG = np.random.default_rng(17)
@@ -43,7 +43,7 @@ def across(model, points):
 @pytest.mark.parametrize("law", LAWS[:2], ids=law_of)
 @pytest.mark.parametrize("volume_of", ["each", "both"])
 def test_what_the_garment_carries_is_exactly_the_part_along_the_skin(law, volume_of):
-    choice = Mechanics(law.member_law, line_contact="sliding", volume_of=volume_of)
+    choice = ModelOptions(law.member_law, line_contact="sliding", volume_of=volume_of)
     model = small(choice, worn=WORN)
     balance = solve_exact(model, RATIOS)
     points = model.tensegric.expand(balance.state.moved)
@@ -91,19 +91,19 @@ def plain_sliding_sweep(model, targets, state):
 
 @pytest.mark.parametrize("control", [control for control in CONTROLS if control != "exact"])
 def test_a_sliding_turn_is_a_plain_sweep_point_by_point(control):
-    targets = Targets((1.0, 0.85, 1.05), control, 1.2)
+    targets = LineTargets((1.0, 0.85, 1.05), control, 1.2)
     model = small(SLIDING)
-    state = at_rest(model)
+    state = initial_state(model)
     for _ in range(4):
         expected = plain_sliding_sweep(model, targets, state)
-        state, _ = turn(model, targets, state)
+        state, _ = step(model, targets, state)
         np.testing.assert_allclose(model.tensegric.expand(state.moved), expected, atol=1e-10)
 
 
 @pytest.mark.parametrize("law", LAWS, ids=law_of)
 @pytest.mark.parametrize(("hold", "volume_of"), [("spring", "both"), ("held", "each"), ("held", "both")])
 def test_the_derivative_of_the_balance_converges_with_second_order(law, hold, volume_of):
-    model = small(Mechanics(law.member_law, line_contact="sliding", line_hold=hold, volume_of=volume_of))
+    model = small(ModelOptions(law.member_law, line_contact="sliding", line_hold=hold, volume_of=volume_of))
     moved = RNG.normal(size=(len(model.tensegric.free), 3))
     exact = check_sliding_derivative(model, RATIOS, moved)
     assert np.abs(exact - exact.T).max() > 0.1  # no energy has such a derivative
@@ -124,11 +124,11 @@ def test_the_last_steps_converge_quadratically(sample):
 def test_the_body_in_the_mirror_moves_as_the_mirror_of_the_body(hold):
     control = torso(skew=0.3)
     twin, was = mirrored(control)
-    choice = Mechanics(line_contact="sliding", line_hold=hold)
+    choice = ModelOptions(line_contact="sliding", line_hold=hold)
     model, mirror = (constrained_model(c, worn=WORN, mechanics=choice) for c in (control, twin))
     ratios = (1.0, 0.94, 1.0)
     balance, image = solve_exact(model, ratios), solve_exact(mirror, ratios)
-    assert balance.found
+    assert balance.is_converged
     shift = model.tensegric.expand(balance.state.moved) - model.tensegric.rest
     image_shift = mirror.tensegric.expand(image.state.moved) - mirror.tensegric.rest
     np.testing.assert_allclose(image_shift, shift[was] * [-1.0, 1.0, 1.0], atol=1e-8)
@@ -137,25 +137,25 @@ def test_the_body_in_the_mirror_moves_as_the_mirror_of_the_body(hold):
 
 @pytest.mark.parametrize("law", LAWS, ids=law_of)
 def test_turns_come_to_the_exact_answer(law):
-    model = small(Mechanics(law.member_law, line_contact="sliding", volume_of="both"), worn=WORN)
+    model = small(ModelOptions(law.member_law, line_contact="sliding", volume_of="both"), worn=WORN)
     exact = solve_exact(model, RATIOS).state.moved
-    np.testing.assert_allclose(settled(model, Targets(RATIOS)).moved, exact, atol=1e-8)
+    np.testing.assert_allclose(settled(model, LineTargets(RATIOS)).moved, exact, atol=1e-8)
 
 
 def test_a_turn_leaves_the_exact_answer_where_it_is():
-    model = small(Mechanics(line_contact="sliding", volume_of="both"), worn=WORN)
+    model = small(ModelOptions(line_contact="sliding", volume_of="both"), worn=WORN)
     balance = solve_exact(model, RATIOS)
-    start = State(balance.state.moved, Pressure(balance.pressures[0] / model.pressure_unit))
-    _, measured = turn(model, Targets(RATIOS, "accumulating"), start)
+    start = SolverState(balance.state.moved, Pressure(balance.pressures[0] / model.pressure_unit))
+    _, measured = step(model, LineTargets(RATIOS, "accumulating"), start)
     assert measured.step < 1e-9
 
 
 def bust_lift(sample, contact, ratio):
     """How far both bust points rise [mm], and how long the line is in parts of its rest length."""
-    choice = Mechanics(line_contact=contact)
+    choice = ModelOptions(line_contact=contact)
     model = constrained_model(fitted(sample), worn=["mid-bust"], mechanics=choice)
     balance = solve_exact(model, mid_bust(model, ratio))
-    assert balance.found
+    assert balance.is_converged
     points = model.tensegric.expand(balance.state.moved)
     rise = (points - model.tensegric.rest)[list(fitted(sample).bust_points), 2]
     return rise, model.lines[1].length(points) / model.lines[1].rest_length
@@ -180,50 +180,50 @@ def test_a_sliding_line_cannot_shrink_on_and_on(sample):
     assert bust_lift(sample, "glued", 0.6)[1] < 0.79
 
 
-@pytest.mark.parametrize("hold", HOLDS)
+@pytest.mark.parametrize("hold", LINE_HOLDS)
 def test_a_length_next_to_rest_is_found_in_a_few_steps(hold):
     """Turns cannot help here: a force that is kept during the turn is not calm for so stiff a line."""
     choice = replace(SLIDING, line_hold=hold, line_force="explicit", line_stiffness=500.0)
     model = small(choice, worn=WORN)
     for ratio in (0.9997, 0.99999, 1.0002):
         balance = solve_exact(model, (1.0, ratio, 1.0))
-        assert balance.found
+        assert balance.is_converged
         assert balance.steps <= 5
 
 
 def test_turns_find_what_the_walk_does_not():
     """Two lines cross on the sphere: the walk from rest breaks off, and leaves enough for the last resort."""
-    choice = Mechanics("prestressed", line_contact="sliding")
+    choice = ModelOptions("prestressed", line_contact="sliding")
     model = sphere_model(["horizontal", "vertical"], choice).model
     balance = solve_exact(model, (0.9, 0.95))
-    assert balance.found
+    assert balance.is_converged
     assert balance.steps <= NEWTON_LIMIT
-    assert not solve_exact(model, (0.9, 0.95), turns=False).found
+    assert not solve_exact(model, (0.9, 0.95), turns=False).is_converged
 
 
 def test_at_rest_a_walk_stands_in_its_answer():
     model = small(SLIDING, worn=WORN)
     balance = solve_exact(model, (1.0, 1.0, 1.0), turns=False)
-    assert (balance.found, balance.steps) == (True, 0)
+    assert (balance.is_converged, balance.steps) == (True, 0)
 
 
 def test_where_turns_run_away_too_the_end_of_the_walk_stays():
     """A sliding line to a single free point and back can hardly be held: nothing is torn apart over it."""
     there, mid = 13 * 2 + 4, 13 * 2 + 5
-    control = with_own_lines(torso(skew=0.3), (OwnLine("back", (there, mid, there)),))
+    control = with_custom_lines(torso(skew=0.3), (CustomLine("back", (there, mid, there)),))
     model = constrained_model(control, worn=["back"], mechanics=replace(SLIDING, line_hold="held"))
     balance = solve_exact(model, (1.0, 1.0, 1.0, 0.9))
-    assert not balance.found
+    assert not balance.is_converged
     assert np.abs(balance.state.moved).max() < 20.0
 
 
 @pytest.mark.parametrize("ratios", [(1.0, 0.85, 0.95), (1.0, 0.9, 0.95)])
 def test_where_newton_steps_fail_turns_are_the_last_resort(ratios):
     """Two sliding lines side by side over few free points: a case that only turns arrived at once."""
-    model = small(Mechanics("prestressed", line_contact="sliding", volume_of="both"))
+    model = small(ModelOptions("prestressed", line_contact="sliding", volume_of="both"))
     balance = solve_exact(model, ratios)
-    assert balance.found
-    np.testing.assert_allclose(balance.state.moved, settled(model, Targets(ratios)).moved, atol=1e-7)
+    assert balance.is_converged
+    np.testing.assert_allclose(balance.state.moved, settled(model, LineTargets(ratios)).moved, atol=1e-7)
 
 
 def test_turns_that_balance_the_sum_are_shared_out_to_each_breast():
@@ -233,5 +233,5 @@ def test_turns_that_balance_the_sum_are_shared_out_to_each_breast():
     balance = solve_exact(case.model, case.targets)
     points = case.model.tensegric.expand(balance.state.moved)
     away = case.model.volume.side_volumes(points) - case.model.rest_sides
-    assert balance.found
+    assert balance.is_converged
     assert np.abs(away).max() < 1e-9 * case.model.volume.rest_volume

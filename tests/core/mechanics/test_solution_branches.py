@@ -9,10 +9,10 @@ import pytest
 import core.mechanics.exact_solution
 from core.analysis.length_limits.limits import limits_of
 from core.control_mesh.template import read_template
-from core.document.line_notation import ready_made
-from core.document.lines import WornLine
+from core.document.line_notation import ready_made_lines
+from core.document.lines import ActiveLine
 from core.mechanics.exact_solution import solve_exact
-from core.pipeline.build import Stages, build, targets_of
+from core.pipeline.build import Stages, build, line_targets
 
 WORN = (("mid-bust", 0.909), ("full-bust", 0.96), ("strap left", 0.973), ("strap right", 0.973))
 
@@ -22,8 +22,8 @@ def strapped(built) -> Stages:
     stages = built("mannequin")
     design = replace(
         stages.design,
-        own_lines=ready_made(read_template("168"))["straps"],
-        lines=tuple(WornLine(*line) for line in WORN),
+        own_lines=ready_made_lines(read_template("168"))["straps"],
+        lines=tuple(ActiveLine(*line) for line in WORN),
         line_contact="sliding",
         volume="exact",
     )
@@ -35,10 +35,10 @@ def answers(stages: Stages, lengths) -> list[np.ndarray]:
     names = [line.name for line in stages.model.lines]
     found = []
     for length in lengths:
-        set_ = list(targets_of(stages.design, stages).ratios)
+        set_ = list(line_targets(stages.design, stages).ratios)
         set_[names.index("mid-bust")] = float(length)
         balance = solve_exact(stages.model, tuple(set_))
-        assert balance.found
+        assert balance.is_converged
         found.append(balance.state.moved)
     return found
 
@@ -51,7 +51,7 @@ def test_lengths_close_by_have_answers_close_by(strapped: Stages) -> None:
 
 
 def test_zones_are_of_the_answer_that_rest_leads_to(strapped: Stages) -> None:
-    begins = limits_of(strapped, "mid-bust", through=False).begins["strained"]
+    begins = limits_of(strapped, "mid-bust", through=False).onsets["strained"]
     assert begins is not None
     names = [line.name for line in strapped.model.lines]
     line = strapped.model.lines[names.index("mid-bust")]

@@ -12,15 +12,15 @@ from scipy.spatial.transform import Rotation
 
 from app.research.sphere import SphereModel, sphere_model
 from core.geometry.mesh import Points
-from core.mechanics.exact_solution import Balance, solve_exact
-from core.mechanics.iteration import Targets, iterate
-from core.mechanics.options import CONTACTS, HOLDS, LAWS, Mechanics
+from core.mechanics.exact_solution import Equilibrium, solve_exact
+from core.mechanics.iteration import LineTargets, iterate
+from core.mechanics.options import CONTACTS, LAWS, LINE_HOLDS, ModelOptions
 
 LINES = ("horizontal", "vertical")
 
 
 @cache
-def solved(line: str, ratio: float) -> tuple[SphereModel, Balance]:
+def solved(line: str, ratio: float) -> tuple[SphereModel, Equilibrium]:
     model = sphere_model((line,))
     return model, solve_exact(model.model, asked(line, ratio))
 
@@ -56,7 +56,7 @@ def test_the_lines_are_great_circles() -> None:
 
 def test_at_rest_nothing_moves() -> None:
     ball = sphere_model(LINES)
-    *_, (state, measured) = iterate(ball.model, lambda: Targets((1.0, 1.0)), turns=20)
+    *_, (state, measured) = iterate(ball.model, lambda: LineTargets((1.0, 1.0)), turns=20)
     assert np.abs(state.moved).max() < 1e-10
     assert abs(measured.error) < 1e-12
     assert np.array_equal(ball.shape(np.zeros_like(state.moved)).vertices, ball.body.vertices)
@@ -113,7 +113,7 @@ def test_the_vertical_answer_too(axis: int) -> None:
     assert moved_by_turning(ball, balance, axis, 180.0) < 1e-6
 
 
-def moved_by_turning(ball: SphereModel, balance: Balance, axis: int, degrees: float) -> float:
+def moved_by_turning(ball: SphereModel, balance: Equilibrium, axis: int, degrees: float) -> float:
     """How far the answer is from itself, turned about an axis that maps mesh and line on themselves [mm]."""
     turn = Rotation.from_euler("xyz"[axis], degrees, degrees=True).as_matrix().T
     away, image = cKDTree(ball.control.mesh.vertices).query(ball.control.mesh.vertices @ turn)
@@ -132,21 +132,21 @@ def test_horizontal_and_vertical_are_the_same_on_a_sphere_but_for_the_mesh() -> 
 
 def test_turns_end_at_the_exact_answer() -> None:
     ball, balance = solved("horizontal", 0.8)
-    *_, (state, measured) = iterate(ball.model, lambda: Targets(asked("horizontal", 0.8)), turns=1200)
+    *_, (state, measured) = iterate(ball.model, lambda: LineTargets(asked("horizontal", 0.8)), turns=1200)
     assert abs(measured.error) < 1e-9
     assert ball.centred(state.moved) == pytest.approx(ball.centred(balance.state.moved), abs=1e-3)
 
 
-@pytest.mark.parametrize("hold", HOLDS)
+@pytest.mark.parametrize("hold", LINE_HOLDS)
 @pytest.mark.parametrize("contact", CONTACTS)
 @pytest.mark.parametrize("law", LAWS)
 def test_every_law_narrows_the_sphere_at_constant_volume(law: str, contact: str, hold: str) -> None:
-    mechanics = Mechanics(member_law=law, line_contact=contact, line_hold=hold)
+    mechanics = ModelOptions(member_law=law, line_contact=contact, line_hold=hold)
     ball = sphere_model(("horizontal",), mechanics)
     balance = solve_exact(ball.model, asked("horizontal", 0.9))
     points = ball.centred(balance.state.moved)
     size = np.ptp(points, axis=0)
-    assert balance.found
+    assert balance.is_converged
     assert size[0] == pytest.approx(size[1], abs=1e-6)
     assert size[0] < 185.0
     assert size[2] > 210.0
@@ -162,7 +162,7 @@ def test_two_closed_lines_at_once() -> None:
     ball = sphere_model(LINES)
     balance = solve_exact(ball.model, (0.85, 0.85))
     points = ball.centred(balance.state.moved)
-    assert balance.found
+    assert balance.is_converged
     assert all(0.85 < share < 0.9 for share in reached(ball, points).values())
     apart = np.linalg.norm(points, axis=1)
     between = np.abs(ball.control.mesh.vertices[:, 1:]).min(axis=1) > 40.0
@@ -173,7 +173,7 @@ def test_two_closed_lines_at_once() -> None:
 @pytest.mark.parametrize("ratio", [1.15, 1.2, 1.3])
 def test_a_line_that_buckles_the_sphere_is_found_in_few_steps(hold, ratio):
     """A ring that is longer than its rest pushes: there the true stiffness is seldom positive definite."""
-    model = sphere_model(("vertical",), mechanics=Mechanics(line_hold=hold)).model
+    model = sphere_model(("vertical",), mechanics=ModelOptions(line_hold=hold)).model
     balance = solve_exact(model, tuple(ratio if line.name == "vertical" else 1.0 for line in model.lines))
-    assert balance.found
+    assert balance.is_converged
     assert balance.steps <= 30

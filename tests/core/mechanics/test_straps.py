@@ -7,20 +7,20 @@ import pytest
 from models import cable_force, settled, volume_slopes
 from shapes import central_difference, torso
 
-from core.control_mesh.straps import shoulder_above, tail_of
-from core.document.line_notation import with_own_lines
-from core.document.lines import OwnLine
+from core.control_mesh.straps import shoulder_above, strap_tail
+from core.document.line_notation import with_custom_lines
+from core.document.lines import CustomLine
 from core.errors import LineError
 from core.geometry.mesh import Mesh
 from core.mechanics.exact_solution import solve_exact
-from core.mechanics.iteration import Targets
+from core.mechanics.iteration import LineTargets
 from core.mechanics.model import ConstrainedModel, constrained_model
-from core.mechanics.options import HOLDS, Mechanics
+from core.mechanics.options import LINE_HOLDS, ModelOptions
 from core.mechanics.potential import Potential
-from core.mechanics.sensitivity import Answer
+from core.mechanics.sensitivity import Sensitivities
 
 RADIUS, LOW, BEND = 50.0, -200.0, 24
-STRAP = OwnLine("strap", tuple(13 * row + 9 for row in range(2, 7)), over_shoulder=True)
+STRAP = CustomLine("strap", tuple(13 * row + 9 for row in range(2, 7)), over_shoulder=True)
 TAIL = 320.0
 
 
@@ -52,7 +52,7 @@ def band(z: float) -> np.ndarray:
 
 
 def test_a_tail_runs_straight_over_the_shoulder_and_down_to_the_band():
-    tail = tail_of(shoulder(), np.array([10.0, -RADIUS, -40.0]), band(-120.0))
+    tail = strap_tail(shoulder(), np.array([10.0, -RADIUS, -40.0]), band(-120.0))
     quarter = BEND * RADIUS * np.sin(np.pi / (2 * BEND))  # of chords
     assert tail.problem == ""
     assert tail.length == pytest.approx(40.0 + 2.0 * quarter + 120.0, abs=0.01)
@@ -71,15 +71,15 @@ def test_where_the_scan_ends_below_the_shoulder_there_is_none(covered):
     end = np.array([10.0, -RADIUS, -90.0])
     with pytest.raises(LineError, match="ends below the shoulder"):
         shoulder_above(skin, end)
-    tail = tail_of(skin, end, band(-120.0))
+    tail = strap_tail(skin, end, band(-120.0))
     assert (tail.length, len(tail.path)) == (0.0, 0)
     assert "below the shoulder" in tail.problem
 
 
 def model_with(tail: float = TAIL, **choices) -> ConstrainedModel:
-    control = with_own_lines(torso(skew=0.3), (STRAP,))
+    control = with_custom_lines(torso(skew=0.3), (STRAP,))
     return constrained_model(
-        control, worn=["strap"], tail_lengths={"strap": tail}, mechanics=Mechanics(**choices)
+        control, worn=["strap"], tail_lengths={"strap": tail}, mechanics=ModelOptions(**choices)
     )
 
 
@@ -90,16 +90,16 @@ def ratios_of(model: ConstrainedModel, ratio: float) -> tuple[float, ...]:
 def test_a_strap_ends_where_the_body_is_fixed_whichever_way_it_was_drawn():
     control = torso(skew=0.3)
     up, down = (
-        with_own_lines(control, (replace(STRAP, points=points),)).paths["strap"]
+        with_custom_lines(control, (replace(STRAP, points=points),)).paths["strap"]
         for points in (STRAP.points, STRAP.points[::-1])
     )
     assert up == down == STRAP.points
     assert control.fixed[up[-1]]
     assert not control.fixed[up[-2]]
     longer = replace(STRAP, points=(*STRAP.points, 13 * 7 + 9))
-    assert with_own_lines(control, (longer,)).paths["strap"] == up
-    free = OwnLine("strap", places=((6.9, 2.6), (2.3, 3.2)), over_shoulder=True)
-    laid = with_own_lines(control, (free,)).embedded["strap"]
+    assert with_custom_lines(control, (longer,)).paths["strap"] == up
+    free = CustomLine("strap", places=((6.9, 2.6), (2.3, 3.2)), over_shoulder=True)
+    laid = with_custom_lines(control, (free,)).embedded["strap"]
     assert laid.places[0].tolist() == [2.3, 3.2]
     held = laid.weights @ control.fixed
     assert held[-1] == pytest.approx(1.0)
@@ -110,10 +110,10 @@ def test_a_strap_ends_where_the_body_is_fixed_whichever_way_it_was_drawn():
 def test_its_last_segment_pulls_with_the_tape_over_the_shoulder(ratio):
     model = model_with()
     answer = solve_exact(model, ratios_of(model, ratio))
-    assert answer.found
+    assert answer.is_converged
     points = model.tensegric.expand(answer.state.moved)
     force, line = np.zeros_like(points), model.lines[-1]
-    ea = model.mechanics.line_stiffness * model.tensegric.mean_stiffness * line.spacing
+    ea = model.options.line_stiffness * model.tensegric.mean_stiffness * line.spacing
     for (i, j), more in zip(zip(STRAP.points, STRAP.points[1:], strict=False), (0, 0, 0, TAIL), strict=True):
         span = points[i] - points[j]
         length = np.linalg.norm(span)
@@ -138,25 +138,25 @@ def test_a_longer_strap_is_softer():
     assert moved[0] > moved[1] > moved[2] > 0.0
 
 
-@pytest.mark.parametrize("hold", HOLDS)
+@pytest.mark.parametrize("hold", LINE_HOLDS)
 @pytest.mark.parametrize("contact", ["glued", "sliding"])
 def test_turns_rest_where_the_exact_answer_is(hold, contact):
     model = model_with(line_hold=hold, line_contact=contact, line_stiffness=4.0, volume_of="both")
     ratios = ratios_of(model, 0.99)
     exact = solve_exact(model, ratios)
-    assert exact.found
-    state = settled(model, Targets(ratios, "integral"), turns=6000)
+    assert exact.is_converged
+    state = settled(model, LineTargets(ratios, "integral"), turns=6000)
     np.testing.assert_allclose(state.moved, exact.state.moved, atol=1e-6)
     if hold == "held":
         reached = model.lines[-1].length(model.tensegric.expand(exact.state.moved))
         assert reached == pytest.approx(0.99 * model.lines[-1].rest_length, rel=1e-9)
 
 
-@pytest.mark.parametrize("hold", HOLDS)
+@pytest.mark.parametrize("hold", LINE_HOLDS)
 def test_rates_by_its_length_are_those_of_answers(hold):
     model, at = model_with(line_hold=hold), 0.99
     index = np.array([len(model.lines) - 1])
-    answer = Answer(Potential(model, ratios_of(model, at)), solve_exact(model, ratios_of(model, at)))
+    answer = Sensitivities(Potential(model, ratios_of(model, at)), solve_exact(model, ratios_of(model, at)))
 
     def moved(ratio):
         return solve_exact(model, ratios_of(model, float(ratio[0]))).state.moved

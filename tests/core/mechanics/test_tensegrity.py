@@ -6,12 +6,12 @@ from scipy import sparse
 from shapes import string, tent, torso
 
 from core.mechanics.springs import incidence_of, laplacian
-from core.mechanics.tensegrity import tensegric_model
+from core.mechanics.tensegrity import tensegrity_model
 
 
 def test_force_densities_are_inverse_lengths_with_mean_one():
     control = torso()
-    model = tensegric_model(control.mesh, np.zeros(len(control.fixed), dtype=bool))
+    model = tensegrity_model(control.mesh, np.zeros(len(control.fixed), dtype=bool))
     length = np.linalg.norm(model.rest[model.cables[:, 0]] - model.rest[model.cables[:, 1]], axis=1)
     assert model.density.mean() == pytest.approx(1.0, abs=1e-14)
     np.testing.assert_allclose(model.density * length, (model.density * length)[0], rtol=1e-13)
@@ -19,7 +19,7 @@ def test_force_densities_are_inverse_lengths_with_mean_one():
 
 def test_the_tent_by_hand():
     mesh, fixed = tent(height=2.0)
-    model = tensegric_model(mesh, fixed)
+    model = tensegrity_model(mesh, fixed)
     side, ridge = 1 / 8, 1 / 6  # sides of 8 mm, four cables of sqrt(16 + 16 + 4) = 6 mm to the tip
     mean = (4 * side + 4 * ridge) / 8
     assert model.free.tolist() == [4]
@@ -49,7 +49,7 @@ def test_prestress_balances_every_free_point_at_rest():
     The displaced model must feel exactly q (e - E) summed: the stiffness times the displacement.
     """
     control = torso()
-    model = tensegric_model(control.mesh, control.fixed)
+    model = tensegrity_model(control.mesh, control.fixed)
     moved = np.random.default_rng(1).normal(size=(len(model.free), 3))
     points = model.expand(moved)
     force = np.zeros_like(points)
@@ -62,14 +62,14 @@ def test_prestress_balances_every_free_point_at_rest():
 
 def test_the_stiffness_is_symmetric_and_positive():
     control = torso()
-    stiffness = tensegric_model(control.mesh, control.fixed).stiffness
+    stiffness = tensegrity_model(control.mesh, control.fixed).stiffness
     np.testing.assert_array_equal(stiffness, stiffness.T)
     assert np.linalg.eigvalsh(stiffness)[0] > 0.01
 
 
 def test_the_stiffness_agrees_with_a_graph_library():
     control = torso()
-    model = tensegric_model(control.mesh, control.fixed)
+    model = tensegrity_model(control.mesh, control.fixed)
     n = len(model.rest)
     graph = sparse.coo_array((model.density, tuple(model.cables.T)), shape=(n, n))
     whole = sparse.csgraph.laplacian((graph + graph.T).tocsr()).toarray()
@@ -78,7 +78,7 @@ def test_the_stiffness_agrees_with_a_graph_library():
 
 def test_only_cables_that_can_move_are_kept():
     control = torso()
-    model = tensegric_model(control.mesh, control.fixed)
+    model = tensegrity_model(control.mesh, control.fixed)
     assert (~control.fixed[model.cables]).any(axis=1).all()
     assert model.free.tolist() == np.flatnonzero(~control.fixed).tolist()
     assert len(model.free) == 36

@@ -8,13 +8,13 @@ from shapes import central_difference, octahedron, tent, torso
 
 from app.research.sphere import sphere
 from core.geometry.mesh import Mesh
-from core.mechanics.gain_limit import sum_of
-from core.mechanics.tensegrity import tensegric_model
+from core.mechanics.gain_limit import weighted_sum
+from core.mechanics.tensegrity import tensegrity_model
 from core.mechanics.volume import CONTROLS, Pressure, next_pressure, volume_measure
 
 
 def measured(control):
-    model = tensegric_model(control.mesh, control.fixed)
+    model = tensegrity_model(control.mesh, control.fixed)
     left = control.column[control.mesh.faces].sum(axis=1) > 0
     return model, volume_measure(control.mesh, model.free, left)
 
@@ -30,7 +30,7 @@ def curvature(volume, points, free, pressures=(1.0, 1.0)):
     place[free] = np.arange(len(free))
     entries, flat = volume.curvature(place), (points - volume.centre).ravel()
     figures = np.concatenate([pressure * flat for pressure in pressures])
-    return sum_of([entries], [figures], 3 * len(free)).toarray()
+    return weighted_sum([entries], [figures], 3 * len(free)).toarray()
 
 
 def test_the_tent_by_hand():

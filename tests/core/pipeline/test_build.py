@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from core.document.design import Design, ScanSource
-from core.document.lines import WornLine
+from core.document.lines import ActiveLine
 from core.errors import LandmarkError, LineError, ScanError, UserError
 from core.landmarks.detect import find_landmarks
 from core.pipeline import build as pipeline
-from core.pipeline.build import Stages, StuckError, build, targets_of
+from core.pipeline.build import IncompleteBuildError, Stages, build, line_targets
 from core.progress import Cancelled
 
 Built = Callable[[str], Stages]
@@ -53,7 +53,7 @@ def test_another_template_keeps_body_and_landmarks(built: Built) -> None:
 def test_a_failing_stage_leaves_the_former_ones_usable(built: Built) -> None:
     stages = built("mannequin")
     with pytest.raises(LineError, match="no line 'wing'"):
-        build(replace(stages.design, lines=(WornLine("wing", 0.9),)), stages)
+        build(replace(stages.design, lines=(ActiveLine("wing", 0.9),)), stages)
     assert made_anew(stages.design, stages) == []
 
 
@@ -77,14 +77,14 @@ def test_a_stuck_scan_keeps_what_was_read_and_nothing_of_the_failure(
     def nothing(*_: object, **__: object) -> None:
         raise LandmarkError("No bust is here.", "Place its points.")
 
-    monkeypatch.setattr(pipeline, "find", nothing)
+    monkeypatch.setattr(pipeline, "detect_landmarks", nothing)
     design, told = replace(built("mannequin").design, lines=()), list[str]()
-    with pytest.raises(StuckError) as first:
+    with pytest.raises(IncompleteBuildError) as first:
         build(design)
     assert first.value.kind == "landmarks"
     assert (first.value.__cause__, first.value.__context__) == (None, None)
     placed = design.with_placed("fold_left", (60.0, -180.0, 300.0))
-    with pytest.raises(StuckError) as again:
+    with pytest.raises(IncompleteBuildError) as again:
         build(placed, first.value, lambda what, _: told.append(what))
     assert told == ["find landmarks"]
     assert again.value.body is first.value.body
@@ -106,20 +106,22 @@ def test_nothing_moves_at_rest(built: Built, sample: str) -> None:
 def test_the_watched_points_are_the_landmarks(built: Built, sample: str) -> None:
     stages = built(sample)
     marks = stages.rest_marks
-    assert marks.nipple_left_z == pytest.approx(stages.landmarks.position("bust_point_left")[2], abs=1e-9)
-    assert marks.nipple_right_z == pytest.approx(stages.landmarks.position("bust_point_right")[2], abs=1e-9)
+    assert marks.bust_point_left_z == pytest.approx(stages.landmarks.position("bust_point_left")[2], abs=1e-9)
+    assert marks.bust_point_right_z == pytest.approx(
+        stages.landmarks.position("bust_point_right")[2], abs=1e-9
+    )
     # No bust point lies in front of the apex by more than the softness of its mean allows.
     foremost = -min(stages.landmarks.position(f"bust_point_{side}")[1] for side in ("left", "right"))
     border = stages.control.mesh.vertices[stages.control.border, 1].mean()
     assert marks.apex_protrusion > foremost + border - 2.0
-    for side, out in (("left", marks.nipple_left_out), ("right", marks.nipple_right_out)):
+    for side, out in (("left", marks.bust_point_left_out), ("right", marks.bust_point_right_out)):
         assert out == pytest.approx(border - stages.landmarks.position(f"bust_point_{side}")[1], abs=1e-9)
 
 
 def test_targets_follow_the_design(built: Built) -> None:
     stages = built("mannequin")
     design = replace(stages.design, volume="conventional", gain=1.25).with_line("full-bust", 0.9)
-    targets = targets_of(design, build(design, stages))
+    targets = line_targets(design, build(design, stages))
     names = [line.name for line in stages.model.lines]
     assert dict(zip(names, targets.ratios, strict=True)) == {
         "under-bust": 1.0,

@@ -34,7 +34,7 @@ def answer(solver: LiveSolver, until: Callable[[Frame], bool], hold: bool = Fals
     """The first frame that fits; a failure is raised."""
     deadline = time.monotonic() + PATIENCE
     while time.monotonic() < deadline:
-        latest = solver.latest(hold)
+        latest = solver.poll(hold)
         if isinstance(latest, Failure):
             raise latest.error
         if latest is not None and until(latest):
@@ -44,7 +44,7 @@ def answer(solver: LiveSolver, until: Callable[[Frame], bool], hold: bool = Fals
 
 
 def settled(solver: LiveSolver, revision: int) -> Frame:
-    return answer(solver, lambda frame: frame.revision == revision and not frame.at_work)
+    return answer(solver, lambda frame: frame.revision == revision and not frame.is_running)
 
 
 def test_the_newest_design_wins(solver: LiveSolver, built: Built) -> None:
@@ -67,7 +67,7 @@ def test_no_record_is_lost_while_lengths_change(solver: LiveSolver, built: Built
         time.sleep(0.02)
     frame = settled(solver, revision)
     for records in frame.tracks.values():
-        assert [record.turn for record in records] == list(range(len(records)))
+        assert [record.iteration for record in records] == list(range(len(records)))
 
 
 def test_fresh_begins_a_new_run_without_a_jump(solver: LiveSolver, built: Built) -> None:
@@ -75,7 +75,7 @@ def test_fresh_begins_a_new_run_without_a_jump(solver: LiveSolver, built: Built)
     before = settled(solver, solver.submit(design, fresh=True))
     revision = solver.submit(design.with_line("mid-bust", 0.965), fresh=True)
     after = answer(solver, lambda frame: frame.revision == revision)
-    assert after.tracks["adaptive"][0].turn == 0
+    assert after.tracks["adaptive"][0].iteration == 0
     assert after.tracks["adaptive"][0].lengths == before.tracks["adaptive"][-1].lengths
     settled(solver, revision)
 
@@ -95,7 +95,7 @@ def test_a_failure_is_told_and_the_solver_goes_on(solver: LiveSolver, built: Bui
     deadline = time.monotonic() + PATIENCE
     failure = None
     while failure is None and time.monotonic() < deadline:
-        latest = solver.latest()
+        latest = solver.poll()
         failure = latest if isinstance(latest, Failure) else None
         time.sleep(0.002)
     assert failure is not None
@@ -111,10 +111,10 @@ def test_frames_after_a_failure_belong_to_the_design_before_it(solver: LiveSolve
     answer(solver, lambda frame: frame.revision == good)
     answer(solver, lambda _: True, hold=True)
     bad = solver.submit(Design(ScanSource("no-such-scan.ply")))
-    solver.release()
+    solver.resume()
     with pytest.raises(UserError):
         answer(solver, lambda frame: frame.revision == bad)
-    solver.latest()
+    solver.poll()
     assert answer(solver, lambda _: True).revision == good
 
 
@@ -124,14 +124,14 @@ def test_no_turn_is_made_while_a_frame_is_shown(solver: LiveSolver, built: Built
     first, under_way = answer(solver, lambda frame: frame.revision == revision, hold=True), 0
     time.sleep(HELD)
     # What was under way may still come; on a busy machine it comes late.
-    while (more := solver.latest(hold=True)) is not None:
+    while (more := solver.poll(hold=True)) is not None:
         assert isinstance(more, Frame)
         first, under_way = more, under_way + 1
         assert under_way < 4, "turns are made all the same"
         time.sleep(0.1)
-    solver.release()
+    solver.resume()
     second = answer(solver, lambda _: True)
-    assert second.tracks["adaptive"][-1].turn > first.tracks["adaptive"][-1].turn
+    assert second.tracks["adaptive"][-1].iteration > first.tracks["adaptive"][-1].iteration
     assert second.seconds - first.seconds < HELD, "what is not worked is not counted"
 
 
@@ -148,10 +148,10 @@ def test_no_frame_is_published_without_an_iteration(
     while len(seen) < 10:
         for _ in range(20):
             time.sleep(0.001)
-            seen += [frame for frame in [solver.latest(hold=True)] if isinstance(frame, Frame)]
-        solver.release()
+            seen += [frame for frame in [solver.poll(hold=True)] if isinstance(frame, Frame)]
+        solver.resume()
         seen.append(answer(solver, lambda _: True, hold=True))
-    turns = [frame.tracks["adaptive"][-1].turn for frame in seen]
+    turns = [frame.tracks["adaptive"][-1].iteration for frame in seen]
     assert turns == list(range(turns[0], turns[0] + len(turns)))
 
 
@@ -165,8 +165,8 @@ def test_lengths_that_a_hand_leaves_while_a_frame_is_shown_are_never_solved(
     for ratio in np.linspace(0.98, 0.91, 8):
         last = solver.submit(design.with_line("mid-bust", float(ratio)))
         time.sleep(0.01)
-        assert solver.latest(hold=True) is None, "the last picture is still being made"
-    solver.release()
+        assert solver.poll(hold=True) is None, "the last picture is still being made"
+    solver.resume()
     assert answer(solver, lambda _: True).revision == last
 
 
@@ -186,7 +186,7 @@ def test_at_a_pace_each_turn_is_shown_and_a_new_length_does_not_wait(
     assert time.monotonic() - start >= 4 / 40.0, "five turns with four pauses between them"
     solver.set_pace(0.001)
     revision = solver.submit(design.with_line("mid-bust", 0.94))
-    assert answer(solver, lambda frame: frame.revision == revision).at_work
+    assert answer(solver, lambda frame: frame.revision == revision).is_running
     solver.set_pace(None)
     assert settled(solver, revision).verdict.state == "settled"
 

@@ -11,22 +11,22 @@ from shapes import mid_bust, run, tent_model, torso
 
 from app.research.sphere import sphere
 from core.geometry.mesh import Mesh
-from core.geometry.mirror_plane import MIRROR, Sides, mirror_plane
-from core.mechanics.iteration import Targets
+from core.geometry.mirror_plane import MIRROR, SideComparison, mirror_plane
+from core.mechanics.iteration import LineTargets
 from core.mechanics.model import constrained_model
 from core.pipeline.build import Stages
-from core.pipeline.surface_fields import StrainOnBody, moved_outward, pulls, strains
+from core.pipeline.surface_fields import StrainOnBody, line_forces, normal_displacement, strains
 
 BALL = sphere(rings=31, spokes=64)
 
 
 def test_a_ball_that_swells_by_3_mm_has_moved_by_3_mm_everywhere() -> None:
     normals = BALL.vertices / 100.0
-    values = moved_outward(BALL.vertices, normals, 1.03 * BALL.vertices)
+    values = normal_displacement(BALL.vertices, normals, 1.03 * BALL.vertices)
     assert values == pytest.approx(3.0)
     turned = BALL.vertices @ np.array([[0.999, -0.0447, 0.0], [0.0447, 0.999, 0.0], [0.0, 0.0, 1.0]])
     assert (
-        np.abs(moved_outward(BALL.vertices, normals, turned)).max() < 0.11
+        np.abs(normal_displacement(BALL.vertices, normals, turned)).max() < 0.11
     )  # along the skin: no way outward
 
 
@@ -57,23 +57,23 @@ def test_strain_is_carried_to_the_body_and_fades_with_it() -> None:
 def test_pulls_are_shares_of_the_strongest_segment() -> None:
     model = tent_model()
     points = model.tensegric.rest.copy()
-    assert pulls(model, points, (1.0,) * len(model.lines)) == {
+    assert line_forces(model, points, (1.0,) * len(model.lines)) == {
         line.name: pytest.approx(0.0) for line in model.lines if line.constrains
     }
-    found = pulls(model, points, (0.9,) * len(model.lines))
+    found = line_forces(model, points, (0.9,) * len(model.lines))
     by_hand = np.concatenate([0.1 * model.segments.stiffness * model.segments.rest_lengths])
     assert np.concatenate(list(found.values())) == pytest.approx(by_hand / by_hand.max())
 
 
 def test_held_lines_have_no_pull_of_a_spring() -> None:
-    model = constrained_model(torso(), mechanics=replace(tent_model().mechanics, line_hold="held"))
-    assert pulls(model, model.tensegric.rest, mid_bust(model, 0.95)) == {}
+    model = constrained_model(torso(), mechanics=replace(tent_model().options, line_hold="held"))
+    assert line_forces(model, model.tensegric.rest, mid_bust(model, 0.95)) == {}
 
 
 def test_the_pull_on_a_short_line_is_even_on_both_sides() -> None:
     model = constrained_model(torso(), worn=["mid-bust"])
-    state, _ = run(model, Targets(mid_bust(model, 0.93), "adaptive", 0.0), 150)
-    (share,) = pulls(model, model.tensegric.expand(state.moved), mid_bust(model, 0.93)).values()
+    state, _ = run(model, LineTargets(mid_bust(model, 0.93), "adaptive", 0.0), 150)
+    (share,) = line_forces(model, model.tensegric.expand(state.moved), mid_bust(model, 0.93)).values()
     assert share.max() == pytest.approx(1.0)
     assert share == pytest.approx(share[::-1], abs=5e-3)  # turns go from one side to the other
     assert (share > 0.0).all()
@@ -93,8 +93,8 @@ def test_a_mirrored_body_is_even_everywhere() -> None:
     mesh = two_halves()
     every = np.ones(len(mesh.vertices), dtype=bool)
     assert mirror_plane(mesh, every, 9.0) == pytest.approx(12.0, abs=1e-6)
-    sides = Sides(mesh, np.arange(len(mesh.vertices)), 12.0)
-    assert sides.differ(mesh.vertices, mesh.vertex_normals) == pytest.approx(0.0, abs=1e-9)
+    sides = SideComparison(mesh, np.arange(len(mesh.vertices)), 12.0)
+    assert sides.protrusion_difference(mesh.vertices, mesh.vertex_normals) == pytest.approx(0.0, abs=1e-9)
 
 
 def test_a_dent_in_one_side_shows_on_both_with_opposite_signs() -> None:
@@ -102,8 +102,8 @@ def test_a_dent_in_one_side_shows_on_both_with_opposite_signs() -> None:
     left, right = (
         int(np.abs(mesh.vertices - [12.0 + x, -80.0, 0.0]).sum(axis=1).argmin()) for x in (57.5, -60.0)
     )
-    sides = Sides(mesh, np.array([left]), 12.0)
-    off = sides.differ(mesh.vertices, mesh.vertex_normals)
+    sides = SideComparison(mesh, np.array([left]), 12.0)
+    off = sides.protrusion_difference(mesh.vertices, mesh.vertex_normals)
     assert off[left] == pytest.approx(-4.0, abs=0.35)
     assert off[right] == pytest.approx(4.0, abs=0.35)
     assert {left, right} <= set(sides.rows.tolist()) or left in sides.rows
@@ -121,7 +121,9 @@ def test_what_has_no_counterpart_has_no_answer() -> None:
     kept = (mesh.vertices[mesh.faces][..., 0] < 60.0).all(axis=1)
     used, faces = np.unique(mesh.faces[kept], return_inverse=True)
     cut = Mesh(mesh.vertices[used], faces.reshape(-1, 3))
-    off = Sides(cut, np.empty(0, dtype=np.int64), 12.0).differ(cut.vertices, cut.vertex_normals)
+    off = SideComparison(cut, np.empty(0, dtype=np.int64), 12.0).protrusion_difference(
+        cut.vertices, cut.vertex_normals
+    )
     assert np.isnan(off[cut.vertices[:, 0].argmin()])
     assert off[cut.vertices[:, 1].argmin()] == pytest.approx(0.0, abs=1e-9)
 
@@ -134,9 +136,11 @@ def test_the_samples_differ_as_they_were_made_to(
     body, moving = stages.body.mesh, stages.moving
     middle = mirror_plane(body, stages.patch.fade == 0.0, moving.middle)
     assert middle == pytest.approx(0.0, abs=0.3)
-    sides = Sides(body, moving.vertices, middle)
-    off = sides.differ(body.vertices, body.vertex_normals)[moving.vertices]
+    sides = SideComparison(body, moving.vertices, middle)
+    off = sides.protrusion_difference(body.vertices, body.vertex_normals)[moving.vertices]
     assert (np.nanmax(np.abs(off)) > 5.0) == uneven
     flipped = Mesh(body.vertices * MIRROR, body.faces[:, ::-1])
-    other = Sides(flipped, moving.vertices, -middle).differ(flipped.vertices, flipped.vertex_normals)
+    other = SideComparison(flipped, moving.vertices, -middle).protrusion_difference(
+        flipped.vertices, flipped.vertex_normals
+    )
     assert other[moving.vertices] == pytest.approx(off, abs=1e-6, nan_ok=True)

@@ -9,11 +9,11 @@ from scipy.spatial import cKDTree
 from shapes import SAMPLES
 
 from core.geometry.mesh import Mesh
-from core.geometry.triangulate import triangulated
+from core.geometry.triangulate import triangulate
 from core.progress import Cancelled
 from core.scan.body import read_scan
-from core.scan.repair.editable_mesh import Skin
-from core.scan.repair.hole_filling import mend, mended
+from core.scan.repair.editable_mesh import EditableMesh
+from core.scan.repair.hole_filling import fill_holes, fill_small_holes
 from core.scan.repair.holes import find_holes, hole_sentences
 from core.scan.repair.repair import repair
 
@@ -31,12 +31,12 @@ def pierced(mesh, *holes):
     tree = cKDTree(middle)
     for place, radius in holes:
         keep[tree.query_ball_point(middle[tree.query(place)[1]], radius)] = False
-    skin = Skin(mesh.vertices, mesh.faces[keep]).compact()
+    skin = EditableMesh(mesh.vertices, mesh.faces[keep]).compact()
     return Mesh(skin.vertices, skin.faces)
 
 
 def is_sound(mesh):
-    sides = Skin(mesh.vertices, mesh.faces).sides
+    sides = EditableMesh(mesh.vertices, mesh.faces).sides
     return sides.count.max() == 2 and not sides.neighbours[2].any()
 
 
@@ -45,7 +45,7 @@ def test_holes_in_a_ball_are_closed_onto_the_ball():
     sound = Mesh(ball.vertices, ball.faces)
     places = [80.0 * np.array(p) / np.linalg.norm(p) for p in ((1, 0, 0), (0, -1, 1), (0, 1, 1), (-1, 1, -1))]
     holed = pierced(sound, *zip(places, (4.0, 8.0, 11.0, 13.0), strict=True))
-    closed, sewn, count = mend(holed)
+    closed, sewn, count = fill_small_holes(holed)
     assert (sewn, count) == (0, 4)
     assert closed.boundary_loops == ()
     assert is_sound(closed)
@@ -62,7 +62,7 @@ def test_hundreds_of_small_holes_in_a_body_are_closed_and_counted(person, noise)
     places = person.vertices[rng.choice(len(person.vertices), 200, replace=False)]
     holed = pierced(rough, *((place, 5.0) for place in places))
     vertices, faces, _ = repair(holed.vertices, holed.faces)
-    closed, sentences = mended(Mesh(vertices, faces))
+    closed, sentences = fill_holes(Mesh(vertices, faces))
     assert is_sound(closed)
     assert any(
         each.startswith("Closed 1") and each.endswith("holes up to 30 mm across.") for each in sentences
@@ -78,10 +78,10 @@ def test_a_skin_of_thousands_of_holes_is_closed_and_can_be_stopped(person):
     keep = np.random.default_rng(0).random(len(person.faces)) > 0.1
     vertices, faces, _ = repair(person.vertices, person.faces[keep])
     torn, heard = Mesh(vertices, faces), []
-    closed, _, count = mend(torn, lambda what, share: heard.append((what, share)))
+    closed, _, count = fill_small_holes(torn, lambda what, share: heard.append((what, share)))
     assert count > 3000
     assert closed.face_areas.sum() == pytest.approx(person.face_areas.sum(), rel=0.01)
-    assert Skin(closed.vertices, closed.faces).sides.count.max() == 2
+    assert EditableMesh(closed.vertices, closed.faces).sides.count.max() == 2
     assert len(heard) > count - 10
     assert heard == sorted(heard)
 
@@ -90,11 +90,11 @@ def test_a_skin_of_thousands_of_holes_is_closed_and_can_be_stopped(person):
             raise Cancelled
 
     with pytest.raises(Cancelled):
-        mend(torn, stop)
+        fill_small_holes(torn, stop)
 
 
 def test_a_clean_body_is_not_touched_and_its_cuts_are_no_holes(person):
-    assert mend(person)[0] is person
+    assert fill_small_holes(person)[0] is person
     holes = find_holes(person)
     assert [hole.opening for hole in holes] == [True] * 4  # hips, neck, two arms
     assert hole_sentences(person, holes) == ()
@@ -110,7 +110,7 @@ def test_a_clean_body_is_not_touched_and_its_cuts_are_no_holes(person):
     ],
 )
 def test_a_large_hole_stays_open_and_is_named(person, place, words):
-    closed, sentences = mended(pierced(person, (np.array(place), 35.0)))
+    closed, sentences = fill_holes(pierced(person, (np.array(place), 35.0)))
     assert len(closed.boundary_loops) == 5
     assert sentences == (f"A hole of 7 x 7 cm stays open, {words}.",)
     hole = next(hole for hole in find_holes(closed) if not hole.opening)
@@ -122,24 +122,24 @@ def test_a_large_hole_stays_open_and_is_named(person, place, words):
 def test_a_ring_torn_off_the_trunk_is_no_opening(person, low):
     x, y, z = person.vertices[person.faces].mean(axis=1).T
     patch = (np.abs(x) < 20.0) & (y < np.median(y))
-    skin = Skin(person.vertices, person.faces[(np.abs(z - low) > 6.0) | patch]).compact()
+    skin = EditableMesh(person.vertices, person.faces[(np.abs(z - low) > 6.0) | patch]).compact()
     torn = Mesh(skin.vertices, skin.faces)
     assert [hole.opening for hole in find_holes(torn)].count(True) == 4
-    assert any("stays open" in sentence for sentence in mended(torn)[1])
+    assert any("stays open" in sentence for sentence in fill_holes(torn)[1])
 
 
 def test_what_was_mended_is_whole_the_second_time(person):
     holed = pierced(person, *((np.array(place), 10.0) for place in CENTRES.values()))
-    closed, _, count = mend(holed)
+    closed, _, count = fill_small_holes(holed)
     assert count == 3
-    assert mend(closed) == (closed, 0, 0)
+    assert fill_small_holes(closed) == (closed, 0, 0)
 
 
 def test_a_moved_body_is_mended_in_the_same_way(person):
     holed = pierced(person, *((np.array(place), 10.0) for place in CENTRES.values()))
     turn = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
     turn *= np.linalg.det(turn)
-    one, other = mend(holed)[0], mend(holed.moved(holed.vertices @ turn.T + 5e5))[0]
+    one, other = fill_small_holes(holed)[0], fill_small_holes(holed.moved(holed.vertices @ turn.T + 5e5))[0]
     assert other.enclosed_volume() != one.enclosed_volume()
     assert len(other.faces) == pytest.approx(len(one.faces), abs=30)  # the places strewn depend on the axes
     assert other.face_areas.sum() == pytest.approx(one.face_areas.sum(), rel=1e-5)
@@ -150,14 +150,14 @@ def test_patches_with_gaps_are_sewn(person):
     patch = (middle > 0.0) @ [1, 2, 4]
     rng, parts, count = np.random.default_rng(2), [], 0
     for number in range(8):
-        part = Skin(person.vertices, person.faces[patch == number]).compact()
+        part = EditableMesh(person.vertices, person.faces[patch == number]).compact()
         parts.append((part.vertices + rng.uniform(-0.5, 0.5, 3), part.faces + count))
         count += len(part.vertices)
     gaping = Mesh(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
     assert len(gaping.boundary_loops) >= 8
-    sewn, sentences = mended(Mesh(*repair(gaping.vertices, gaping.faces)[:2]))
+    sewn, sentences = fill_holes(Mesh(*repair(gaping.vertices, gaping.faces)[:2]))
     assert is_sound(sewn)
-    assert len(Skin(sewn.vertices, sewn.faces).piece_areas) == 1
+    assert len(EditableMesh(sewn.vertices, sewn.faces).piece_areas) == 1
     assert sum(len(loop) for loop in sewn.boundary_loops) < 1.1 * sum(map(len, person.boundary_loops))
     assert sentences[0].startswith("Joined ")
 
@@ -174,6 +174,6 @@ def test_patches_with_gaps_are_sewn(person):
 )
 def test_any_outline_is_cut_into_triangles_with_its_own_sides(outline):
     outline = np.array(outline, dtype=float)
-    faces, inside = triangulated(outline)
+    faces, inside = triangulate(outline)
     loops = Mesh(np.zeros((len(outline) + len(inside), 3)), faces).boundary_loops
     assert [sorted(loop) for loop in loops] == [list(range(len(outline)))]

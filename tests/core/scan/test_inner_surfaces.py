@@ -14,8 +14,8 @@ from worn_scans import ply_bytes, with_legs
 from core.landmarks.detect import find_landmarks
 from core.scan.body import Body, body_of, read_scan
 from core.scan.repair import inner_surfaces as inner
-from core.scan.repair.editable_mesh import Skin
-from core.scan.repair.inner_surfaces import BURIED, drop_hidden
+from core.scan.repair.editable_mesh import EditableMesh
+from core.scan.repair.inner_surfaces import BURIED, remove_occluded
 from core.scan.repair.repair import repair
 
 
@@ -28,7 +28,7 @@ def alone(person: Path) -> Body:
 def test_legs_leave_the_landmarks_where_they_are(person: Path, into: float, said: bool) -> None:
     trunk = alone(person)
     figure = body_of("figure.ply", ply_bytes(with_legs((trunk.mesh.vertices, trunk.mesh.faces), into)))
-    assert figure.pose.sure
+    assert figure.pose.is_certain
     assert any("reach into the body" in sentence for sentence in figure.repairs) == said
     was, now = find_landmarks(trunk), find_landmarks(figure)
     shift = figure.pose.file_to_mm[:3, 3]
@@ -37,9 +37,9 @@ def test_legs_leave_the_landmarks_where_they_are(person: Path, into: float, said
         assert now.points[name].confidence > was.points[name].confidence - 0.15, name
 
 
-def together(*shapes: trimesh.Trimesh) -> Skin:
+def together(*shapes: trimesh.Trimesh) -> EditableMesh:
     whole = trimesh.util.concatenate(shapes)
-    return Skin(np.array(whole.vertices), np.array(whole.faces))
+    return EditableMesh(np.array(whole.vertices), np.array(whole.faces))
 
 
 def ball(detail: int, radius: float, x: float = 0.0) -> trimesh.Trimesh:
@@ -47,9 +47,9 @@ def ball(detail: int, radius: float, x: float = 0.0) -> trimesh.Trimesh:
     return made.apply_translation([x, 0.0, 0.0])
 
 
-def of_the_last(skin: Skin, last: trimesh.Trimesh) -> float:
+def of_the_last(skin: EditableMesh, last: trimesh.Trimesh) -> float:
     """Return which share of the faces of the last shape is left; all others are to stay."""
-    left, count = drop_hidden(skin)
+    left, count = remove_occluded(skin)
     others = len(skin.faces) - len(last.faces)
     assert np.allclose(left.vertices[left.faces[:others]], skin.vertices[skin.faces[:others]])
     return 1.0 - count / len(last.faces)
@@ -63,7 +63,7 @@ def test_of_a_ball_in_a_ball_only_what_reaches_out_of_it_is_left(away: float, le
     small = ball(4, 30.0, away)
     skin = together(ball(5, 100.0), small)
     assert of_the_last(skin, small) == pytest.approx(left, abs=0.2 if 0.0 < left < 1.0 else 0.0)
-    middle = drop_hidden(skin)[0].centres[-len(small.faces) :]
+    middle = remove_occluded(skin)[0].centres[-len(small.faces) :]
     assert left == 0.0 or (np.linalg.norm(middle, axis=1) > 100.0 - 12.0).all()
 
 
@@ -80,16 +80,16 @@ def test_a_layer_nearer_than_the_triangles_of_a_coarse_skin_are_wide_is_not_take
 
 
 @pytest.fixture(scope="module")
-def coat(person: Path) -> Skin:
+def coat(person: Path) -> EditableMesh:
     """A body, and a wide coat over it up to the shoulders."""
     mesh = alone(person).mesh
     middle, low = mesh.vertices.mean(axis=0), mesh.vertices[mesh.faces].mean(axis=1)[:, 2]
     worn = mesh.faces[low < np.percentile(low, 85.0)]
     vertices = np.concatenate([mesh.vertices, (mesh.vertices - middle) * [1.2, 1.3, 1.0] + middle])
-    return Skin(vertices, np.concatenate([mesh.faces, worn + len(mesh.vertices)]))
+    return EditableMesh(vertices, np.concatenate([mesh.faces, worn + len(mesh.vertices)]))
 
 
-def test_clothes_over_a_body_are_told_of_with_its_landmarks(person: Path, coat: Skin) -> None:
+def test_clothes_over_a_body_are_told_of_with_its_landmarks(person: Path, coat: EditableMesh) -> None:
     *_, sentences = repair(coat.vertices, coat.faces)
     assert BURIED in sentences
     body = alone(person)
@@ -106,7 +106,9 @@ def test_a_lining_is_no_clothes(person: Path) -> None:
     assert BURIED not in sentences
 
 
-def test_a_coat_over_a_body_is_asked_for_few_places(coat: Skin, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_coat_over_a_body_is_asked_for_few_places(
+    coat: EditableMesh, monkeypatch: pytest.MonkeyPatch
+) -> None:
     asked, winding = [], inner._winding
 
     def counting(middle, dipole, places, *rest):  # type: ignore[no-untyped-def]
@@ -114,5 +116,5 @@ def test_a_coat_over_a_body_is_asked_for_few_places(coat: Skin, monkeypatch: pyt
         return winding(middle, dipole, places, *rest)
 
     monkeypatch.setattr(inner, "_winding", counting)
-    drop_hidden(coat)
+    remove_occluded(coat)
     assert 0 < sum(asked) < 6e7  # a thousand a face: half a second

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from core.scan.orientation.orientation_cues import CUES, Fold, Look, Side
+from core.scan.orientation.orientation_cues import CUES, Fold, Side, TorsoFeatures
 from core.scan.orientation.silhouette import Silhouette
 
 FLAT = [0.0] * 20
@@ -12,7 +12,7 @@ def cue(words: str, front: list[float], back: list[float], fold: Fold) -> float:
     """Return what a cue gives for lobes at both sides, from the hips up [mm]."""
     sides = [Side(np.zeros(len(lobes)), np.array(lobes)) for lobes in (front, back)]
     (found,) = (each for each in CUES if each.words == words)
-    return found.says(Look(None, fold, *sides))
+    return found.evaluate(TorsoFeatures(None, fold, *sides))
 
 
 def test_breasts_that_hang_to_the_waist_are_no_buttocks():

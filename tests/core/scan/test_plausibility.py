@@ -9,7 +9,7 @@ from core.errors import UserError
 from core.geometry.mesh import Mesh
 from core.landmarks.detect import find_landmarks
 from core.scan.body import Body
-from core.scan.orientation.pose import find_pose
+from core.scan.orientation.pose import estimate_pose
 from core.scan.readers.registry import read_triangles
 from tests.core.scan.test_pose import SAMPLES, angle_between
 
@@ -27,7 +27,7 @@ PIECES = pieces(sample("mannequin"), fold=299.0, bust=347.0)
 
 def understood(vertices, faces):
     """Take a shape through pose and landmarks. Raises UserError."""
-    pose = find_pose(vertices, faces)
+    pose = estimate_pose(vertices, faces)
     turn = pose.file_to_mm[:3, :3]
     find_landmarks(Body(Mesh(vertices @ turn.T, faces), pose, (), "thing"))
 
@@ -84,6 +84,6 @@ def with_a_gap(vertices, faces):
 @pytest.mark.parametrize("worn", [holes, without_left_breast, with_a_gap])
 def test_a_body_that_was_worn_hard_is_understood(worn):
     vertices, faces = worn(*sample("mannequin"))
-    pose = find_pose(vertices @ TILTED.T, faces)
+    pose = estimate_pose(vertices @ TILTED.T, faces)
     assert pose.unit == "mm"
     assert angle_between(pose, TILTED) < 3.0

@@ -12,7 +12,7 @@ from core.progress import Cancelled
 from core.scan.body import body_of
 from core.scan.readers.raw_scan import RawScan
 from core.scan.readers.registry import read_triangles
-from core.scan.reconstruction.point_cloud import is_cloud, surface_of
+from core.scan.reconstruction.point_cloud import is_cloud, reconstruct_surface
 
 SAMPLES = Path(__file__).parents[3] / "resources" / "samples"
 
@@ -36,7 +36,7 @@ def cloud_file(points, normals=None):
 
 @pytest.mark.parametrize(("count", "noise"), [(5000, 0.0), (20_000, 0.5)])
 def test_points_of_a_ball_give_the_ball(count, noise):
-    skin = Mesh(*surface_of(ball(count, noise)))
+    skin = Mesh(*reconstruct_surface(ball(count, noise)))
     radius = np.linalg.norm(skin.vertices, axis=1)
     assert np.abs(radius - 100.0).mean() < max(0.3 * noise, 0.1)
     assert skin.boundary_loops == ()
@@ -46,7 +46,7 @@ def test_points_of_a_ball_give_the_ball(count, noise):
 
 def test_an_open_skin_stays_open():
     points = ball(12_000, 0.3)
-    skin = Mesh(*surface_of(points[points[:, 2] < 40.0]))
+    skin = Mesh(*reconstruct_surface(points[points[:, 2] < 40.0]))
     assert len(skin.boundary_loops) == 1
     border = skin.vertices[skin.boundary_loops[0]]
     assert border[:, 2].min() > 36.0
@@ -55,8 +55,8 @@ def test_an_open_skin_stays_open():
 
 def test_the_unit_of_the_points_does_not_matter():
     points = ball(6000, 0.5)
-    vertices, faces = surface_of(points)
-    small, same = surface_of(points / 1024.0)  # a power of two: not a digit changes
+    vertices, faces = reconstruct_surface(points)
+    small, same = reconstruct_surface(points / 1024.0)  # a power of two: not a digit changes
     assert np.array_equal(faces, same)
     assert np.allclose(vertices, 1024.0 * small, rtol=0.0, atol=1e-9)
 
@@ -64,25 +64,25 @@ def test_the_unit_of_the_points_does_not_matter():
 def test_what_lies_alone_or_nowhere_is_left_out():
     chance = np.random.default_rng(2)
     dirt = [chance.uniform(-300.0, 300.0, (60, 3)), np.full((50, 3), np.nan), np.full((50, 3), 1e30)]
-    skin = Mesh(*surface_of(np.concatenate([ball(10_000), *dirt])))
+    skin = Mesh(*reconstruct_surface(np.concatenate([ball(10_000), *dirt])))
     assert np.abs(np.linalg.norm(skin.vertices, axis=1) - 100.0).max() < 25.0
     assert skin.enclosed_volume() == pytest.approx(4.0 / 3.0 * np.pi * 100.0**3, rel=0.01)
 
 
 def test_two_skins_close_to_each_other_stay_two():
     points = np.concatenate([ball(8000), ball(8000, seed=3) + np.array([212.0, 0.0, 0.0])])
-    skin = Mesh(*surface_of(points))
+    skin = Mesh(*reconstruct_surface(points))
     assert len(skin.vertices) - len(skin.edges) + len(skin.faces) == 4
     assert skin.enclosed_volume() == pytest.approx(8.0 / 3.0 * np.pi * 100.0**3, rel=0.004)
 
 
 def test_the_normals_of_a_file_tell_the_outside_if_they_are_true():
     points = ball(6000)
-    volume = Mesh(*surface_of(points)).enclosed_volume()
+    volume = Mesh(*reconstruct_surface(points)).enclosed_volume()
     assert volume > 0.0
-    assert Mesh(*surface_of(points, -points)).enclosed_volume() == pytest.approx(-volume)
+    assert Mesh(*reconstruct_surface(points, -points)).enclosed_volume() == pytest.approx(-volume)
     junk = np.random.default_rng(4).normal(size=points.shape)
-    assert Mesh(*surface_of(points, junk)).enclosed_volume() == pytest.approx(volume)
+    assert Mesh(*reconstruct_surface(points, junk)).enclosed_volume() == pytest.approx(volume)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from odd_objects import limb, together
 from scipy.spatial.transform import Rotation
 
 from core.errors import ScanError
-from core.scan.orientation.pose import find_pose
+from core.scan.orientation.pose import estimate_pose
 from tests.core.scan.test_plausibility import sample
 from tests.core.scan.test_pose import angle_between, torso
 
@@ -44,8 +44,8 @@ def test_any_tilt_up_to_45_degrees_is_undone(name):
         (16.0, 0.0, 0.0),
     ):
         turn = tilted(degrees, about, yaw)
-        pose = find_pose(vertices @ turn.T, faces)
-        assert pose.sure
+        pose = estimate_pose(vertices @ turn.T, faces)
+        assert pose.is_certain
         assert angle_between(pose, turn) < 2.0
         assert pose.tilt == pytest.approx(abs(degrees), abs=2.0)
         assert "degrees off +z" in pose.reason
@@ -61,7 +61,7 @@ def test_one_who_leans_is_left_to_lean_in_an_upright_file():
         leaning = vertices.copy()
         high = vertices[:, 2] > 1.0
         leaning[high] = vertices[high] @ tilted(degrees, about).T
-        pose = find_pose(leaning, faces)
+        pose = estimate_pose(leaning, faces)
         assert pose.tilt == 0.0
         assert np.array_equal(pose.file_to_mm[2, :3], [0.0, 0.0, 1.0])
 
@@ -70,8 +70,8 @@ def test_one_who_leans_is_left_to_lean_in_an_upright_file():
 def test_a_foremost_belly_is_no_bust(back):
     vertices, faces = sample("mannequin")
     turn = tilted(20.0, 70.0)
-    pose = find_pose(bent(with_belly(vertices, 95.0), back) @ turn.T, faces)
-    assert pose.sure
+    pose = estimate_pose(bent(with_belly(vertices, 95.0), back) @ turn.T, faces)
+    assert pose.is_certain
     assert angle_between(pose, turn) < 3.0
 
 
@@ -81,27 +81,27 @@ def test_legs_are_no_trunk_and_tell_what_is_down():
         limb((90.0 * side, -90.0, 20.0), (115.0 * side, -90.0, -800.0), 85.0, 40.0) for side in (-1.0, 1.0)
     ]
     whole, skin = together(trimesh.Trimesh(vertices, faces, process=False), *legs)
-    pose = find_pose(whole, skin)
-    assert pose.sure
+    pose = estimate_pose(whole, skin)
+    assert pose.is_certain
     assert angle_between(pose, np.eye(3)) < 0.5
     assert pose.unit == "mm"
 
 
 def test_moving_turning_or_mirroring_a_body_moves_its_pose_accordingly():
     vertices, faces = sample("person")
-    first = find_pose(vertices, faces)
+    first = estimate_pose(vertices, faces)
     turn = Rotation.from_euler("xyz", (200.0, 33.0, -80.0), degrees=True).as_matrix()
-    moved = find_pose((vertices @ turn.T + [3000.0, -200.0, 80.0]) / 25.4, faces)
+    moved = estimate_pose((vertices @ turn.T + [3000.0, -200.0, 80.0]) / 25.4, faces)
     assert moved.unit == "inch"
     assert moved.file_to_mm[:3, :3] @ turn / 25.4 == pytest.approx(first.file_to_mm[:3, :3], abs=0.02)
-    mirrored = find_pose(vertices * (-1.0, 1.0, 1.0), faces[:, ::-1])
+    mirrored = estimate_pose(vertices * (-1.0, 1.0, 1.0), faces[:, ::-1])
     assert mirrored.file_to_mm == pytest.approx(first.file_to_mm, abs=0.02)
-    flipped = find_pose(vertices, faces[:, ::-1])
+    flipped = estimate_pose(vertices, faces[:, ::-1])
     assert flipped.file_to_mm == pytest.approx(first.file_to_mm, abs=1e-9)
 
 
 def test_other_readings_are_offered_each_another():
-    pose = find_pose(*sample("person"))
+    pose = estimate_pose(*sample("person"))
     assert 1 <= len(pose.others) <= 3
     turns = [matrix[:3, :3] for matrix in (pose.file_to_mm, *pose.others)]
     for k, turn in enumerate(turns):
@@ -113,13 +113,13 @@ def test_other_readings_are_offered_each_another():
 def test_a_told_axis_is_the_nearest_one_and_a_told_direction_is_meant_exactly():
     vertices, faces = sample("mannequin")
     turn = tilted(30.0, 60.0, 15.0)
-    near = find_pose(vertices @ turn.T, faces, up="+z", front="-y")
+    near = estimate_pose(vertices @ turn.T, faces, up="+z", front="-y")
     assert angle_between(near, turn) < 2.0
     for words in ("0,0.2,1", "0.1, 0.0, 0.99"):
         direction = np.array([float(word) for word in words.split(",")])
-        told = find_pose(vertices, faces, up=words)
+        told = estimate_pose(vertices, faces, up=words)
         assert told.file_to_mm[2, :3] == pytest.approx(direction / np.linalg.norm(direction), abs=1e-9)
-    both = find_pose(vertices, faces, up="0,0,-2", front="1,0,0")
+    both = estimate_pose(vertices, faces, up="0,0,-2", front="1,0,0")
     expected = [[0.0, -1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]
     assert both.file_to_mm[:3, :3] == pytest.approx(np.array(expected), abs=1e-9)
     assert "told" in both.reason
@@ -128,35 +128,35 @@ def test_a_told_axis_is_the_nearest_one_and_a_told_direction_is_meant_exactly():
 @pytest.mark.parametrize("words", ["up", "1,2", "0,0,0", "nan,0,1", "+w"])
 def test_a_direction_that_is_none_is_refused(words):
     with pytest.raises(ScanError, match="is not known"):
-        find_pose(*torso(), up=words)
+        estimate_pose(*torso(), up=words)
 
 
 def test_a_girth_that_fits_two_units_is_said_not_to_be_sure():
     vertices, faces = torso()
-    girth = float(find_pose(vertices, faces).reason.split("trunk is ")[1].split(" ")[0])
-    slim = find_pose(vertices * 62.0 / girth, faces)
+    girth = float(estimate_pose(vertices, faces).reason.split("trunk is ")[1].split(" ")[0])
+    slim = estimate_pose(vertices * 62.0 / girth, faces)
     assert slim.unit == "cm"
-    assert not slim.sure
+    assert not slim.is_certain
     assert "might also be inch (157" in slim.reason
-    stout = find_pose(vertices * 58.0 / girth, faces)
+    stout = estimate_pose(vertices * 58.0 / girth, faces)
     assert stout.unit == "inch"
-    assert not stout.sure
-    assert find_pose(vertices * 900.0 / girth, faces).sure
+    assert not stout.is_certain
+    assert estimate_pose(vertices * 900.0 / girth, faces).is_certain
 
 
 def test_a_told_up_is_believed_before_the_front_and_neither_is_overruled():
     vertices, faces = sample("person")
     for up, front in (("+z", "0,-1,0.5"), ("0,0.05,1", "0,-1,0"), (" Z", "-y")):
-        pose = find_pose(vertices, faces, up=up, front=front, unit="MM")
+        pose = estimate_pose(vertices, faces, up=up, front=front, unit="MM")
         assert (pose.up, pose.front, pose.unit) == ("+z", "-y", "mm")
         assert pose.tilt == pytest.approx(0.0 if "z" in up.lower() else np.degrees(np.arctan(0.05)), abs=0.1)
-    against = find_pose(vertices, faces, up="-z", front="+y")
-    assert (against.up, against.front, against.sure) == ("-z", "+y", False)
+    against = estimate_pose(vertices, faces, up="-z", front="+y")
+    assert (against.up, against.front, against.is_certain) == ("-z", "+y", False)
     assert "told. The shape speaks against it" in against.reason
-    assert find_pose(vertices, faces, up="+z", front="-y").sure
+    assert estimate_pose(vertices, faces, up="+z", front="-y").is_certain
     for up in ("+y", "-y"):
         with pytest.raises(ScanError, match="or say which way is up"):
-            find_pose(vertices, faces, up=up)
+            estimate_pose(vertices, faces, up=up)
 
 
 @pytest.mark.parametrize(
@@ -166,20 +166,20 @@ def test_a_pole_in_one_piece_with_the_body_is_no_body_and_tells_no_size(radius, 
     vertices, faces = sample("mannequin")
     pole = trimesh.creation.cylinder(radius, length).apply_translation([0.0, -95.0, 10.0 - 0.5 * length])
     foot = trimesh.creation.cylinder(170.0, 20.0).apply_translation([0.0, -95.0, 10.0 - length])
-    pose = find_pose(*together(trimesh.Trimesh(vertices, faces, process=False), pole, foot))
-    assert (pose.unit, pose.up, pose.front, pose.sure) == ("mm", "+z", "-y", True)
+    pose = estimate_pose(*together(trimesh.Trimesh(vertices, faces, process=False), pole, foot))
+    assert (pose.unit, pose.up, pose.front, pose.is_certain) == ("mm", "+z", "-y", True)
     assert pose.stand == pytest.approx(vertices[:, 2].min(), abs=20.0)
 
 
 def test_neither_a_neck_nor_a_torn_ring_of_skin_is_a_pole():
     vertices, faces = sample("mannequin")
-    assert find_pose(vertices, faces).stand == -np.inf
-    assert find_pose(vertices, faces, up="-z", front="+y").stand == -np.inf
+    assert estimate_pose(vertices, faces).stand == -np.inf
+    assert estimate_pose(vertices, faces, up="-z", front="+y").stand == -np.inf
     x, y, z = vertices[faces].mean(axis=1).T
     patch = (np.abs(x) < 25.0) & (y < -95.0)
     for height in (25.0, 80.0):  # the taller does not go round
         torn = faces[patch | (np.abs(z - 130.0) > 0.5 * height)]
-        assert find_pose(vertices, torn).stand == -np.inf
+        assert estimate_pose(vertices, torn).stand == -np.inf
     cut = trimesh.Trimesh(vertices, faces[np.abs(z - 130.0) > 15.0], process=False)
     tube = trimesh.creation.cylinder(18.0, 200.0).apply_translation([0.0, -95.0, 110.0])
-    assert find_pose(*together(cut, tube)).stand == -np.inf  # too little of it shows
+    assert estimate_pose(*together(cut, tube)).stand == -np.inf  # too little of it shows

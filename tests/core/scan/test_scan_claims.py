@@ -7,9 +7,9 @@ import pytest
 from scan_files import VOLUME, gltf
 
 from core.geometry.mesh import Mesh
-from core.scan.orientation.unit_detection import find_unit
+from core.scan.orientation.unit_detection import estimate_unit
 from core.scan.readers.registry import read_triangles
-from core.scan.repair.hole_filling import mend
+from core.scan.repair.hole_filling import fill_small_holes
 
 
 @pytest.mark.parametrize(
@@ -18,8 +18,8 @@ from core.scan.repair.hole_filling import mend
 )
 def test_a_unit_is_in_doubt_where_another_gives_a_rare_body(girth, unit, other):
     """60 cm is a slim body, 60 inch a very stout one."""
-    size = find_unit(girth)
-    assert (size.unit, size.sure) == (unit, other is None)
+    size = estimate_unit(girth)
+    assert (size.unit, size.is_certain) == (unit, other is None)
     assert (f"might also be {other}" in size.reason) == (other is not None)
 
 
@@ -39,4 +39,4 @@ def test_a_lid_that_would_double_an_edge_is_left_out():
     """A flat lid over two triangles has their common edge as well: three faces and four would meet there."""
     kite = np.array([[0.0, -2.0, 0.0], [9.0, 0.0, 0.0], [0.0, 2.0, 0.0], [-9.0, 0.0, 0.0]])
     sheet = Mesh(kite, np.array([[0, 1, 2], [0, 2, 3]]))
-    assert mend(sheet)[1:] == (0, 0)
+    assert fill_small_holes(sheet)[1:] == (0, 0)

@@ -29,7 +29,7 @@ from core.document.storage.project_file import ScanFile, open_project, save_proj
 from core.errors import ScanError
 from core.pipeline.build import read_body
 from core.scan.body import body_of, read_scan
-from core.scan.edited_body import edited
+from core.scan.edited_body import apply_edits
 from core.scan.edits import ScanEdits
 from core.scan.readers.colors import UNREADABLE, texture
 from core.scan.readers.raw_scan import RawScan
@@ -168,16 +168,16 @@ def test_colours_follow_cleaning_cropping_mirroring_and_filling(painted) -> None
     assert (body.colours[left, :3] == RED).all()
     assert (body.colours[body.mesh.vertices[:, 0] < -1.0, :3] == BLUE).all()
     low, high = body.heights
-    cropped = edited(body, ScanEdits(low=60.0, high=high - low - 40.0))
+    cropped = apply_edits(body, ScanEdits(low=60.0, high=high - low - 40.0))
     assert len(cropped.mesh.vertices) < len(body.mesh.vertices)
     assert (cropped.colours[cropped.mesh.vertices[:, 0] > 5.0, :3] == RED).all()
-    mirrored = edited(body, ScanEdits(kept="left"))
+    mirrored = apply_edits(body, ScanEdits(kept="left"))
     away = np.abs(mirrored.mesh.vertices[:, 0]) > 10.0
     assert (mirrored.colours[away, :3] == RED).all()  # both halves are those of the left side
     centre = body.mesh.vertices[np.argmin(body.mesh.vertices[:, 1])]
     keep = np.linalg.norm(body.mesh.vertices - centre, axis=1)[body.mesh.faces].min(axis=1) > 20.0
     holed = replace(body, mesh=type(body.mesh)(body.mesh.vertices, body.mesh.faces[keep]))
-    filled = edited(holed, ScanEdits(fill_all=True))
+    filled = apply_edits(holed, ScanEdits(fill_all=True))
     assert len(filled.estimated)
     assert not filled.colours[filled.estimated, 3].any()  # an estimate has no colour
     assert len(filled.colours) == len(filled.mesh.vertices)
@@ -185,7 +185,7 @@ def test_colours_follow_cleaning_cropping_mirroring_and_filling(painted) -> None
 
 def test_colours_are_saved_with_the_project(painted, tmp_path) -> None:
     scan = ScanFile(painted.name, scan_bytes(painted))
-    document = Document.of(Design(ScanSource(str(painted))))
+    document = Document.single(Design(ScanSource(str(painted))))
     saved = save_project(tmp_path / "a.busk", document, scan, None)
     painted_body = read_body(open_project(tmp_path / "a.busk").design.scan)[1]
     assert saved.design.scan.member

@@ -12,22 +12,22 @@ from scipy.spatial import cKDTree
 from shapes import SAMPLES
 
 from app.cli.commands.symmetry import compare
-from app.presenters.symmetry import even_summary
+from app.presenters.symmetry import symmetry_view
 from core.document.design import Design, ScanSource
 from core.document.serialization import from_json, to_json
 from core.errors import LandmarkError, UserError
 from core.geometry.mesh import Mesh
 from core.landmarks.detect import ESTIMATED, find_landmarks
 from core.landmarks.types import CERTAIN
-from core.landmarks.warnings import doubts
-from core.pipeline.build import StuckError, build
+from core.landmarks.warnings import collect_warnings
+from core.pipeline.build import IncompleteBuildError, build
 from core.scan.body import read_scan
-from core.scan.edited_body import edited, is_estimated, mirror_sentence
+from core.scan.edited_body import apply_edits, is_estimated, mirror_sentence
 from core.scan.edits import ScanEdits
-from core.scan.orientation.symmetry_planes import even_cloud, middle_of
-from core.scan.repair.clipping import above, mirrored_half
+from core.scan.orientation.symmetry_planes import middle_of, sample_uniformly
+from core.scan.repair.clipping import clip_above, mirrored_half
 from core.scan.repair.holes import find_holes
-from core.scan.repair.large_holes import filled
+from core.scan.repair.large_holes import fill_large_holes
 from tests.core.scan.test_hole_filling import is_sound, pierced
 
 
@@ -43,7 +43,7 @@ def ball():
 
 @pytest.mark.parametrize("level", [0.0, 13.7, -41.0])
 def test_a_ball_is_cut_to_the_cap_above_a_plane(level):
-    cap, cut = above(ball(), 2, level)
+    cap, cut = clip_above(ball(), 2, level)
     assert is_sound(cap)
     assert cap.vertices[:, 2].min() == level
     assert len(cap.boundary_loops) == 1
@@ -65,16 +65,16 @@ def test_the_middle_is_found_with_one_side_bad(person):
     bad = (person.mesh.vertices[:, 0] > 60.0) & (np.abs(person.mesh.vertices[:, 2] - 260.0) < 80.0)
     spoilt = person.mesh.vertices + np.where(bad, 25.0, 0.0)[:, None] * (1.0, 0.3, 0.0)
     side = np.array([1.0, 0.0, 0.0])
-    sound = middle_of(even_cloud(person.mesh.vertices, person.mesh.faces), side)
+    sound = middle_of(sample_uniformly(person.mesh.vertices, person.mesh.faces), side)
     assert sound == pytest.approx(0.0, abs=0.5)
-    assert middle_of(even_cloud(spoilt, person.mesh.faces), side) == pytest.approx(sound, abs=2.0)
+    assert middle_of(sample_uniformly(spoilt, person.mesh.faces), side) == pytest.approx(sound, abs=2.0)
 
 
 @pytest.mark.parametrize(("radius", "deep"), [(30.0, 1.0), (55.0, 5.0)])
 def test_a_large_hole_in_a_ball_is_filled_onto_the_ball(radius, deep):
     place = 80.0 * np.array([0.6, -0.8, 0.0])
     holed = pierced(ball(), (place, radius))
-    whole, new, unfilled = filled(holed, find_holes(holed))
+    whole, new, unfilled = fill_large_holes(holed, find_holes(holed))
     assert unfilled == 0
     assert is_sound(whole)
     assert whole.boundary_loops == ()
@@ -91,7 +91,7 @@ def test_a_hole_that_crosses_itself_from_outside_is_filled_all_round():
     angle = np.arctan2(bent[border, 1], bent[border, 0])
     bent[border, :2] *= (1.0 + 0.9 * np.cos(5.0 * angle + bent[border, 2] / 9.0))[:, None]
     holed = Mesh(bent, most.faces)
-    whole, new, unfilled = filled(holed, find_holes(holed))
+    whole, new, unfilled = fill_large_holes(holed, find_holes(holed))
     assert unfilled == 0
     assert whole.boundary_loops == ()
     assert np.isfinite(whole.vertices).all()
@@ -100,7 +100,7 @@ def test_a_hole_that_crosses_itself_from_outside_is_filled_all_round():
 
 def test_a_crop_is_no_hole_and_the_landmarks_stay(person):
     before = find_landmarks(person)
-    cropped = edited(person, ScanEdits(low=60.0, high=420.0))
+    cropped = apply_edits(person, ScanEdits(low=60.0, high=420.0))
     assert np.ptp(cropped.mesh.vertices[:, 2]) == pytest.approx(360.0)
     assert cropped.holes == ()
     assert cropped.heights == person.heights
@@ -110,11 +110,11 @@ def test_a_crop_is_no_hole_and_the_landmarks_stay(person):
 
 
 def test_a_mirrored_body_is_even_and_says_so_in_its_doubts(person):
-    body = edited(person, ScanEdits(kept="left"))
+    body = apply_edits(person, ScanEdits(kept="left"))
     marks = find_landmarks(body)
     left, right = marks.position("bust_point_left"), marks.position("bust_point_right")
     assert right[1:] == pytest.approx(left[1:], abs=0.5)
-    assert mirror_sentence("left") in doubts(body, marks)
+    assert mirror_sentence("left") in collect_warnings(body, marks)
 
 
 def test_landmarks_on_a_filled_hole_are_no_surer_than_without_it(person):
@@ -122,7 +122,7 @@ def test_landmarks_on_a_filled_hole_are_no_surer_than_without_it(person):
     place = before.position("bust_point_left")
     holed = replace(person, mesh=pierced(person.mesh, (place, 25.0)))
     centre = tuple(holed.holes[0].centre.tolist())
-    body = edited(holed, ScanEdits().with_filled(centre))
+    body = apply_edits(holed, ScanEdits().with_filled(centre))
     assert body.holes == ()
     marks = find_landmarks(body)
     names = [name for name, mark in marks.points.items() if is_estimated(body, mark.position[None])[0]]
@@ -137,10 +137,10 @@ def test_a_hole_is_known_again_by_its_centre_and_others_stay_open(person):
         person, mesh=pierced(person.mesh, ((0.0, 30.0, 260.0), 30.0), ((140.0, -80.0, 180.0), 40.0))
     )
     first, second = holed.holes
-    body = edited(holed, ScanEdits().with_filled(tuple((second.centre + 4.0).tolist())))
+    body = apply_edits(holed, ScanEdits().with_filled(tuple((second.centre + 4.0).tolist())))
     assert [hole.length for hole in body.holes] == pytest.approx([first.length])
-    assert edited(holed, ScanEdits(fill_all=True)).holes == ()
-    assert len(edited(holed, ScanEdits().with_filled((0.0, 0.0, 900.0))).holes) == 2
+    assert apply_edits(holed, ScanEdits(fill_all=True)).holes == ()
+    assert len(apply_edits(holed, ScanEdits().with_filled((0.0, 0.0, 900.0))).holes) == 2
 
 
 @pytest.mark.parametrize(
@@ -172,18 +172,18 @@ def test_edits_are_read_again_and_designs_without_them_are_written_as_before():
 def test_a_crop_without_a_bust_is_refused_and_the_last_build_is_reused(person):
     source = ScanSource(str(SAMPLES / "person.ply"))
     stages = build(Design(source))
-    with pytest.raises(StuckError, match="The edited scan shows no bust"):
+    with pytest.raises(IncompleteBuildError, match="The edited scan shows no bust"):
         build(Design(replace(source, edits=ScanEdits(low=300.0))), stages)
     cropped = build(Design(replace(source, edits=ScanEdits(low=40.0))), stages)
     assert cropped.scan is stages.scan
     assert build(Design(source), cropped).body.mesh.faces.shape == stages.body.mesh.faces.shape
     with pytest.raises(LandmarkError):
-        edited(person, ScanEdits(low=5000.0))
+        apply_edits(person, ScanEdits(low=5000.0))
 
 
 def test_the_symmetry_of_a_mirrored_body_comes_with_the_warning():
     source = ScanSource(str(SAMPLES / "person.ply"), edits=ScanEdits(kept="right"))
     found = compare(build(Design(source)), balance=False)
-    assert found.compared.before.furthest < 0.5
+    assert found.compared.before.largest_difference < 0.5
     assert mirror_sentence("right") in found.warnings
-    assert mirror_sentence("right") in even_summary(found.compared, found.stages).says
+    assert mirror_sentence("right") in symmetry_view(found.compared, found.stages).says

@@ -16,13 +16,13 @@ from app.i18n.catalog import joined, say, tr
 from app.presenters import diagnosis as words
 from app.presenters.assessment import AssessmentView, assessment_view, tone
 from app.presenters.lines import titled
-from app.presenters.status import plain_sentence, state_of, swing_mm
+from app.presenters.status import display_state, explanation, oscillation_mm
 from core.analysis.diagnosis.diagnose import Diagnosis, diagnose
 from core.document.design import Design
 from core.errors import UserError
 from core.garment.assessment import BAD, CAUTION, GOOD, LEVELS, PENDING, Assessment
 from core.pipeline.build import build
-from core.pipeline.exact import NoBalanceError
+from core.pipeline.exact import NoEquilibriumError
 from core.pipeline.live_solver import Frame
 from core.progress import Progress
 
@@ -98,9 +98,9 @@ class DoctorDesk(QObject):
         if design is self._about:
             return
         self._forget()
-        if frame.at_work or design is not self._window.session.design:
+        if frame.is_running or design is not self._window.session.design:
             return
-        state = state_of(frame)
+        state = display_state(frame)
         if state == "settling" and design is self._cured:
             self._cured = None
             self._window.session.go_on()  # back from a fold it takes more turns: the doctor knows
@@ -117,7 +117,7 @@ class DoctorDesk(QObject):
     def refuse(self, error: Exception) -> None:
         """Look at a design whose lengths were refused; the notice of the refusal stands already."""
         frame = self._window.session.frame
-        if isinstance(error, NoBalanceError) and frame is not None:
+        if isinstance(error, NoEquilibriumError) and frame is not None:
             self._forget()
             self._about = self._window.session.design  # what stands again: its frames change nothing
 
@@ -172,27 +172,27 @@ class DoctorDesk(QObject):
 
     def _tell_at_once(self, frame: Frame) -> None:
         hint = tr("No garment does that: what is seen here is no result.")
-        self._show(BAD, plain_sentence(frame), hint, [], "", _Trouble(state_of(frame)))
+        self._show(BAD, explanation(frame), hint, [], "", _Trouble(display_state(frame)))
 
     def _found(self, frame: Frame, found: object, *, asked: bool = False) -> None:
         """Tell what was found in place of what was told at once."""
         assert isinstance(found, Diagnosis)
         self._job = None
-        if not found.complaint:
+        if not found.problem:
             return  # from rest it does come to rest: what was told at once still holds for what is seen
-        found, swing = found.seen(frame.verdict), swing_mm(frame)[1]
-        level = max(_level_of(found.complaint), self._judged(frame, found).level, key=_severity)
+        found, swing = found.with_convergence(frame.verdict), oscillation_mm(frame)[1]
+        level = max(_level_of(found.problem), self._judged(frame, found).level, key=_severity)
         actions = self._fixes(found)
         self._quiet.add(frame.stages.design)
-        worst = found.fight.worst
-        trouble = _Trouble(found.complaint, (worst.one.lines, worst.other.lines) if worst else ())
+        worst = found.forces.worst
+        trouble = _Trouble(found.problem, (worst.one.lines, worst.other.lines) if worst else ())
         said = words.sentence(found, swing)
         self._show(level, said, words.hint(found), actions, words.details(found), trouble, asked)
 
     def _answer(self, frame: Frame, found: object) -> None:
         """Tell what was asked for, well or not."""
         assert isinstance(found, Diagnosis)
-        if found.complaint:
+        if found.problem:
             self._found(frame, found, asked=True)
             return
         self._job = None
@@ -219,15 +219,15 @@ class DoctorDesk(QObject):
         own = assessment_view(Assessment(found.findings), frame.stages.design)
         return replace(own, reasons=(*own.reasons, *overall.reasons))
 
-    def _tell_refused(self, error: NoBalanceError, found: object) -> None:
+    def _tell_refused(self, error: NoEquilibriumError, found: object) -> None:
         """Tell why lengths were refused, and the nearest that are not, in place of the bare refusal."""
         assert isinstance(found, Diagnosis)
         self._job = None
         notifications = self._window.notifications
         said = say(titled(error.message, error.design))
-        fights = words.sentence(found, 0.0) if found.complaint and found.fight.worst else ""
+        fights = words.sentence(found, 0.0) if found.problem and found.forces.worst else ""
         notifications.withdraw(REFUSED)
-        hint = joined((fights, words.hint(found) if found.cure else say(error.hint)))
+        hint = joined((fights, words.hint(found) if found.best_fix else say(error.hint)))
         notifications.show(
             "bad",
             said,

@@ -10,8 +10,8 @@ from PySide6.QtCore import QObject, Signal
 from app.i18n.catalog import tr
 from app.presenters.assessment import IDLE, AssessmentView, assessment_view
 from app.presenters.bust_shift import bust_girths
-from app.presenters.status import StripVerdict, out_of_date, strip_verdict
-from core.garment.assessment import BAD, CAUTION, GOOD, PENDING, assessment_of
+from app.presenters.status import ConvergenceView, convergence_view, out_of_date
+from core.garment.assessment import BAD, CAUTION, GOOD, PENDING, assess_with
 from core.garment.cut_list import CutList, cut_list
 from core.pipeline.live_solver import Frame
 
@@ -41,23 +41,23 @@ class VerdictDesk(QObject):
         """Return the overall verdict of a frame, as far as it is known; pressures are computed in a job."""
         window, design = self._window, frame.stages.design
         moves = frame is window.session.frame and not window.session.is_at_rest
-        running, failed, cuts, pressed = frame.at_work or moves, False, None, None
-        if not running and frame.verdict.sound and design.worn():
+        running, failed, cuts, pressed = frame.is_running or moves, False, None, None
+        if not running and frame.verdict.is_valid and design.active_lines():
             cuts = self._cuts.get(frame)
             if cuts is None:
                 cuts = self._cuts[frame] = cut_list(frame.stages, frame.control_points)
             pressed, failed = window.pressure_desk.of(frame), window.pressure_desk.has_failed(frame)
-        found = assessment_of(frame, cuts, pressed, running=running, failed=failed)
+        found = assess_with(frame, cuts, pressed, running=running, failed=failed)
         return assessment_view(found, design)
 
-    def _strip_verdict(self, frame: Frame, view: AssessmentView) -> StripVerdict:
+    def _strip_verdict(self, frame: Frame, view: AssessmentView) -> ConvergenceView:
         """Return the values of the strip; girth and pressure only once the body has come to rest."""
-        if not frame.verdict.sound or frame.at_work or not self._window.session.is_at_rest:
-            return strip_verdict(frame, view)
+        if not frame.verdict.is_valid or frame.is_running or not self._window.session.is_at_rest:
+            return convergence_view(frame, view)
         if frame not in self._measured:
             self._measure(frame)
-        pressed = self._window.pressure_desk.of(frame) if frame.stages.design.worn() else None
-        return strip_verdict(frame, view, self._girths.get(frame), pressed)
+        pressed = self._window.pressure_desk.of(frame) if frame.stages.design.active_lines() else None
+        return convergence_view(frame, view, self._girths.get(frame), pressed)
 
     def _measure(self, frame: Frame) -> None:
         """Compute the bust girths of a frame in a job: of a fine scan they take more than a second."""

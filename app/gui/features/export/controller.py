@@ -17,11 +17,11 @@ from app.gui.widgets.file_dialogs import ask_save
 from app.gui.widgets.last_folders import free_name, last_folder
 from app.gui.widgets.message_box import ask
 from app.i18n.catalog import colon, joined, say, tr
-from app.presenters.export import Choices, Manner, Outcome, exports, format_title
-from app.presenters.export_preview import Ready, make_ready
-from app.presenters.status import is_result, state_of, state_title
+from app.presenters.export import ExportOptions, ExportSettings, ExportSource, exports, format_title
+from app.presenters.export_preview import ExportPreview, prepare_export
+from app.presenters.status import display_state, is_result, state_title
 from core.errors import UserError
-from core.files.atomic_write import still_written
+from core.files.atomic_write import still_writing_error
 from core.garment.assessment import BAD
 from core.pipeline.live_solver import Frame
 
@@ -40,9 +40,9 @@ class ExportDesk(QObject):
     def __init__(self, window: MainWindow) -> None:
         super().__init__(window)
         self._window = window
-        self._choices = Choices(wish("export"))
+        self._choices = ExportSettings(wish("export"))
         self.sheet: ExportSheet | None = None
-        self._outcome: Outcome | None = None
+        self._outcome: ExportSource | None = None
         self._job: Job | None = None
         self._works: list[ExportWork] = []
 
@@ -68,7 +68,7 @@ class ExportDesk(QObject):
 
     def show_frame(self, frame: Frame) -> None:
         """Tell of the body as it is now, if somebody looks and it rests."""
-        if self.sheet is not None and not frame.at_work:
+        if self.sheet is not None and not frame.is_running:
             self._tell()
 
     # -- the sheet
@@ -102,8 +102,8 @@ class ExportDesk(QObject):
         sheet.show_contents(name, tr("Looking what will be in it…"), doubt)
         self._job = window.jobs.run(
             tr("Preparing the export"),
-            lambda progress: make_ready(what, name, outcome, manner),
-            lambda ready: sheet.show_contents(name, _sentence(cast(Ready, ready)), doubt),
+            lambda progress: prepare_export(what, name, outcome, manner),
+            lambda ready: sheet.show_contents(name, _sentence(cast(ExportPreview, ready)), doubt),
             partial(self._show_refused, name),
         )
 
@@ -141,14 +141,14 @@ class ExportDesk(QObject):
         if what == "turntable" and not self._may_number(Path(path), manner):
             return None
         if any(work.path == Path(path) and work.at_work for work in self._works):
-            self._window.notifications.error(still_written(Path(path)), f"export {what}")
+            self._window.notifications.error(still_writing_error(Path(path)), f"export {what}")
             return None
         work = ExportWork(self._window, what, Path(path), self._outcome_of(frame), manner)
         self._works = [*(each for each in self._works if each.at_work), work]
         work.begin()
         return frame
 
-    def _may_number(self, path: Path, manner: Manner) -> bool:
+    def _may_number(self, path: Path, manner: ExportOptions) -> bool:
         """Ask before a series of pictures takes the place of another, which the dialog has not seen."""
         from app.rendering.turntable import turntable_files  # noqa: PLC0415 (brings VTK along)
 
@@ -164,7 +164,7 @@ class ExportDesk(QObject):
     def _parent(self) -> Any:
         return self.sheet or self._window
 
-    def _outcome_of(self, frame: Frame) -> Outcome:
+    def _outcome_of(self, frame: Frame) -> ExportSource:
         """Return what came out: while nothing changes the same one, with all that it has worked out."""
         view, known = self._window.view, self._outcome
         material = view.viewport.scene.material
@@ -175,10 +175,10 @@ class ExportDesk(QObject):
         if known is None or not same or looks != (known.hidden, known.material, known.named):
             tracks = frame.tracks
             records = tracks.get(frame.stages.design.volume) or next(iter(tracks.values()), ())
-            known = self._outcome = Outcome(frame.stages, frame.control_points, records, *looks)
+            known = self._outcome = ExportSource(frame.stages, frame.control_points, records, *looks)
         return known
 
-    def _manner(self, what: str, kind: str = "") -> Manner:
+    def _manner(self, what: str, kind: str = "") -> ExportOptions:
         return self._choices.manner(what, kind, self._window.view.viewport.scene.view)
 
     def _stem(self, what: str) -> str:
@@ -188,17 +188,17 @@ class ExportDesk(QObject):
         """Return what to mind of a reshaped body that would be written, or nothing."""
         if self._window.session.failure is not None:
             return tr("The design could not be computed: the file holds the last computed shape.")
-        if frame.at_work:
+        if frame.is_running:
             return tr("The run is still under way: what is written is how far it is.")
         if is_result(frame):
             overall = self._window.verdict_desk.of(frame)
             return f"{overall.headline}{colon()}{overall.first}" if overall.level == BAD else ""
-        return tr("{state}: this is no shape to work from.").format(state=state_title(state_of(frame)))
+        return tr("{state}: this is no shape to work from.").format(state=state_title(display_state(frame)))
 
     def _file_name(self, what: str) -> str:
         return free_name(last_folder("written"), f"{self._stem(what)}.{self._choices.kind(what)}").name
 
 
-def _sentence(ready: Ready) -> str:
+def _sentence(ready: ExportPreview) -> str:
     said = tr("{contents}, {how}") if ready.how else "{contents}"
     return said.format(contents=ready.contents, how=ready.how)

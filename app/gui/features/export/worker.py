@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 from app.gui.session.jobs import Job
 from app.i18n.catalog import tr
-from app.presenters.export import Manner, Outcome
-from app.presenters.export_preview import Ready, make_ready
+from app.presenters.export import ExportOptions, ExportSource
+from app.presenters.export_preview import ExportPreview, prepare_export
 from core.progress import Progress
 
 if TYPE_CHECKING:
@@ -23,9 +23,11 @@ class ExportWork:
     says what was written and where, or why not.
     """
 
-    def __init__(self, window: MainWindow, what: str, path: Path, outcome: Outcome, manner: Manner) -> None:
+    def __init__(
+        self, window: MainWindow, what: str, path: Path, outcome: ExportSource, manner: ExportOptions
+    ) -> None:
         self._window, self.path, self._about = window, path, f"export {what}"
-        self._make = partial(make_ready, what, path, outcome, manner)
+        self._make = partial(prepare_export, what, path, outcome, manner)
         self._job: Job | None = None
 
     @property
@@ -37,13 +39,13 @@ class ExportWork:
         """Begin with the first of the jobs."""
         self._run(tr("Writing {name}"), self._prepare, self._prepared)
 
-    def _prepare(self, progress: Progress) -> tuple[Ready, list[Path]]:
+    def _prepare(self, progress: Progress) -> tuple[ExportPreview, list[Path]]:
         ready = self._make()
         progress("writing", 0.05)
         return ready, [] if ready.draw else self._write(ready, None, progress)
 
     def _prepared(self, found: object) -> None:
-        ready, files = cast(tuple[Ready, list[Path]], found)
+        ready, files = cast(tuple[ExportPreview, list[Path]], found)
         if ready.draw is None:
             self._done(ready, files)
             return
@@ -52,11 +54,11 @@ class ExportWork:
             words, ready.draw(), partial(self._drawn, ready), self._failed, waited=True
         )
 
-    def _drawn(self, ready: Ready, pictures: Any) -> None:
+    def _drawn(self, ready: ExportPreview, pictures: Any) -> None:
         write = partial(self._write, ready, pictures)
         self._run(tr("Writing {name}"), write, lambda files: self._done(ready, cast(list[Path], files)))
 
-    def _write(self, ready: Ready, pictures: Any, progress: Progress) -> list[Path]:
+    def _write(self, ready: ExportPreview, pictures: Any, progress: Progress) -> list[Path]:
         return ready.write(self.path, pictures, progress) or [self.path]
 
     def _run(self, words: str, work: Any, done: Any) -> None:
@@ -66,7 +68,7 @@ class ExportWork:
     def _failed(self, error: Exception) -> None:
         self._window.notifications.error(error, self._about)
 
-    def _done(self, ready: Ready, files: list[Path]) -> None:
+    def _done(self, ready: ExportPreview, files: list[Path]) -> None:
         first, last = files[0].name, files[-1].name
         name = first if len(files) == 1 else tr("{first} to {last}").format(first=first, last=last)
         said = tr("{name} written, {how}.") if ready.how else tr("{name} written.")

@@ -9,8 +9,8 @@ from PySide6.QtCore import QObject
 from app.gui.features.garment.panel import GarmentPanel
 from app.gui.widgets.table_export import copy_table, save_table
 from app.i18n.catalog import number, say, tr
-from app.presenters.cut_list import GarmentView, as_table, garment_view
-from app.presenters.status import doubt_of
+from app.presenters.cut_list import CutListView, as_table, cut_list_view
+from app.presenters.status import invalid_reason
 from core.errors import LineError
 from core.garment.cut_list import cut_list
 from core.pipeline.live_solver import Frame
@@ -63,9 +63,9 @@ class GarmentDesk(QObject):
         try:
             cuts = cut_list(frame.stages, frame.control_points)
         except LineError as problem:
-            self._panel.set_view(GarmentView(()), say(problem.message))
+            self._panel.set_view(CutListView(()), say(problem.message))
         else:
-            self._panel.set_view(garment_view(frame, cuts), doubt_of(frame))
+            self._panel.set_view(cut_list_view(frame, cuts), invalid_reason(frame))
 
     def _set_tissue(self, stiffness: float) -> None:
         said = tr("Tissue {value} N/m").format(value=number(stiffness, 0))

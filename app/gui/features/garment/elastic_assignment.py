@@ -49,15 +49,15 @@ class ElasticChoice(QObject):
         """Offer elastics for a line and its linked partner."""
         design = self._session.design
         if design is not None:
-            self._open(design.linked(name), design.traits_of(name).elastic)
+            self._open(design.linked_pair(name), design.line_settings(name).elastic)
 
     def show_all(self) -> None:
         """Offer elastics for all lines of the cut list: active ones, and bands on points that do not move."""
         frame, design = self._session.frame, self._session.design
         if frame is not None and design is not None:
             still = {line.name for line in frame.stages.model.lines if not line.constrains}
-            names = tuple(sorted(design.worn() | still))
-            made = {design.traits_of(name).elastic for name in names}
+            names = tuple(sorted(design.active_lines() | still))
+            made = {design.line_settings(name).elastic for name in names}
             self._open(names, made.pop() if len(made) == 1 else None)
 
     def choose(self, names: tuple[str, ...], elastic: Elastic | None) -> None:
@@ -139,14 +139,14 @@ class ElasticChoice(QObject):
         if self.offer.mode != KEEP_FIT or asked.design.line_hold == "held":
             return False
         moving = {line.name for line in asked.frame.stages.model.lines if line.constrains}
-        return bool(moving & asked.design.worn() & set(asked.names))
+        return bool(moving & asked.design.active_lines() & set(asked.names))
 
 
 def _is_made(asked: Asked, outcome: Outcome, elastic: Elastic | None) -> bool:
     """Return whether the lines are made of the elastic already, so that a search would only add noise."""
     made = {each.name: each for each in asked.design.elastics}
-    alike = all(made.get(asked.design.traits_of(name).elastic) == elastic for name in asked.names)
-    return alike and outcome.design.worn() == asked.design.worn()
+    alike = all(made.get(asked.design.line_settings(name).elastic) == elastic for name in asked.names)
+    return alike and outcome.design.active_lines() == asked.design.active_lines()
 
 
 def _told(before: float, after: float, cut: bool) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from app.i18n.catalog import say, tr
 from core.document.elastic import Elastic
 from core.errors import LineError
-from core.garment.elastic_library import built_in, own_elastics
+from core.garment.elastic_library import built_in, user_elastics
 
 Entry = tuple[str, Elastic | None]
 """What an elastic is called in the list, and the elastic; None is no elastic."""
@@ -19,7 +19,7 @@ def elastic_entries(kept: Iterable[Elastic]) -> tuple[list[Entry], list[LineErro
     ``kept`` are those that the project brings along. An elastic of one's own takes the place of one of the
     library of the same name.
     """
-    own, problems = own_elastics()
+    own, problems = user_elastics()
     known = {each.name: each for each in (*built_in(), *own)}
     brought = [each for each in kept if known.get(each.name) != each]
     here, twice = tr("{name}, in this project"), tr("{name}, as in this project")

@@ -54,7 +54,7 @@ class Asked:
 
     def title(self) -> str:
         """Return what the lines are called together."""
-        one = set(self.names) <= set(self.design.linked(self.names[0]))
+        one = set(self.names) <= set(self.design.linked_pair(self.names[0]))
         return row_title(self.names[0], self.design) if one else tr("All lines")
 
 

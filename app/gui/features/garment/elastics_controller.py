@@ -22,11 +22,11 @@ from core.garment.elastic_library import (
     ALLOWANCE,
     built_in,
     library,
-    own_elastics,
     read_elastic,
     remove_elastic,
     save_elastic,
-    told_allowance,
+    specified_allowance,
+    user_elastics,
     write_elastic,
     write_template,
 )
@@ -69,14 +69,14 @@ class ElasticsDesk(QObject):
             return
         try:
             elastic = _beside_ours(read_elastic(Path(path)))
-            taken = elastic.name in {each.name for each in own_elastics()[0]}
+            taken = elastic.name in {each.name for each in user_elastics()[0]}
             question = tr("There is an elastic {name} of yours already. Replace it?").format(
                 name=elastic.name
             )
             if taken and ask(sheet, question, "", [("replace", tr("Replace"))]) != "replace":
                 return
             save_elastic(elastic)
-            seams = "" if told_allowance(Path(path)) else _assumed()
+            seams = "" if specified_allowance(Path(path)) else _assumed()
         except UserError as problem:
             sheet.notices.clear()
             sheet.notices.show_notice("bad", problem.message, problem.hint, lasting=True)
@@ -128,7 +128,7 @@ class ElasticsDesk(QObject):
         sheet, design = self.sheet, self._window.session.design
         if sheet is None:
             return
-        own, problems = own_elastics()
+        own, problems = user_elastics()
         sheet.set_elastics(elastic_views(own, built_in(), design.elastics if design else ()), marked)
         for problem in problems:
             sheet.notices.show_notice("warn", problem.message, problem.hint, lasting=True)

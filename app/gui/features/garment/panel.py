@@ -16,7 +16,7 @@ from app.gui.widgets.basic import EmptyState, button, sentence
 from app.gui.widgets.button_row import press_row
 from app.i18n.catalog import tr
 from app.i18n.lengths import length_unit
-from app.presenters.cut_list import GarmentView
+from app.presenters.cut_list import CutListView
 from app.presenters.pressure import PressureView
 
 
@@ -41,7 +41,7 @@ class GarmentPanel(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        self.view: GarmentView | None = None
+        self.view: CutListView | None = None
         self.stale = False
         self.rows: dict[str, GarmentRow] = {}
         self._selected = ""
@@ -68,9 +68,9 @@ class GarmentPanel(QWidget):
         self._buttons = self._make_buttons()
         column.addWidget(self._buttons)
         column.addStretch(0)
-        self.set_view(GarmentView(()))
+        self.set_view(CutListView(()))
 
-    def set_view(self, view: GarmentView, doubt: str = "") -> None:
+    def set_view(self, view: CutListView, doubt: str = "") -> None:
         """Show these pieces; ``doubt`` says why their figures are no result."""
         self.view, self.stale = view, False
         self._doubt.setText(doubt)

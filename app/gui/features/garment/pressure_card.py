@@ -14,7 +14,7 @@ from app.gui.widgets.basic import ToolButton, button, hairline, sentence
 from app.gui.widgets.folded_list import folded_list
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr
-from app.presenters.pressure import TONES, LightLimits, PressureSummary
+from app.presenters.pressure import TONES, PressureSummary, RatingLimits
 
 LIGHTS = ("green", "amber", "red")
 """The lights, the best first."""
@@ -59,7 +59,7 @@ class LightMark(QWidget):
 class PressureScale(QWidget):
     """Three zones with their words and limits, and over them where each line stands."""
 
-    def __init__(self, limits: LightLimits) -> None:
+    def __init__(self, limits: RatingLimits) -> None:
         super().__init__()
         self._limits = limits
         self.marks: tuple[tuple[str, str, float], ...] = ()
@@ -113,7 +113,7 @@ class PressureCard(QWidget):
 
     place_asked = Signal()
 
-    def __init__(self, limits: LightLimits) -> None:
+    def __init__(self, limits: RatingLimits) -> None:
         super().__init__()
         self.largest, self.light = label("", "heading", tabular=True), LightMark()
         self.says, self.force = sentence("", "secondary"), label("", "secondary", tabular=True)

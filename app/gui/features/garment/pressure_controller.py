@@ -10,9 +10,9 @@ from PySide6.QtCore import QObject, Signal
 from app.gui.features.garment.panel import GarmentPanel
 from app.gui.features.garment.pressure_card import PressureCard
 from app.i18n.catalog import tr
-from app.presenters.pressure import light_limits, pressure_summary, pressure_views, unknown_pressure
-from app.presenters.status import doubt_of, not_computed
-from core.garment.pressure_list import PressList, press_list
+from app.presenters.pressure import pressure_summary, pressure_views, rating_limits, unknown_pressure
+from app.presenters.status import invalid_reason, not_computed
+from core.garment.pressure_list import PressureList, pressure_list
 from core.pipeline.live_solver import Frame
 
 if TYPE_CHECKING:
@@ -32,14 +32,14 @@ class PressureDesk(QObject):
     def __init__(self, window: MainWindow, panel: GarmentPanel) -> None:
         super().__init__(window)
         self._window, self._panel = window, panel
-        self.card = PressureCard(light_limits())
+        self.card = PressureCard(rating_limits())
         self.card.hide()
         panel.cards.addWidget(self.card)
-        self._shown: PressList | None = None
+        self._shown: PressureList | None = None
         self._stale: bool | None = None
         self._doubt = ""  # why figures of now are no result
         self._body: object = None
-        self._known: WeakKeyDictionary[Frame, PressList] = WeakKeyDictionary()
+        self._known: WeakKeyDictionary[Frame, PressureList] = WeakKeyDictionary()
         self._asked: WeakSet[Frame] = WeakSet()
         self._failed: WeakSet[Frame] = WeakSet()
         self._left: WeakSet[Frame] = WeakSet()
@@ -47,17 +47,17 @@ class PressureDesk(QObject):
         self.card.place_asked.connect(self.place_asked)
         panel.opened.connect(self._begin_again)
 
-    def of(self, frame: Frame) -> PressList | None:
+    def of(self, frame: Frame) -> PressureList | None:
         """Return what the lines of a frame press with; if that is not known yet it is worked out beside.
 
         While the body moves it is not: the next frame would be another one.
         """
         moves = frame is self._window.session.frame and not self._window.session.is_at_rest
-        if frame not in self._asked and not frame.at_work and not moves:
+        if frame not in self._asked and not frame.is_running and not moves:
             self._asked.add(frame)
             self._window.jobs.run(
                 tr("Working out the pressure"),
-                lambda progress: press_list(frame.stages, frame.control_points),
+                lambda progress: pressure_list(frame.stages, frame.control_points),
                 lambda found: self._take(frame, found),
                 lambda error: self._fail(frame, error),
                 left=lambda: self._leave_off(frame),
@@ -76,13 +76,13 @@ class PressureDesk(QObject):
         failed = session.failure is not None and frame is session.frame
         return not_computed() if failed and frame not in self._known else ""
 
-    def of_listed(self, frame: Frame) -> PressList | None:
+    def of_listed(self, frame: Frame) -> PressureList | None:
         """Return the same for the list of lines: only where it is seen, and a line is worn."""
-        seen = self._window.lines.isVisible() and frame.stages.design.worn()
-        return self.of(frame) if seen and not doubt_of(frame) else None
+        seen = self._window.lines.isVisible() and frame.stages.design.active_lines()
+        return self.of(frame) if seen and not invalid_reason(frame) else None
 
     @property
-    def shown(self) -> PressList | None:
+    def shown(self) -> PressureList | None:
         """What is shown beside the cut list, if that is of now and a result."""
         return None if self._stale or self._doubt else self._shown
 
@@ -95,7 +95,7 @@ class PressureDesk(QObject):
         if frame.stages.body is not self._body:
             self._body, self._shown, self._stale = frame.stages.body, None, None
         stale = known is None
-        doubt = doubt_of(frame) or self.missing(frame)
+        doubt = invalid_reason(frame) or self.missing(frame)
         if (known or self._shown) is self._shown and (stale, doubt) == (self._stale, self._doubt):
             return
         self._shown, self._stale = known or self._shown, stale
@@ -103,10 +103,10 @@ class PressureDesk(QObject):
         told = None if self._doubt else self._shown
         self._panel.set_pressures(pressure_views(told, design, stale) if told else {})
         self.card.show_summary(pressure_summary(told, design, self._doubt), stale and told is not None)
-        self.card.setVisible(bool(design.worn()))
+        self.card.setVisible(bool(design.active_lines()))
 
     def _take(self, frame: Frame, found: object) -> None:
-        self._known[frame] = cast(PressList, found)
+        self._known[frame] = cast(PressureList, found)
         self.found.emit()
 
     def _fail(self, frame: Frame, error: Exception) -> None:

@@ -16,8 +16,8 @@ from app.presenters.landmarks import kind_of, landmark_title, landmark_views, ot
 from core.document.design import Design
 from core.geometry.mesh import Points
 from core.landmarks.manual import in_file, mirrored, nearest_skin
-from core.landmarks.warnings import ESSENTIAL, first_doubt, landmark_doubts
-from core.pipeline.build import Stages, StuckError
+from core.landmarks.warnings import ESSENTIAL, first_warning, landmark_warnings
+from core.pipeline.build import IncompleteBuildError, Stages
 from core.pipeline.live_solver import Frame
 from core.scan.body import Body
 
@@ -75,7 +75,7 @@ class LandmarkDesk(QObject):
 
     def show_found(self, stages: Stages) -> None:
         """Show what was found on a body."""
-        window, said = self._window, landmark_doubts(stages.landmarks)
+        window, said = self._window, landmark_warnings(stages.landmarks)
         views = landmark_views(stages.landmarks.points, window.view.pins.accepted)
         window.landmarks.set_landmarks(views, said)
         weak = sum(view.weak for view in views)
@@ -90,8 +90,8 @@ class LandmarkDesk(QObject):
         marks = [mark for mark in stages.landmarks.points.values() if kind_of(mark.name) in ESSENTIAL]
         worst = min(marks, key=lambda mark: mark.confidence)
         if tone_of(worst.confidence) == "bad" or stages.landmarks.warnings:
-            said, *more = landmark_doubts(stages.landmarks)
-            spoken_of = first_doubt(stages.landmarks)
+            said, *more = landmark_warnings(stages.landmarks)
+            spoken_of = first_warning(stages.landmarks)
             actions = [(tr("Look at it"), lambda: self._look_at(spoken_of))]
             if stages.landmarks.size_doubted:
                 actions.insert(0, (tr("Check unit"), lambda: self._window.navigation.show_step("scan")))
@@ -101,7 +101,7 @@ class LandmarkDesk(QObject):
                 "warn", said, joined(map(say, more)), actions, lasting=True, topic=_DOUBT
             )
 
-    def show_stuck(self, stuck: StuckError) -> None:
+    def show_stuck(self, stuck: IncompleteBuildError) -> None:
         """Show what was found on a scan that cannot go on."""
         refused = stuck.kind == "refused"
         self._carried = {}
@@ -145,7 +145,7 @@ class LandmarkDesk(QObject):
         self._carried = {name: place}
         partner = other_side(name) if self._window.landmarks.link.isChecked() else ""
         if partner and frame is not None and not self._window.scan_desk.stuck:
-            self._carried[partner] = mirrored(frame.stages.body.calm, place, self._middle)
+            self._carried[partner] = mirrored(frame.stages.body.smoothed, place, self._middle)
         self._window.view.pins.carry(self._carried)
         self._window.actions_.cancel.setEnabled(True)
         if self._session.design is not None and not self._window.scan_desk.stuck:
@@ -159,7 +159,7 @@ class LandmarkDesk(QObject):
         if place is None or body is None:
             return False
         self._refused = False
-        self.carry(name, nearest_skin(body.calm, place + right * view.axes[0] + up * view.axes[1]))
+        self.carry(name, nearest_skin(body.smoothed, place + right * view.axes[0] + up * view.axes[1]))
         self._pause.start()
         return True
 

@@ -11,8 +11,8 @@ from app.gui.widgets.menu import Menu, pull_down
 from app.i18n.catalog import tr
 from app.presenters.lines import LINE_COLOURS, line_title, pair_title
 from core.control_mesh.template import read_template
-from core.document.line_notation import ready_made
-from core.document.lines import OwnLine
+from core.document.line_notation import ready_made_lines
+from core.document.lines import CustomLine
 
 if TYPE_CHECKING:
     from app.gui.main_window import MainWindow
@@ -40,7 +40,7 @@ class LineMaker(QObject):
         design = self._window.session.design
         if design is None:
             return
-        pair = ready_made(read_template(design.template))[kind]
+        pair = ready_made_lines(read_template(design.template))[kind]
         present = {line.name for line in design.own_lines}
         missing = tuple(line for line in pair if line.name not in present)
         if missing:
@@ -58,7 +58,7 @@ class LineMaker(QObject):
             if line is not None:
                 self.take((line,))
 
-    def take(self, lines: tuple[OwnLine, ...]) -> None:
+    def take(self, lines: tuple[CustomLine, ...]) -> None:
         """Add lines, and select the first."""
         session = self._window.session
         if session.design is None:

@@ -12,8 +12,8 @@ from app.gui.features.lines.slider_groove import LONGEST, RESISTANCE, SHORTEST, 
 from app.gui.viewport.band_drag import BandGrip
 from app.gui.widgets.tooltip import hide_tip, show_tip
 from app.i18n.catalog import tr
-from app.presenters.length_limits import refusal
-from core.analysis.length_limits.zones import Leeway
+from app.presenters.length_limits import resistance_reason
+from core.analysis.length_limits.zones import LengthLimits
 
 if TYPE_CHECKING:
     from app.gui.main_window import MainWindow
@@ -35,7 +35,7 @@ class BandPull(QObject):
         self._name = ""
         self._start = self._ratio = 1.0
         self._way = 0.0
-        self._leeway: Leeway | None = None
+        self._leeway: LengthLimits | None = None
         self._wall: float | None = None
         grip = self._viewport.findChild(BandGrip)
         assert grip is not None
@@ -112,7 +112,7 @@ class BandPull(QObject):
 
     def _tell(self, stopped: bool) -> None:
         """Say why it goes no further without a stronger pull."""
-        words = refusal(self._leeway) if stopped else ""
+        words = resistance_reason(self._leeway) if stopped else ""
         show_tip(QCursor.pos(), words, self._viewport)
 
     def _drop(self) -> None:

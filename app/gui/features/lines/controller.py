@@ -11,7 +11,7 @@ from PySide6.QtCore import QObject, Qt
 
 from app.i18n.catalog import number, tr
 from app.presenters.lines import Shown, kind_of, line_views, pair_title, row_title
-from app.presenters.pressure import pressed_view
+from app.presenters.pressure import line_pressure_view
 from core.control_mesh.template import read_template
 from core.document.design import Design
 from core.document.lines import partner_of
@@ -66,7 +66,7 @@ class LinesDesk(QObject):
             pressed = self._window.pressure_desk.of_listed(frame)
             tried, design = self._window.ask_desk.around.is_tried_on, frame.stages.design
             views = [replace(view, tried=tried(view.names, design)) for view in views]
-            self._window.lines.set_lines([pressed_view(view, pressed) for view in views])
+            self._window.lines.set_lines([line_pressure_view(view, pressed) for view in views])
 
     def commit_length(self, name: str, ratio: float) -> None:
         """Set the length of a line and its linked partner."""
@@ -89,7 +89,7 @@ class LinesDesk(QObject):
             names: tuple[str, ...] = (name, partner_of(name))
             text = self._linked_text(design, name, bool(value))
         else:
-            names, text = design.linked(name), _text(row_title(name, design), trait, value)
+            names, text = design.linked_pair(name), _text(row_title(name, design), trait, value)
 
         def decided(before: Design) -> Design:
             if trait == "linked" and value:
@@ -101,7 +101,7 @@ class LinesDesk(QObject):
     def set_visible(self, name: str, visible: bool) -> None:
         """Show or hide the bands of a line and its linked partner."""
         if self._session.design is not None:
-            for each in self._session.design.linked(name):
+            for each in self._session.design.linked_pair(name):
                 self._window.view.set_line_visible(each, visible)
             self.show_rows()
 
@@ -111,8 +111,8 @@ class LinesDesk(QObject):
         if design is None:
             return
         text = tr("{line} removed").format(line=row_title(name, design))
-        names = design.linked(name)
-        self._session.edit(lambda before: reduce(Design.without_own_line, names, before), text)
+        names = design.linked_pair(name)
+        self._session.edit(lambda before: reduce(Design.without_custom_line, names, before), text)
         left = self._session.design
         if left is not None and left is not design:
             self._window.selection.select_line("mid-bust")
@@ -121,12 +121,12 @@ class LinesDesk(QObject):
         """Let a line and its linked partner run on over the shoulder, or end on the upper chest."""
         text = tr("{line} runs over the shoulder") if over else tr("{line} ends on the upper chest")
         text = text.format(line=row_title(name, design))
-        names = design.linked(name)
+        names = design.linked_pair(name)
 
         def led(before: Design) -> Design:
             lines = (line for line in before.own_lines if line.name in names)
             after = (replace(line, over_shoulder=over) for line in lines)
-            return reduce(Design.with_own_line, after, before)
+            return reduce(Design.with_custom_line, after, before)
 
         self._session.edit(led, text)
 
@@ -165,7 +165,7 @@ class LinesDesk(QObject):
 
 
 def _with_trait(design: Design, name: str, trait: str, value: object) -> Design:
-    return design.with_traits(replace(design.traits_of(name), **{trait: value}))  # type: ignore[arg-type]
+    return design.with_line_settings(replace(design.line_settings(name), **{trait: value}))  # type: ignore[arg-type]
 
 
 def _text(title: str, trait: str, value: object) -> str:

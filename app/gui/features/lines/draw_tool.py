@@ -17,10 +17,10 @@ from app.presenters.lines import LINE_COLOURS, kind_of, line_colours, row_title
 from core.control_mesh.path_snapping import Snapped, snap
 from core.control_mesh.template import read_template
 from core.document.free_lines import FreeCurve, free_curve
-from core.document.line_notation import cells_of, mirror_image
-from core.document.lines import OwnLine
+from core.document.line_notation import mirror_image, path_cells
+from core.document.lines import CustomLine
 from core.errors import UserError
-from core.geometry.geodesic import SkinWays
+from core.geometry.geodesic import SurfacePaths
 from core.geometry.mesh import Points
 from core.scan.body import Body
 
@@ -38,14 +38,14 @@ class LineDrawing(QObject):
         super().__init__(window)
         self._window = window
         self._sketching = Sketching(window, self)
-        self._ways: tuple[Body, SkinWays] | None = None
+        self._ways: tuple[Body, SurfacePaths] | None = None
         self._job: Job | None = None
         self._job_body: Body | None = None
         self._places: list[Points] = []
         self._curve: list[Points] = []
         self._found: Snapped | FreeCurve | None = None
         self._wanted: tuple[list[Points], bool] = ([], False)
-        self._again: OwnLine | None = None
+        self._again: CustomLine | None = None
         hand, card = self._sketching.hand, self._sketching.card
         hand.clicked.connect(self._click)
         hand.hovered.connect(self._hover)
@@ -66,11 +66,11 @@ class LineDrawing(QObject):
         """Let a line be drawn; until the skin is ready for it clicks are joined straight."""
         self._begin(None)
 
-    def begin_again(self, line: OwnLine) -> None:
+    def begin_again(self, line: CustomLine) -> None:
         """Let the course of a line be drawn anew; it keeps all else."""
         self._begin(line)
 
-    def _begin(self, again: OwnLine | None) -> None:
+    def _begin(self, again: CustomLine | None) -> None:
         frame = self._sketching.frame
         if frame is None:
             return
@@ -111,13 +111,13 @@ class LineDrawing(QObject):
             self._job_body = body
             self._job = jobs.run(
                 tr("Preparing the skin for drawing"),
-                lambda _: SkinWays(body.mesh),
+                lambda _: SurfacePaths(body.mesh),
                 lambda ways: self._take_ways(body, ways),
                 self._window.session.failed.emit,
             )
 
     def _take_ways(self, body: Body, ways: object) -> None:
-        assert isinstance(ways, SkinWays)
+        assert isinstance(ways, SurfacePaths)
         frame = self._window.session.frame
         if frame is None or frame.stages.body is not body:
             return
@@ -155,7 +155,7 @@ class LineDrawing(QObject):
         if self._ways is None:
             return np.stack([start, end])
         try:
-            return self._ways[1].way(start, end)
+            return self._ways[1].path(start, end)
         except UserError as problem:
             self._window.session.failed.emit(problem)
             return np.stack([start, end])
@@ -213,7 +213,7 @@ class LineDrawing(QObject):
         points, places = (found.path, ()) if isinstance(found, Snapped) else ((), found.places)
         if again is not None:
             over = again.over_shoulder and not found.closed
-            after = OwnLine(again.name, points, found.closed, places, over)
+            after = CustomLine(again.name, points, found.closed, places, over)
             self.leave()
             text = tr("{line} led elsewhere").format(line=row_title(again.name, design))
             session.edit(lambda before: led(before, again, after), text)
@@ -221,10 +221,10 @@ class LineDrawing(QObject):
         template = read_template(design.template)
         taken = {*LINE_COLOURS, *(kind_of(line.name) for line in design.own_lines)}
         name = next(f"line {count}" for count in range(1, 1000) if f"line {count}" not in taken)
-        lines: tuple[OwnLine, ...] = (OwnLine(name, points, found.closed, places),)
+        lines: tuple[CustomLine, ...] = (CustomLine(name, points, found.closed, places),)
         other = mirror_image(lines[0], template, name)
         if card.both.isChecked() and set(other.points + other.places) != set(points + places):
-            left = sum(column for _, column in cells_of(lines[0], template)) > 0.0
+            left = sum(column for _, column in path_cells(lines[0], template)) > 0.0
             pair = (lines[0], other) if left else (other, lines[0])
             sides = zip(("left", "right"), pair, strict=True)
             lines = tuple(replace(line, name=f"{name} {side}") for side, line in sides)
@@ -239,7 +239,7 @@ class LineDrawing(QObject):
         card.keep.setText(tr("Keep line") if found else tr("Done"))
         card.keep.setEnabled(found is not None or len(self._places) > 1)
         card.undo.setEnabled(bool(self._places))
-        card.move_.setVisible(found is not None and not found.pulls)
+        card.move_.setVisible(found is not None and not found.is_movable)
         if found is not None:
             keys = tr("Enter: keep · Backspace: draw on · Esc: leave")
             card.say(tr("Keep this line?"), "\n".join(_fit_words(found)), keys)
@@ -281,14 +281,14 @@ class LineDrawing(QObject):
 def _fit_words(found: Snapped | FreeCurve) -> list[str]:
     """Return how a line lies to what was drawn, and what it does not do."""
     if isinstance(found, FreeCurve):
-        said = [tr("Deviation from the drawn curve: up to {length}.").format(length=length(found.off))]
+        said = [tr("Deviation from the drawn curve: up to {length}.").format(length=length(found.deviation))]
         if found.cut:
             said.append(tr("The part outside the control mesh was left out: the body is fixed there."))
     else:
         what = tr("It follows the control mesh, off what you drew by up to {length}.")
-        if found.off > _WIDE:
+        if found.deviation > _WIDE:
             what = tr("It can follow the control mesh only: off what you drew by up to {length}.")
-        said = [what.format(length=length(found.off, 0))]
-    if not found.pulls:
+        said = [what.format(length=length(found.deviation, 0))]
+    if not found.is_movable:
         said.append(tr("No point of it can move, so it is only measured and pulls nothing."))
     return said

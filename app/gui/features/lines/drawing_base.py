@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, QPointF, Signal
 
 from app.gui.features.lines.draw_card import DrawCard
 from app.gui.viewport.drawing_tool import Hand
-from app.rendering.ribbon_mesh import Surface
+from app.rendering.ribbon_mesh import RibbonSurface
 from core.control_mesh.fit import ControlMesh
 from core.geometry.mesh import Points
 from core.pipeline.live_solver import Frame
@@ -18,7 +18,7 @@ from core.scan.body import Body
 
 if TYPE_CHECKING:
     from app.gui.main_window import MainWindow
-    from app.rendering.sketch_actor import Sketch
+    from app.rendering.sketch_actor import SketchActor
 
 _PIECES = 8  # pieces that the path from one control point to the next is laid on the skin with
 
@@ -40,8 +40,8 @@ class Sketching(QObject):
         self.hand = Hand(viewport, canvas)
         self.card = DrawCard(window.view)
         window.view.place(self.card, "bottom-left")  # beside the body: lines go over its middle
-        self._sketch: Sketch | None = None
-        self._surface: tuple[Body, Surface] | None = None
+        self._sketch: SketchActor | None = None
+        self._surface: tuple[Body, RibbonSurface] | None = None
         self._drawn: tuple[Points, Points, Points, str] | None = None
         self._control: ControlMesh | None = None
         window.session.frame_ready.connect(self._follow)
@@ -81,10 +81,10 @@ class Sketching(QObject):
         self._drawn = curve, path, points, colour
         scene = self._window.view.viewport.scene
         if self._sketch is None:
-            from app.rendering.sketch_actor import Sketch  # noqa: PLC0415 (brings VTK along)
+            from app.rendering.sketch_actor import SketchActor  # noqa: PLC0415 (brings VTK along)
 
-            self._sketch = Sketch(scene.plotter)
-        there = [scene.carried(part) if len(part) else part for part in (curve, path, points)]
+            self._sketch = SketchActor(scene.plotter)
+        there = [scene.carried_points(part) if len(part) else part for part in (curve, path, points)]
         self._sketch.show(there[0], there[1], there[2], colour)
         self._sketch.look_from(scene.view)
         self._window.view.viewport.request_draw()
@@ -96,10 +96,10 @@ class Sketching(QObject):
             return corners
         body = frame.stages.body
         if self._surface is None or self._surface[0] is not body:
-            self._surface = body, Surface(body.mesh)
+            self._surface = body, RibbonSurface(body.mesh)
         part = np.arange(_PIECES)[:, None] / _PIECES
         pieces = [start + part * (end - start) for start, end in pairwise(corners)]
-        return self._surface[1].lay(np.concatenate([*pieces, corners[-1:]]))[0]
+        return self._surface[1].project(np.concatenate([*pieces, corners[-1:]]))[0]
 
     def nearest(self, points: Points, at: QPointF, reach: float) -> int:
         """Return which of ``points`` (n, 3) is seen nearest to a pixel, -1 if none within ``reach`` [px].
@@ -107,7 +107,7 @@ class Sketching(QObject):
         Points behind the body are not seen.
         """
         scene, overlay = self._window.view.viewport.scene, self._window.view.viewport.overlay
-        shown = scene.carried(points)
+        shown = scene.carried_points(points)
         spots = scene.view.to_picture(shown, overlay.width(), overlay.height())
         away = np.hypot(spots[:, 0] - at.x(), spots[:, 1] - at.y())
         for place in np.argsort(away):

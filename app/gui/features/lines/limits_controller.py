@@ -14,7 +14,7 @@ from app.gui.features.lines.slider_groove import SHORTEST
 from app.gui.session.jobs import Job
 from app.i18n.catalog import tr
 from app.presenters.lines import Shown
-from core.analysis.length_limits.zones import Leeway, leeway_of
+from core.analysis.length_limits.zones import LengthLimits, length_limits_of
 from core.document.design import Design
 from core.mechanics.constraint_lines import Line
 from core.pipeline.build import Stages
@@ -45,8 +45,8 @@ class LimitsDesk(QObject):
     def __init__(self, window: MainWindow) -> None:
         super().__init__(window)
         self._window = window
-        self._known: dict[Key, Leeway | None] = {}
-        self._last: dict[str, Leeway] = {}
+        self._known: dict[Key, LengthLimits | None] = {}
+        self._last: dict[str, LengthLimits] = {}
         self._shown: tuple[Design | None, Mapping[str, Shown]] = None, {}
         self._frame: Frame | None = None
         self._job: Job | None = None
@@ -95,7 +95,9 @@ class LimitsDesk(QObject):
             return
         stages = frame.stages
         design = stages.design
-        rows = [line.name for line in self._in_order(stages) if line.name == min(design.linked(line.name))]
+        rows = [
+            line.name for line in self._in_order(stages) if line.name == min(design.linked_pair(line.name))
+        ]
         keys = [key for key in (_key(design, name) for name in rows) if key not in self._known]
         if keys:
             self._job = self._window.jobs.run(
@@ -116,7 +118,7 @@ class LimitsDesk(QObject):
         for at, key in enumerate(keys):
             hear = partial(_part, progress, at / len(keys))
             try:
-                leeway = leeway_of(stages, key[1], hear, through=key[2])
+                leeway = length_limits_of(stages, key[1], hear, through=key[2])
             except Cancelled:
                 raise
             except Exception:  # the others may have theirs
@@ -125,7 +127,7 @@ class LimitsDesk(QObject):
             hear("", 0.0)
             self._found.emit(stages, key, leeway)
 
-    def _keep(self, stages: Stages, key: Key, leeway: Leeway | None) -> None:
+    def _keep(self, stages: Stages, key: Key, leeway: LengthLimits | None) -> None:
         self._known[key] = leeway
         while len(self._known) > KEPT:
             del self._known[next(iter(self._known))]
@@ -152,6 +154,6 @@ def _key(design: Design, name: str) -> Key:
 
     Of that only whether it is so short that its slider reaches far into what may be red.
     """
-    both = design.linked(name)
+    both = design.linked_pair(name)
     others = tuple(line for line in design.lines if line.name not in both)
     return replace(design, lines=others, volume="exact"), name, design.ratio(name) < SHORTEST

@@ -11,8 +11,8 @@ from app.gui.features.lines.slider_groove import GROOVE_HEIGHT, STALE, paint_zon
 from app.gui.theme.stylesheet import set_tag, tokens_of
 from app.gui.widgets.basic import sentence
 from app.i18n.catalog import tr
-from app.presenters.length_limits import KEY_ORDER, key, tone_at
-from core.analysis.length_limits.zones import Leeway
+from app.presenters.length_limits import KEY_ORDER, legend_entries, tone_at
+from core.analysis.length_limits.zones import LengthLimits
 
 _ORDER = ("", "warn", "bad")
 
@@ -63,13 +63,13 @@ class LeewayKey(QWidget):
         grid.addWidget(self.pressure, len(KEY_ORDER), 1)
 
     def show_leeway(
-        self, leeway: Leeway, ratio: float, stale: bool, pressed: str = "", pressed_tone: str = ""
+        self, leeway: LengthLimits, ratio: float, stale: bool, pressed: str = "", pressed_tone: str = ""
     ) -> None:
         """Show the leeway of a line set to ``ratio`` [1]; ``stale``: of the design before.
 
         ``pressed`` is its pressure now in words, in the tone of its light, empty where that is not known.
         """
-        told, here = key(leeway), leeway.at(ratio).tone
+        told, here = legend_entries(leeway), leeway.at(ratio).tone
         in_force = max(tone_at(leeway, ratio), pressed_tone.replace("ok", ""), key=_ORDER.index)
         for tone, (swatch, words) in self.rows.items():
             words.setText(told.get(tone, ""))

@@ -23,8 +23,8 @@ from app.i18n.catalog import say, tr
 from app.presenters.lines import OWN_COLOURS
 from core.control_mesh.embedding import Cell
 from core.control_mesh.template import Template
-from core.document.line_notation import cells_of, own_line, place_of
-from core.document.lines import OwnLine
+from core.document.line_notation import format_point, parse_line, path_cells
+from core.document.lines import CustomLine
 from core.errors import UserError
 
 _STEP, _EDGE, _REACH = 34, 30, 15
@@ -113,7 +113,7 @@ class LineDialog(QDialog):
     def __init__(self, parent: QWidget, template: Template, names: Collection[str]) -> None:
         super().__init__(parent)
         self.setWindowTitle(tr("Line through control points"))
-        self.line: OwnLine | None = None
+        self.line: CustomLine | None = None
         self._template, self._names = template, names
         self.map = PointMap(template)
         self.name, self.points = QLineEdit(self._free_name()), QLineEdit()
@@ -158,7 +158,7 @@ class LineDialog(QDialog):
     def _go_on(self, point: int) -> None:
         """Take a point as the next, or back if it is the last."""
         words = [word.strip() for word in self.points.text().split(",") if word.strip()]
-        place = place_of(point, self._template)
+        place = format_point(point, self._template)
         words = words[:-1] if words and words[-1] == place else [*words, place]
         self.points.setText(", ".join(words))
         self._read()
@@ -169,7 +169,7 @@ class LineDialog(QDialog):
         line, said = None, ""
         try:
             closed = ",closed" if self.ends.button("closed").isChecked() else ""
-            line = own_line(f"{self.name.text()}={text}{closed}", self._template)
+            line = parse_line(f"{self.name.text()}={text}{closed}", self._template)
             if line.name in self._names:
                 line, said = None, tr("There is a line of that name already.")
         except UserError as error:
@@ -177,16 +177,16 @@ class LineDialog(QDialog):
         self.line = line
         self._said.setText(say(said))
         self._add.setEnabled(line is not None)
-        self.map.show_path(cells_of(line, self._template) if line else self._so_far(text))
+        self.map.show_path(path_cells(line, self._template) if line else self._so_far(text))
 
     def _so_far(self, text: str) -> tuple[Cell, ...]:
         try:
-            return cells_of(own_line(f"x={text}", self._template), self._template)
+            return path_cells(parse_line(f"x={text}", self._template), self._template)
         except UserError:
             return ()
 
 
-def ask_own_line(parent: QWidget, template: Template, names: Collection[str]) -> OwnLine | None:
+def ask_own_line(parent: QWidget, template: Template, names: Collection[str]) -> CustomLine | None:
     """Return the line that the user draws, or None. ``names`` are taken."""
     dialog = LineDialog(parent, template, names)
     drawn = dialog.exec() == QDialog.DialogCode.Accepted

@@ -14,7 +14,7 @@ from app.presenters.lines import line_colours, row_title
 from core.control_mesh.template import read_template
 from core.document.design import Design
 from core.document.line_notation import mirror_image
-from core.document.lines import OwnLine, partner_of
+from core.document.lines import CustomLine, partner_of
 from core.errors import UserError
 from core.geometry.mesh import Points
 
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
 _REACH = 16.0  # how near to a control point a click means it [px]
 
 
-def led(design: Design, line: OwnLine, after: OwnLine) -> Design:
+def led(design: Design, line: CustomLine, after: CustomLine) -> Design:
     """Return the design with an own line led elsewhere, and a linked partner that mirrors it likewise."""
     template, partner = read_template(design.template), partner_of(line.name)
-    changed = design.with_own_line(after)
+    changed = design.with_custom_line(after)
     mirrors = mirror_image(line, template, partner) in design.own_lines if partner else False
-    if mirrors and len(design.linked(line.name)) > 1:
-        changed = changed.with_own_line(mirror_image(after, template, partner))
+    if mirrors and len(design.linked_pair(line.name)) > 1:
+        changed = changed.with_custom_line(mirror_image(after, template, partner))
     return changed
 
 
@@ -41,7 +41,7 @@ class LineRouting(QObject):
         super().__init__(window)
         self._window = window
         self._sketching = Sketching(window, self)
-        self._line: OwnLine | None = None
+        self._line: CustomLine | None = None
         self._steps: list[tuple[int, ...]] = []
         self._held, self._mesh_shown = -1, False
         hand, card = self._sketching.hand, self._sketching.card
@@ -146,7 +146,7 @@ class LineRouting(QObject):
         """Show a path, and go on with it, if a line can take it."""
         assert self._line is not None
         try:
-            OwnLine(self._line.name, path, self._line.closed)
+            CustomLine(self._line.name, path, self._line.closed)
         except UserError:
             self._show()
             return

@@ -18,11 +18,11 @@ from core.document.lines import LONGEST_TITLE
 from core.document.presets import (
     Preset,
     built_in,
-    is_worn,
-    own_file,
-    own_presets,
+    is_active,
     preset_from,
     save_preset,
+    user_file,
+    user_presets,
     with_preset,
 )
 from core.errors import UserError
@@ -49,7 +49,7 @@ class PresetDesk(QObject):
         menu = self._menu
         menu.clear()
         opened = self._window.session.design is not None
-        own, problems = own_presets()
+        own, problems = user_presets()
         self._known = (*built_in(), *own)
         for group in (built_in(), own):
             for preset in group:
@@ -74,7 +74,7 @@ class PresetDesk(QObject):
 
     def show_worn(self, design: Design) -> None:
         """Say over the list which preset is worn, and what it leaves out."""
-        worn = next((each for each in self._known if _goes(each, design) and is_worn(design, each)), None)
+        worn = next((each for each in self._known if _goes(each, design) and is_active(design, each)), None)
         leaves_out = say(worn.leaves_out) if worn is not None and worn.leaves_out else ""
         self._window.lines.head.show_preset(say(worn.title) if worn is not None else "", leaves_out)
 
@@ -98,13 +98,13 @@ class PresetDesk(QObject):
     def ask(self) -> None:
         """Ask for a name, and keep the present lines as a preset."""
         # Not the name of the project: a set of lines is for more than one customer.
-        taken, name = {preset.title for preset in own_presets()[0]}, tr("My lines")
+        taken, name = {preset.title for preset in user_presets()[0]}, tr("My lines")
         names = chain([name], (f"{name} {number}" for number in count(2)))
         offered = next(each for each in names if each not in taken)
         while title := ask_name(
             self._window, tr("Save lines as preset"), tr("Name of the preset"), offered, LONGEST_TITLE
         ):
-            if not own_file(title).exists() or self._may_replace(title):
+            if not user_file(title).exists() or self._may_replace(title):
                 self.save(title)
                 return
             offered = title

@@ -31,7 +31,7 @@ from app.gui.theme.stylesheet import tokens_of
 from app.i18n.catalog import tr
 from app.presenters.length_limits import hint
 from app.rendering.palette import LINE_COLORS
-from core.analysis.length_limits.zones import Leeway
+from core.analysis.length_limits.zones import LengthLimits
 
 STEPS_TO_ONE = 100_000  # one step of the slider is 1/1000 %
 
@@ -57,7 +57,7 @@ class LengthSlider(QAbstractSlider):
         super().__init__(parent)
         self._color = color
         self._reached: float | None = None
-        self._leeway: Leeway | None = None
+        self._leeway: LengthLimits | None = None
         self._stale = False
         self._strong = False
         self._before_drag = 0
@@ -107,7 +107,7 @@ class LengthSlider(QAbstractSlider):
             self._color = color
             self.update()
 
-    def set_leeway(self, leeway: Leeway | None, stale: bool = False) -> None:
+    def set_leeway(self, leeway: LengthLimits | None, stale: bool = False) -> None:
         """Show how far the line can go, or that this is not known; ``stale``: of the design before."""
         if (leeway, stale) != (self._leeway, self._stale):
             self._leeway, self._stale = leeway, stale

@@ -9,7 +9,7 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QPainter, QPen
 
 from app.rendering.palette import Tokens
-from core.analysis.length_limits.zones import AMBER, GREEN, RED, SLACK, Leeway
+from core.analysis.length_limits.zones import AMBER, GREEN, RED, SLACK, LengthLimits
 
 GROOVE_Y, GROOVE_HEIGHT = 11.0, 6.0
 """Middle of the groove below the slider's top, and its height [px]."""
@@ -37,7 +37,7 @@ def ends_for(ratio: float) -> tuple[float, float]:
     )
 
 
-def wall_of(leeway: Leeway | None, ratio: float) -> float | None:
+def wall_of(leeway: LengthLimits | None, ratio: float) -> float | None:
     """Return the ratio at which a pull that begins at ``ratio`` meets the red, if it does [1]."""
     red = leeway.red_below if leeway is not None else None
     return red if red is not None and ends_for(ratio)[0] < red <= ratio else None
@@ -53,7 +53,7 @@ def paint_groove(
     tokens: Tokens,
     x_of: Callable[[float], float],
     ends: tuple[float, float],
-    leeway: Leeway | None,
+    leeway: LengthLimits | None,
     *,
     strong: bool,
     stale: bool,
@@ -80,7 +80,7 @@ def paint_groove(
     _tick(painter, x_of(1.0), QColor(tokens.control))
 
 
-def _zones(leeway: Leeway | None, ends: tuple[float, float]) -> list[tuple[str, float, float]]:
+def _zones(leeway: LengthLimits | None, ends: tuple[float, float]) -> list[tuple[str, float, float]]:
     """Return tone, start and end of the zones that lie between the ends of the groove [1]."""
     zones = leeway.zones if leeway is not None else ()
     seen = [(zone.tone, max(zone.short, ends[0]), min(zone.long, ends[1])) for zone in zones]

@@ -72,7 +72,7 @@ def pressures_on(bands: Bands, worn: Mapping[str, LinePressure], stale: bool) ->
             band = worn[name]
             places = np.round(_places(band, bands.ribbon(name).at)).astype(np.int64) % len(band.places)
             values[name] = band.kpa[places]
-            off[name] = np.where(band.bridged, band.off, np.nan)[places]
+            off[name] = np.where(band.bridged, band.gap, np.nan)[places]
     return BandValues(values, off, {name: _rise(worn[name]) for name in values}, stale)
 
 

@@ -17,9 +17,9 @@ from app.gui.viewport.body_view import BodyView
 from app.gui.viewport.value_labels import ValueFlag, ValueFlags
 from app.i18n.catalog import number
 from app.i18n.lengths import length
-from app.presenters.maps import LINE_MAPS, MAPS, BodyNow, automatic_range, bridge_words, map_kinds, ramp_of
+from app.presenters.maps import LINE_MAPS, MAPS, BodyState, automatic_range, bridge_words, map_kinds, ramp_of
 from app.rendering.framing import framing_place
-from app.rendering.material import look_of
+from app.rendering.material import appearance_of
 from app.rendering.vertex_colors import Ramp
 from core.geometry.mesh import Floats
 from core.pipeline.live_solver import Frame
@@ -83,7 +83,7 @@ class MapDesk(QObject):
         self._window.pressure_desk.place_asked.connect(self.look_at_most)
 
     @property
-    def now(self) -> BodyNow | None:
+    def now(self) -> BodyState | None:
         """What is read off the session's body, once a map was asked for."""
         return self._seen.now
 
@@ -139,9 +139,9 @@ class MapDesk(QObject):
     def look_at_most(self) -> None:
         """Turn to the place that is pressed most, and pin what it is pressed with."""
         listed = self._window.pressure_desk.shown
-        if listed is None or listed.hardest is None:
+        if listed is None or listed.highest is None:
             return
-        line = listed.hardest.line
+        line = listed.highest.line
         worn = listed.worn[line]
         self._view.set_after(True)
         self.choose("pressure")
@@ -221,14 +221,14 @@ class MapDesk(QObject):
             beside = [self._values] + [self._values_of(view) for view in bodies[1:]]
         values = np.concatenate([np.empty(0), *beside])
         by_hand, (low, high) = self._by_hand.get(self.name), automatic_range(self.name, values)
-        if frame.at_work and self._range_of == self.name:  # while a body moves the colours only widen
+        if frame.is_running and self._range_of == self.name:  # while a body moves the colours only widen
             low, high = min(low, self._range[0]), max(high, self._range[1])
         self._range, self._range_of = by_hand or (low, high), "" if by_hand else self.name
         ramp = self._ramp(self._view.viewport.scene)
         self.legend.show_range(*self._range, ramp.stops, by_hand is not None)
 
     def _ramp(self, scene: Scene) -> Ramp:
-        return ramp_of(self.name, *self._range, look_of(scene.dark, scene.material).clay)
+        return ramp_of(self.name, *self._range, appearance_of(scene.dark, scene.material).clay)
 
     def _paint_skin(self, view: BodyView) -> None:
         """Lay the map over one body; only where it moves, if nothing else has changed."""

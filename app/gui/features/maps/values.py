@@ -11,8 +11,8 @@ from app.gui.features.symmetry.controller import SymmetryController
 from app.gui.viewport.body_view import BodyView
 from app.gui.viewport.comparison import Beside
 from app.i18n.catalog import tr
-from app.presenters.maps import BodyNow, pressure_note
-from core.garment.pressure_list import PressList
+from app.presenters.maps import BodyState, pressure_note
+from core.garment.pressure_list import PressureList
 from core.geometry.mesh import Floats
 from core.pipeline.live_solver import Frame
 
@@ -24,28 +24,28 @@ class MapValues:
         self, beside: Beside, pressure: PressureDesk, even: SymmetryController, worn: WornDesk
     ) -> None:
         self._beside, self._pressure, self._even, self._worn = beside, pressure, even, worn
-        self.now: BodyNow | None = None
-        self._others: WeakKeyDictionary[BodyView, BodyNow] = WeakKeyDictionary()
-        self._pressed: WeakKeyDictionary[BodyNow, PressList | None] = WeakKeyDictionary()
+        self.now: BodyState | None = None
+        self._others: WeakKeyDictionary[BodyView, BodyState] = WeakKeyDictionary()
+        self._pressed: WeakKeyDictionary[BodyState, PressureList | None] = WeakKeyDictionary()
 
     def take(self, frame: Frame) -> bool:
         """Follow a frame of the session; returns whether it is of another body or fit than the last one."""
-        if self.now is not None and self.now.is_of(frame):
+        if self.now is not None and self.now.belongs_to(frame):
             self.now.follow(frame)
             return False
-        self.now = BodyNow(frame)
+        self.now = BodyState(frame)
         return True
 
-    def now_of(self, view: BodyView) -> BodyNow | None:
+    def now_of(self, view: BodyView) -> BodyState | None:
         """Return what is read off one of the bodies."""
         if view in self._beside.live or view.frame is None:
             return self.now
         now = self._others.get(view)
         if now is None or now.frame is not view.frame:
-            now = self._others[view] = BodyNow(view.frame)
+            now = self._others[view] = BodyState(view.frame)
         return now
 
-    def on_skin(self, name: str, now: BodyNow) -> Floats:
+    def on_skin(self, name: str, now: BodyState) -> Floats:
         """Return the values of a map on the skin of one of the bodies, at its ``rows`` (k,) [mm, %]."""
         return self._worn.values(now.frame) if name == "worn" else now.values(name)
 

@@ -15,8 +15,8 @@ from app.i18n.catalog import tr
 from app.i18n.lengths import length
 from app.presenters.measurements import MeasureView, as_table, measure_views, measured_views
 from app.presenters.sizes import size_views
-from app.presenters.status import doubt_of, not_computed
-from app.presenters.uncertainty import spread_views
+from app.presenters.status import invalid_reason, not_computed
+from app.presenters.uncertainty import with_uncertainty
 from core.geometry.mesh import Points
 from core.measurements.definitions import Measure
 from core.measurements.table import Measures, before_after
@@ -62,14 +62,14 @@ class MeasuresDesk(QObject):
     def refresh(self) -> None:
         """Bring the table up to date, if it is seen; unseen it would cost each frame the same."""
         if self._frame is not None and self._panel.isVisible():
-            self._panel.set_rows(self._spread(measure_views(self._frame)), doubt_of(self._frame))
+            self._panel.set_rows(self._spread(measure_views(self._frame)), invalid_reason(self._frame))
             self._measure(self._frame)
 
     def show_spread(self) -> None:
         """Show beside what is known how far it may be off."""
         if self._frame is None or not self._panel.isVisible():
             return
-        self._panel.set_rows(self._spread(measure_views(self._frame)), doubt_of(self._frame))
+        self._panel.set_rows(self._spread(measure_views(self._frame)), invalid_reason(self._frame))
         if self._sized is not self._sure:
             self._show_sizes()
         if self._panel.measured:
@@ -78,7 +78,7 @@ class MeasuresDesk(QObject):
             self._panel.set_stale(stale)
 
     def _spread(self, views: Sequence[MeasureView]) -> list[MeasureView]:
-        return spread_views(views, *self._window.uncertainty_controller.shown)
+        return with_uncertainty(views, *self._window.uncertainty_controller.shown)
 
     def _measure(self, frame: Frame) -> None:
         """Measure the body of a frame beside the window, once it rests."""

@@ -13,13 +13,13 @@ from app.gui.session.jobs import Job
 from app.gui.viewport.drawing_tool import Hand
 from app.i18n.catalog import say, tr
 from app.presenters.landmarks import landmark_title
-from app.presenters.measurements import Draft, draft_of, measure_of, said_of, suggested_name
-from core.document.custom_measures import OwnMeasure
+from app.presenters.measurements import Draft, from_draft, suggested_name, to_draft, value_texts
+from core.document.custom_measures import CustomMeasurement
 from core.errors import UserError
 from core.landmarks.types import NAMES
 from core.measurements.custom import OWN
 from core.measurements.definitions import Measure
-from core.measurements.table import own_before_after
+from core.measurements.table import custom_before_after
 from core.pipeline.live_solver import Frame
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class OwnMeasuresDesk(QObject):
         self._banded = True
         self._titles: Mapping[str, str] = {}
         self._job: Job | None = None
-        self._asked: tuple[Frame, OwnMeasure] | None = None  # whatever the measure is called
+        self._asked: tuple[Frame, CustomMeasurement] | None = None  # whatever the measure is called
         self._form.changed.connect(self._follow)
         self._form.kept.connect(self.keep)
         self._form.left.connect(self.leave)
@@ -84,7 +84,7 @@ class OwnMeasuresDesk(QObject):
             self._window.view.set_layer("bands", False)  # they would cover what is shown
         self._panel.set_editing(True)
         self._hand.begin()
-        self._form.begin(draft_of(known) if known else Draft(), self._titles, self._former)
+        self._form.begin(to_draft(known) if known else Draft(), self._titles, self._former)
         self._form.name.setFocus()
 
     def leave(self) -> None:
@@ -107,7 +107,7 @@ class OwnMeasuresDesk(QObject):
         text = tr("Measure changed: {name}") if former else tr("Measure added: {name}")
         self.leave()
         self._window.session.edit(
-            lambda design: design.with_own_measure(wished, former), text.format(name=wished.name)
+            lambda design: design.with_custom_measurement(wished, former), text.format(name=wished.name)
         )
         self._panel.select(OWN + wished.name)
 
@@ -117,7 +117,7 @@ class OwnMeasuresDesk(QObject):
         self.leave()
         self._panel.unmark()
         text = tr("Measure deleted: {name}").format(name=name)
-        self._window.session.edit(lambda design: design.without_own_measure(name), text)
+        self._window.session.edit(lambda design: design.without_custom_measurement(name), text)
 
     # -- the view speaks
 
@@ -160,13 +160,13 @@ class OwnMeasuresDesk(QObject):
         elif (frame, replace(wished, name="?")) != self._asked:
             self._begin_measuring(frame, replace(wished, name="?"))
 
-    def _begin_measuring(self, frame: Frame, wished: OwnMeasure) -> None:
+    def _begin_measuring(self, frame: Frame, wished: CustomMeasurement) -> None:
         self._window.jobs.cancel(self._job)
         self._asked = frame, wished
         self._form.show_value("", "", "", self._suggested())  # the former one is of another measure
         self._job = self._window.jobs.run(
             tr("Measuring the body"),
-            lambda progress: own_before_after(frame.stages, frame.control_points, wished),
+            lambda progress: custom_before_after(frame.stages, frame.control_points, wished),
             lambda found: self._show(cast(tuple[Measure, Measure], found)),
             self._fail,
             left=lambda: self._show(None, tr("Stopped: change something to measure again.")),
@@ -181,17 +181,17 @@ class OwnMeasuresDesk(QObject):
         if found is None:
             self._window.jobs.cancel(self._job)
             self._job = self._asked = None
-        value, said, doubt = said_of(*found) if found else ("", "", why)
+        value, said, doubt = value_texts(*found) if found else ("", "", why)
         self._form.show_value(value, said, doubt, self._suggested())
         self._window.measures_desk.try_out(found)
 
     def _suggested(self) -> str:
         return suggested_name(self._form.draft, self._titles)
 
-    def _wished(self) -> OwnMeasure | None:
+    def _wished(self) -> CustomMeasurement | None:
         """Return what is wished for, None while places are missing. Raises UserError for what cannot be."""
         frame, design = self._window.session.frame, self._window.session.design
         if frame is None or design is None:
             return None
         taken = {each.name for each in design.own_measures} - {self._former}
-        return measure_of(self._form.draft, self._suggested(), taken)
+        return from_draft(self._form.draft, self._suggested(), taken)

@@ -105,7 +105,7 @@ class KeepingDesk(QObject):
         """Go on in the folder that the present document was restored from: it is kept there already."""
         self._writing.wait()
         if self._recovery is not None:
-            self._recovery.end()
+            self._recovery.remove()
         self._clock.stop()
         self._recovery, self._kept = recovery, self._session.document
 
@@ -114,9 +114,9 @@ class KeepingDesk(QObject):
         self._clock.stop()
         self._writing.wait()
         if self._recovery is not None and self.leaves and self._session.unsaved:
-            self._recovery.let_go()
+            self._recovery.leave()
         elif self._recovery is not None:
-            self._recovery.end()
+            self._recovery.remove()
         self._lock.release()
 
     def _forget(self) -> None:
@@ -124,7 +124,7 @@ class KeepingDesk(QObject):
         self._kept = None
         # What is being written is forgotten as soon as it is there: the window waits for no disk.
         if self._recovery is not None and not self._writing.at_work:
-            self._recovery.forget()
+            self._recovery.clear()
 
     def _write(
         self,
@@ -137,7 +137,7 @@ class KeepingDesk(QObject):
     ) -> None:
         if self._recovery is None:
             self._recovery = Recovery.new()
-        self._recovery.keep(document, scan, name, path, picture, stamp)
+        self._recovery.save(document, scan, name, path, picture, stamp)
 
     def _note_kept(self, document: Document | None, fault: Exception | None) -> None:
         self._kept = document if fault is None else None

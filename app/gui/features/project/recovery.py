@@ -14,7 +14,7 @@ from app.gui.features.project.recovery_card import RecoveryCard, RecoveryView
 from app.gui.widgets.loss_dialogs import may_discard
 from app.i18n.catalog import tr
 from core.document.storage.project_file import open_project
-from core.document.storage.recovery import Kept, Recovery, left_behind
+from core.document.storage.recovery import RecoveredDocument, Recovery, find_unsaved
 from core.errors import UserError
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ class RecoveryDesk(QObject):
     def __init__(self, window: MainWindow) -> None:
         super().__init__(window)
         self._window = window
-        self._offers: list[tuple[Kept, Recovery]] = []
+        self._offers: list[tuple[RecoveredDocument, Recovery]] = []
         self._broken: list[Path] = []
         self._at_start = True
         self.card = RecoveryCard(window)
@@ -45,7 +45,7 @@ class RecoveryDesk(QObject):
         # Nobody has chosen what the window opens with.
         self._at_start = self._window.navigation.page is not self._window.start_desk.page
         self._window.lines_page.currentChanged.connect(lambda _: self._give_way())
-        self._offers, self._broken = left_behind()
+        self._offers, self._broken = find_unsaved()
         self._tell_broken()
         self._offer()
 
@@ -74,7 +74,7 @@ class RecoveryDesk(QObject):
     def discard(self) -> None:
         """Remove what is offered, if that is meant."""
         if may_discard(self._window, self._offers[0][0].name):
-            self._offers.pop(0)[1].end()
+            self._offers.pop(0)[1].remove()
             self._offer()
 
     def open_backup(self) -> None:
@@ -92,7 +92,7 @@ class RecoveryDesk(QObject):
     def close(self) -> None:
         """Leave what was not decided to the next start."""
         while self._offers:
-            self._offers.pop()[1].let_go()
+            self._offers.pop()[1].leave()
         self.card.hide()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802

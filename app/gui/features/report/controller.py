@@ -21,17 +21,17 @@ from app.gui.widgets.file_dialogs import ask_save
 from app.i18n.catalog import language, say, tr
 from app.presenters.lines import line_colours
 from app.rendering.ambient_occlusion import bake_occlusion
-from app.report.document import Handout
+from app.report.document import ReportDocument
 from app.report.pages import Pages, pages_of
 from app.report.painter import UNITS
 from app.report.pdf import write_pdf
 from core.errors import ProjectError, UserError
 from core.export.csv_cells import ENCODING
-from core.export.report_data import Heading, Sheet, sheet_of
-from core.export.report_data_file import sheet_csv, sheet_json
+from core.export.report_data import Heading, Report, make_report
+from core.export.report_data_file import report_csv, report_json
 from core.files.atomic_write import write_text
 from core.geometry.mesh import Floats
-from core.pipeline.converged import settled_frame
+from core.pipeline.converged import converged_frame
 from core.pipeline.live_solver import Frame
 from core.progress import Progress
 
@@ -50,13 +50,13 @@ class ReportDesk(QObject):
         self._window = window
         self.page = ReportPage()
         self.pages: Pages | None = None
-        self.handout: Handout | None = None
+        self.handout: ReportDocument | None = None
         self._frame: Frame | None = None  # the one that the sheet is of
         self._asked: Frame | None = None  # the one that a sheet is being made of
         self._job: Job | None = None
         self._refused = ""  # why there is no sheet of the frame that was asked for
         self._language = ""
-        self._laid: tuple[Handout | None, str] = (None, "")
+        self._laid: tuple[ReportDocument | None, str] = (None, "")
         self._whole: Frame | None = None  # its figures are of
         self._occlusion: tuple[object, Floats] | None = None
         said = tr("Sizes, lengths to cut, measures, pressures and pictures on paper: look, save, print")
@@ -141,7 +141,7 @@ class ReportDesk(QObject):
     def _is_of(self, frame: Frame) -> bool:
         if self._frame is None or self.handout is None or self._asked is not None:
             return False
-        former, now = self.handout.sheet.heading, self._heading()
+        former, now = self.handout.report.heading, self._heading()
         sizes_alike = (former.system, former.allowance_mm) == (now.system, now.allowance_mm)
         return sizes_alike and self._window.session.is_converged and _alike(self._frame, frame)
 
@@ -151,25 +151,25 @@ class ReportDesk(QObject):
         self._asked = frame
         body, known = frame.stages.body, self._occlusion
 
-        def work(progress: Progress) -> tuple[Sheet, Frame, Floats]:
+        def work(progress: Progress) -> tuple[Report, Frame, Floats]:
             # From rest, as the command line and who opens the project again: turns that went on from a former
             # design end a hair beside, and would be plotted as if the garment began there.
             design = frame.stages.design
-            whole = settled_frame(design, frame.stages, lambda what, share: progress(what, 0.1 * share))
-            sheet = sheet_of(whole, whole.tracks.get(design.volume, ()), heading, progress)
+            whole = converged_frame(design, frame.stages, lambda what, share: progress(what, 0.1 * share))
+            sheet = make_report(whole, whole.tracks.get(design.volume, ()), heading, progress)
             baked = known[1] if known is not None and known[0] is body else bake_occlusion(body.mesh)
             return sheet, whole, baked
 
         def draw(found: object) -> None:
-            from app.report.images import shots  # noqa: PLC0415 (brings VTK along)
+            from app.report.images import render_images  # noqa: PLC0415 (brings VTK along)
 
-            sheet, whole, baked = cast(tuple[Sheet, Frame, Floats], found)
+            sheet, whole, baked = cast(tuple[Report, Frame, Floats], found)
             self._occlusion, self._whole = (body, baked), whole
-            finish, left = partial(done, Handout(sheet, {}, self._colours(frame))), self._leave_off
-            drawing, pieces = tr("Drawing the pictures of the sheet"), shots(whole, baked)
+            finish, left = partial(done, ReportDocument(sheet, {}, self._colours(frame))), self._leave_off
+            drawing, pieces = tr("Drawing the pictures of the sheet"), render_images(whole, baked)
             self._job = window.jobs.run_pieces(drawing, pieces, finish, lambda _: finish({}), left=left)
 
-        def done(plain: Handout, pictures: Mapping[str, QImage]) -> None:
+        def done(plain: ReportDocument, pictures: Mapping[str, QImage]) -> None:
             self._frame, self._asked, self._job = frame, None, None
             self._take(replace(plain, pictures=pictures))
 
@@ -189,12 +189,12 @@ class ReportDesk(QObject):
             self._refused = tr("The sheet could not be made.")
         self._show()
 
-    def _take(self, handout: Handout) -> None:
+    def _take(self, handout: ReportDocument) -> None:
         """Show a sheet under its present heading; its sizes are those that it was made with."""
-        made, spread = handout.sheet.heading, self._window.uncertainty_controller.on_sheet
+        made, spread = handout.report.heading, self._window.uncertainty_controller.on_sheet
         heading = replace(self._heading(), system=made.system, allowance_mm=made.allowance_mm)
-        sheet = replace(spread(handout.sheet, self._frame, self._whole), heading=heading)
-        self.handout = replace(handout, sheet=sheet)
+        sheet = replace(spread(handout.report, self._frame, self._whole), heading=heading)
+        self.handout = replace(handout, report=sheet)
         self._show()
 
     def _show(self) -> None:
@@ -253,8 +253,8 @@ class ReportDesk(QObject):
         path = self._asked_for(title, ending, kinds)
         if not path or self.handout is None:
             return
-        form, code = (sheet_csv, ENCODING) if ending == ".csv" else (sheet_json, "utf-8")
-        text = form(self.handout.sheet)
+        form, code = (report_csv, ENCODING) if ending == ".csv" else (report_json, "utf-8")
+        text = form(self.handout.report)
         self._write(path, lambda: write_text(Path(path).absolute(), text, code))
 
     def _asked_for(self, title: str, ending: str, kinds: str) -> str:

@@ -15,11 +15,11 @@ from app.gui.viewport.orientation_card import PICTURE, Answer
 from app.gui.widgets.notification_bar import REFUSED, SCAN
 from app.i18n.catalog import tr
 from app.presenters.scan import scan_view
-from app.rendering.appearance import LOOKS
-from app.rendering.orientation_thumbnails import Way, pictures
+from app.rendering.appearance import APPEARANCES
+from app.rendering.orientation_thumbnails import OrientationOption, option_thumbnails
 from app.rendering.thumbnail import Picture
 from core.document.design import Design, ScanSource
-from core.pipeline.build import Stages, StuckError
+from core.pipeline.build import IncompleteBuildError, Stages
 from core.pipeline.live_solver import Frame
 from core.pipeline.warnings import warnings
 from core.scan.body import Body
@@ -45,7 +45,7 @@ class ScanDesk(QObject):
         self._window = window
         self._session = window.session
         self._asked_for: Design | None = None
-        self.stuck: StuckError | None = None
+        self.stuck: IncompleteBuildError | None = None
         self._stages: Stages | None = None
         self._painting: Job | None = None
 
@@ -60,7 +60,7 @@ class ScanDesk(QObject):
         """Show what was understood of the scan, and found on it."""
         window = self._window
         window.scan.set_scan(scan_view(stages.design.scan, stages.body, landmarks=stages.landmarks))
-        sure = stages.body.pose.sure and not stages.landmarks.size_doubted
+        sure = stages.body.pose.is_certain and not stages.landmarks.size_doubted
         window.navigation.mark_step("scan", "done" if sure else "look", 1)
         window.landmark_desk.show_found(stages)
 
@@ -83,7 +83,7 @@ class ScanDesk(QObject):
         self.stuck = None
         self._window.landmark_desk.show_unclear(stages)
         pose, source = stages.body.pose, stages.design.scan
-        if pose.sure:
+        if pose.is_certain:
             return
         if source.up and source.front:
             unsure = tr("Busk is not sure of the unit, up or front of this scan.")
@@ -91,7 +91,7 @@ class ScanDesk(QObject):
         else:
             self._ask(stages.body, None)
 
-    def show_stuck(self, stuck: StuckError) -> None:
+    def show_stuck(self, stuck: IncompleteBuildError) -> None:
         """Show a scan that cannot go on if no document is open; ask how it stands if that is not sure."""
         self._forget_question()
         asked = self.stuck is not None and self.stuck.design.scan is stuck.design.scan
@@ -102,7 +102,7 @@ class ScanDesk(QObject):
         else:
             self._say_stuck(stuck)
 
-    def _show_alone(self, stuck: StuckError) -> None:
+    def _show_alone(self, stuck: IncompleteBuildError) -> None:
         """Show a scan that cannot go on in the place of a document."""
         window, self.stuck = self._window, stuck
         lacks = stuck.kind == "landmarks"
@@ -112,7 +112,7 @@ class ScanDesk(QObject):
         window.navigation.show_step("landmarks" if lacks else "scan")
         window.navigation.mark_step("scan", "done" if lacks else "look")
 
-    def _say_stuck(self, stuck: StuckError) -> None:
+    def _say_stuck(self, stuck: IncompleteBuildError) -> None:
         notifications = self._window.notifications
         notifications.withdraw(REFUSED)
         notifications.show("bad", stuck.message, stuck.hint, lasting=True, topic=REFUSED)
@@ -202,7 +202,7 @@ class ScanDesk(QObject):
         self._window.notifications.withdraw(_QUESTION)
         if self.stuck:
             self._say_stuck(self.stuck)
-        elif waiting is None and frame is not None and not frame.stages.body.pose.sure:
+        elif waiting is None and frame is not None and not frame.stages.body.pose.is_certain:
             self._say_unsure(tr("Please check it at the Scan step."))
 
     # -- inside
@@ -224,15 +224,15 @@ class ScanDesk(QObject):
     def _ask(self, body: Body, waiting: Design | None) -> None:
         """Have a picture painted for each way the body may stand."""
         self._asked_for = waiting
-        if not body.pose.sure:
+        if not body.pose.is_certain:
             self._say_unsure(tr("Please choose a picture below."))
-        clay = QColor(LOOKS[tokens_of(self._window).dark].clay)
+        clay = QColor(APPEARANCES[tokens_of(self._window).dark].clay)
         colour, scale = (clay.red(), clay.green(), clay.blue()), self._window.devicePixelRatioF()
         size = round(PICTURE[0] * scale), round(PICTURE[1] * scale)
         self._window.jobs.cancel(self._painting)
         self._painting = self._window.jobs.run(
             tr("Painting how the scan may stand"),
-            lambda progress: pictures(body, size, colour, progress),
+            lambda progress: option_thumbnails(body, size, colour, progress),
             self._show_question,
             self._show_no_question,
             left=self.leave_question,
@@ -257,7 +257,7 @@ class ScanDesk(QObject):
         self._window.notifications.warn(unsure, ask, topic=_QUESTION)
 
 
-def _words(way: Way) -> str:
+def _words(way: OrientationOption) -> str:
     up, front = (axis.replace("-", "\N{MINUS SIGN}") for axis in way.axes)
     return tr("{up} up, {front} front").format(up=up, front=front)
 

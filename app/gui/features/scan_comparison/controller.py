@@ -13,7 +13,14 @@ from app.gui.widgets.file_dialogs import ask_scan
 from app.gui.widgets.navigation_row import Door
 from app.i18n.catalog import tr
 from app.presenters import scan_comparison as words
-from core.analysis.calibration.api import CalibrationResult, Difference, Worn, calibrate, compare, read_worn
+from core.analysis.calibration.api import (
+    CalibrationResult,
+    FittingScan,
+    Residuals,
+    calibrate,
+    compare,
+    read_fitting_scan,
+)
 from core.document.design import Design, ScanSource
 from core.geometry.mesh import Floats
 from core.pipeline.live_solver import Frame
@@ -42,10 +49,10 @@ class WornDesk(QObject):
         self.page = WornPage()
         self.door = Door(tr("Compare with a worn scan"))
         panel.doors.addWidget(self.door)
-        self.worn: Worn | None = None
+        self.worn: FittingScan | None = None
         self._of: Body | None = None  # the body that a scan was chosen for
         self._path, self._unit, self._thickness = "", "", 0.0
-        self._difference: tuple[Frame, Difference] | None = None
+        self._difference: tuple[Frame, Residuals] | None = None
         self._found: tuple[Design, CalibrationResult] | None = None
         self._reading: Job | None = None
         self._comparing: tuple[Job, Frame] | None = None
@@ -97,8 +104,8 @@ class WornDesk(QObject):
         source = ScanSource(path, unit=self._unit or None)
         self._reading = self._window.jobs.run(
             tr("Reading the worn scan"),
-            lambda progress: read_worn(frame.stages, source, progress),
-            lambda worn: self._take(cast(Worn, worn)),
+            lambda progress: read_fitting_scan(frame.stages, source, progress),
+            lambda worn: self._take(cast(FittingScan, worn)),
             lambda error: self._window.notifications.error(error, _REFUSED),
             waited=True,
         )
@@ -154,7 +161,7 @@ class WornDesk(QObject):
         """Return what the legend of the map says first, or nothing."""
         return next(words.notes_of(self.worn, self._known(frame) is None), "")
 
-    def _known(self, frame: Frame) -> Difference | None:
+    def _known(self, frame: Frame) -> Residuals | None:
         """Return the comparison of a frame; if it is not known yet it is worked out beside."""
         if self._difference is not None and _is_as(frame, self._difference[0]):
             return self._difference[1]
@@ -167,21 +174,21 @@ class WornDesk(QObject):
         """Tell whether the shape shown has settled, though turns beside it may go on for seconds."""
         session = self._window.session
         of_now = frame is session.frame and frame.stages.design is session.design and session.is_answered
-        return of_now and (frame.verdict.motion == "settled" or not frame.at_work)
+        return of_now and (frame.verdict.motion == "settled" or not frame.is_running)
 
-    def _compare(self, frame: Frame, worn: Worn) -> None:
+    def _compare(self, frame: Frame, worn: FittingScan) -> None:
         if self._comparing is not None:
             self._window.jobs.cancel(self._comparing[0])
         thickness = self._thickness
         job = self._window.jobs.run(
             tr("Comparing with the worn scan"),
             lambda progress: compare(frame.stages, frame.control_points, worn, thickness),
-            lambda found: self._take_difference(frame, cast(Difference, found)),
+            lambda found: self._take_difference(frame, cast(Residuals, found)),
             self._window.notifications.error,
         )
         self._comparing = job, frame
 
-    def _take(self, worn: Worn) -> None:
+    def _take(self, worn: FittingScan) -> None:
         self._reading, self.worn = None, worn
         self._begin_anew()
         self.follow()
@@ -194,7 +201,7 @@ class WornDesk(QObject):
         self._comparing = self._fitting = self._difference = self._found = None
         self.compared.emit()
 
-    def _take_difference(self, frame: Frame, found: Difference) -> None:
+    def _take_difference(self, frame: Frame, found: Residuals) -> None:
         self._comparing = None
         self._difference = frame, found
         self.follow()
@@ -212,7 +219,7 @@ class WornDesk(QObject):
         if frame is None or design is None:
             return
         self._let_go(frame, design)
-        self.door.show_words(words.door_words(design.calibration, self.worn))
+        self.door.show_words(words.navigation_text(design.calibration, self.worn))
         if not self.page.isVisible():
             return
         known = self._known(frame)
@@ -234,23 +241,23 @@ class WornDesk(QObject):
             self._window.jobs.cancel(self._fitting[0])
             self._fitting = None
 
-    def _view(self, frame: Frame, design: Design, shown: Difference | None, *, faint: bool) -> WornView:
+    def _view(self, frame: Frame, design: Design, shown: Residuals | None, *, faint: bool) -> WornView:
         worn, found = self.worn, self._found[1] if self._found else None
         at_work = self._fitting is not None and self._fitting[0].wanted
         return WornView(
             file=worn.name if worn else "",
             lies=words.aligned_words(worn) if worn else "",
-            rows=words.figure_rows(shown) if shown else (),
-            bust=words.told_words(shown) if shown else "",
-            numbers=words.number_rows(found, design) if found else (),
-            surely=words.surely_words(found, design) if found else "",
-            kept=words.kept_words(found, design) if found else "",
-            better=words.better_words(found, design) if found else "",
+            rows=words.residual_rows(shown) if shown else (),
+            bust=words.summary_text(shown) if shown else "",
+            numbers=words.parameter_rows(found, design) if found else (),
+            surely=words.determination_text(found, design) if found else "",
+            kept=words.fixed_parameters_text(found, design) if found else "",
+            better=words.improvement_text(found, design) if found else "",
             record=words.record_words(design.calibration),
             faint=faint,
             ready=bool(worn) and self._window.session.is_converged and not at_work and not faint,
-            helped=found is not None and found.helped,
-            doubtful=found is not None and found.weak,
+            helped=found is not None and found.is_improved,
+            doubtful=found is not None and found.is_poorly_determined,
         )
 
 

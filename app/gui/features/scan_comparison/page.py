@@ -15,7 +15,7 @@ from app.gui.widgets.tooltip import set_tip
 from app.gui.widgets.value_edit import FigureField
 from app.i18n.catalog import tr
 from app.i18n.lengths import length_unit
-from app.presenters.scan_comparison import FigureRow, NumberRow
+from app.presenters.scan_comparison import ParameterRow, ResidualRow
 from core.analysis.calibration.api import THICKEST
 
 
@@ -30,9 +30,9 @@ class WornView:
 
     file: str = ""
     lies: str = ""
-    rows: tuple[FigureRow, ...] = ()
+    rows: tuple[ResidualRow, ...] = ()
     bust: str = ""
-    numbers: tuple[NumberRow, ...] = ()
+    numbers: tuple[ParameterRow, ...] = ()
     surely: str = ""
     kept: str = ""
     better: str = ""

@@ -16,14 +16,14 @@ from app.gui.viewport.viewport import Viewport
 from app.gui.widgets.file_dialogs import ask_save
 from app.i18n.catalog import tr
 from app.i18n.lengths import length
-from app.presenters.bust_shift import bust_move
-from app.presenters.maps import BodyNow, section_words, sides_words
+from app.presenters.bust_shift import bust_shift
+from app.presenters.maps import BodyState, section_words, sides_words
 from app.presenters.plots import PLOT_INTERVAL
 from app.presenters.status import is_result
 from core.errors import UserError
 from core.export.mesh import write_profile
 from core.geometry.mesh import Floats
-from core.geometry.planar_curves import AXES, Curve, Plane, Slicer, mirrored, nearest, stand_out
+from core.geometry.planar_curves import AXES, Curve, Plane, Slicer, mirrored, nearest, protrusion
 from core.measurements.uncertain_value import Spread
 from core.pipeline.live_solver import Frame
 
@@ -49,7 +49,7 @@ class SectionDesk(QObject):
         self._by_hand: dict[str, float] = {}
         self._former: dict[str, float] | None = None  # ``_by_hand`` before a hand took the plane
         self._hand_at = 0.0  # where that hand is on the axis [mm]
-        self._now: BodyNow | None = None
+        self._now: BodyState | None = None
         self._slicer: Slicer | None = None
         self._opposite: Slicer | None = None
         self._again = True
@@ -189,8 +189,8 @@ class SectionDesk(QObject):
                 self._handle(body.viewport).hide()
 
     def _cut(self, frame: Frame) -> None:
-        if self._now is None or not self._now.is_of(frame):
-            self._now, self._slicer, self._again = BodyNow(frame), None, True
+        if self._now is None or not self._now.belongs_to(frame):
+            self._now, self._slicer, self._again = BodyState(frame), None, True
         else:
             self._now.follow(frame)
         now, plane = self._now, self._plane(frame)
@@ -201,7 +201,7 @@ class SectionDesk(QObject):
         if self._window.map_desk.name == "sides":
             self.curves["other"] = self._other_side(now, plane)
 
-    def _other_side(self, now: BodyNow, plane: Plane) -> tuple[Curve, ...]:
+    def _other_side(self, now: BodyState, plane: Plane) -> tuple[Curve, ...]:
         """Return the curves of the shown body mirrored."""
         if plane.axis != "x":
             return mirrored(plane, self.curves["after"], now.sides.middle)
@@ -261,7 +261,7 @@ class SectionDesk(QObject):
         assert self._slicer is not None
         frame, side = self._now.frame, side_of(self._now, self._slicer.plane)
         known = spread if spread is not None and spread.whole else None
-        return section_words(self.axis, side, bust_move(frame), known) if is_result(frame) else ""
+        return section_words(self.axis, side, bust_shift(frame), known) if is_result(frame) else ""
 
     def _point(self, place: Floats | None) -> None:
         """Read how far the curves are apart at a place of the plot, (2,) [mm]."""
@@ -271,6 +271,6 @@ class SectionDesk(QObject):
         if place is None or foot is None:
             return
         away = np.linalg.norm(plot.to_pixels(foot.place) - plot.to_pixels(place))
-        gap = stand_out(foot, self.curves["other" if "other" in self.curves else "before"])
+        gap = protrusion(foot, self.curves["other" if "other" in self.curves else "before"])
         if away < _NEAR and gap is not None:
             plot.show_gap(gap[0], foot.place, length(gap[1], signed=True))

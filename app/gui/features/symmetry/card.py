@@ -11,7 +11,7 @@ from app.gui.theme.stylesheet import font, label, set_tag, tokens_of
 from app.gui.widgets.basic import Disclosure, button, hairline, sentence
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
-from app.presenters.symmetry import EvenSummary, EvenView
+from app.presenters.symmetry import SymmetryRowView, SymmetryView
 
 _FADED = 0.4  # how strongly bars of a former shape are seen
 _BAR = QSize(26, 20)
@@ -90,7 +90,7 @@ class _Row:
         grid.addWidget(self.bar, row, 4)
         self.parts: tuple[QLabel, ...] = (self.title, self.before, self.after, self.off)
 
-    def show_view(self, view: EvenView, faint: bool, seen: bool) -> None:
+    def show_view(self, view: SymmetryRowView, faint: bool, seen: bool) -> None:
         """Show a figure, ``faint`` if it is of a former shape."""
         quiet = {self.before, self.off, *([self.after] if view.within else [])}
         for part, text in zip(self.parts, (view.title, view.before, view.after, view.off), strict=True):
@@ -130,7 +130,7 @@ class SymmetryCard(QWidget):
         self.make = button(tr("Make even…"))
         set_tip(self.make, tr("Find the lengths at which both bust points lie alike, and ask for them"))
         self.make.clicked.connect(self.asked)
-        self.summary: EvenSummary | None = None
+        self.summary: SymmetryView | None = None
         self._grid = QGridLayout()
         self._grid.setContentsMargins(0, 2, 0, 2)
         self._grid.setHorizontalSpacing(5)
@@ -170,7 +170,7 @@ class SymmetryCard(QWidget):
             (label(tr("R | L"), "caption"), middle),
         ]
 
-    def show_summary(self, summary: EvenSummary | None, faint: bool) -> None:
+    def show_summary(self, summary: SymmetryView | None, faint: bool) -> None:
         """Show how left and right differ, ``faint`` if that was of a former shape; None hides the card."""
         self.summary, self._faint = summary, faint
         self.setVisible(summary is not None)

@@ -13,10 +13,10 @@ from app.gui.features.symmetry.card import SymmetryCard
 from app.gui.session.frame_cache import FrameCache
 from app.gui.session.jobs import Job
 from app.i18n.catalog import listed, tr
-from app.presenters.status import doubt_of
-from app.presenters.symmetry import even_summary, left_as_it_is, map_note, parted_titles
-from core.analysis.symmetry.compare import BeforeAfter, evenness
-from core.analysis.symmetry.split_sides import parted
+from app.presenters.status import invalid_reason
+from app.presenters.symmetry import map_note, not_balanced_reason, split_titles, symmetry_view
+from core.analysis.symmetry.compare import BeforeAfter, compare_sides
+from core.analysis.symmetry.split_sides import split_sides
 from core.control_mesh.template import read_template
 from core.document.design import Design
 from core.measurements.uncertain_value import Spread
@@ -26,7 +26,7 @@ from core.progress import Progress
 
 if TYPE_CHECKING:
     from app.gui.context import AppContext
-    from core.analysis.symmetry.balance import Evened
+    from core.analysis.symmetry.balance import BalanceResult
 
 SIDES = "sides"
 """The map Left and right."""
@@ -58,7 +58,7 @@ class SymmetryController(QObject):
             context.session,
             context.jobs,
             title,
-            lambda frame, _: evenness(frame.stages, frame.control_points),
+            lambda frame, _: compare_sides(frame.stages, frame.control_points),
             failed=context.notifications.error,
             stopped=lambda: context.notifications.stopped(title),
         )
@@ -73,7 +73,7 @@ class SymmetryController(QObject):
 
     def note(self, frame: Frame, after: bool) -> str:
         """Return the note of the map's legend on a frame in ml, once it is known."""
-        return map_note(self.of(frame), after and not doubt_of(frame))
+        return map_note(self.of(frame), after and not invalid_reason(frame))
 
     def open(self) -> None:
         """Show the card, and compare again what was stopped."""
@@ -97,7 +97,7 @@ class SymmetryController(QObject):
             self.card.show_summary(None, faint=False)
             return
         of, compared = self._shown
-        summary = even_summary(compared, of.stages, doubt_of(of), self._uncertainty_of(of))
+        summary = symmetry_view(compared, of.stages, invalid_reason(of), self._uncertainty_of(of))
         self.card.show_summary(summary, faint=of is not frame)
 
     def show_map(self, name: str) -> None:
@@ -119,7 +119,7 @@ class SymmetryController(QObject):
         job = self._context.jobs.run(
             tr("Making left and right even"),
             lambda progress: _balance(frame.stages, progress),
-            lambda made: self._propose(frame.stages.design, cast("Evened", made)),
+            lambda made: self._propose(frame.stages.design, cast("BalanceResult", made)),
             self._fail,
             waited=True,
         )
@@ -129,26 +129,26 @@ class SymmetryController(QObject):
         self._balancing = None
         self._context.notifications.error(error)
 
-    def _propose(self, design: Design, made: Evened) -> None:
+    def _propose(self, design: Design, made: BalanceResult) -> None:
         """Propose targets; what has to be split for them is split when they are applied, not before."""
         self._balancing = None
         if design is not self._session.design:
             return  # the targets would be those of another one
-        if not made.worth:
-            self._context.notifications.info(*left_as_it_is(made.gained, made.lost))
+        if not made.is_worthwhile:
+            self._context.notifications.info(*not_balanced_reason(made.gain, made.loss))
             return
         # What was found keeps elastics to a limit, and no estimates.
-        limit = None if design.worn_elastics() else math.inf
-        if not made.parted:
+        limit = None if design.active_elastics() else math.inf
+        if not made.split:
             self.targets_proposed.emit(made.goals, None, "", limit)
             return
         template = read_template(design.template)
-        titles = listed(parted_titles(design, made.parted))
+        titles = listed(split_titles(design, made.split))
         said = tr("Left and right apart: {lines}").format(lines=titles)
-        self.targets_proposed.emit(made.goals, lambda before: parted(before, template), said, limit)
+        self.targets_proposed.emit(made.goals, lambda before: split_sides(before, template), said, limit)
 
 
-def _balance(stages: Stages, progress: Progress) -> Evened:
+def _balance(stages: Stages, progress: Progress) -> BalanceResult:
     """Return what makes a design even; the search is imported when it is asked for, not at the start."""
     from core.analysis.symmetry.balance import make_even  # noqa: PLC0415
 

@@ -30,7 +30,7 @@ from core.errors import UserError
 
 if TYPE_CHECKING:
     from app.gui.main_window import MainWindow
-    from core.analysis.inverse_design.profile_curve import Drawn
+    from core.analysis.inverse_design.profile_curve import ProfileCurve
 
 _RESTS = 150  # stillness of a hand after which the best lengths are looked for [ms]
 _SLOW = 400  # an answer that takes longer is worth a word [ms]
@@ -159,7 +159,7 @@ class AskDesk(QObject):
             self.steps.note()
 
     @property
-    def drawn(self) -> dict[str, Drawn]:
+    def drawn(self) -> dict[str, ProfileCurve]:
         """The profiles that are drawn, by section."""
         return self.all_wishes.drawn
 
@@ -178,7 +178,7 @@ class AskDesk(QObject):
         frame, answer = self._session.frame, self.answer
         if frame is None or answer is None or answer.reply is None or not self.is_open:
             return False
-        return frame.stages.design is answer.reply.design and not frame.at_work
+        return frame.stages.design is answer.reply.design and not frame.is_running
 
     # -- how it ends
 
@@ -299,7 +299,7 @@ class AskDesk(QObject):
         if not self.is_open or frame is None or design is None:
             return
         missing = self.ground.missing
-        self.card.show_help(bool(missing), locked=not design.worn().isdisjoint(self.ground.moving))
+        self.card.show_help(bool(missing), locked=not design.active_lines().isdisjoint(self.ground.moving))
         if missing:
             self.card.show_wishes([], missing)
             self.card.show_answer()

@@ -11,8 +11,8 @@ from PySide6.QtCore import QObject
 from app.gui.features.target_shape.profile_card import AskProfile
 from app.gui.viewport.target_handle import BustHandle
 from app.i18n.catalog import tr
-from app.presenters.bust_shift import bust_move
-from core.analysis.inverse_design.profile_curve import Drawn
+from app.presenters.bust_shift import bust_shift
+from core.analysis.inverse_design.profile_curve import ProfileCurve
 from core.geometry.mesh import Floats
 from core.pipeline.frame import Frame
 
@@ -43,7 +43,7 @@ class AskHandles(QObject):
         self.kind = "bust"
         self.by_side: dict[str, BustHandle] = {}
         self.profile = AskProfile(window.view.viewport, self)
-        self._before: tuple[dict[str, float | None], dict[str, Drawn]] | None = None
+        self._before: tuple[dict[str, float | None], dict[str, ProfileCurve]] | None = None
         self._pulled: dict[str, float] = {}  # how far the hand has gone each way since it closed [mm]
         self.profile.taken.connect(self._take_profile)
         self.profile.pulled.connect(self._draw)
@@ -141,7 +141,7 @@ class AskHandles(QObject):
     def _draw(self, section: str, handle: int, up: float, out: float) -> None:
         """Go on with the curve of a section by a step of the hand at one of its handles [mm]."""
         if self._before is not None:
-            self._desk.drawing.draw(section, self._desk.drawn[section].pulled(handle, up, out))
+            self._desk.drawing.draw(section, self._desk.drawn[section].with_moved_handle(handle, up, out))
             self._desk.wish_by_hand(dict(self._desk.wishes), at_rest=False)
 
     def _pull(self, side: str, up: float, out: float) -> None:
@@ -182,6 +182,6 @@ def _now(frame: Frame, name: str) -> float:
         after, before = (frame.stages.watch.apexes(points) for points in places)
         steps = (after - before)[:, 1] if upward else (before - after)[:, 0]
         return float(steps[SIDES.index(side)] if side else steps.mean())
-    move = bust_move(frame)
+    move = bust_shift(frame)
     step = {"": move.mean, "left": move.left, "right": move.right}[side]
     return step.up if upward else step.forward

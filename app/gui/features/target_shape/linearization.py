@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from app.gui.session.session import Session
-from app.presenters.target_shape import missing_words
+from app.presenters.target_shape import missing_input_text
 from core.document.design import Design
 
 
@@ -38,7 +38,7 @@ class AskGround:
         # What is prepared is not in the frame yet; that its lines can move something is known.
         if self._prepare is not None or self.design is None:
             return ""
-        return missing_words(self.design, self.moving)
+        return missing_input_text(self.design, self.moving)
 
     @property
     def asks(self) -> bool:
@@ -51,8 +51,8 @@ class AskGround:
         design = self.design
         if design is None:
             return ()
-        off = (name for name in self.moving if name not in design.worn())
-        return tuple(name for name in off if not design.traits_of(name).locked)
+        off = (name for name in self.moving if name not in design.active_lines())
+        return tuple(name for name in off if not design.line_settings(name).locked)
 
     @property
     def moving(self) -> list[str]:

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QMenu
 from app.gui.widgets.file_dialogs import ask_table
 from app.gui.widgets.menu import Menu, pull_down
 from app.i18n.catalog import tr
-from app.presenters.target_shape import figure_title, profile_title
+from app.presenters.target_shape import profile_title, target_title
 from core.analysis.inverse_design.quantities import EVEN, GIRTH
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ class AskMenu(QObject):
     def _offer(self, menu: QMenu, names: tuple[str, ...]) -> None:
         for name in names:
             if name not in self._desk.wishes:
-                menu.addAction(figure_title(name), partial(self._add, name))
+                menu.addAction(target_title(name), partial(self._add, name))
 
     def _add(self, name: str) -> None:
         """Show a figure as it is now, to be typed over."""

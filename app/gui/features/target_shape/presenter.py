@@ -11,31 +11,31 @@ from app.gui.features.target_shape.row import WishView
 from app.gui.features.target_shape.targets import PRESSURE, Wishes
 from app.gui.features.target_shape.worker import Answer
 from app.i18n.catalog import joined, listed, tr
-from app.presenters.symmetry import asks_to_be_even, evened_words
+from app.presenters.symmetry import balance_result_texts, has_balance_targets
 from app.presenters.target_shape import (
-    answer_words,
-    beside_words,
+    activated_text,
+    bust_movement_text,
     change_words,
     conflict_words,
-    figure_title,
+    deviation_text,
     is_met,
     is_near,
     is_signed,
-    kept_words,
-    off_words,
+    locked_lines_text,
     pressure_words,
     profile_title,
+    result_text,
     result_words,
-    switched_words,
+    target_title,
     unlimited_words,
     value_words,
 )
 from core.analysis.inverse_design.quantities import Goal
 from core.document.design import Design
-from core.garment.pressure_limits import comfort
+from core.garment.pressure_limits import pressure_limits
 
 if TYPE_CHECKING:
-    from core.analysis.inverse_design.solve import Reply
+    from core.analysis.inverse_design.solve import InverseResult
 
 
 def show_answer(
@@ -43,7 +43,7 @@ def show_answer(
 ) -> None:
     """Show what came of wishes: ``busy`` is nothing, "soon" or "slow"; ``apart`` tells what is parted."""
     locked = {traits.name for traits in design.traits if traits.locked}
-    note = joined([words for words in (apart, kept_words(design, locked)) if words])
+    note = joined([words for words in (apart, locked_lines_text(design, locked)) if words])
     goals = wishes.goals(answer.now if answer is not None else {})
     if busy == "slow":
         card.show_answer(tr("Working it out…"), note=note, can_apply=True)
@@ -52,11 +52,11 @@ def show_answer(
     else:
         reply, asked = answer.reply, answer.question.goals
         met = _is_met(wishes, reply, asked)
-        said = answer_words(reply, asked, wishes.only_limit, answer.now)
-        price, why = beside_words(asked, answer.now, answer.then), ""
-        conflicts, switched = conflict_words(answer.conflicts), switched_words(design, reply.design)
-        if asks_to_be_even(asked) and wishes.only_limit is None:
-            said, price, why = evened_words(reply, asked, answer.now, answer.then)
+        said = result_text(reply, asked, wishes.only_limit, answer.now)
+        price, why = bust_movement_text(asked, answer.now, answer.then), ""
+        conflicts, switched = conflict_words(answer.conflicts), activated_text(design, reply.design)
+        if has_balance_targets(asked) and wishes.only_limit is None:
+            said, price, why = balance_result_texts(reply, asked, answer.now, answer.then)
             conflicts = ()  # that sentence names the price
         free = "" if answer.unlimited is None else unlimited_words(answer.unlimited, asked, answer.now)
         lines = listed(change_words(design, reply))
@@ -71,7 +71,7 @@ def is_as_wished(wishes: Wishes, answer: Answer) -> bool:
     return reply is not None and (_is_met(wishes, reply, asked) or is_near(reply, asked))
 
 
-def _is_met(wishes: Wishes, reply: Reply, asked: Sequence[Goal]) -> bool:
+def _is_met(wishes: Wishes, reply: InverseResult, asked: Sequence[Goal]) -> bool:
     return is_met(reply, asked) or (wishes.only_limit is not None and reply.agreed)
 
 
@@ -82,10 +82,10 @@ def wish_views(wishes: Wishes, answer: Answer | None) -> Iterator[WishView]:
     for name, value in wishes.figures.items():
         signed, priority = is_signed(name), wishes.priorities.get(name, "normal")
         before, result = value_words(now.get(name), signed), result_words(now, then, name)
-        yield WishView(name, figure_title(name), value, before, result, signed=signed, priority=priority)
+        yield WishView(name, target_title(name), value, before, result, signed=signed, priority=priority)
     for section, goals in wishes.curves.items():
         reply = answer.reply if answer is not None else None
-        words = off_words(answer.question.goals, reply.reached, section) if answer and reply else ""
+        words = deviation_text(answer.question.goals, reply.reached, section) if answer and reply else ""
         title, priority = profile_title(section.split()[1]), wishes.priorities.get(section, "normal")
         asked = 0.0 if goals else None
         yield WishView(section, title, asked, words, typed=False, priority=priority)
@@ -97,7 +97,7 @@ def _pressure(wishes: Wishes, answer: Answer | None) -> WishView:
     reply = answer.reply if answer is not None else None
     then = reply.pressure if reply is not None else {}
     before, result = pressure_words(presses, then)
-    tone = "bad" if result and max(then.values()) >= comfort().red_kpa else ""
+    tone = "bad" if result and max(then.values()) >= pressure_limits().red_kpa else ""
     on = not math.isinf(wishes.most_kpa)
     shown, title = wishes.most_kpa if on else None, tr("Pressure at most")
     return WishView(

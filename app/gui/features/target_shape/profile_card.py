@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, Signal
 from app.gui.viewport.target_curve import WishCurve
 from app.gui.viewport.target_handle import BustHandle
 from app.i18n.catalog import tr
-from core.analysis.inverse_design.profile_curve import Drawn, in_space, outline
+from core.analysis.inverse_design.profile_curve import ProfileCurve, profile_points, section_to_space
 from core.pipeline.frame import Frame
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class AskProfile(QObject):
         """Return all handles, from below."""
         return [handle for each in self.handles.values() for handle in each]
 
-    def follow(self, frame: Frame, drawn: dict[str, Drawn]) -> None:
+    def follow(self, frame: Frame, drawn: dict[str, ProfileCurve]) -> None:
         """Show these profiles, by section, on the body of a frame."""
         for gone in [each for each in self.handles if each not in drawn]:
             self._remove(gone)
@@ -54,9 +54,9 @@ class AskProfile(QObject):
                 self._remove(section)
                 self._make(section, profile)
             stages = frame.stages
-            wished = in_space(stages, profile.section, profile.curve)
-            self._curves[section].show_curves(wished, outline(stages, profile, frame.control_points))
-            spots = in_space(stages, profile.section, profile.spots)
+            wished = section_to_space(stages, profile.section, profile.curve)
+            self._curves[section].show_curves(wished, profile_points(stages, profile, frame.control_points))
+            spots = section_to_space(stages, profile.section, profile.handle_positions)
             for handle, spot in zip(self.handles[section], spots, strict=True):
                 handle.show_at(spot, spot)
 
@@ -67,7 +67,7 @@ class AskProfile(QObject):
             handle.put_away()
             handle.deleteLater()
 
-    def _make(self, section: str, profile: Drawn) -> None:
+    def _make(self, section: str, profile: ProfileCurve) -> None:
         side = profile.section
         self._curves[section] = WishCurve(self._viewport, side)
         self.handles[section] = []

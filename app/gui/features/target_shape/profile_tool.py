@@ -17,7 +17,7 @@ from core.errors import UserError
 if TYPE_CHECKING:
     from app.gui.features.target_shape.controller import AskDesk
     from app.gui.main_window import MainWindow
-    from core.analysis.inverse_design.profile_curve import Drawn
+    from core.analysis.inverse_design.profile_curve import ProfileCurve
     from core.geometry.mesh import Floats
     from core.geometry.planar_curves import Plane
     from core.pipeline.frame import Frame
@@ -62,14 +62,14 @@ class AskDrawing(QObject):
 
     def begin(self, side: str) -> None:
         """Draw the profile through the bust point of a side, as it is now, to be dragged."""
-        from core.analysis.inverse_design.profile_curve import drawn  # noqa: PLC0415 (few ever ask)
+        from core.analysis.inverse_design.profile_curve import profile_at  # noqa: PLC0415 (few ever ask)
 
         frame, answer = self._window.session.frame, self._desk.answer
         if frame is None:
             return
         reply = answer.reply if answer is not None else None
         try:
-            profile = drawn(frame.stages, side, frame.control_points if reply is None else reply.points)
+            profile = profile_at(frame.stages, side, frame.control_points if reply is None else reply.points)
         except UserError as problem:
             self._window.notifications.error(problem)
         else:
@@ -78,20 +78,20 @@ class AskDrawing(QObject):
     def take_table(self, side: str, path: str) -> None:
         """Wish for the profile in a table through the bust point of a side."""
         from core.analysis.inverse_design.profile_csv import read_profile  # noqa: PLC0415 (few ever ask)
-        from core.analysis.inverse_design.profile_curve import from_table  # noqa: PLC0415
+        from core.analysis.inverse_design.profile_curve import profile_from_table  # noqa: PLC0415
 
         frame = self._window.session.frame
         if frame is None:
             return
         try:
-            profile = from_table(frame.stages, side, read_profile(path))
+            profile = profile_from_table(frame.stages, side, read_profile(path))
             profile.goals(frame.stages)
         except UserError as problem:
             self._window.notifications.error(problem)
         else:
             self._take(profile)
 
-    def draw(self, section: str, profile: Drawn) -> None:
+    def draw(self, section: str, profile: ProfileCurve) -> None:
         """Wish for a profile as it is drawn; where it cannot be, the one before stays."""
         frame = self._window.session.frame
         if frame is None:
@@ -104,21 +104,21 @@ class AskDrawing(QObject):
 
     def follow(self, frame: Frame) -> None:
         """Let profiles that are free be those of the body of a frame."""
-        from core.analysis.inverse_design.profile_curve import drawn  # noqa: PLC0415 (few ever ask)
+        from core.analysis.inverse_design.profile_curve import profile_at  # noqa: PLC0415 (few ever ask)
 
         for section, profile in list(self._desk.drawn.items()):
-            if profile.is_free:
-                fresh = drawn(frame.stages, profile.section, frame.control_points)
+            if profile.is_unchanged:
+                fresh = profile_at(frame.stages, profile.section, frame.control_points)
                 self._desk.all_wishes.set_curve(section, (), fresh)
 
     def in_plane(self, plane: Plane) -> dict[str, Sequence[Floats]]:
         """Return the profiles that are wished in a plane, if any are, as flat places (k, 2) [mm]."""
-        from core.analysis.inverse_design.profile_curve import in_space  # noqa: PLC0415 (few ever ask)
+        from core.analysis.inverse_design.profile_curve import section_to_space  # noqa: PLC0415 (few ever ask)
 
         frame, drawn = self._window.session.frame, self._desk.drawn.values()
         if frame is None or not self._desk.is_open or plane.axis != "x":
             return {}
-        wished = [in_space(frame.stages, p.section, p.curve) for p in drawn if not p.is_free]
+        wished = [section_to_space(frame.stages, p.section, p.curve) for p in drawn if not p.is_unchanged]
         found = [plane.flat(places) for places in wished if abs(places[0, 0] - plane.at) < _THROUGH]
         return {"wished": found} if found else {}
 
@@ -130,7 +130,7 @@ class AskDrawing(QObject):
     def hint(self) -> str:
         """Return what to do with the handles, as long as nothing was done."""
         kind = self._desk.handles.kind
-        untouched = kind == "profile" and any(each.is_free for each in self._desk.drawn.values())
+        untouched = kind == "profile" and any(each.is_unchanged for each in self._desk.drawn.values())
         if self._desk.goals() and not untouched:
             return ""
         hints = {
@@ -140,7 +140,7 @@ class AskDrawing(QObject):
         }
         return hints[kind]
 
-    def _take(self, profile: Drawn) -> None:
+    def _take(self, profile: ProfileCurve) -> None:
         self.draw(f"profile {profile.section}", profile)
         self.look_at(profile)
         self.turn_to("profile")
@@ -149,16 +149,16 @@ class AskDrawing(QObject):
     def _side(self) -> str:
         return "right" if self._window.view.viewport.view.axes[2][0] < -_LEVEL else "left"
 
-    def look_at(self, profile: Drawn) -> None:
+    def look_at(self, profile: ProfileCurve) -> None:
         """Look at a profile from its side, and over the tools."""
-        from core.analysis.inverse_design.profile_curve import in_space  # noqa: PLC0415
+        from core.analysis.inverse_design.profile_curve import section_to_space  # noqa: PLC0415
 
         view, viewport, frame = self._window.view, self._window.view.viewport, self._window.session.frame
         if frame is None:
             return
         room, tools = max(viewport.height(), 1), view.floating.seen(view.tools).top()
         covered = max(view.height() - tools, 0) if view.tools.isVisible() else 0
-        box = box_of(in_space(frame.stages, profile.section, profile.curve))
+        box = box_of(section_to_space(frame.stages, profile.section, profile.curve))
         # As large as the part of the picture allows that the tools leave.
         middle, half = box[2].mean(), 0.5 * (np.ptp(box[2]) + 2.0 * _BESIDE) * room / (room - covered)
         box[2] = middle - half, middle + half

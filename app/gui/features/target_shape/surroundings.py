@@ -12,7 +12,7 @@ from PySide6.QtCore import QObject
 from app.i18n.catalog import tr
 from app.presenters.target_shape import SAME
 from core.document.design import Design
-from core.pipeline.active_lines import worn_lines
+from core.pipeline.active_lines import active_line_groups
 
 if TYPE_CHECKING:
     from app.gui.features.target_shape.controller import AskDesk
@@ -50,15 +50,15 @@ class AskAround(QObject):
     def help(self) -> None:
         """Lead out of it when no line may change: to sets of lines, or to unlocked ones."""
         frame = self._window.session.frame
-        groups = worn_lines(frame.stages) if frame is not None else ()
+        groups = active_line_groups(frame.stages) if frame is not None else ()
         lines = [name for group in groups for name in group]
         if not lines:
             self._window.preset_desk.show_menu()
             return
 
         def unlocked(before: Design) -> Design:
-            traits = (replace(before.traits_of(name), locked=False) for name in lines)
-            return reduce(Design.with_traits, traits, before)
+            traits = (replace(before.line_settings(name), locked=False) for name in lines)
+            return reduce(Design.with_line_settings, traits, before)
 
         self._window.session.edit(unlocked, tr("Worn lines unlocked"))
 

@@ -6,9 +6,9 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from core.analysis.inverse_design.profile_curve import Drawn
+from core.analysis.inverse_design.profile_curve import ProfileCurve
 from core.analysis.inverse_design.quantities import Goal, section_of
-from core.garment.pressure_limits import comfort
+from core.garment.pressure_limits import pressure_limits
 
 SEEN = ("lift", "out")
 """Figures that are always told: what is not asked for may move as well."""
@@ -31,7 +31,7 @@ class Wishes:
 
     figures: dict[str, float | None] = field(default_factory=dict)
     curves: dict[str, tuple[Goal, ...]] = field(default_factory=dict)
-    drawn: dict[str, Drawn] = field(default_factory=dict)
+    drawn: dict[str, ProfileCurve] = field(default_factory=dict)
     limit: float | None = None
     priorities: dict[str, str] = field(default_factory=dict)
     optional: bool = False
@@ -60,7 +60,7 @@ class Wishes:
         else:
             self.figures[key] = value
 
-    def set_curve(self, section: str, goals: tuple[Goal, ...], profile: Drawn) -> None:
+    def set_curve(self, section: str, goals: tuple[Goal, ...], profile: ProfileCurve) -> None:
         """Wish for the profile of a section, from the next question on."""
         self.curves[section], self.drawn[section] = goals, profile
 
@@ -98,7 +98,7 @@ class Wishes:
     @property
     def most_kpa(self) -> float:
         """The limit of pressure that is kept [kPa]; infinite if it is off."""
-        return comfort().red_kpa if self.limit is None else self.limit
+        return pressure_limits().red_kpa if self.limit is None else self.limit
 
     @property
     def set_limit(self) -> float | None:

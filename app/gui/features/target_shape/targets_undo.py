@@ -10,7 +10,7 @@ from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from app.gui.features.target_shape.targets import PRESSURE, Wishes
 from app.i18n.catalog import listed, tr
-from app.presenters.target_shape import figure_title
+from app.presenters.target_shape import target_title
 
 if TYPE_CHECKING:
     from app.gui.features.target_shape.controller import AskDesk
@@ -75,7 +75,7 @@ class AskSteps(QObject):
         before, self._last = self._last, self._state()
         changed = self._last.changed_from(before)
         if changed:
-            titles = [tr("Pressure at most") if key == PRESSURE else figure_title(key) for key in changed]
+            titles = [tr("Pressure at most") if key == PRESSURE else target_title(key) for key in changed]
             self.stack.push(_Step(self, before, self._last, listed(titles)))
             self._group.setActiveStack(self.stack)
 

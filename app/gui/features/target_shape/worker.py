@@ -20,7 +20,7 @@ from core.progress import Progress
 if TYPE_CHECKING:
     from core.analysis.inverse_design.conflicts import Conflict
     from core.analysis.inverse_design.line_selection import LineSelection
-    from core.analysis.inverse_design.solve import Reply
+    from core.analysis.inverse_design.solve import InverseResult
 
 
 _LONGEST = 0.999  # ratio: in the window a line at 100 % would be off, and the body another one
@@ -54,10 +54,10 @@ class Answer:
     question: Question
     now: Mapping[str, float]
     presses: Mapping[str, float]
-    reply: Reply | None
+    reply: InverseResult | None
     then: Mapping[str, float] = field(default_factory=dict)
     conflicts: tuple[Conflict, ...] = ()
-    unlimited: Reply | None = None
+    unlimited: InverseResult | None = None
 
 
 @dataclass(eq=False)
@@ -149,12 +149,12 @@ class AskWork(QObject):
             asked = () if question.hurried else (goal.name for goal in question.goals)
             missing = [name for name in dict.fromkeys((*question.figures, *asked)) if name not in known.now]
             if missing or not known.now:
-                now, known.presses = known.asking.now(missing)
+                now, known.presses = known.asking.current_values(missing)
                 known.now |= now
             known.asking.nearer = partial(self.nearer.emit, question)
-            answer = known.asking.hurried if question.hurried else known.asking.reply
+            answer = known.asking.solve_quickly if question.hurried else known.asking.solve
             reply = answer(question.goals, progress) if question.goals else None
-            then = known.asking.figures(question.figures, reply.points) if reply is not None else {}
+            then = known.asking.values_at(question.figures, reply.points) if reply is not None else {}
             conflicts: tuple[Conflict, ...] = ()
             unlimited = None
             if reply is not None and not question.hurried:

@@ -8,7 +8,7 @@ from app.gui.theme.stylesheet import label, set_tag
 from app.gui.widgets.basic import hairline, sentence
 from app.gui.widgets.folded_list import folded_list
 from app.i18n.catalog import tr
-from app.presenters.uncertainty import SpreadView
+from app.presenters.uncertainty import UncertaintyView
 
 
 class UncertaintyCard(QWidget):
@@ -28,9 +28,9 @@ class UncertaintyCard(QWidget):
             folded_list(column, tr("Where the ± comes from"), sources),
             folded_list(column, tr("What these figures leave out"), left_out),
         ]
-        self.show_view(SpreadView(""))
+        self.show_view(UncertaintyView(""))
 
-    def show_view(self, view: SpreadView) -> None:
+    def show_view(self, view: UncertaintyView) -> None:
         """Show what is known of the ±."""
         for words, text in ((self.meaning, view.meaning), (self.contact, view.contact)):
             words.setText(text)

@@ -12,12 +12,12 @@ from PySide6.QtWidgets import QWidget
 from app.gui.features.uncertainty.card import UncertaintyCard
 from app.gui.session.frame_cache import FrameCache
 from app.i18n.catalog import joined, say, tr
-from app.presenters.status import doubt_of, not_computed
-from app.presenters.uncertainty import left_out_sentences, source_sentences, spread_view
-from core.analysis.uncertainty.estimate import Spreading
-from core.analysis.uncertainty.perturbed_solutions import Trials
+from app.presenters.status import invalid_reason, not_computed
+from app.presenters.uncertainty import limitation_sentences, source_sentences, uncertainty_view
+from core.analysis.uncertainty.estimate import UncertaintyEstimator
+from core.analysis.uncertainty.perturbed_solutions import PerturbedSolutions
 from core.errors import UserError
-from core.export.report_data import Sheet, with_spread
+from core.export.report_data import Report, with_uncertainty
 from core.measurements.uncertain_value import Spread
 from core.pipeline.live_solver import Frame
 from core.progress import Progress
@@ -42,9 +42,9 @@ class UncertaintyController(QObject):
     def __init__(self, context: AppContext, host: QWidget, is_needed: Callable[[], bool]) -> None:
         super().__init__(context.session)
         self._session, self._host, self._is_needed = context.session, host, is_needed
-        self.card = UncertaintyCard(source_sentences(), left_out_sentences())
+        self.card = UncertaintyCard(source_sentences(), limitation_sentences())
         self._last: Spread | None = None
-        self._trials: Trials | None = None
+        self._trials: PerturbedSolutions | None = None
         self._body: object = None
         self._cache = FrameCache(
             context.session,
@@ -67,7 +67,7 @@ class UncertaintyController(QObject):
         known = None if frame is None else self.of(frame)
         if known is not None:
             return known, False
-        comes = frame is not None and not doubt_of(frame) and not self._cache.is_given_up(frame)
+        comes = frame is not None and not invalid_reason(frame) and not self._cache.is_given_up(frame)
         return (self._last if comes else None), True
 
     @property
@@ -78,14 +78,14 @@ class UncertaintyController(QObject):
 
     def of(self, frame: Frame) -> Spread | None:
         """Return the uncertainties of a frame, if they are known and it is a result."""
-        return None if frame.at_work or doubt_of(frame) else self._cache.get(frame)
+        return None if frame.is_running or invalid_reason(frame) else self._cache.get(frame)
 
-    def on_sheet(self, sheet: Sheet, frame: Frame | None, whole: Frame | None) -> Sheet:
+    def on_sheet(self, sheet: Report, frame: Frame | None, whole: Frame | None) -> Report:
         """Return the sheet of a frame, made of ``whole``, with its uncertainties once they are known."""
         spread = None if frame is None else self.of(frame)
         if spread is None or whole is None or sheet.off:
             return sheet
-        return with_spread(sheet, whole.stages, whole.control_points, spread)
+        return with_uncertainty(sheet, whole.stages, whole.control_points, spread)
 
     def follow(self) -> None:
         """Request the uncertainties of a design that has converged and is looked at."""
@@ -96,7 +96,7 @@ class UncertaintyController(QObject):
             self._body, self._last, self._trials = frame.stages.body, None, None
             self._cache.clear()
         needed = self._host.isVisible() or self._is_needed()
-        if needed and self._session.is_converged and not doubt_of(frame):
+        if needed and self._session.is_converged and not invalid_reason(frame):
             self._cache.request(frame)
         else:
             self._cache.hold()
@@ -104,8 +104,8 @@ class UncertaintyController(QObject):
 
     def _compute(self, frame: Frame, progress: Progress) -> Spread:
         """Compute by all sources: without the landmarks, which are slow, it would be too small."""
-        trials = Trials(frame.stages, self._trials)
-        spread = Spreading(trials).whole(progress)
+        trials = PerturbedSolutions(frame.stages, self._trials)
+        spread = UncertaintyEstimator(trials).estimate(progress)
         self._trials = trials  # the next design begins with them
         return spread
 
@@ -120,7 +120,7 @@ class UncertaintyController(QObject):
         if frame is None or not self._host.isVisible():
             return
         spread, faint = self.shown
-        view = spread_view(spread, "" if doubt_of(frame) else self._waiting(frame), faint)
+        view = uncertainty_view(spread, "" if invalid_reason(frame) else self._waiting(frame), faint)
         self.card.show_view(view)
         self.summarized.emit(view.short)
 

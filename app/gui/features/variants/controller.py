@@ -14,7 +14,7 @@ from app.i18n.catalog import tr
 from app.presenters.variants import variant_titles
 from core.document.design import Design
 from core.document.document import VARIANTS
-from core.pipeline.converged import settled_frame
+from core.pipeline.converged import converged_frame
 from core.pipeline.frame import Frame
 
 if TYPE_CHECKING:
@@ -128,7 +128,7 @@ class VariantDesk(QObject):
             return []
         variants = [(name, design, self._solved.get(design)) for name, design in document.designs]
         # While a line is dragged the frame is that of a design which is not decided yet.
-        if frame is not None and (frame.at_work or frame.stages.design == document.design):
+        if frame is not None and (frame.is_running or frame.stages.design == document.design):
             place = [name for name, _ in document.designs].index(document.shown)
             variants[place] = (document.shown, frame.stages.design, frame)
         return variants
@@ -167,7 +167,7 @@ class VariantDesk(QObject):
             return
         self._job = self._window.jobs.run(
             tr("Solving variant {name}").format(name=name),
-            partial(settled_frame, design, near.stages),
+            partial(converged_frame, design, near.stages),
             partial(self._take, design),
             partial(self._give_up, design),
             waited=True,

@@ -13,13 +13,13 @@ from PySide6.QtGui import QImage
 from app.gui.features.variants.history_panel import HistoryPanel
 from app.gui.widgets.thumbnail_list import PictureRow
 from app.i18n.catalog import colon, number, tr
-from app.presenters.bust_shift import bust_move, bust_sentence
+from app.presenters.bust_shift import bust_sentence, bust_shift
 from app.presenters.status import TONES, is_result
 from core.document.design import Design
 from core.document.document import Document
 from core.garment.assessment import PENDING
 from core.pipeline.frame import Frame
-from core.pipeline.warnings import kept_volume
+from core.pipeline.warnings import controlled_volume
 
 if TYPE_CHECKING:
     from app.gui.main_window import MainWindow
@@ -41,7 +41,7 @@ class _Snapshot:
 
     def within(self, document: Document) -> Document:
         """Return the document gone back to this; beside other variants the body stays, it is theirs too."""
-        there = document.showing(self.variant)
+        there = document.with_shown(self.variant)
         if len(there.designs) == 1:
             return there.with_design(self.design)
         body = there.design
@@ -153,6 +153,6 @@ def _figures(frame: Frame, headline: str) -> tuple[str, ...]:
     """Return the verdict on a frame, where its bust points are and its volume error in words."""
     if not is_result(frame):
         return headline, tr("No result to sew for")
-    percent = number(kept_volume(frame)[0], 2, signed=True)
+    percent = number(controlled_volume(frame)[0], 2, signed=True)
     said = tr("{state}, volume {percent} %").format(percent=percent, state=headline)
-    return said, bust_sentence(bust_move(frame))
+    return said, bust_sentence(bust_shift(frame))

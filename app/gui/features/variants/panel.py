@@ -14,7 +14,7 @@ from app.gui.widgets.basic import EmptyState, sentence
 from app.gui.widgets.button_row import press_row
 from app.i18n.catalog import number, tr
 from app.presenters.status import TONES
-from app.presenters.variants import Figure, FigureRow, Told, VariantsView
+from app.presenters.variants import VariantRow, VariantsView, VariantTexts, VariantValues
 
 
 class VariantsPanel(QWidget):
@@ -125,7 +125,7 @@ class _Table(QWidget):
             self._paint_row(painter, row, top)
             top += self._height(row)
 
-    def _paint_row(self, painter: QPainter, row: FigureRow, top: float) -> None:
+    def _paint_row(self, painter: QPainter, row: VariantRow, top: float) -> None:
         tokens = tokens_of(self)
         painter.fillRect(QRectF(4, top, self.width() - 8, 1), QColor(tokens.line))
         painter.setFont(font("secondary"))
@@ -137,7 +137,7 @@ class _Table(QWidget):
                 self._paint_figure(painter, cell, figure, place, first=line == 0)
 
     def _paint_figure(
-        self, painter: QPainter, cell: QRectF, figure: Figure | Told, place: int, first: bool
+        self, painter: QPainter, cell: QRectF, figure: VariantValues | VariantTexts, place: int, first: bool
     ) -> None:
         tokens, type_ = tokens_of(self), font("name" if first else "caption", tabular=True)
         painter.setFont(type_)
@@ -152,7 +152,7 @@ class _Table(QWidget):
             cell.setLeft(cell.left() + QFontMetricsF(type_).horizontalAdvance(text) + 5)
             painter.drawText(cell, _LEFT, number(apart, figure.digits, signed=True))
 
-    def _height(self, row: FigureRow) -> float:
+    def _height(self, row: VariantRow) -> float:
         return self.LABEL + self.LINE * len(row.figures) + self.END
 
     def _cell(self, place: int, top: float, height: float) -> QRectF:
