@@ -160,7 +160,7 @@ def offs(stages, truth, found):
                 one.after / each.value_in(truth) - 1.0,
                 one.plus_minus / one.after,
                 not one.kept,
-                one.told,
+                one.is_well_determined,
             )
 
 

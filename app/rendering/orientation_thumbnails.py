@@ -25,7 +25,9 @@ ON_AXIS = np.cos(np.radians(1.5))
 
 @dataclass(frozen=True, eq=False)
 class OrientationOption:
-    """``up`` and ``front`` as a scan is told them, the nearest axes, the ``rotation`` (3, 3) from the body."""
+    """``up`` and ``front`` as a scan is told them, the nearest axes, the ``rotation`` (3, 3) from the
+    body.
+    """
 
     up: str
     front: str
@@ -51,7 +53,9 @@ def orientation_options(pose: Pose) -> list[OrientationOption]:
 def option_thumbnails(
     body: Body, size: tuple[int, int], clay: tuple[int, int, int], progress: Progress = quiet
 ) -> list[tuple[OrientationOption, Picture]]:
-    """Return each way with a picture of the body as it would stand; see ``render_thumbnail``. Raises Cancelled."""
+    """Return each way with a picture of the body as it would stand; see ``render_thumbnail``. Raises
+    Cancelled.
+    """
     painted: list[tuple[OrientationOption, Picture]] = []
     for way in orientation_options(body.pose):
         progress("painting", len(painted) / MOST)

@@ -32,8 +32,8 @@ _FONT = {True: "NotoSansJP-Regular.otf", False: "Inter-Regular.ttf"}  # by wheth
 class Turntable:
     """How the body turns: once round in ``frames`` pictures and ``seconds``, ``size`` in pixels.
 
-    ``side_by_side`` shows it before on the left and after on the right, with ``labels`` below. Raises UserError for
-    what cannot be.
+    ``side_by_side`` shows it before on the left and after on the right, with ``labels`` below. Raises
+    UserError for what cannot be.
     """
 
     frames: int = 36

@@ -86,7 +86,8 @@ class Elastic:
                 )
         if self.max_elongation > FURTHEST or self.max_force > STRONGEST:
             raise LineError(
-                f"The table of {self.name} ends at {100.0 * self.max_elongation:g} % and {self.max_force:g} N.",
+                f"The table of {self.name} ends at {100.0 * self.max_elongation:g} %"
+                f" and {self.max_force:g} N.",
                 f"Look at its units: no elastic goes beyond {100.0 * FURTHEST:g} % or {STRONGEST:g} N.",
             )
 

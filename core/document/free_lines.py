@@ -29,8 +29,8 @@ _KEPT = 0.5  # a line this near to the curve that was drawn keeps it [mm]
 class FreeCurve:
     """A free line through ``places``, a closed one without its end, and how far the curve is off it [mm].
 
-    ``shown`` (k, 3) [mm] is its course on the skin. ``is_movable`` is False where none of it can move: then it can
-    only be measured. ``cut`` tells that some of the curve left the control mesh and was left out.
+    ``shown`` (k, 3) [mm] is its course on the skin. ``is_movable`` is False where none of it can move: then
+    it can only be measured. ``cut`` tells that some of the curve left the control mesh and was left out.
     """
 
     places: tuple[Cell, ...]

@@ -79,7 +79,8 @@ def _check_units(elastic: Elastic) -> None:
     """Raise LineError where figures are no elastic's in the units that the headings tell."""
     if elastic.max_elongation < SHORTEST_REACH:
         raise LineError(
-            f"The table {elastic.name} ends at {100.0 * elastic.max_elongation:g} %: no elastic stretches so little.",
+            f"The table {elastic.name} ends at {100.0 * elastic.max_elongation:g} %:"
+            " no elastic stretches so little.",
             "If 1 means twice as long, head it 'elongation 1'.",
         )
     if elastic.max_force > MOST_PER_CM * elastic.width_mm / 10.0:

@@ -53,8 +53,8 @@ class LinePressure:
 
     ``places`` (k, 3) [mm] of the taut band, the ``skin`` below it and its ``normals``; ``tension`` [N] (a
     slack band has none), ``bends`` [rad] towards the skin, how far the band is ``gap`` it [mm], ``front``
-    where it is the front part; ``width`` [mm]. A ``closed`` one ends beside its beginning. ``input_notes`` is what
-    was put in.
+    where it is the front part; ``width`` [mm]. A ``closed`` one ends beside its beginning. ``input_notes``
+    is what was put in.
     """
 
     places: Points

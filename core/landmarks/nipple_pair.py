@@ -40,8 +40,8 @@ BORNE, ALONE = 1.0, 2.0
 class Nipple:
     """A spot that stands out of the breast: its centre, shape (3,) [mm], and what tells that it is a nipple.
 
-    ``from_pole`` leads to it from the pole and ``out`` from the place that reaches furthest forward, (3,) [mm];
-    ``relief`` is how far it stands out [mm], and ``clarity`` that over the roughness of the breast;
+    ``from_pole`` leads to it from the pole and ``out`` from the place that reaches furthest forward, (3,)
+    [mm]; ``relief`` is how far it stands out [mm], and ``clarity`` that over the roughness of the breast;
     ``roundness`` is 1 for a spot and 0 for an edge;
     ``aside`` is how far it lies from where nipples do [mm]; ``down`` how steeply the breast turns down there
     [degrees]. The weights in ``log_odds`` are a logistic regression over the spots of 200 made bodies.

@@ -177,7 +177,9 @@ def sizes_text(answer: SizeAnswer, language: str = "en") -> dict[str, Any]:
 def with_neighbours(
     told: Sequence[dict[str, Any]], underbust_off: float | None, bust_off: float | None
 ) -> tuple[dict[str, Any], ...]:
-    """Return sizes of ``sizes_text``, each with the others ``within_off`` (``neighbours_of``) if both are known."""
+    """Return sizes of ``sizes_text``, each with the others ``within_off`` (``neighbours_of``) if both are
+    known.
+    """
     if underbust_off is None or bust_off is None or not told:
         return tuple(told)
     girths = ("underbust_mm", "bust_mm", "allowance_mm")

@@ -57,7 +57,8 @@ class Uncertainty:
 class Spread:
     """How far the figures of one solved design may be off.
 
-    ``by_output`` by the keys of figures; a figure that is not known has none. ``skin`` (n,) [mm] is the standard
+    ``by_output`` by the keys of figures; a figure that is not known has none. ``skin`` (n,) [mm] is the
+    standard
     deviation of each vertex of the reshaped body along its normal, ``rest`` [mm] that of the body at rest.
     What is told after the ± is ``sds`` standard deviations. ``sources`` are those that are in; the landmarks
     come last. ``other`` tells the figures if lines had the ``contact`` that the design has not: a choice of

@@ -23,8 +23,8 @@ class GaussSeidelSweep:
     """The answer of one sweep; ``forward`` solves the lower triangle for forces of shape (f, 3).
 
     Under sliding lines it is that of the cables alone. There only the part of a line's force across the skin
-    acts at the points ``nodes`` (l,) of the lines: ``line_response`` (l, f) is the lower triangle of the lines times
-    ``forward``, ``among`` (l, l) the same between the nodes.
+    acts at the points ``nodes`` (l,) of the lines: ``line_response`` (l, f) is the lower triangle of the
+    lines times ``forward``, ``among`` (l, l) the same between the nodes.
     """
 
     forward: Solve

@@ -95,7 +95,8 @@ def layout_of(tensegric: TensegrityModel, segments: Springs, volume: VolumeMeasu
 def sliding_entries(signs: Operator) -> Entries:
     """Return the entries of the blocks with which segments act on free points, (e, 3, 3) figures.
 
-    ``signs`` (s, f) see ``Springs``; its entries that are not 0 come in the order of ``HessianLayout.acting_pairs``. Each
+    ``signs`` (s, f) see ``Springs``; its entries that are not 0 come in the order of
+    ``HessianLayout.acting_pairs``. Each
     point feels the segment's vector through a block of its own: the matrix is not symmetric.
     """
     segment, point, sign = nonzero_entries(signs)

@@ -19,8 +19,8 @@ class Frame:
 
     ``points`` and ``normals`` (r, 3) belong to the body's vertices ``stages.moving.vertices``;
     ``control_points`` (n, 3) [mm]; ``lengths`` [mm] of the lines' front parts; ``tracks`` the records of each
-    run so far; ``exact_marks`` what the exact answer ends at; ``is_running`` whether turns are still being made;
-    ``seconds`` spent on them since the design last changed, at turn ``changed_at``.
+    run so far; ``exact_marks`` what the exact answer ends at; ``is_running`` whether turns are still being
+    made; ``seconds`` spent on them since the design last changed, at turn ``changed_at``.
     """
 
     revision: int

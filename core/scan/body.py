@@ -34,8 +34,8 @@ class Body:
 
     ``rebuilt``: the file held points only, and the skin was laid through them. ``edits`` are those of the
     scan that were applied, ``cut`` the heights of its crop [mm], ``estimated`` the vertices, shape (k,), that
-    fill holes, ``uncropped_range`` the lowest and the highest level before a crop, if there was one [mm]. ``colours``
-    are those of the scan at the vertices, shape (n, 4), None without any.
+    fill holes, ``uncropped_range`` the lowest and the highest level before a crop, if there was one [mm].
+    ``colours`` are those of the scan at the vertices, shape (n, 4), None without any.
     """
 
     mesh: Mesh

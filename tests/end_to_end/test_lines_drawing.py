@@ -73,10 +73,10 @@ def test_a_line_is_drawn_by_clicks_and_snaps_to_the_control_mesh_on_both_sides()
         window.view.viewport.setFocus()
         press(window, Qt.Key.Key_Return)
         assert isinstance(drawing._found, FreeCurve), "as it was drawn, unless that is chosen otherwise"
-        assert drawing._found.off < 1.0
+        assert drawing._found.deviation < 1.0
         card.snap.click()
         assert drawing._found.path == path
-        assert drawing._found.off < 15.0
+        assert drawing._found.deviation < 15.0
         card.both.setChecked(True)
         press(window, Qt.Key.Key_Return)
         assert not card.isVisible()

@@ -16,8 +16,8 @@ FIXABLE = ("convergence", "shape", "band", "pressure")
 class Fix:
     """A change, and how the design stands with it: run from rest, and on from where it was.
 
-    ``remaining_problem`` is the worse of what is wrong with the run then, empty if nothing is; ``remains`` are all
-    findings on the changed design that a change can end, the worst first. Of a change that is two,
+    ``remaining_problem`` is the worse of what is wrong with the run then, empty if nothing is; ``remains``
+    are all findings on the changed design that a change can end, the worst first. Of a change that is two,
     ``option_result`` is what would be wrong without the other choice, ``lengths_result`` without the lengths.
     """
 

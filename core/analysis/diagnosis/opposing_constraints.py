@@ -58,8 +58,8 @@ class ConstraintForce:
 class Opposition:
     """Two constraints that pull against each other.
 
-    ``angle`` [degrees] between what they do to the skin; ``cancelled`` [N mm] is the work that one undoes of the
-    other's.
+    ``angle`` [degrees] between what they do to the skin; ``cancelled`` [N mm] is the work that one undoes of
+    the other's.
     """
 
     one: ConstraintForce
@@ -73,8 +73,8 @@ class ConstraintForces:
     """All constraints in a balance.
 
     ``share`` [1] is how far on the way from rest to the lengths that are set it lies: 1 where these can be
-    balanced. ``oppositions`` begin with those that take most from each other; ``worst`` is the first if it stands
-    out. ``skin`` [N] is what the skin answers with. Newtons rest on the design's tissue, an estimate.
+    balanced. ``oppositions`` begin with those that take most from each other; ``worst`` is the first if it
+    stands out. ``skin`` [N] is what the skin answers with. Newtons rest on the design's tissue, an estimate.
     """
 
     share: float

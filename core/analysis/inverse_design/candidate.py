@@ -13,9 +13,10 @@ from core.geometry.mesh import Floats
 class Candidate:
     """A design with the ``lengths`` that were found [%], the exact answer there, and what keeps it there.
 
-    ``reached`` tells whether the answer is what was asked for. ``at_limit`` names the lines as short or as long
-    as they may be, ``most_tensioned`` those with the most tension they may have, ``slack`` those that would push if
-    they were longer; ``strained`` tells that the shape would strain beyond what looks natural.
+    ``reached`` tells whether the answer is what was asked for. ``at_limit`` names the lines as short or as
+    long
+    as they may be, ``most_tensioned`` those with the most tension they may have, ``slack`` those that would
+    push if they were longer; ``strained`` tells that the shape would strain beyond what looks natural.
     """
 
     design: Design

@@ -98,7 +98,9 @@ class LineSelection:
         return free.solve(goals, progress)
 
     def current_values(self, names: Collection[str]) -> tuple[dict[str, float], dict[str, float]]:
-        """Return what quantities and pressures are in the design as it is; see ``InverseSolver.current_values``."""
+        """Return what quantities and pressures are in the design as it is; see
+        ``InverseSolver.current_values``.
+        """
         return self._solver(()).current_values(names)
 
     def values_at(self, names: Collection[str], points: Points) -> dict[str, float]:

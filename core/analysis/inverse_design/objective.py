@@ -72,7 +72,9 @@ class Objective:
         return violation(self.residual_rows(look)[0], len(self.values))
 
     def residual_rows(self, look: LinearizedSolution) -> tuple[Floats, Floats]:
-        """Return what figures lack, as they count [mm], then the rooms [1], and slopes: see ``QuadraticModel``."""
+        """Return what figures lack, as they count [mm], then the rooms [1], and slopes: see
+        ``QuadraticModel``.
+        """
         room, by_room = self.margins(look)
         lack, by_lack = look.values - self.values, look.by_values
         return (

@@ -150,7 +150,7 @@ class _Girth:
         (below,), (above,) = (tape(places) for tape in tapes)
         (by_below,), (by_above,) = (tape.slopes(places) for tape in tapes)
         by_places = (1.0 - part) * by_below + part * by_above
-        slopes = binding.pulled(control_points, by_places[: moving.count])
+        slopes = binding.gradient(control_points, by_places[: moving.count])
         steep = float(above - below) / TAPE_STEP
         return Reading(float((1.0 - part) * below + part * above), slopes + steep * rise.slopes)
 

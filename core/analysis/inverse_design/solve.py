@@ -41,11 +41,13 @@ class InverseResult:
 
     ``reachable`` tells whether that is what was asked for, ``miss`` [mm] what the worst figure lacks,
     ``deviation`` [mm] the root of the squares of all as they count: see ``goal_weights``. If not,
-    there is a reason: lines ``at_limit`` are as short or as long as they may be, lines that are ``at_pressure_limit`` do
+    there is a reason: lines ``at_limit`` are as short or as long as they may be, lines that are
+    ``at_pressure_limit`` do
     so as hard as they may, ``slack`` ones would push, ``strained`` is a shape that would strain beyond what
     looks natural; without any the lines do not move it that way. ``agreed`` is False where lengths, elastics
     and pressures did not come to agree: there may be better. ``pressure`` [kPa] is the largest of each line
-    that was looked at, and ``limit`` what it may be; ``unchecked`` are the worn lines that were not looked at.
+    that was looked at, and ``limit`` what it may be; ``unchecked`` are the worn lines that were not looked
+    at.
     ``tension`` [N] is the sum over the lines, an estimate where they are made of no elastic; ``answers`` how
     many were worked out.
     ``longest`` is the ratio that no line goes beyond [1], ``points`` (n, 3) [mm] are the exact answer.
@@ -95,8 +97,8 @@ def solve_targets(
 class InverseSolver:
     """One design that is asked again and again: what one answer needed is there for the next.
 
-    ``bounds`` and ``most_kpa`` are those of ``solve_targets``. ``nearer`` hears of the nearest design so far while an
-    answer is looked for elsewhere, in the thread that asks.
+    ``bounds`` and ``most_kpa`` are those of ``solve_targets``. ``nearer`` hears of the nearest design so far
+    while an answer is looked for elsewhere, in the thread that asks.
     """
 
     def __init__(self, stages: Stages, bounds: Bounds | None = None, most_kpa: float | None = None) -> None:
@@ -118,7 +120,9 @@ class InverseSolver:
         self._used: list[tuple[Search, int]] = []
 
     def solve(self, goals: Sequence[Goal], progress: Progress = quiet) -> InverseResult:
-        """Return the answer to ``goals``, which depends on them and the design alone; see ``solve_targets``."""
+        """Return the answer to ``goals``, which depends on them and the design alone; see
+        ``solve_targets``.
+        """
         return self._told(self._answered, goals, progress)
 
     def solve_quickly(self, goals: Sequence[Goal], progress: Progress = quiet) -> InverseResult:

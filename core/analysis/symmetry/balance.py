@@ -89,7 +89,8 @@ def make_even(
 
     Pairs are set apart and lines across both sides split first, if nothing else moves one side alone. What
     cannot be kept besides is let go of where that makes it even, or brings more than it takes away. Where
-    nothing does, what is returned is not ``worth`` it. ``shortest`` and ``kept`` see ``solve_targets``. Raises
+    nothing does, what is returned is not ``worth`` it. ``shortest`` and ``kept`` see ``solve_targets``.
+    Raises
     UserError if a breast is missing, no worn line can move one side alone, or nothing balances; Cancelled.
     """
     if not all(shows_breast(stages.landmarks, side) for side in SIDES):

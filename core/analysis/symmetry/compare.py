@@ -28,8 +28,8 @@ class Evenness:
     """How left and right differ in one shape of a body.
 
     ``higher`` and ``further_out`` are how much higher and further to the front the left bust point is than
-    the right one, ``further_lateral`` how much further from the mirror [mm]; ``skin`` is how that of one breast
-    lies beside the other one's, None where it cannot be told.
+    the right one, ``further_lateral`` how much further from the mirror [mm]; ``skin`` is how that of one
+    breast lies beside the other one's, None where it cannot be told.
     """
 
     higher: float

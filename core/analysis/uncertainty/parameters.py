@@ -37,8 +37,8 @@ NAMES = tuple(f"{kind}_{side}" for kind in (*OF_THE_FIT, *OF_MEASURES) for side 
 class UncertainParameter:
     """One thing that may be off by ``sd``: in mm, or in the logarithm of a stiffness or force.
 
-    ``source`` is one of ``SOURCES``; ``name`` that of a landmark, line or elastic; ``direction`` (3,) is where a
-    landmark goes, None for ``PLACING``.
+    ``source`` is one of ``SOURCES``; ``name`` that of a landmark, line or elastic; ``direction`` (3,) is
+    where a landmark goes, None for ``PLACING``.
     """
 
     source: str

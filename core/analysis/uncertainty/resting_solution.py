@@ -20,7 +20,9 @@ from core.pipeline.exact import NoEquilibriumError, body_volume_rates, exact_sol
 
 @dataclass(frozen=True, eq=False)
 class ConvergedSolution:
-    """The ``solution`` at which a run rests; ``kept`` makes of rates at its volume those under its control."""
+    """The ``solution`` at which a run rests; ``kept`` makes of rates at its volume those under its
+    control.
+    """
 
     solution: Sensitivities
     kept: Callable[[Rates], Rates]

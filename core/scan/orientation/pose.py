@@ -43,8 +43,8 @@ class Pose:
     ``file_to_mm`` takes file coordinates to the canonical frame, shape (4, 4): a turn times a scale, never
     a mirror, without a shift. ``up`` and ``front`` name the nearest axes of the file; ``tilt`` is the angle
     between up and its axis [degrees]. ``margin`` is the lead of this reading over the best other one [1]; if
-    small, ``is_certain`` is False and the user should be asked. ``others`` are the ``file_to_mm`` of the next best
-    readings, at most three. What lies under the level ``stand`` [mm] is a pole or a base, no body.
+    small, ``is_certain`` is False and the user should be asked. ``others`` are the ``file_to_mm`` of the
+    next best readings, at most three. What lies under the level ``stand`` [mm] is a pole or a base, no body.
     """
 
     unit: str

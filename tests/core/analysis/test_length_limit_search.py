@@ -89,7 +89,7 @@ def test_the_way_of_an_elastic_takes_long_strides_and_few_costly_looks(built, mo
     assert begins is not None
     three = [stop for stop in walk.stops if abs(stop.length.ratio - 0.7) < 0.1][:3]
     way_on = extrapolate(three, 0.7).points
-    there = walk.near(0.7, three[0].found)
+    there = walk.solve_near(0.7, three[0].found)
     assert np.abs(way_on - there.found.points).max() < 0.1, "strides are as long as guesses are good"
 
 

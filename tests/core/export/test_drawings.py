@@ -267,5 +267,5 @@ def flat_length(solution, name):
 
 
 def worn_lines(solution):
-    worn = solution.stages.design.worn()
+    worn = solution.stages.design.active_lines()
     return [line for line in solution.stages.model.lines if line.name in worn]

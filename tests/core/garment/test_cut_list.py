@@ -107,7 +107,7 @@ def test_the_tension_of_held_lines_is_the_multiplier_of_the_exact_answer(built, 
     _, _, points, balance = listed(stages)
     unit = newtons_per_unit(stages.model, 530.0)
     for at, line in enumerate(stages.model.lines):
-        if line.name in stages.design.worn():
+        if line.name in stages.design.active_lines():
             tension = line_tensions(stages, points)[line.name]
             assert tension.mean == pytest.approx(unit * balance.tensions[at], rel=1e-6)
             assert np.ptp(tension.segments) == 0.0

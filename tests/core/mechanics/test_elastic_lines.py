@@ -65,7 +65,7 @@ def test_force_and_length_are_a_point_of_the_curve(built, curve, choices):
     points = exact_points(stages)
     for name, elastic in stages.design.active_elastics().items():
         elongation, tension = worn_so(stages, name, points)
-        assert 0.0 < elongation < elastic.reach
+        assert 0.0 < elongation < elastic.max_elongation
         assert tension == pytest.approx(elastic.force(elongation), rel=1e-6)
 
 

@@ -51,7 +51,7 @@ def assert_balanced(model, ratios, balance):
     points = model.tensegric.expand(balance.state.moved)
     force = cable_force(model, points) + line_force(model, points, ratios)
     force += np.tensordot(balance.pressures, volume_slopes(model, points), axes=1)
-    assert balance.found
+    assert balance.is_converged
     np.testing.assert_allclose(force[model.tensegric.free], 0.0, atol=1e-8)
     change = model.volume.side_volumes(points) - model.volume.side_volumes(model.tensegric.rest)
     assert np.abs(change).max() < 1e-9 * model.volume.rest_volume

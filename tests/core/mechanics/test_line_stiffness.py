@@ -99,6 +99,6 @@ def built_stiffness(design, stages):
 def test_only_worn_lines_with_a_stiffness_of_their_own_say_so(built):
     off = replace(built("mannequin").design, lines=())
     soft = off.with_line_settings(LineSettings("mid-bust", stiffness=2.0))
-    assert soft.own_stiffness() == {}
+    assert soft.line_stiffnesses() == {}
     both = soft.with_line("mid-bust", 0.95).with_line("full-bust", 0.95)
-    assert both.own_stiffness() == {"mid-bust": 2.0}
+    assert both.line_stiffnesses() == {"mid-bust": 2.0}

@@ -58,7 +58,7 @@ def test_forces_agree_with_a_plain_loop_over_the_cables(law):
 def plain_cells_energy(model, moved):
     """Half the densities times the squared difference to the neighbourhood turned as fits best, by hand."""
     points, total = model.expand(moved), 0.0
-    edges = [*model.cables.tolist(), *model.held.tolist()]
+    edges = [*model.cables.tolist(), *model.fixed_edges.tolist()]
     densities = [*model.density, *model.held_density]
     for i in sorted({at for edge in model.cables.tolist() for at in edge}):
         near = [(sum(edge) - i, q) for edge, q in zip(edges, densities, strict=True) if i in edge]

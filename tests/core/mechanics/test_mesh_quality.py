@@ -26,36 +26,36 @@ def flags(found):
 
 def test_at_rest_nothing_has_turned_or_strained():
     found = tent_with_tip(0.0, 0.0, 3.0)
-    assert (found.turned, found.shortest, found.longest) == pytest.approx((1.0, 1.0, 1.0))
+    assert (found.least_cosine, found.shortest, found.longest) == pytest.approx((1.0, 1.0, 1.0))
     assert flags(found) == (False, False, False, False)
 
 
 def test_a_tip_pushed_through_turns_the_sides_and_strains_nothing():
     found = tent_with_tip(0.0, 0.0, -3.0)
-    assert found.turned == pytest.approx((16.0 - 9.0) / 25.0)
+    assert found.least_cosine == pytest.approx((16.0 - 9.0) / 25.0)
     assert (found.shortest, found.longest) == pytest.approx((1.0, 1.0))
     assert flags(found) == (False, False, False, False)
 
 
 def test_a_tip_beyond_its_edge_shows_a_side_from_the_back():
     found = tent_with_tip(0.0, 8.0, 3.0)
-    assert found.turned == pytest.approx((9.0 - 16.0) / 25.0)
+    assert found.least_cosine == pytest.approx((9.0 - 16.0) / 25.0)
     assert (found.shortest, found.longest) == pytest.approx((1.0, 13.0 / SIDE))
     assert flags(found) == (True, True, True, True)
 
 
 def test_a_side_without_area_is_folded():
     found = tent_with_tip(0.0, 4.0, 0.0)
-    assert found.turned == 0.0
+    assert found.least_cosine == 0.0
     assert found.folded
     assert found.inverted
 
 
 def test_an_upright_side_is_folded_but_not_inverted():
     found = tent_with_tip(0.0, 4.0, 0.5)
-    assert found.turned == pytest.approx(0.6)  # the side faces +y, as 3 of 5 parts of it did
+    assert found.least_cosine == pytest.approx(0.6)  # the side faces +y, as 3 of 5 parts of it did
     found = tent_with_tip(0.0, 4.6, 1.0)
-    assert found.turned == pytest.approx((1.0 * 3.0 - 0.6 * 4.0) / 5.0 / np.hypot(1.0, 0.6))
+    assert found.least_cosine == pytest.approx((1.0 * 3.0 - 0.6 * 4.0) / 5.0 / np.hypot(1.0, 0.6))
     assert flags(found)[:2] == (True, False)
 
 

@@ -24,7 +24,7 @@ def targets(ratio, control="adaptive", gain=CALM):
 
 def finish(comparison):
     turns = 0
-    while not comparison.resting:
+    while not comparison.is_finished:
         comparison.advance()
         turns += 1
     return turns
