@@ -119,7 +119,7 @@ def one_blas_thread() -> Iterator[None]:
 def stages_made_once() -> Iterator[None]:
     """Of the way from a file to a fitted model each stage is made once for equal inputs: they are frozen."""
     with pytest.MonkeyPatch.context() as patch:
-        for name in ("body_of", "find", "read_template", "fit_control_mesh", "patch_fade", "_backs"):
+        for name in ("body_of", "detect_landmarks", "read_template", "fit_control_mesh", "blend_weights", "_backs"):
             patch.setattr(pipeline, name, remembered(getattr(pipeline, name)))
         yield
 
@@ -197,7 +197,7 @@ def own_data(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 def landmarks_known(monkeypatch: pytest.MonkeyPatch) -> None:
     """Assume landmarks without uncertainty: a fit for each takes too long for a test of the window."""
     known = replace(default_uncertainty(), landmark_mm=0.0, unsure_landmark_mm=0.0)
-    monkeypatch.setattr("core.analysis.uncertainty.estimate.assumed", lambda: known)
+    monkeypatch.setattr("core.analysis.uncertainty.estimate.default_uncertainty", lambda: known)
 
 
 @pytest.fixture

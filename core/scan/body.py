@@ -64,8 +64,8 @@ class Body:
 
     def denoise(self, progress: Progress) -> None:
         """Work out ``smoothed`` now, telling how far it is: a large skin takes seconds. Raises Cancelled."""
-        if "calm" not in vars(self):
-            vars(self)["calm"] = denoise(self.mesh, progress)
+        if "smoothed" not in vars(self):
+            vars(self)["smoothed"] = denoise(self.mesh, progress)
 
     @cached_property
     def noise(self) -> float:

@@ -273,7 +273,7 @@ def test_the_sheet_comes_without_pictures_where_they_cannot_be_drawn(monkeypatch
     def fails(*_: object, **__: object) -> None:
         raise RuntimeError("no graphics")
 
-    monkeypatch.setattr("app.report.images.Studio", fails)
+    monkeypatch.setattr("app.report.images.OffscreenRenderer", fails)
 
     def script(window: MainWindow) -> Script:
         undrawn(window)

@@ -47,14 +47,14 @@ GOALS = (Goal("lift", 5.0),)
     [
         ({"reachable": True}, "Reached.", "到達できます。"),
         (
-            {"at_end": ("full-bust", "mid-bust")},
+            {"at_limit": ("full-bust", "mid-bust")},
             "Not reachable: nearest is Bust point up +2.0 mm, because Mid-bust may not be shorter, and "
             "Full bust may not be longer: a longer line would have to push.",
             "到達できません。最も近いのは BPの上昇 +2.0 mm。理由：バスト下部はこれ以上短くできません、"
             "トップバストはこれ以上長くできません（長いラインは押すことになります）。",
         ),
         (
-            {"pressing": ("mid-bust",), "strained": True},
+            {"at_pressure_limit": ("mid-bust",), "strained": True},
             "Not reachable: nearest is Bust point up +2.0 mm, because Mid-bust may not press more than 4.0 "
             "kPa, and the body would be strained more than looks natural.",
             "到達できません。最も近いのは BPの上昇 +2.0 mm。理由：バスト下部は 4.0 kPa を超えて押せません、"
@@ -107,8 +107,8 @@ def test_changes_are_told_line_by_line_and_what_presses() -> None:
         "presses with 2.5 kPa at most",
     ]
     assert change_words(design(), reply()) == ["No line changes"]
-    assert change_words(design(), reply(unseen=("mid-bust",)))[-1] == "pressure not looked at: see Garment"
-    some = reply(unseen=("full-bust",), pressure={"mid-bust": 2.46})
+    assert change_words(design(), reply(unchecked=("mid-bust",)))[-1] == "pressure not looked at: see Garment"
+    some = reply(unchecked=("full-bust",), pressure={"mid-bust": 2.46})
     assert change_words(design(), some)[-2:] == [
         "presses with 2.5 kPa at most",
         "pressure of Full bust not looked at: see Garment",

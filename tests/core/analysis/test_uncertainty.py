@@ -300,7 +300,7 @@ def test_a_bare_body_is_neither_fitted_nor_solved(plain: Stages, monkeypatch: py
     assert known.has_no_active_lines
     assert known.points is not None
     monkeypatch.setattr("core.analysis.uncertainty.perturbed_solutions.build", None)
-    monkeypatch.setattr("core.analysis.uncertainty.perturbed_solutions.resting_answer", None)
+    monkeypatch.setattr("core.analysis.uncertainty.perturbed_solutions.converged_solution", None)
     spread = UncertaintyEstimator(known, SURE).estimate()
     assert spread.whole
     assert spread.contact == ""

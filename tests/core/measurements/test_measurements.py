@@ -256,7 +256,7 @@ def test_a_thinner_calm_skin_moves_as_the_scan_does(worn: Solution) -> None:
     assert smoothed_moves(body, moves) is moves
     thin = replace(body)
     rows = np.arange(0, len(body.mesh.vertices), 3)
-    thin.__dict__["calm"] = Mesh(body.mesh.vertices[rows], np.array([[0, 1, 2]]))
+    thin.__dict__["smoothed"] = Mesh(body.mesh.vertices[rows], np.array([[0, 1, 2]]))
     assert np.array_equal(smoothed_moves(thin, moves), moves[rows])
 
 
