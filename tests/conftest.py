@@ -119,7 +119,14 @@ def one_blas_thread() -> Iterator[None]:
 def stages_made_once() -> Iterator[None]:
     """Of the way from a file to a fitted model each stage is made once for equal inputs: they are frozen."""
     with pytest.MonkeyPatch.context() as patch:
-        for name in ("body_of", "detect_landmarks", "read_template", "fit_control_mesh", "blend_weights", "_backs"):
+        for name in (
+            "body_of",
+            "detect_landmarks",
+            "read_template",
+            "fit_control_mesh",
+            "blend_weights",
+            "_backs",
+        ):
             patch.setattr(pipeline, name, remembered(getattr(pipeline, name)))
         yield
 

@@ -28,8 +28,8 @@ STRAINED_RANGE = (0.8, 1.2)
 class MeshQuality:
     """The worst places of a control mesh.
 
-    ``least_cosine`` [1] is the least cosine between a triangle's normal and its normal at rest, 0 for a triangle
-    without area; ``shortest`` and ``longest`` [1] are the extreme edge lengths over rest lengths.
+    ``least_cosine`` [1] is the least cosine between a triangle's normal and its normal at rest, 0 for a
+    triangle without area; ``shortest`` and ``longest`` [1] are the extreme edge lengths over rest lengths.
     """
 
     least_cosine: float
