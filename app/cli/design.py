@@ -80,9 +80,9 @@ def apply_elastics(design: Design, requests: Sequence[str]) -> Design:
     """Return a design with elastics of active lines set by requests, LINE=ELASTIC each. Raises LineError."""
     for request in requests:
         name, equals, elastic = (part.strip() for part in request.partition("="))
-        line = next((each for each in design.worn() if each.lower() == name.lower()), None)
+        line = next((each for each in design.active_lines() if each.lower() == name.lower()), None)
         if line is None or not equals:
-            active = ", ".join(sorted(design.worn())) or "none"
+            active = ", ".join(sorted(design.active_lines())) or "none"
             raise LineError(
                 f"'{request}' is not an active line.", f"Enter LINE=ELASTIC. Active lines: {active}."
             )
@@ -157,6 +157,6 @@ def save_design(source: str, out: str, design: Design, stages: Stages) -> None:
     The former file is kept as a backup. Nothing is saved if ``out`` is empty.
     """
     if out:
-        document = open_project(source) if is_project(source) else Document.of(design)
+        document = open_project(source) if is_project(source) else Document.single(design)
         with backup_before_write(Path(out)):
             save_project(out, document.with_design(design), stages.scan, None)

@@ -68,8 +68,8 @@ def _plain(found: Diagnosis, swing: float) -> str:
         "settling": tr("The calculation has come to no rest yet."),
         "unreachable": tr("No balance is found with the lines at these lengths."),
     }
-    unseen = found.complaint == "vibrating" and swing < _SEEN  # in the volume alone
-    return words["settling" if unseen else found.complaint].format(swing=length(swing))
+    unseen = found.problem == "vibrating" and swing < _SEEN  # in the volume alone
+    return words["settling" if unseen else found.problem].format(swing=length(swing))
 
 
 def hint(found: Diagnosis) -> str:

@@ -83,10 +83,10 @@ def run(options: Namespace) -> int:
     worn = read_fitting_scan(stages, ScanSource(options.worn, **axes))
     how = {"lengths": options.lengths, "one_roll": options.one_roll}
     found = calibrate(stages, worn, thickness=options.thickness, **how)
-    save_design(options.input, options.out, found.design if found.helped else stages.design, stages)
+    save_design(options.input, options.out, found.design if found.is_improved else stages.design, stages)
     done = Calibrated(stages, worn, found, options.out)
     text = json.dumps(calibration_data(done), indent=1) if options.json else "\n".join(_text(done))
-    return finish(text, found.helped)
+    return finish(text, found.is_improved)
 
 
 def _text(done: Calibrated) -> Iterator[str]:
@@ -109,7 +109,7 @@ def _text(done: Calibrated) -> Iterator[str]:
     yield "± covers 95 % of the scan noise; differences in posture or breathing are not included."
     yield "The values apply to this person and this garment."
     if done.out:
-        yield f"written to {done.out}{'' if found.helped else ', unchanged'}"
+        yield f"written to {done.out}{'' if found.is_improved else ', unchanged'}"
 
 
 def calibration_data(done: Calibrated) -> dict[str, Any]:

@@ -90,7 +90,7 @@ def elastics_text(stages: Stages, name: str, *, keep_fit: bool = False) -> str:
     if line is None:
         known = ", ".join(each.name for each in stages.model.lines)
         raise LineError(f"There is no line '{name}'.", f"Available lines: {known}.")
-    names, rigid = design.linked(line), None
+    names, rigid = design.linked_pair(line), None
     rows = [["", "elong. %", "cut mm", "body mm", "lift mm", ""]]
     for elastic in (None, *library().values()):
         option = elastic_option(stages, names, elastic, mode)

@@ -11,7 +11,7 @@ from app.cli.output import DONE, make_folder
 from app.presenters.samples import lifted_sample
 from core.export.solution_report import write_solution
 from core.pipeline.build import build
-from core.pipeline.solve import solve as solve
+from core.pipeline.solve import solve
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -33,5 +33,5 @@ def run(options: Namespace) -> int:
     print(f"  {out / 'body.ply'}: the reshaped body")
     print(f"  {out / 'turns.csv'}, {out / 'report.json'}: iterations and final values")
     last = solution.last
-    print(f"{solution.verdict.words} after {last.turn} iterations, volume error {last.error_ml:+.2f} ml")
+    print(f"{solution.verdict.words} after {last.iteration} iterations, volume error {last.error_ml:+.2f} ml")
     return DONE

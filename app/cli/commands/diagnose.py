@@ -39,17 +39,17 @@ def run(options: Namespace) -> int:
         save_design(options.input, out, found.best_fix.change.design, stages)
     data = diagnosis_data(found, out)
     text = json.dumps(data, indent=1) if options.json else "\n".join(_text(found, out))
-    return finish(text, not found.complaint or found.best_fix is not None)
+    return finish(text, not found.problem or found.best_fix is not None)
 
 
 def _text(found: Diagnosis, out: str) -> Iterator[str]:
     yield from assessment_lines(assess(found.trial), found.stages.design)
-    if found.complaint:
+    if found.problem:
         yield sentence(found, 0.0)
         if not found.fixes:
             yield hint(found)
     else:
-        yield f"The solver converged in {found.verdict.turns} iterations."
+        yield f"The solver converged in {found.verdict.iterations} iterations."
     yield from details(found).splitlines()
     if out:
         yield f"written to {out}"

@@ -18,7 +18,7 @@ from core.analysis.length_limits.zones import LengthLimits, to_length_limits
 from core.garment.assessment import Assessment, assess
 from core.garment.pressure_limits import pressure_limits
 from core.pipeline.build import Stages
-from core.pipeline.solve import solve as solve
+from core.pipeline.solve import solve
 from core.pipeline.warnings import immovable_lines
 
 MEANING = {

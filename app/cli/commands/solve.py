@@ -17,8 +17,7 @@ from core.export.solution_report import write_solution
 from core.garment.assessment import assess
 from core.landmarks.warnings import collect_warnings
 from core.pipeline.exact import NoEquilibriumError
-from core.pipeline.solve import Solution
-from core.pipeline.solve import solve as solve
+from core.pipeline.solve import Solution, solve
 from core.pipeline.warnings import immovable_lines, shape_warnings
 
 DIVERGED = (
@@ -71,7 +70,7 @@ def _lines(values: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _end(values: Mapping[str, Any], solution: Solution, out: Path) -> str:
-    design, volume, count = solution.stages.design, values["volume"], solution.last.turn
+    design, volume, count = solution.stages.design, values["volume"], solution.last.iteration
     step = "iteration" if design.volume != "exact" else "Newton step"
     kept = "body_change" if design.volume == "exact" and design.dense_volume else "error"
     return (

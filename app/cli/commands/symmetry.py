@@ -26,7 +26,7 @@ from core.errors import UserError
 from core.garment.assessment import Assessment, assess
 from core.landmarks.warnings import edit_warnings
 from core.pipeline.build import Stages, build
-from core.pipeline.solve import solve as solve
+from core.pipeline.solve import solve
 from core.pipeline.warnings import shape_warnings
 
 TITLES = {
@@ -130,12 +130,12 @@ def _balance(found: Symmetry, made: BalanceResult) -> Iterator[str]:
     """Yield the changes that balance left and right, their price, and what remains."""
     before = found.stages.design
     if not made.is_worthwhile:
-        yield from not_balanced_reason(made.gain, made.lost)
+        yield from not_balanced_reason(made.gain, made.loss)
         return
-    if made.parted:
-        yield f"Left and right unlinked: {', '.join(split_titles(before, made.parted))}."
+    if made.split:
+        yield f"Left and right unlinked: {', '.join(split_titles(before, made.split))}."
         before = split_sides(before, read_template(before.template))
-    yield from change_words(before, made.reply)
+    yield from change_words(before, made.result)
     values = [
         {
             HIGHER: each.higher,
@@ -144,7 +144,7 @@ def _balance(found: Symmetry, made: BalanceResult) -> Iterator[str]:
         }
         for at, each in enumerate((made.before, made.after))
     ]
-    yield from filter(None, balance_result_texts(made.reply, made.goals, *values))
+    yield from filter(None, balance_result_texts(made.result, made.goals, *values))
     if before.volume != "exact":
         as_set = found.as_set and symmetry_view(BeforeAfter(made.rest, found.as_set, ()), found.stages).says
         yield f"With the volume control of the design: {as_set or 'the solver does not converge.'}"

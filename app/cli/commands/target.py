@@ -41,7 +41,7 @@ from core.garment.assessment import Assessment, assess
 from core.geometry.mesh import Floats
 from core.mechanics.constraint_lines import Line, length_ratio
 from core.pipeline.build import Stages, build
-from core.pipeline.solve import solve as solve
+from core.pipeline.solve import solve
 
 TARGET_HELP = (
     "target value in mm (also cm, in); may be repeated. If targets conflict, append @high or @low "
@@ -127,13 +127,14 @@ def find_lengths(options: Namespace) -> TargetResult:
     stages = with_lines_and_elastics(build(design_of(options)), options.line or [], options.elastic or [])
     if not stages.design.lines and not options.optional:
         raise LineError("No active lines.", "Activate the lines to use: --line mid-bust=100%.")
-    active = {line.name.lower(): line for line in stages.model.lines if line.name in stages.design.worn()}
+    chosen = stages.design.active_lines()
+    active = {line.name.lower(): line for line in stages.model.lines if line.name in chosen}
     locked = [_active(active, name, name).name for name in options.lock or []]
     for section, priority, curve in curves:
         goals += tuple(replace(goal, priority=priority) for goal in profile_goals(stages, section, curve))
     shortest = dict(_shortest(active, each) for each in options.shortest or [])
     solver = LineSelection(stages, _inactive(stages, options.optional or []), Bounds(shortest, locked), limit)
-    reply = solver.reply(goals)
+    reply = solver.solve(goals)
     assessment = assess(solve(build(reply.design, stages)))
     return TargetResult(stages, goals, reply, assessment, solver.conflicts(reply, goals))
 
@@ -225,7 +226,7 @@ def _value(goal: Goal, value: float) -> str:
 def target_data(found: TargetResult, out: str) -> dict[str, Any]:
     """Return the result as plain values, ready for JSON."""
     reply, before = found.reply, found.stages.design
-    lines = {line.name: line for line in found.stages.model.lines if line.name in reply.design.worn()}
+    lines = {line.name: line for line in found.stages.model.lines if line.name in reply.design.active_lines()}
     return {
         "assessment": found.assessment.as_data(),
         "figures": {

@@ -80,7 +80,7 @@ def run(options: Namespace) -> int:
     solved = solve_design(design_of(options), options.line or [], options.elastic or [], bare=True)
     stages, points = solved.solution.stages, solved.solution.control_points
     values = [*_of_measures(measure_rows(*before_after(stages, points)))]
-    if stages.design.worn():
+    if stages.design.active_lines():
         values += _of_lines(output_values(stages, points))
     found = Uncertainties(estimate_uncertainty(stages, wanted), values, solved)
     text = write_output(_FORMS, found, form_of(options), options.out)
@@ -167,7 +167,7 @@ def _json(found: Uncertainties) -> str:
     spread = found.spread
     table = {}
     for result in found.values:
-        doubt = spread.doubts.get(result.key)
+        doubt = spread.by_output.get(result.key)
         row: dict[str, Any] = {"title": result.title, "unit": result.unit, "value": result.value}
         low, high = _ends(spread, result)
         row |= {"plus_minus": spread.plus_minus(result.key), "low": low, "high": high}
@@ -197,7 +197,7 @@ def _ends(spread: Spread, result: Value) -> tuple[float | None, float | None]:
 def _csv(found: Uncertainties) -> str:
     rows = []
     for result in found.values:
-        doubt = found.spread.doubts.get(result.key)
+        doubt = found.spread.by_output.get(result.key)
         by = doubt.by_source if doubt else {}
         off, ends = found.spread.plus_minus(result.key), _ends(found.spread, result)
         sources = [by.get(name) for name in SOURCES]
