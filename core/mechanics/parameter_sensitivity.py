@@ -13,7 +13,7 @@ from core.mechanics.sensitivity import Rates, Sensitivities
 
 
 def d_ground(answer: Sensitivities, ground: Floats) -> Rates:
-    """Return the rates by ``Mechanics.firm_chest`` [mm / 1].
+    """Return the rates by ``ModelOptions.firm_chest`` [mm / 1].
 
     ``ground`` (f,) ties each free point to its rest where that is 1; see ``firm_ground``.
     """
@@ -21,7 +21,7 @@ def d_ground(answer: Sensitivities, ground: Floats) -> Rates:
 
 
 def d_prestress(answer: Sensitivities) -> Rates:
-    """Return the rates by ``Mechanics.prestress`` [mm / 1]; 0 under laws that know none."""
+    """Return the rates by ``ModelOptions.prestress`` [mm / 1]; 0 under laws that know none."""
     cables = answer.potential.model.tensegric.cable_springs
     if cables is None:
         return answer.by_forces(np.zeros((answer.place.gradient.size, 1)))

@@ -66,7 +66,7 @@ def exact_solution(
     near: Equilibrium | None = None,
     limit: int = NEWTON_LIMIT,
 ) -> Sensitivities:
-    """Return the exact answer, ready to be asked what moves it. Raises NoBalanceError; see
+    """Return the exact answer, ready to be asked what moves it. Raises NoEquilibriumError; see
     ``exact_equilibrium``.
     """
     ratios = line_targets(stages.design, stages).ratios if ratios is None else ratios

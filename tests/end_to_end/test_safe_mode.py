@@ -48,8 +48,8 @@ def test_the_safe_mode_draws_without_the_graphics_driver_and_says_so() -> None:
     run_main([], failed)
 
 
-_START = "import sys; from core.document.storage.crash_counter import Start; "
-_START += "start = Start(); print(1, flush=True); sys.stdin.read()"
+_START = "import sys; from core.document.storage.crash_counter import StartMarker; "
+_START += "start = StartMarker(); print(1, flush=True); sys.stdin.read()"
 
 
 @contextmanager

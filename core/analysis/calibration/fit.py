@@ -211,7 +211,9 @@ def with_parameter_step(design: Design, numbers: tuple[Parameter, ...], step: Fl
 
 
 def solve_from(stages: Stages, near: Equilibrium | None = None) -> Sensitivities:
-    """Return the exact answer of a design; if not from ``near`` by then from rest. Raises NoBalanceError."""
+    """Return the exact answer of a design; if not from ``near`` by then from rest. Raises
+    NoEquilibriumError.
+    """
     try:
         return exact_solution(stages, near=near)
     except NoEquilibriumError:

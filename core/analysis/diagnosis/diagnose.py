@@ -48,7 +48,7 @@ class Diagnosis:
 
     ``findings`` are those of the overall verdict that a change can end.
 
-    ``problem`` is one of ``standing.COMPLAINTS``, empty if the design is well. ``forces`` tells what pulls
+    ``problem`` is one of ``trial_run.PROBLEMS``, empty if the design is well. ``forces`` tells what pulls
     against what. ``gain_limit`` is the conventional gain at which the shape that the lines make begins to
     vibrate
     (probe units [1]), and ``onset`` the growth per turn with which a small swing begins, None where that is

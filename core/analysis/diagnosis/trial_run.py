@@ -40,7 +40,7 @@ class RunResult:
 
 @dataclass(frozen=True, eq=False)
 class TrialResult:
-    """A design that was run; ``problem`` is one of COMPLAINTS, or empty if it is well."""
+    """A design that was run; ``problem`` is one of PROBLEMS, or empty if it is well."""
 
     stages: Stages
     run: RunResult

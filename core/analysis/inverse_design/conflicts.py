@@ -35,7 +35,7 @@ class Conflict:
 def conflicts_of(search: Search, goals: Sequence[Goal]) -> tuple[Conflict, ...]:
     """Return the conflicts of ``goals`` at the start of a ``search`` for them, one per target that is missed.
 
-    Raises NoBalanceError, Cancelled.
+    Raises NoEquilibriumError, Cancelled.
     """
     members: dict[str, list[int]] = {}
     for at, goal in enumerate(goals):

@@ -81,7 +81,7 @@ class LineSelection:
     def conflicts(
         self, reply: InverseResult, goals: Sequence[Goal], progress: Progress = quiet
     ) -> tuple[Conflict, ...]:
-        """Return which of the ``goals`` conflict in the last reply; see ``Asking.conflicts``."""
+        """Return which of the ``goals`` conflict in the last reply; see ``InverseSolver.conflicts``."""
         return self._solver(self._chosen).conflicts(reply, goals, progress)
 
     def unlimited(

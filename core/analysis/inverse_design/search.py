@@ -128,14 +128,14 @@ class Search:
             self._wanted.loosest = loosest
 
     def solve_at(self, lengths: Floats, limit: int = NEWTON_LIMIT) -> LinearizedSolution:
-        """Return the exact answer at ``lengths``. Raises NoBalanceError, Cancelled."""
+        """Return the exact answer at ``lengths``. Raises NoEquilibriumError, Cancelled."""
         self.progress("asking", min(len(self) / _STEPS, 1.0))
         return self._answers(lengths, limit)
 
     def minimize(self) -> Floats:
         """Return the lengths that come nearest to what is wanted, with the least tension if they reach it.
 
-        Raises NoBalanceError if there is no balance at the start, Cancelled.
+        Raises NoEquilibriumError if there is no balance at the start, Cancelled.
         """
         lengths = self._least_tension(self._near_by())
         met = self._wanted.is_met(self.solve_at(lengths))
@@ -151,7 +151,7 @@ class Search:
     def minimize_single(self, chosen: Collection[int]) -> LinearizedSolution:
         """Return the answer nearest to the ``chosen`` of the goals, by number, where the others are free.
 
-        Raises NoBalanceError, Cancelled.
+        Raises NoEquilibriumError, Cancelled.
         """
         every, nearer = self._wanted, self.nearer
         self._wanted, self.nearer = every.subset(chosen), lambda found: None
@@ -190,8 +190,8 @@ class Search:
         """Return where steps after Gauss and Newton lead from ``start``, none of them too bold.
 
         Each learns how slopes change on the way. Beside one of those ``known`` already they go no further.
-        Nothing is looked for elsewhere or from rest. Raises NoBalanceError if nothing balances at the start,
-        Cancelled.
+        Nothing is looked for elsewhere or from rest. Raises NoEquilibriumError if nothing balances at the
+        start, Cancelled.
         """
         here, reach, most = start, _BOLD, len(self) + (_ELSEWHERE if known else _STEPS)
         look, wanted = self.solve_at(here), self._wanted

@@ -77,7 +77,7 @@ class LinearizedSolutions:
         return self._count
 
     def __call__(self, lengths: Floats, limit: int = NEWTON_LIMIT) -> LinearizedSolution:
-        """Return the exact answer at ``lengths``, one a group, shape (p,) [%]. Raises NoBalanceError."""
+        """Return the exact answer at ``lengths``, one a group, shape (p,) [%]. Raises NoEquilibriumError."""
         key = np.asarray(lengths, dtype=np.float64).tobytes()
         if key not in self._looks:
             while len(self._looks) >= _KEPT:
@@ -131,7 +131,7 @@ class LinearizedSolutions:
         )
 
     def _rates(self, answer: Sensitivities) -> Rates:
-        """Return the rates by the lengths of the groups, in percent. Raises NoBalanceError."""
+        """Return the rates by the lengths of the groups, in percent. Raises NoEquilibriumError."""
         stages = self._stages
         try:
             rates = answer.by_ratio(np.arange(len(stages.model.lines))).summed(self._groups, PERCENT)
@@ -154,5 +154,5 @@ class LinearizedSolutions:
 
 
 def exact_points(stages: Stages) -> Points:
-    """Return the control points, (n, 3) [mm], that a design is solved to. Raises NoBalanceError."""
+    """Return the control points, (n, 3) [mm], that a design is solved to. Raises NoEquilibriumError."""
     return exact_solution(stages).place.points

@@ -117,7 +117,9 @@ class _Vibrating:
 
 
 def _rest(found: PathPoint) -> float:
-    """Return how far turns are from a swing that no volume control ends; see ``Swing.overshoot`` [1]."""
+    """Return how far turns are from a swing that no volume control ends; see ``OscillationLimit.overshoot``
+    [1].
+    """
     return 1.0 - 0.5 * OscillationLimit(found.model).overshoot(
         Potential(found.model, found.ratios), found.balance
     )

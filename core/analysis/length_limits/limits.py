@@ -26,7 +26,7 @@ from core.progress import Progress, quiet
 __all__ = ["PRECISION", "RED", "SIGNS", "Length", "Limits", "Span", "all_limits", "limits_from", "limits_of"]
 
 SIGNS = ("strained", "overstrained", "folded", "inverted")
-"""What the shape can show, as ``Condition`` names it: from amber to nonsense."""
+"""What the shape can show, as ``MeshQuality`` names it: from amber to nonsense."""
 
 
 @dataclass(frozen=True, eq=False)

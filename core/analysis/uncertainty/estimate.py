@@ -57,7 +57,7 @@ _UNTOLD = tuple(f"{kind}:asymmetry_volume" for kind in (BEFORE, AFTER))
 class UncertaintyEstimator:
     """Finds how far the figures of a design may be off, the ``estimate_partial`` part, then the ``estimate``.
 
-    Raises NoBalanceError where the design has no exact answer, and Cancelled.
+    Raises NoEquilibriumError where the design has no exact answer, and Cancelled.
     """
 
     def __init__(self, trials: PerturbedSolutions, sizes: InputUncertainty | None = None) -> None:

@@ -45,7 +45,7 @@ class Effect:
 
 
 class Propagation:
-    """One solved design and what its knobs do to it. Raises NoBalanceError."""
+    """One solved design and what its knobs do to it. Raises NoEquilibriumError."""
 
     def __init__(self, trials: PerturbedSolutions) -> None:
         self.trials, self.stages = trials, trials.base

@@ -90,7 +90,7 @@ class PerturbedSolutions:
 
     @cached_property
     def values(self) -> Figures:
-        """The figures of lines and bust points where the run rests. Raises NoBalanceError."""
+        """The figures of lines and bust points where the run rests. Raises NoEquilibriumError."""
         return {} if self.has_no_active_lines else output_values(self.base, self.points)
 
     @cached_property
@@ -100,12 +100,12 @@ class PerturbedSolutions:
 
     @cached_property
     def points(self) -> Points:
-        """The control points where the run rests, shape (n, 3) [mm]. Raises NoBalanceError."""
+        """The control points where the run rests, shape (n, 3) [mm]. Raises NoEquilibriumError."""
         return self.equilibrium.solution.place.points
 
     @cached_property
     def equilibrium(self) -> ConvergedSolution:
-        """The balance that the run of the design comes to. Raises NoBalanceError."""
+        """The balance that the run of the design comes to. Raises NoEquilibriumError."""
         return converged_solution(self.base, self._push)
 
     @cached_property

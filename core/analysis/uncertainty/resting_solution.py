@@ -37,7 +37,7 @@ def control_response(stages: Stages) -> float:
 def converged_solution(stages: Stages, push: float | None = None) -> ConvergedSolution:
     """Return what the run of a design comes to; ``push`` is its control's, see ``control_response``.
 
-    Raises NoBalanceError.
+    Raises NoEquilibriumError.
     """
     targets = line_targets(stages.design, stages)
     if targets.control == "exact":
