@@ -32,12 +32,14 @@ from app.presenters.samples import sample_design
 from core.analysis.uncertainty.input_uncertainty import default_uncertainty
 from core.document.design import Design, ScanSource
 from core.document.lines import ActiveLine
+from core.garment.elastic_library import find_elastic
 from core.pipeline import build as pipeline
 from core.pipeline.build import Stages, build
 
 SAMPLES = Path(__file__).parent.parent / "resources" / "samples"
 PATIENCE_MS = 90_000
-SPARING_NOTHING = SimpleNamespace(**{**vars(gc), "freeze": lambda: None, "unfreeze": lambda: None})
+SPARING = ("collect", "freeze", "unfreeze")
+SPARING_NOTHING = SimpleNamespace(**vars(gc) | dict.fromkeys(SPARING, lambda *_: None))
 
 
 gc.disable()  # modules and tests that are collected are no garbage; what tests leave is collected after each
@@ -198,6 +200,14 @@ def light_theme(qapp: QApplication) -> Iterator[None]:
 def own_data(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Keep elastics, presets and size tables of the user in a folder of this test."""
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+
+
+@pytest.fixture
+def few_elastics(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Offer the elastics that tests name alone: the effect of each is computed for a chooser."""
+    named = ("strap 15", "strap 20", "picot 10", "plush 12", "plush 18", "power-net 80")
+    few = tuple(find_elastic(each) for each in named)
+    monkeypatch.setattr("core.garment.elastic_library.built_in", lambda: few)
 
 
 @pytest.fixture

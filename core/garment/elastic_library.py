@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from contextlib import suppress
+from functools import cache
 from importlib import resources
 from itertools import chain, count
 from pathlib import Path
@@ -38,6 +39,7 @@ FORMAT = 1
 """The format of the files in ``resources/elastics``."""
 
 
+@cache
 def built_in() -> tuple[Elastic, ...]:
     """Return the elastics that come with Busk, every kind in each of its widths."""
     folder = resources.files("resources") / "elastics"

@@ -20,7 +20,7 @@ from app.presenters.bust_shift import bust_shift
 from core.garment.elastic_options import FIRST_STRETCH, KEEP_CUT
 from core.pipeline.warnings import immovable_lines
 
-pytestmark = pytest.mark.usefixtures("empty_house", "own_data")
+pytestmark = pytest.mark.usefixtures("empty_house", "own_data", "few_elastics")
 
 SAME = 0.2
 """By how much a reached length may differ once an elastic is chosen, as the window states [mm]."""

@@ -18,7 +18,7 @@ from core.document.elastic import Elastic
 from core.garment.elastic_library import save_elastic
 from core.garment.elastic_options import KEEP_CUT
 
-pytestmark = pytest.mark.usefixtures("empty_house", "own_data")
+pytestmark = pytest.mark.usefixtures("empty_house", "own_data", "few_elastics")
 
 SAME = 0.2
 """By how much a reached length may differ once an elastic is chosen [mm]."""

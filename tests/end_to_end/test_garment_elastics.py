@@ -18,7 +18,7 @@ from core.document.elastic import Elastic
 from core.garment.elastic_csv import TEMPLATE
 from core.garment.elastic_library import read_elastic, save_elastic, user_elastics, user_folder
 
-pytestmark = pytest.mark.usefixtures("empty_house", "own_data")
+pytestmark = pytest.mark.usefixtures("empty_house", "own_data", "few_elastics")
 
 
 def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(

@@ -14,7 +14,7 @@ from app.gui.main_window import MainWindow
 from app.presenters.samples import lifted_sample
 from core.garment.elastic_library import find_elastic
 
-pytestmark = pytest.mark.usefixtures("empty_house")
+pytestmark = pytest.mark.usefixtures("empty_house", "few_elastics")
 
 
 @pytest.fixture

@@ -29,8 +29,10 @@ DRAWN = ("vtkRenderWindow", "vtkXOpenGLRenderWindow", "vtkRenderer", "vtkOpenGLR
 
 
 def left_over() -> Counter[str]:
-    """Count what a window may leave: threads, timers at work, widgets, what was drawn, temporary files."""
-    gc.unfreeze()  # what other tests have left is seen before as well
+    """Count what a window may leave: threads, timers at work, widgets, what was drawn, temporary files.
+
+    Of objects of Python only those made since the last ``gc.freeze()`` are seen.
+    """
     gc.collect()
     found = Counter(f"thread {thread.name}" for thread in threading.enumerate())
     for each in gc.get_objects():
@@ -115,6 +117,7 @@ def test_a_closed_window_leaves_nothing(
     if state is writing:
         QSettings().setValue("autosave", 0.01)
         monkeypatch.setattr(os, "fsync", lambda file: (time.sleep(0.3), sync(file)))
+    gc.freeze()
     before = left_over()
 
     def script(window: MainWindow) -> Script:
@@ -124,7 +127,6 @@ def test_a_closed_window_leaves_nothing(
         # The script ends as if all were saved: it is not, and closing asks.
         monkeypatch.setattr(window.session.undo_stack, "setClean", lambda: None)
 
-    gc.freeze()  # else closing the window looks through all libraries, and not only what it left
     run_main([], script)
     assert [record.getMessage() for record in caplog.records] == []
     assert left_over() - before == Counter()

@@ -27,7 +27,7 @@ ELASTIC = Elastic("curved", 12.0, ((0.0, 0.0), (0.02, 0.4), (0.3, 1.5), (0.9, 3.
 def choices() -> list[ModelOptions]:
     return [
         replace(law, line_contact=contact, volume_of=of)
-        for law, contact, of in product(LAWS, ("glued", "sliding"), ("each", "both"))
+        for law, (contact, of) in product(LAWS, (("glued", "each"), ("sliding", "both")))
     ]
 
 
@@ -64,8 +64,7 @@ def test_rates_by_stiffness_are_those_of_differences(mechanics: ModelOptions) ->
         assert np.abs(followed.pulls[:, line] - pull).max() < 1e-6 * np.abs(pull).max()
 
 
-@pytest.mark.parametrize("contact", ["glued", "sliding"])
-@pytest.mark.parametrize("what", ["force", "length"])
+@pytest.mark.parametrize(("contact", "what"), [("glued", "force"), ("sliding", "length")])
 def test_an_elastic_follows_its_curve(contact: str, what: str) -> None:
     model = small(ModelOptions(line_contact=contact))
     names = [line.name for line in model.lines]
