@@ -86,7 +86,7 @@ def test_an_own_elastic_travels_with_its_project_to_where_nobody_has_it(
         yield from choose(window, "mid-bust", "Roll 9")
         yield made_of(window, "mid-bust")
         cut.append(window.garment.rows["mid-bust"].cut.text())
-        window.session.save(str(project), window.desk._preview())
+        window.session.save(str(project), None)
         assert window.session.finish_saving()
 
     def reopen(window: MainWindow) -> Script:

@@ -174,7 +174,7 @@ def the_samples_open_as_at_first(window: MainWindow) -> None:
     opened = []
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(window.session, "open_design", opened.append)
-        patch.setattr(window.desk, "may_leave", lambda: True)
+        patch.setattr(window.project_controller, "may_leave", lambda: True)
         for action in window.actions_.samples.values():
             action.trigger()
     assert opened == [lifted_sample(name) for name in SAMPLES]
