@@ -9,9 +9,8 @@ from app.i18n.lengths import length
 from app.presenters.assessment import assessment_view
 from app.presenters.lines import line_title, row_title
 from app.presenters.status import state_title
-from core.analysis.diagnosis.candidate_changes import Change
+from core.analysis.diagnosis.candidate_changes import Change, Fix
 from core.analysis.diagnosis.diagnose import Diagnosis
-from core.analysis.diagnosis.fix import Fix
 from core.analysis.diagnosis.opposing_constraints import ConstraintForce
 from core.garment.assessment import BAD, Assessment, Finding
 

@@ -1,12 +1,14 @@
-"""Smooth things of many colours, moved in place: the skin, ribbons."""
+"""Actors of many colours that are moved in place, and rays that meet them."""
 
 from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
 import pyvista as pv
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
-from core.geometry.mesh import Faces
+from core.geometry.mesh import Faces, Floats
 
 Reals = npt.NDArray[np.floating]
 
@@ -37,3 +39,25 @@ def smooth_actor(
     actor.prop.interpolation = "Gouraud"
     data.point_data.active_normals_name = "Normals"
     return data, actor
+
+
+class RayPicker:
+    """Where a straight sight first meets drawn triangles; looks them up anew after they moved."""
+
+    def __init__(self, data: pv.PolyData) -> None:
+        self._data = data
+        self._locator: vtkStaticCellLocator | None = None
+
+    def clear(self) -> None:
+        """Say that the triangles have moved."""
+        self._locator = None
+
+    def hit(self, start: Floats, end: Floats) -> Floats | None:
+        """Return where the segment between two points, each (3,) [mm], first meets the triangles, or None."""
+        if self._locator is None:
+            self._locator = vtkStaticCellLocator()
+            self._locator.SetDataSet(self._data)
+            self._locator.BuildLocator()
+        places = vtkPoints()
+        self._locator.IntersectWithLine(start.tolist(), end.tolist(), places, None)
+        return np.array(places.GetPoint(0)) if places.GetNumberOfPoints() else None

@@ -8,10 +8,9 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from app.rendering.actors import smooth_actor
+from app.rendering.actors import RayPicker, smooth_actor
 from app.rendering.appearance import rgb
 from app.rendering.band import Band, Rise
-from app.rendering.picking import RayPicker
 from app.rendering.ribbon_mesh import Ribbon, RibbonSurface, rimmed
 from core.deformation.incremental_normals import moving_faces
 from core.geometry.mesh import Flags, Floats, Points, unit

@@ -18,11 +18,10 @@ from PIL import Image
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
-from app.rendering.appearance import APPEARANCES, rgb
+from app.rendering.appearance import APPEARANCES, CLAY, rgb
 from app.rendering.band import Band
 from app.rendering.camera import LENS
 from app.rendering.display import off_screen
-from app.rendering.material import CLAY
 from app.rendering.scene import Scene
 from core.errors import UserError
 from core.files.atomic_write import atomic_path

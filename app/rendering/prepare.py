@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from app.rendering.band import OFF_WIDTH, band_width
-from app.rendering.render_mesh import PREPARING, render_mesh
-from app.rendering.render_mesh_parts import NONE, mesh_parts
+from app.rendering.render_mesh import NONE, PREPARING, mesh_parts, render_mesh
 from app.rendering.ribbon_mesh import RibbonSurface
 from core.pipeline.build import IncompleteBuildError, Stages
 from core.progress import Progress, quiet

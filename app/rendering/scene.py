@@ -8,17 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pyvista as pv
 
-from app.rendering.appearance import Appearance
+from app.rendering.appearance import CLAY, Appearance, appearance_of
 from app.rendering.band import Band
 from app.rendering.band_actors import Bands
 from app.rendering.body_actor import BodyActor, GhostActor
-from app.rendering.camera import View, aim
+from app.rendering.camera import NOBODY, View, aim, depth_range, framing_bust
 from app.rendering.control_mesh_actor import ControlActor
 from app.rendering.curve_actors import MeasureTrace, Trace
-from app.rendering.framing import NOBODY, depth_range, framing_bust
 from app.rendering.lights_and_floor import LightsAndFloor
-from app.rendering.material import CLAY, appearance_of
-from app.rendering.render_mesh_parts import NONE
+from app.rendering.render_mesh import NONE
 from app.rendering.ribbon_mesh import RibbonSurface
 from app.rendering.section_actor import SectionSheet
 from app.rendering.vertex_colors import Colours
@@ -168,7 +166,7 @@ class Scene:
         return self._material
 
     def set_material(self, material: str) -> None:
-        """Paint the body as one of ``app.rendering.material.MATERIALS``; raises KeyError for another word."""
+        """Paint the body as one of ``appearance.MATERIALS``; raises KeyError for another word."""
         self._material = material
         self.set_dark(self._dark)
 

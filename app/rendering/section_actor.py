@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pyvista as pv
 
-from app.rendering.framing import sheet_ends
+from app.rendering.camera import sheet_ends
 from core.geometry.mesh import Floats, Points
 from core.geometry.planar_curves import Curve, Plane
 

@@ -1,18 +1,24 @@
-"""Small pictures of a body from its front, painted with plain arrays: no 3D library, in any thread."""
+"""Thumbnails of a body: for the start page, and of the orientations to choose from."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.geometry.mesh import Floats, Mesh, Points, unit
+from core.progress import Progress, quiet
+from core.scan.body import Body
+from core.scan.orientation.axis_override import AXES, nearest_axis
+from core.scan.orientation.pose import Pose
 
 Picture = NDArray[np.uint8]
 
 FINER = 2
 """Pixels painted for each one that is seen, in both directions: no stairs at the outlines."""
 
-MOST = 4e6
+MOST_TRIANGLES = 4e6
 """Points on a skin: many large triangles get fewer points each, and perhaps holes in the picture."""
 
 LIGHT = np.array([-0.35, -0.80, 0.49])
@@ -47,7 +53,7 @@ def _samples(places: Points, normals: Points, mesh: Mesh, grain: float) -> tuple
     longest = np.sqrt(((corners - np.roll(corners, 1, axis=1)) ** 2).sum(axis=2).max(axis=1))
     found = [(places, normals)]
     steps = np.maximum(np.ceil(1.5 * longest / grain), 1.0)
-    crowd = 0.5 * float((steps**2).sum()) / MOST
+    crowd = 0.5 * float((steps**2).sum()) / MOST_TRIANGLES
     steps = np.ceil(steps / max(crowd, 1.0) ** 0.5).astype(int)
     for count in np.unique(steps):
         chosen = faces[steps == count]
@@ -73,3 +79,71 @@ def _shrunk(shade: Floats, clay: Floats) -> Picture:
     picture[..., :3] = np.clip(light[..., None] * clay, 0.0, 255.0)
     picture[..., 3] = 255.0 * share
     return picture
+
+
+MOST = 4
+"""Ways that are offered."""
+
+SAME = np.cos(np.radians(20.0))
+"""Two ways whose up and front lie nearer than this look the same."""
+
+ON_AXIS = np.cos(np.radians(1.5))
+"""A direction as near to an axis of the file as this has the name of the axis."""
+
+
+@dataclass(frozen=True, eq=False)
+class OrientationOption:
+    """``up`` and ``front`` as a scan is told them, the nearest axes, the ``rotation`` (3, 3) from the
+    body.
+    """
+
+    up: str
+    front: str
+    axes: tuple[str, str]
+    rotation: Floats
+
+
+def orientation_options(pose: Pose) -> list[OrientationOption]:
+    """Return how a body may stand, the likeliest first: what its shape allows, then turns about up."""
+    now = unit(pose.file_to_mm[:3, :3])
+    about = [np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]) for c, s in ((0, 1), (0, -1), (-1, 0))]
+    found: list[Floats] = []
+    for turn in [
+        now,
+        *(unit(other[:3, :3]) for other in pose.others),
+        *(turn @ now for turn in about),
+    ]:
+        if not any(_alike(turn, old) for old in found):
+            found.append(turn)
+    return [_way(turn, turn @ now.T) for turn in found[:MOST]]
+
+
+def option_thumbnails(
+    body: Body, size: tuple[int, int], clay: tuple[int, int, int], progress: Progress = quiet
+) -> list[tuple[OrientationOption, Picture]]:
+    """Return each way with a picture of the body as it would stand; see ``render_thumbnail``. Raises
+    Cancelled.
+    """
+    painted: list[tuple[OrientationOption, Picture]] = []
+    for way in orientation_options(body.pose):
+        progress("painting", len(painted) / MOST)
+        painted.append((way, render_thumbnail(body.smoothed, way.rotation, size, clay)))
+    return painted
+
+
+def _alike(turn: Floats, old: Floats) -> bool:
+    """Whether two ways look the same, or would be told by the same axes."""
+    near = bool(turn[2] @ old[2] > SAME and turn[1] @ old[1] > SAME)
+    return near or all(nearest_axis(turn[k]) == nearest_axis(old[k]) for k in (1, 2))
+
+
+def _way(file_to_body: Floats, turn: Floats) -> OrientationOption:
+    up, front = file_to_body[2], -file_to_body[1]
+    return OrientationOption(_told(up), _told(front), (nearest_axis(up), nearest_axis(front)), turn)
+
+
+def _told(direction: Floats) -> str:
+    name = nearest_axis(direction)
+    if AXES[name] @ direction > ON_AXIS:
+        return name
+    return ",".join(f"{value:.5f}" for value in direction)

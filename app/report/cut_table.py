@@ -9,8 +9,16 @@ from app.report.cut_rows import CutRowText, cut_views
 from app.report.document import ReportDocument
 from app.report.header import WIDE
 from app.report.layout import Block
-from app.report.painter import PagePainter, elide, fitting_font, line_height, text_width, wrap
-from app.report.symbols import paint_chip, paint_light
+from app.report.painter import (
+    PagePainter,
+    elide,
+    fitting_font,
+    line_height,
+    paint_chip,
+    paint_light,
+    text_width,
+    wrap,
+)
 from app.report.tables import heading, paragraph
 from app.report.text import pressure_legend
 

@@ -11,8 +11,17 @@ from app.rendering.palette import LIGHT
 from app.report.cut_rows import cut_pieces
 from app.report.document import SHOT_SIZES, SHOTS, ReportDocument
 from app.report.layout import Block
-from app.report.painter import A4, MARGIN, PagePainter, elide, line_height, text_width, wrap
-from app.report.symbols import paint_chip, paint_level
+from app.report.painter import (
+    A4,
+    MARGIN,
+    PagePainter,
+    elide,
+    line_height,
+    paint_chip,
+    paint_level,
+    text_width,
+    wrap,
+)
 from app.report.text import REASONS, assessment_text, project_words, size_words, system_word
 from core.export.report_data import Report
 from core.garment.assessment import BAD, CAUTION, GOOD, PENDING

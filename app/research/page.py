@@ -9,8 +9,7 @@ from pathlib import Path
 from app.research.cases import BODIES, Study
 from app.research.claims import AGREES, DIFFERS, PARTLY, Claim, claims
 from app.research.figure_style import Figure, write_table
-from app.research.parameter_study import RATIOS, Finding, search
-from app.research.parameter_study_text import COLUMNS, rows_of, search_words
+from app.research.parameter_study import COLUMNS, RATIOS, Finding, rows_of, search, search_words
 from core import __version__
 from core.deformation.tffd import GAUSS_WIDTH, HAT_RANGE
 from core.files.atomic_write import write_text

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.control_mesh.surface_projection import SurfaceProjector
+from core.control_mesh.skin_projection import SurfaceProjector
 from core.control_mesh.validation import (
     SAME_WAY,
     agreement,

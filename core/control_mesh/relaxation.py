@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.control_mesh.surface_projection import SurfaceProjector
+from core.control_mesh.skin_projection import SurfaceProjector
 from core.control_mesh.validation import corner_angles
 from core.geometry.mesh import Flags, Indices, Mesh, Points, unit
 

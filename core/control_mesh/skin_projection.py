@@ -1,20 +1,49 @@
-"""Between skin and control mesh: the place on the mesh under one of the skin, and the skin over it (ours).
-
-Both go along the normals of the control mesh, which turn evenly from corner to corner of each triangle. So
-the way there and the way back are the same line, and a curve comes back where it was drawn.
-"""
+"""Places on the skin: the nearest ones, which way it faces there, and the course of lines on it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy import sparse
 from scipy.spatial import cKDTree
 
 from core.control_mesh.embedding import Grid
-from core.geometry.closest_point import Frames, centroids, nearest_faces, neighbourhoods
-from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points, unit
+from core.geometry.closest_point import Frames, centroid_tree, centroids, nearest_faces, neighbourhoods
+from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points, incidence, unit
+
+CANDIDATES = 24
+"""The nearest place is looked for on so many triangles whose centres are near."""
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceProjector:
+    """Part of a body's skin; what it takes to look places up on it is prepared once."""
+
+    mesh: Mesh
+
+    @cached_property
+    def _vertices(self) -> cKDTree:
+        return cKDTree(self.mesh.vertices, compact_nodes=False, balanced_tree=False)
+
+    @cached_property
+    def _centres(self) -> cKDTree:
+        return centroid_tree(self.mesh)
+
+    @cached_property
+    def vertex_areas(self) -> Floats:
+        """The area of the triangles round each vertex, shape (n,) [mm^2]."""
+        return np.asarray(incidence(self.mesh.faces, len(self.mesh.vertices)) @ self.mesh.face_areas)
+
+    def normals_at(self, places: Points) -> Points:
+        """Return the normals of the nearest vertices of the skin, as ``places``, shape (..., 3) [1]."""
+        return np.asarray(self.mesh.vertex_normals[self._vertices.query(places)[1]])
+
+    def project(self, places: Points) -> Points:
+        """Return the nearest places of the skin, as ``places``, shape (k, 3) [mm]."""
+        return nearest_faces(self.mesh, places, self._centres, CANDIDATES)[1]
+
 
 _SPREAD = 30.0  # triangles further than the nearest by this are not looked at [mm]
 _STEPS = 8  # of Newton's; the third is exact to a thousandth of a millimetre

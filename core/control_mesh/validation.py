@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.control_mesh.surface_projection import SurfaceProjector
+from core.control_mesh.skin_projection import SurfaceProjector
 from core.geometry.mesh import Flags, Floats, Indices, Mesh, frozen, unit
 
 SMALLEST_ANGLE = 8.0

@@ -10,7 +10,7 @@ import numpy as np
 from core.errors import LineError
 from core.geometry.mesh import Floats, Points
 from core.mechanics.force_units import newtons_per_unit
-from core.mechanics.newton_sliding import SlidingSurface
+from core.mechanics.newton import SlidingSurface
 from core.mechanics.potential import Potential
 from core.pipeline.build import Stages, line_targets
 

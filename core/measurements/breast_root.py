@@ -10,7 +10,7 @@ from core.geometry.closest_point import nearest_faces
 from core.geometry.mesh import Floats, Indices, Mesh, Points
 from core.landmarks.lower_breast import CREASE, ESTIMATED, NO_CREASE
 from core.landmarks.types import SIDES, Landmark, Landmarks
-from core.measurements.unrolled_torso import UnrolledTorso, innermost
+from core.measurements.chest_wall import UnrolledTorso, innermost
 
 POINTS = 96
 """So many points a root has."""

@@ -14,8 +14,7 @@ from scipy.spatial import cKDTree
 from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points, area_vectors, boundary_loops
 from core.geometry.plane_sections import resample
 from core.measurements.breast_root import Root, Side
-from core.measurements.chest_wall import ChestWall, fit_chest_wall
-from core.measurements.unrolled_torso import UnrolledTorso
+from core.measurements.chest_wall import ChestWall, UnrolledTorso, fit_chest_wall
 
 BAND = 4.0
 """Skin so near to the root counts as lying on it [mm], on coarse skins further."""

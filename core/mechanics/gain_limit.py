@@ -18,8 +18,7 @@ from core.geometry.mesh import Floats, unit
 from core.mechanics.banded_matrix import Entries, Operator, Solve
 from core.mechanics.iteration import HELD_GROWTH
 from core.mechanics.model import ConstrainedModel
-from core.mechanics.newton import Equilibrium, equilibrium_at
-from core.mechanics.newton_sliding import LONGEST_STEP, SlidingSurface
+from core.mechanics.newton import LONGEST_STEP, Equilibrium, SlidingSurface, equilibrium_at
 from core.mechanics.potential import Evaluation, Potential
 from core.mechanics.springs import stretch_blocks
 

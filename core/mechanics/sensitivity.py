@@ -15,8 +15,7 @@ import numpy as np
 
 from core.geometry.mesh import Floats, Indices
 from core.mechanics.banded_matrix import Solve
-from core.mechanics.newton import Equilibrium, small_solve
-from core.mechanics.newton_sliding import SlidingSurface
+from core.mechanics.newton import Equilibrium, SlidingSurface, small_solve
 from core.mechanics.potential import Evaluation, Potential
 
 

@@ -11,8 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from core.mechanics.convergence import Convergence, assess_convergence
-from core.mechanics.dense_volume import BodyChange, solve_body_exact
-from core.mechanics.exact_solution import solve_exact
+from core.mechanics.exact_solution import BodyChange, solve_body_exact, solve_exact
 from core.mechanics.iteration import LineTargets, Record, SolverState, Watch, initial_state, record, step
 from core.mechanics.mesh_quality import MeshQuality, OriginalShape
 from core.mechanics.model import ConstrainedModel

@@ -1,9 +1,4 @@
-"""How an exact answer moves with what lines are made of: derivatives by stiffness and force curves (ours).
-
-A line's own force, a little more of it, is what a little more stiffness adds to the balance; the matrix is
-that of the lengths (``sensitivity``). A line made of elastic has the secant of its curve at the
-elongation it comes to, which moves too: how far is one small system more.
-"""
+"""Sensitivity of an exact answer to the stiffness of lines, chest and tissue, and to prestress (ours)."""
 
 from __future__ import annotations
 
@@ -120,3 +115,30 @@ def _pulls(answer: Sensitivities, moved: Floats, stiff: Floats, ratios: Floats) 
     natural = model.tapes_at_rest[:, None] * ratios[model.owner]
     tension = potential.tape * (place.lengths - potential.natural)
     return np.asarray(potential.tape[:, None] * (steps - natural) + tension[:, None] * stiff[model.owner])
+
+
+def d_ground(answer: Sensitivities, ground: Floats) -> Rates:
+    """Return the rates by ``ModelOptions.firm_chest`` [mm / 1].
+
+    ``ground`` (f,) ties each free point to its rest where that is 1; see ``firm_ground``.
+    """
+    return answer.by_forces((ground[:, None] * answer.place.moved).reshape(-1, 1))
+
+
+def d_prestress(answer: Sensitivities) -> Rates:
+    """Return the rates by ``ModelOptions.prestress`` [mm / 1]; 0 under laws that know none."""
+    cables = answer.potential.model.tensegric.cable_springs
+    if cables is None:
+        return answer.by_forces(np.zeros((answer.place.gradient.size, 1)))
+    spans, lengths = cables.spans(answer.place.moved)
+    shorter = (cables.stiffness * cables.rest_lengths / lengths)[:, None] * spans
+    at_rest = cables.stiffness[:, None] * cables.rest_spans  # the force that balances them there
+    return answer.by_forces(cables.sum(shorter - at_rest).reshape(-1, 1))
+
+
+def d_tissue(prestress: float) -> float:
+    """Return how the logarithm of what a net of prestressed cables resists with goes with it [1].
+
+    See ``net_stiffness``: an elastic of so many newtons is softer beside a stiffer net.
+    """
+    return 1.0 / (3.0 + prestress)

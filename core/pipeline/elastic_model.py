@@ -7,9 +7,8 @@ from collections.abc import Callable, Mapping
 from core.document.elastic import Elastic
 from core.document.lines import ActiveLine
 from core.errors import LineError
-from core.mechanics.dense_volume import BodyChange, solve_body_exact
 from core.mechanics.elastic_lines import ElasticLines, FittedModel, fit_elastics
-from core.mechanics.exact_solution import solve_exact
+from core.mechanics.exact_solution import BodyChange, solve_body_exact, solve_exact
 from core.mechanics.force_units import newtons_per_unit
 from core.mechanics.model import ConstrainedModel
 from core.mechanics.newton import Equilibrium

@@ -10,8 +10,7 @@ import numpy as np
 from core.document.design import Design
 from core.document.lines import ActiveLine
 from core.errors import LineError
-from core.mechanics.dense_volume import rates_at_body_volume, solve_body_exact
-from core.mechanics.exact_solution import NEWTON_LIMIT, solve_exact
+from core.mechanics.exact_solution import NEWTON_LIMIT, rates_at_body_volume, solve_body_exact, solve_exact
 from core.mechanics.newton import Equilibrium
 from core.mechanics.potential import Potential
 from core.mechanics.sensitivity import Rates, Sensitivities

@@ -11,8 +11,7 @@ from threadpoolctl import threadpool_limits
 from core.deformation.tffd import deform
 from core.geometry.mesh import Mesh, Points
 from core.mechanics.convergence import Convergence, assess_convergence
-from core.mechanics.dense_volume import solve_body_exact
-from core.mechanics.exact_solution import NEWTON_LIMIT, newton
+from core.mechanics.exact_solution import NEWTON_LIMIT, newton, solve_body_exact
 from core.mechanics.iteration import Record, SolverState, initial_state, iterate, record
 from core.mechanics.solver_comparison import assess_equilibrium, shape_of
 from core.pipeline.build import Stages, line_targets

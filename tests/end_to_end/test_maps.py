@@ -13,7 +13,7 @@ from window_tools import Script, drag, run_main, settled
 
 import app.gui.features.sections.controller as section_module
 from app.gui.main_window import MainWindow
-from app.rendering.material import appearance_of
+from app.rendering.appearance import appearance_of
 from core.geometry.planar_curves import Curve, nearest
 
 pytestmark = pytest.mark.usefixtures("empty_house")

@@ -15,7 +15,7 @@ from trimesh.creation import box
 from window_tools import Script, run_main, settled
 
 import app.gui.features.scan.controller
-import app.rendering.orientation_thumbnails
+import app.rendering.thumbnail
 import core.pipeline.build
 import core.scan.body
 from app.cli.commands.picture import draw_window
@@ -136,7 +136,7 @@ def test_a_scan_that_only_asks_leaves_the_open_one_alone(
         "ask_about_changes",
         lambda _, name: asked.append(name) or "cancel",
     )
-    monkeypatch.setattr(app.rendering.orientation_thumbnails, "render_thumbnail", unpainted)
+    monkeypatch.setattr(app.rendering.thumbnail, "render_thumbnail", unpainted)
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -166,7 +166,7 @@ def test_a_scan_whose_question_is_left_is_shown_and_can_be_told(
     mannequin: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(core.scan.body, "estimate_pose", doubtful(180.0))
-    monkeypatch.setattr(app.rendering.orientation_thumbnails, "render_thumbnail", unpainted)
+    monkeypatch.setattr(app.rendering.thumbnail, "render_thumbnail", unpainted)
 
     def script(window: MainWindow) -> Script:
         yield window.view.question.isVisible

@@ -9,7 +9,7 @@ import numpy as np
 from core.geometry.mesh import Mesh
 from core.landmarks.types import Landmark, Landmarks
 from core.measurements.breast_root import Root, Side, side_of
-from core.measurements.unrolled_torso import UnrolledTorso
+from core.measurements.chest_wall import UnrolledTorso
 
 DEEP = 110.0
 """How far a chest lies before the axis of the trunk [mm]."""

@@ -13,7 +13,7 @@ from shapes import central_difference, torso
 from core.mechanics.constraint_lines import Line
 from core.mechanics.iteration import LineTargets, SolverState, iterate
 from core.mechanics.model import ConstrainedModel, constrained_model
-from core.mechanics.newton_sliding import SlidingSurface
+from core.mechanics.newton import SlidingSurface
 from core.mechanics.options import ModelOptions
 from core.mechanics.potential import Potential
 

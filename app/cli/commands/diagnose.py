@@ -13,9 +13,8 @@ from app.cli.output import finish
 from app.presenters.assessment import assessment_lines
 from app.presenters.diagnosis import change_words, details, hint, sentence
 from core import __version__
-from core.analysis.diagnosis.candidate_changes import Change
+from core.analysis.diagnosis.candidate_changes import Change, Fix
 from core.analysis.diagnosis.diagnose import Diagnosis, diagnose
-from core.analysis.diagnosis.fix import Fix
 from core.analysis.diagnosis.opposing_constraints import ConstraintForces
 from core.garment.assessment import Assessment, assess
 

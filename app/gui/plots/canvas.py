@@ -19,8 +19,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.gui.plots.axes import Scale
-from app.gui.plots.painting import ROLE_COLORS, paint_dot, paint_plot, plot_area
+from app.gui.plots.painting import ROLE_COLORS, Scale, paint_dot, paint_plot, plot_area
 from app.gui.theme.stylesheet import font, tokens_of
 from app.i18n.catalog import number, tr
 from app.presenters.plots import Plotted

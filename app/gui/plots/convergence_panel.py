@@ -11,8 +11,8 @@ from PySide6.QtCore import QEvent, QObject, QPoint, QSize, Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QSizePolicy, QVBoxLayout, QWidget
 
 from app.gui.plots.canvas import Turns
-from app.gui.plots.legend import Entry, Legend, legend_entries, legend_width, run_title
 from app.gui.plots.live_plot import LivePlot
+from app.gui.plots.painting import Entry, Legend, legend_entries, legend_width, run_title
 from app.gui.plots.status_chip import VerdictChip, VerdictLine
 from app.gui.plots.volume_control_choice import control_segment
 from app.gui.theme.stylesheet import label

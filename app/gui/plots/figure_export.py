@@ -8,9 +8,8 @@ from PySide6.QtCore import QBuffer, QIODevice, QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QImage, QPainter
 from PySide6.QtSvg import QSvgGenerator
 
-from app.gui.plots.legend import Entry, legend_width, paint_legend
 from app.gui.plots.live_plot import LivePlot
-from app.gui.plots.painting import paint_plot, plot_area
+from app.gui.plots.painting import Entry, legend_width, paint_legend, paint_plot, plot_area
 from app.gui.theme.stylesheet import font
 from app.rendering.palette import LIGHT
 

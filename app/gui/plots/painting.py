@@ -1,16 +1,100 @@
 """A plot painted: grid, axes, curves. On the screen and on paper alike."""
 
+# ruff: noqa: D102, N802 - Qt names its events and says what they are
+
 from __future__ import annotations
 
-import numpy as np
-from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen
+from collections.abc import Mapping
+from dataclasses import dataclass
 
-from app.gui.plots.axes import Scale
-from app.gui.theme.stylesheet import font
+import numpy as np
+from PySide6.QtCore import QByteArray, QDataStream, QLineF, QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPainterPath, QPaintEvent, QPen
+from PySide6.QtWidgets import QWidget
+
+from app.gui.theme.stylesheet import font, tokens_of
 from app.i18n.catalog import number, tr
-from app.presenters.plots import Curve, Plotted, digits_of, envelope, flips_every_turn
+from app.presenters.plots import Curve, Numbers, Plotted, digits_of, envelope, flips_every_turn, round_ticks
 from app.rendering.palette import Tokens
+from core.geometry.mesh import Floats
+
+_ROOM = 0.08  # of the range of values, above and below
+_END = 0.02  # of the turns, behind the last
+
+
+# An element of a QPainterPath as QDataStream reads it: 0 moves to the point, 1 draws a line to it.
+_ELEMENT = np.dtype([("kind", ">i4"), ("point", ">f8", 2)])
+
+
+def curve_path(points: Floats) -> QPainterPath:
+    """Return a polyline through ``points`` (n, 2) [px], broken where one is not finite.
+
+    The points are handed to Qt as one block of memory: one call a point takes six times as long.
+    """
+    kept = np.flatnonzero(np.isfinite(points).all(axis=1))
+    elements = np.zeros(len(kept), _ELEMENT)
+    elements["point"] = points[kept]
+    elements["kind"][1:] = np.diff(kept) == 1
+    start_and_fill_rule = bytes(8)
+    path = QPainterPath()
+    stream = QDataStream(
+        QByteArray(np.array(len(kept), ">i4").tobytes() + elements.tobytes() + start_and_fill_rule)
+    )
+    stream >> path
+    return path
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Turns ``first`` to ``last`` and values ``low`` to ``high`` on ``area`` [px]."""
+
+    area: QRectF
+    first: float
+    last: float
+    low: float
+    high: float
+
+    def x(self, turn: float) -> float:
+        """Return how far right a turn lies [px]."""
+        return self.area.left() + (turn - self.first) * self.turn_width
+
+    def y(self, value: float) -> float:
+        """Return how far down a value lies [px]."""
+        return self.area.bottom() - ((value - self.low) / self._span + _ROOM) * self._height
+
+    def turn_at(self, x: float) -> float:
+        """Return the turn that lies at ``x`` [px]."""
+        return self.first + (x - self.area.left()) / self.turn_width
+
+    @property
+    def turn_width(self) -> float:
+        """Width of one turn [px]."""
+        return self.area.width() / ((1.0 + _END) * max(self.last - self.first, 1e-9))
+
+    def path(self, turns: Numbers, values: Numbers) -> QPainterPath:
+        """Return a curve [px], broken where a value is not finite."""
+        x = self.area.left() + (turns - self.first) * self.turn_width
+        y = self.area.bottom() - ((values - self.low) / self._span + _ROOM) * self._height
+        return curve_path(np.column_stack((x, y)))
+
+    def levels(self) -> list[float]:
+        """Return the round values that get a line and a number."""
+        return round_ticks(self.low, self.high, 4 if self.area.height() > 74 else 3)
+
+    def turn_ticks(self) -> list[float]:
+        """Return the round turns that get a number; the last piece is kept for the word."""
+        ticks = round_ticks(self.first, self.last, 4)
+        room = self.last - max(0.12 * (self.last - self.first), 52.0 / self.turn_width)
+        return [tick for tick in ticks if tick < room and tick.is_integer()]
+
+    @property
+    def _span(self) -> float:
+        return max(self.high - self.low, 1e-12)
+
+    @property
+    def _height(self) -> float:
+        return self.area.height() / (1.0 + 2.0 * _ROOM)
+
 
 LEFT, BOTTOM, RIGHT, TOP = 38.0, 18.0, 12.0, 2.0
 """Room about the curves: numbers on the left, turns below, and nothing else [px]."""
@@ -137,3 +221,63 @@ def faded(color: str, share: float) -> QColor:
     result = QColor(color)
     result.setAlphaF(share)
     return result
+
+
+Entry = tuple[str, str, bool]
+"""A name, the token of its colour, and whether its line is dashed."""
+
+
+def run_title(control: str) -> str:
+    """Return what the run of a volume control is called."""
+    return {
+        "adaptive": tr("Adaptive"),
+        "conventional": tr("Conventional"),
+        "accumulating": tr("Accumulating"),
+        "none": tr("Volume free"),
+    }[control]
+
+
+def legend_entries(roles: Mapping[str, str], exact: bool, exact_is_main: bool) -> list[Entry]:
+    """Return the names of these runs by their roles, and of the exact answer if there is one."""
+    entries = [(run_title(name), ROLE_COLORS[role], False) for name, role in roles.items()]
+    answer = (tr("Exact"), "accent" if exact_is_main else "exact_curve", True)
+    return [*entries, answer] if exact else entries
+
+
+def legend_width(entries: list[Entry]) -> int:
+    """Return the room that a legend takes [px]."""
+    wide = QFontMetrics(font("caption"))
+    return sum(wide.horizontalAdvance(title) + 34 for title, _, _ in entries)
+
+
+def paint_legend(painter: QPainter, entries: list[Entry], at: QPointF, tokens: Tokens) -> None:
+    """Paint a legend from ``at`` to the right, the middle of its line at that height."""
+    painter.setFont(font("caption"))
+    x = at.x()
+    for title, token, dashed in entries:
+        pen = QPen(QColor(getattr(tokens, token)), 2)
+        if dashed:
+            pen.setDashPattern([2.5, 1.5])
+        painter.setPen(pen)
+        painter.drawLine(QPointF(x + 2, at.y()), QPointF(x + 18, at.y()))
+        painter.setPen(QColor(tokens.text_quiet))
+        painter.drawText(QPointF(x + 23, at.y() + 4), title)
+        x += painter.fontMetrics().horizontalAdvance(title) + 34
+
+
+class Legend(QWidget):
+    """A legend of its own."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.entries: list[Entry] = []
+
+    def show_entries(self, entries: list[Entry]) -> None:
+        """Show these names."""
+        if entries != self.entries:
+            self.entries = entries
+            self.setFixedSize(legend_width(entries), 18)
+            self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        paint_legend(QPainter(self), self.entries, QPointF(0.0, self.height() / 2), tokens_of(self))

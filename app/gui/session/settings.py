@@ -10,7 +10,7 @@ UNTIL_THEN = {
     "unit": "mm",  # of lengths in the window, one of app.i18n.lengths.UNITS
     "start": "page",  # what opens: the start page, the last project or the sample
     "mouse": "busk",  # one of app.gui.viewport.mouse_bindings.PRESETS
-    "material": "clay",  # one of app.rendering.material.MATERIALS
+    "material": "clay",  # one of app.rendering.appearance.MATERIALS
     "motion": "full",  # or reduced
     "autosave": "10",  # seconds after an edit
     "export": "{}",  # what was chosen to export, as app.presenters.export keeps it

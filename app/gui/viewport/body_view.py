@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from app.gui.viewport.viewport import Viewport
 from app.presenters.lines import band_label, bands, drawn
-from app.rendering.render_mesh_parts import NONE
+from app.rendering.render_mesh import NONE
 from core.control_mesh.fit import ControlMesh
 from core.geometry.mesh import Floats, Indices
 from core.pipeline.build import Stages

@@ -12,7 +12,7 @@ from app.gui.viewport.handle import Knob
 from app.gui.viewport.viewport import Viewport
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
-from app.rendering.framing import sheet_ends
+from app.rendering.camera import sheet_ends
 from core.geometry.mesh import Floats, Points
 from core.geometry.planar_curves import Plane
 

@@ -158,7 +158,7 @@ class ViewArea(QWidget):
                 body.set_layer(layer, shown)
 
     def set_material(self, material: str) -> None:
-        """Paint the body as one of ``app.rendering.material.MATERIALS``."""
+        """Paint the body as one of ``app.rendering.appearance.MATERIALS``."""
         for body in self.beside.bodies:
             body.viewport.set_material(material)
 

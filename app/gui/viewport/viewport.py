@@ -16,9 +16,8 @@ from app.gui.viewport.canvas import Canvas
 from app.gui.viewport.interaction import Pointer
 from app.gui.viewport.labels import Labels
 from app.gui.viewport.overlay import Overlay, Pin
-from app.rendering.camera import View
-from app.rendering.framing import framing_points
-from app.rendering.material import CLAY
+from app.rendering.appearance import CLAY
+from app.rendering.camera import View, framing_points
 from core.geometry.mesh import Floats, Points
 
 if TYPE_CHECKING:
@@ -200,7 +199,7 @@ class Viewport(QWidget):
         self.request_draw()
 
     def set_material(self, material: str) -> None:
-        """Paint the body as one of ``app.rendering.material.MATERIALS``."""
+        """Paint the body as one of ``app.rendering.appearance.MATERIALS``."""
         self._material = material
         if self._scene is not None:
             self._scene.set_material(material)

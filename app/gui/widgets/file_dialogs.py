@@ -1,16 +1,56 @@
-"""The few dialogs of the window: files, and the question before changes are lost."""
+"""Dialogs about files: open, save, replace, discard; each begins in the folder used last."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from itertools import chain, count
 from pathlib import Path
 
+from PySide6.QtCore import QSettings, QStandardPaths
 from PySide6.QtWidgets import QFileDialog, QWidget
 
-from app.gui.widgets.last_folders import free_name, last_folder, remember_folder
 from app.gui.widgets.message_box import ask
 from app.i18n.catalog import tr
 from app.presenters.scan import PATTERNS
+
+_INSTEAD = {"opened": ("projects",), "projects": (), "written": ("projects",)}
+"""Kinds of files by what was done with them, each with those whose folder does until it has its own."""
+
+
+def last_folder(kind: str) -> Path:
+    """Return the folder that files of this kind were in last, at first the user's documents.
+
+    ``kind`` is "opened" (scans, projects), "projects" (saved) or "written" (bodies, pictures, tables).
+    """
+    documents = QStandardPaths.writableLocation(QStandardPaths.StandardLocation.DocumentsLocation)
+    stored = (str(QSettings().value(f"folder/{each}", "")) for each in (kind, *_INSTEAD[kind]))
+    folders = (Path(each) for each in chain(stored, [documents]) if each)
+    return next((folder for folder in folders if _is_there(folder)), Path.home())
+
+
+def remember_folder(kind: str, path: str) -> None:
+    """Remember the folder that a file of this kind lies in."""
+    QSettings().setValue(f"folder/{kind}", str(Path(path).absolute().parent))
+
+
+def free_name(folder: Path, name: str) -> Path:
+    """Return a path in ``folder`` at which nothing is yet: ``name``, else with the next number behind it."""
+    return next(path for path in _numbered(folder / name) if not path.exists())
+
+
+def _numbered(path: Path) -> Iterator[Path]:
+    yield path
+    for number in count(2):
+        yield path.with_name(f"{path.stem} {number}{path.suffix}")
+
+
+def _is_there(folder: Path) -> bool:
+    try:
+        return folder.is_dir()
+    except OSError:
+        return False
+
 
 _ENDING = re.compile(r"\*(\.\w+)")
 
@@ -65,3 +105,23 @@ def ask_about_changes(parent: QWidget | None, name: str) -> str:
     """Return what to do with unsaved changes: "save", "discard" or "stay"."""
     question, said = tr("Save the changes to {name}?").format(name=name), tr("Otherwise they are lost.")
     return ask(parent, question, said, [("save", tr("Save")), ("discard", tr("Don't save"))]) or "stay"
+
+
+def ask_overwrite(parent: QWidget, name: str, protected: bool = False) -> str:
+    """Return what to do with a project that was changed by others: "overwrite", "elsewhere" or "stay".
+
+    ``protected``: it was not, but its file is write-protected.
+    """
+    question = tr("{name} was changed outside this window.").format(name=name)
+    if protected:
+        question = tr("{name} is write-protected.").format(name=name)
+    said = tr("Saving replaces that version. Busk tries to keep it under File, Open a backup.")
+    answers = [("elsewhere", tr("Save as…")), ("overwrite", tr("Replace"))]
+    return ask(parent, question, said, answers) or "stay"
+
+
+def may_discard(parent: QWidget, name: str) -> bool:
+    """Ask whether what was kept of a document after a crash may go for good."""
+    question = tr("Discard the changes that were kept of {name}?").format(name=name)
+    said = tr("They cannot be had back.")
+    return ask(parent, question, said, [("discard", tr("Discard"))]) == "discard"

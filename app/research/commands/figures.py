@@ -9,12 +9,8 @@ from pathlib import Path
 from app.cli.options import add_folder_output
 from app.cli.output import DONE, make_folder
 from app.research.cases import Study
-from app.research.fig_1_3_5 import figure_1, figure_3, figure_5
-from app.research.fig_2 import figure_2
-from app.research.fig_4 import figure_4
-from app.research.fig_6_7_8 import figure_6, figure_7, figure_8
-from app.research.fig_9 import figure_9
-from app.research.fig_10 import figure_10
+from app.research.fig_1_to_5 import figure_1, figure_2, figure_3, figure_4, figure_5
+from app.research.fig_6_to_10 import figure_6, figure_7, figure_8, figure_9, figure_10
 from app.research.figure_style import Figure, print_style
 from app.research.page import write_page
 from core.errors import UserError

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.analysis.calibration.parameters import Parameter, point_sensitivities, prior_precision
-from core.analysis.calibration.point_to_surface import Surface
 from core.analysis.calibration.residuals import FittingScan
 from core.analysis.calibration.robust_least_squares import (
     PATCHES,
@@ -23,7 +22,7 @@ from core.analysis.calibration.robust_least_squares import (
     normal_equations,
     robust_deviation,
 )
-from core.analysis.calibration.surface_distance import REACH, grid_cells, is_valid
+from core.analysis.calibration.surface_distance import REACH, Surface, grid_cells, is_valid
 from core.document.design import Design
 from core.errors import LineError, UserError
 from core.geometry.mesh import Flags, Floats, Points

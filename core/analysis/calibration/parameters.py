@@ -14,9 +14,8 @@ from core.document.elastic import TISSUE_LIMITS
 from core.geometry.mesh import Floats
 from core.mechanics.constraint_lines import RATIO_LIMITS
 from core.mechanics.options import RANGES
-from core.mechanics.parameter_sensitivity import d_ground, d_prestress, d_tissue
 from core.mechanics.sensitivity import Sensitivities
-from core.mechanics.stiffness_sensitivity import Changes, stiffness_rates
+from core.mechanics.stiffness_sensitivity import Changes, d_ground, d_prestress, d_tissue, stiffness_rates
 from core.mechanics.tensegrity import firm_ground
 from core.pipeline.active_lines import active_line_groups
 from core.pipeline.build import Stages

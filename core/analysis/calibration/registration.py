@@ -14,10 +14,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from core.analysis.calibration.point_to_surface import Surface
 from core.analysis.calibration.robust_least_squares import PATCHES, normal_equations, robust_deviation
 from core.analysis.calibration.static_region import sample_surface_with_normals, static_faces, static_surface
-from core.analysis.calibration.surface_distance import ScanSurface, grid_cells, is_valid
+from core.analysis.calibration.surface_distance import ScanSurface, Surface, grid_cells, is_valid
 from core.errors import LandmarkError, ScanError
 from core.geometry.mesh import Floats, Mesh, Points
 from core.landmarks.detect import find_landmarks

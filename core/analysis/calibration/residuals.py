@@ -8,9 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.analysis.calibration.point_to_surface import Surface
 from core.analysis.calibration.registration import Alignment, transform_points
-from core.analysis.calibration.surface_distance import ScanSurface, curvature, is_valid
+from core.analysis.calibration.surface_distance import ScanSurface, Surface, curvature, is_valid
 from core.analysis.uncertainty.input_uncertainty import default_uncertainty
 from core.errors import LandmarkError, ScanError
 from core.geometry.mesh import Floats, Mesh, Points

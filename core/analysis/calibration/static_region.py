@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.analysis.calibration.point_to_surface import Surface
+from core.analysis.calibration.surface_distance import Surface
 from core.geometry.mesh import Faces, Flags, Mesh, Points, sample_surface
 from core.pipeline.build import Stages
 

@@ -8,7 +8,9 @@ from dataclasses import dataclass, replace
 from functools import partial, reduce
 from typing import Any
 
+from core.analysis.diagnosis.trial_run import TrialResult
 from core.document.design import Design
+from core.garment.assessment import GOOD, LEVELS, Finding, assess
 from core.garment.curve_smoothing import USUAL_WIDTH
 from core.mechanics.constraint_lines import RATIO_LIMITS
 from core.pipeline.active_lines import LineGroup, free_lines
@@ -165,3 +167,46 @@ def _together(design: Design, groups: Sequence[LineGroup], steps: int) -> Change
         size = max(size, 100.0 * abs(after - before))
         design = design.with_linked(names[0], None if after == 1.0 else after)
     return Change("together", design, size, reduce(tuple.__add__, groups, ()))
+
+
+FIXABLE = ("convergence", "shape", "band", "pressure")
+"""Topics of findings that a change of lines or model can end."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fix:
+    """A change, and how the design stands with it: run from rest, and on from where it was.
+
+    ``remaining_problem`` is the worse of what is wrong with the run then, empty if nothing is; ``remains``
+    are all findings on the changed design that a change can end, the worst first. Of a change that is two,
+    ``option_result`` is what would be wrong without the other choice, ``lengths_result`` without the lengths.
+    """
+
+    change: Change
+    trial: TrialResult
+    ends: bool
+    remaining_problem: str = ""
+    option_result: str = ""
+    lengths_result: str = ""
+    remains: tuple[Finding, ...] = ()
+
+    @property
+    def level(self) -> str:
+        """The level of what remains."""
+        return self.remains[0].level if self.remains else GOOD
+
+    @property
+    def rank(self) -> tuple[int, int, float]:
+        """How it compares to other changes, the best first: what remains, how many changes, how large [%]."""
+        change = self.change
+        of_lines = {"together": max(len(change.lines), 2), "off": 2, "length": 1, "width": 1, "gain": 1}.get(
+            change.kind, 0
+        )
+        return LEVELS.index(self.level), of_lines + bool(change.setting[0]), change.size
+
+
+def fixable_findings(standing: TrialResult) -> tuple[Finding, ...]:
+    """Return what is found on a design that was run and that a change of it can end, the worst first."""
+    found = (each for each in assess(standing).findings if each.topic in FIXABLE)
+    # No length, width or choice makes a pressure known.
+    return tuple(each for each in found if each.topic != "pressure" or each.value)

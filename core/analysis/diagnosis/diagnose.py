@@ -14,15 +14,16 @@ from threadpoolctl import threadpool_limits
 from core.analysis.diagnosis.candidate_changes import (
     Change,
     ChangePath,
+    Fix,
     common_paths,
     deactivations,
+    fixable_findings,
     line_paths,
     lower_gains,
     option_changes,
     single_paths,
     with_option,
 )
-from core.analysis.diagnosis.fix import Fix, fixable_findings
 from core.analysis.diagnosis.opposing_constraints import ConstraintForces, analyse
 from core.analysis.diagnosis.pressure_fixes import complete_fix, pressure_changes, rank_fixes
 from core.analysis.diagnosis.search import Search

@@ -21,8 +21,7 @@ from core.geometry.mesh import Floats, Points
 from core.mechanics.force_units import newtons_per_unit
 from core.mechanics.iteration import LineTargets
 from core.mechanics.model import ConstrainedModel
-from core.mechanics.newton import Equilibrium
-from core.mechanics.newton_sliding import SlidingSurface
+from core.mechanics.newton import Equilibrium, SlidingSurface
 from core.mechanics.potential import Evaluation, Potential
 from core.pipeline.active_lines import LineGroup, active_line_groups
 from core.pipeline.build import Stages, line_targets

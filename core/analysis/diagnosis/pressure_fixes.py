@@ -10,13 +10,13 @@ from itertools import chain
 from core.analysis.diagnosis.candidate_changes import (
     Change,
     ChangePath,
+    Fix,
     common_paths,
     deactivations,
     line_paths,
     wider_bands,
     with_option,
 )
-from core.analysis.diagnosis.fix import Fix
 from core.analysis.diagnosis.search import Search
 from core.garment.assessment import BAD, CAUTION, GOOD, Finding
 from core.garment.curve_smoothing import USUAL_WIDTH

@@ -13,8 +13,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeGuard
 
-from core.analysis.diagnosis.candidate_changes import Change, ChangePath
-from core.analysis.diagnosis.fix import Fix, fixable_findings
+from core.analysis.diagnosis.candidate_changes import Change, ChangePath, Fix, fixable_findings
 from core.analysis.diagnosis.stability import StabilityForecast, forecast, forecast_about, length_difference
 from core.analysis.diagnosis.trial_run import RunResult, TrialResult, continue_run, run_trial, severity_rank
 from core.document.design import Design

@@ -12,8 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from core.geometry.mesh import Floats, Points
-from core.mechanics.dense_volume import solve_body_exact
-from core.mechanics.exact_solution import solve_exact
+from core.mechanics.exact_solution import solve_body_exact, solve_exact
 from core.mechanics.iteration import LineTargets, Record, SolverState, iterate
 from core.mechanics.mesh_quality import MeshQuality
 from core.mechanics.model import ConstrainedModel

@@ -9,12 +9,10 @@ from functools import partial
 import numpy as np
 
 from core.geometry.mesh import Floats, Points
-from core.mechanics.dense_volume import BodyChange, solve_body_exact, volume_gain
 from core.mechanics.elastic_lines import ElasticCurve, ElasticLines, FittedModel, fit_elastics
-from core.mechanics.exact_solution import solve_exact
+from core.mechanics.exact_solution import BodyChange, solve_body_exact, solve_exact, volume_gain
 from core.mechanics.model import ConstrainedModel
-from core.mechanics.newton import Equilibrium, energy_steps
-from core.mechanics.newton_sliding import sliding_steps
+from core.mechanics.newton import Equilibrium, energy_steps, sliding_steps
 from core.mechanics.potential import Potential
 from core.progress import Progress, quiet
 

@@ -15,8 +15,14 @@ from app.gui.application import application
 from app.gui.features.help import system_info as machine
 from app.gui.session.app_folders import shown_folder
 from app.gui.widgets.dialog import Sheet
-from app.gui.widgets.file_dialogs import ask_about_changes, ask_open, ask_save
-from app.gui.widgets.last_folders import free_name, last_folder, remember_folder
+from app.gui.widgets.file_dialogs import (
+    ask_about_changes,
+    ask_open,
+    ask_save,
+    free_name,
+    last_folder,
+    remember_folder,
+)
 from app.gui.widgets.message_box import ask, ask_name
 
 KINDS = "PLY (*.ply);;OBJ (*.obj);;STL (*.stl)"

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from PySide6.QtGui import QDesktopServices
 
-from app.gui.session.open_external import environment_of_others, open_outside
+from app.gui.session.app_folders import environment_of_others, open_outside
 
 INSIDE = "/opt/busk/_internal"
 

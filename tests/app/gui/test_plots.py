@@ -10,9 +10,9 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.gui.plots.axes import curve_path
 from app.gui.plots.convergence_panel import Strip
 from app.gui.plots.live_plot import LivePlot
+from app.gui.plots.painting import curve_path
 from app.presenters.plots import (
     Curve,
     Event,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF
 
-from app.gui.plots.uncertainty_band import free_box
+from app.gui.plots.section_plot import free_box
 
 ROOM, WIDE = QRectF(34.0, 6.0, 210.0, 160.0), 46.0
 OUT = np.array([1.0, 0.0])

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.rendering.camera import SLANTED, STEEPEST, VIEWS, View
-from app.rendering.framing import framing_place
+from app.rendering.camera import SLANTED, STEEPEST, VIEWS, View, framing_place
 from app.rendering.scene import Scene
 
 WIDTH, HEIGHT = 450, 300

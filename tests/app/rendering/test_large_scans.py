@@ -15,7 +15,7 @@ import pyvista as pv
 import core.scan.body
 from app.presenters.scan import scan_view
 from app.rendering import render_mesh as skin_module
-from app.rendering.body_part_actor import BodyPartActor
+from app.rendering.body_actor import BodyPartActor
 from app.rendering.prepare import prepare_scene
 from app.rendering.render_mesh import render_mesh
 from app.rendering.scene import Scene

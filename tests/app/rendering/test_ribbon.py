@@ -11,9 +11,9 @@ from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
 from app.presenters.lines import bands
+from app.rendering.actors import RayPicker
 from app.rendering.band import OFF_WIDTH, Band, band_width
 from app.rendering.band_actors import Bands, RibbonActor
-from app.rendering.picking import RayPicker
 from app.rendering.ribbon_mesh import CASING, Ribbon, RibbonSurface, build_casing, build_ribbon
 from core.document.design import Design, ScanSource
 from core.garment.curve_smoothing import centre_line

@@ -15,12 +15,11 @@ from app.gui.viewport.screenshot import fine_picture
 from app.gui.viewport.split_view import Panes
 from app.gui.viewport.viewport import Viewport
 from app.presenters.lines import bands
-from app.rendering import render_mesh_parts as piece_module
+from app.rendering import render_mesh as piece_module
 from app.rendering import ribbon_mesh as ribbon_module
 from app.rendering.band import Band
 from app.rendering.prepare import prepare_scene
-from app.rendering.render_mesh import render_mesh
-from app.rendering.render_mesh_parts import CELL, mesh_parts
+from app.rendering.render_mesh import CELL, mesh_parts, render_mesh
 from app.rendering.scene import Scene
 from core.document.design import Design, ScanSource
 from core.geometry.mesh import Mesh

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+from app.rendering.actors import RayPicker
 from app.rendering.appearance import APPEARANCES, rgb
 from app.rendering.band import Band
 from app.rendering.camera import VIEWS
-from app.rendering.picking import RayPicker
 from app.rendering.render_mesh import split_plates
 from app.rendering.ribbon_mesh import RibbonSurface, build_casing, build_ribbon
 from app.rendering.scene import Scene

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.rendering.orientation_thumbnails import option_thumbnails, orientation_options
 from app.rendering.scene import Scene
-from app.rendering.thumbnail import render_thumbnail
+from app.rendering.thumbnail import option_thumbnails, orientation_options, render_thumbnail
 from core.geometry.mesh import Mesh
 from core.scan.body import read_scan
 from core.scan.orientation.pose import Pose

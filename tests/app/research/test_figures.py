@@ -15,12 +15,10 @@ import pytest
 from app.cli.main import main
 from app.research.cases import Study, line_share, moved, reached_length
 from app.research.commands.figures import FIGURES, draw, make_some
-from app.research.fig_1_3_5 import figure_1
-from app.research.fig_4 import outward, profile
+from app.research.fig_1_to_5 import figure_1, outward, profile
 from app.research.figure_style import trimmed
 from app.research.page import page_of
-from app.research.parameter_study import RATIOS, Finding, mirrored_mean, routes
-from app.research.parameter_study_text import Pair, pairs_of, search_words
+from app.research.parameter_study import RATIOS, Finding, Pair, mirrored_mean, pairs_of, routes, search_words
 from core.errors import UserError
 from core.geometry.mesh import Mesh
 

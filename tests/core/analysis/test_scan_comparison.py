@@ -11,11 +11,10 @@ from scipy.spatial import ConvexHull
 
 from benchmarks.worn_pairs import only, other_mesh, scanned, worn_mesh
 from core.analysis.calibration.api import compare, predicted_points
-from core.analysis.calibration.point_to_surface import Surface
 from core.analysis.calibration.registration import align, rotation_about
 from core.analysis.calibration.residuals import FittingScan, aligned_fitting_scan, require_not_mirrored
 from core.analysis.calibration.robust_least_squares import Prior, cost, normal_equations, robust_deviation
-from core.analysis.calibration.surface_distance import ScanSurface, curvature
+from core.analysis.calibration.surface_distance import ScanSurface, Surface, curvature
 from core.deformation.incremental_normals import moving_faces
 from core.document.storage.project_file import open_project
 from core.errors import ScanError

@@ -6,7 +6,7 @@ from fit_bodies import SAMPLES, body_of, landmarks_at, sample_of
 from scipy.spatial import cKDTree
 
 from core.control_mesh.fit import fit_control_mesh
-from core.control_mesh.surface_projection import SurfaceProjector
+from core.control_mesh.skin_projection import SurfaceProjector
 from core.control_mesh.template import TEMPLATES, read_template
 from core.control_mesh.torso_frame import measure_torso
 from core.geometry.mesh import Mesh

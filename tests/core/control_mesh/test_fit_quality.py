@@ -7,7 +7,7 @@ from fit_bodies import RADIUS, analytic_body, body_of
 from core.control_mesh.missing_points import interpolate_missing
 from core.control_mesh.quality import FitQuality, deviations, measure_fit
 from core.control_mesh.relaxation import relax
-from core.control_mesh.surface_projection import SurfaceProjector
+from core.control_mesh.skin_projection import SurfaceProjector
 from core.control_mesh.validation import corner_angles, crossing_faces, find_mesh_faults
 from core.geometry.mesh import Mesh
 

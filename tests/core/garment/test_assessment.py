@@ -9,7 +9,7 @@ import pytest
 
 from app.i18n.catalog import read_words, speaking
 from app.presenters.assessment import IDLE, assessment_lines, assessment_view
-from core.analysis.diagnosis.fix import fixable_findings
+from core.analysis.diagnosis.candidate_changes import fixable_findings
 from core.analysis.diagnosis.trial_run import run_trial
 from core.document.design import Design
 from core.document.elastic import Elastic

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from core.mechanics.dense_volume import PRECISION, solve_body_exact
-from core.mechanics.exact_solution import solve_exact
+from core.mechanics.exact_solution import PRECISION, solve_body_exact, solve_exact
 from core.mechanics.model import constrained_model
 from core.mechanics.options import ModelOptions
 

@@ -9,8 +9,7 @@ from models import pairs_of
 from core.document.elastic import Elastic
 from core.document.lines import ActiveLine, LineSettings
 from core.errors import LineError
-from core.mechanics.dense_volume import solve_body_exact
-from core.mechanics.exact_solution import solve_exact
+from core.mechanics.exact_solution import solve_body_exact, solve_exact
 from core.mechanics.force_units import newtons_per_unit
 from core.pipeline.build import build, line_targets
 from core.pipeline.solve import solve

@@ -139,7 +139,7 @@ def test_a_scan_that_is_too_fine_is_refused_before_its_texture_is_sampled(tmp_pa
     (tmp_path / "skin.png").write_bytes(picture())
     (tmp_path / "house.obj").write_bytes(textured_obj())
     monkeypatch.setattr("core.scan.readers.raw_scan.MOST_TRIANGLES", 12)
-    monkeypatch.setattr("core.scan.readers.obj_texture.blocks", pytest.fail)
+    monkeypatch.setattr("core.scan.readers.obj.blocks", pytest.fail)
     with pytest.raises(ScanError, match="too fine"):
         read_raw("house.obj", scan_bytes(tmp_path / "house.obj"))
 

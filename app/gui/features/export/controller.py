@@ -13,8 +13,7 @@ from app.gui.features.export.dialog import ExportSheet
 from app.gui.features.export.worker import ExportWork
 from app.gui.session.jobs import Job
 from app.gui.session.settings import wish, wish_for
-from app.gui.widgets.file_dialogs import ask_save
-from app.gui.widgets.last_folders import free_name, last_folder
+from app.gui.widgets.file_dialogs import ask_save, free_name, last_folder
 from app.gui.widgets.message_box import ask
 from app.i18n.catalog import colon, joined, say, tr
 from app.presenters.export import ExportOptions, ExportSettings, ExportSource, exports, format_title

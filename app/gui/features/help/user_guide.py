@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import resources
 from pathlib import Path
 
-from app.gui.session.open_external import open_outside
+from app.gui.session.app_folders import open_outside
 from app.gui.widgets.notification_bar import NoticeBar
 from app.i18n.catalog import language, tr
 

@@ -18,8 +18,8 @@ from app.gui.viewport.value_labels import ValueFlag, ValueFlags
 from app.i18n.catalog import number
 from app.i18n.lengths import length
 from app.presenters.maps import LINE_MAPS, MAPS, BodyState, automatic_range, bridge_words, map_kinds, ramp_of
-from app.rendering.framing import framing_place
-from app.rendering.material import appearance_of
+from app.rendering.appearance import appearance_of
+from app.rendering.camera import framing_place
 from app.rendering.vertex_colors import Ramp
 from core.geometry.mesh import Floats
 from core.pipeline.live_solver import Frame

@@ -10,8 +10,7 @@ from PySide6.QtWidgets import QApplication
 
 from app.gui.application import chosen_dark, log_folder
 from app.gui.features.preferences.dialog import PreferencesSheet
-from app.gui.session.app_folders import show_folder
-from app.gui.session.open_external import start_again
+from app.gui.session.app_folders import show_folder, start_again
 from app.gui.session.settings import UNTIL_THEN, wants_motion, wish, wish_for
 from app.gui.theme.stylesheet import apply_theme
 from app.gui.viewport.viewport import Viewport

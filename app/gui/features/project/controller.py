@@ -11,9 +11,7 @@ from PySide6.QtCore import QObject, Signal
 
 from app.gui.features.project.recent_files import fill_recent_menu, remember_file
 from app.gui.session.project_thumbnail import project_picture
-from app.gui.widgets.file_dialogs import ask_about_changes, ask_open, ask_save
-from app.gui.widgets.last_folders import remember_folder
-from app.gui.widgets.loss_dialogs import ask_overwrite
+from app.gui.widgets.file_dialogs import ask_about_changes, ask_open, ask_overwrite, ask_save, remember_folder
 from app.gui.widgets.notification_bar import FILES
 from app.i18n.catalog import tr
 from app.presenters.samples import lifted_sample

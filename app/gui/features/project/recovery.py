@@ -11,7 +11,7 @@ from PySide6.QtGui import QImage
 from app.gui.features.project.backups_dialog import ask_backup
 from app.gui.features.project.recent_files import day_of
 from app.gui.features.project.recovery_card import RecoveryCard, RecoveryView
-from app.gui.widgets.loss_dialogs import may_discard
+from app.gui.widgets.file_dialogs import may_discard
 from app.i18n.catalog import tr
 from core.document.storage.project_file import open_project
 from core.document.storage.recovery import RecoveredDocument, Recovery, find_unsaved

@@ -16,8 +16,7 @@ from app.gui.widgets.notification_bar import REFUSED, SCAN
 from app.i18n.catalog import tr
 from app.presenters.scan import scan_view
 from app.rendering.appearance import APPEARANCES
-from app.rendering.orientation_thumbnails import OrientationOption, option_thumbnails
-from app.rendering.thumbnail import Picture
+from app.rendering.thumbnail import OrientationOption, Picture, option_thumbnails
 from core.document.design import Design, ScanSource
 from core.pipeline.build import IncompleteBuildError, Stages
 from core.pipeline.live_solver import Frame

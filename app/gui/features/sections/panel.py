@@ -10,8 +10,7 @@ from PySide6.QtGui import QColor, QPainter, QPainterPath, QPaintEvent, QPen, QRe
 from PySide6.QtWidgets import QHBoxLayout, QSlider, QStyle, QStyleOptionSlider, QVBoxLayout, QWidget
 
 from app.gui.plots.live_plot import PullTitle
-from app.gui.plots.section_plot import Drawn, ProfilePlot
-from app.gui.plots.uncertainty_band import paint_band
+from app.gui.plots.section_plot import Drawn, ProfilePlot, paint_band
 from app.gui.session.settings import wish, wish_for
 from app.gui.theme.stylesheet import font, label, tokens_of
 from app.gui.widgets.accessibility import speak_value

@@ -11,7 +11,7 @@ from PySide6.QtCore import QObject
 
 from app.gui.features.target_shape.handles import KINDS
 from app.i18n.catalog import tr
-from app.rendering.framing import box_of
+from app.rendering.camera import box_of
 from core.errors import UserError
 
 if TYPE_CHECKING:

@@ -1,14 +1,19 @@
-"""Figs. 6, 7 and 8: what happens turn by turn under each volume control."""
+"""Figures 6 to 10 of the paper: volume, lengths and shapes over iterations."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import BoundaryNorm, ListedColormap
 
+from app.rendering.palette import LIGHT
 from app.research.cases import (
     BODIES,
     CONTROLS,
     EXCESSIVE,
+    LINE,
     MODEST,
     TEMPLATE,
     TURNS,
@@ -16,8 +21,14 @@ from app.research.cases import (
     bust_heights,
     curve,
 )
-from app.research.figure_style import COLOURS, Figure, sheet
+from app.research.fig_1_to_5 import AZIMUTH, ELEVATION
+from app.research.figure_scene import body_picture, view_of
+from app.research.figure_style import COLOURS, Figure, sheet, show, trimmed
+from app.research.parameter_study import routes
+from core.document.lines import CustomLine
 from core.geometry.mesh import Floats
+from core.mechanics.iteration import LineTargets, iterate
+from core.pipeline.build import GAIN_SHARE, line_targets
 
 LENGTHS = (EXCESSIVE, MODEST)
 
@@ -155,3 +166,150 @@ def _error_words(name: str, errors: Floats) -> str:
     peak = float(np.abs(errors[:, 0]).max())
     mean, swing = errors[-20:, 0].mean(), np.ptp(errors[-20:, 0]) / 2.0
     return f"{name}: peak {peak:.2f} %, end {mean:+.4f} ± {swing:.2g} %"
+
+
+SWEPT_RATIOS = np.round(np.arange(0.51, 1.12, 0.06), 3)  # not 1: at rest there is no error to flip
+GAINS = np.round(np.arange(1.10, 1.71, 0.04), 3)
+SWEPT_TURNS = 120
+STEPS = (0.0, 1e-3, 1e-2, 1e-1, 1.0, 10.0, 1e3)
+"""Bounds of the classes of swing [%]; the lowest counts as calm, the highest is divergence."""
+
+SHADES = ("#F4F2EF", "#FCE4B8", "#F2BC5E", "#D98516", "#A04B0B", "#4A1D06")
+
+
+def figure_9(study: Study) -> Figure:
+    """Draw the swing of the volume left after a run, over line length and conventional gain (ours)."""
+    drawn = sheet(3.5)
+    axes = drawn.subplots(1, 2, sharey=True)[None][0]
+    rows: list[tuple[object, ...]] = []
+    said = []
+    for plot, (letter, body) in zip(axes, BODIES.items(), strict=True):
+        limit = study.stages(body).gain_limit
+        swing = np.array([[_swing(study, body, r, "conventional", g) for r in SWEPT_RATIOS] for g in GAINS])
+        calm = [_swing(study, body, r, "adaptive", 1.0) for r in SWEPT_RATIOS]
+        picture = plot.pcolormesh(
+            100.0 * SWEPT_RATIOS,
+            GAINS,
+            swing,
+            cmap=ListedColormap(SHADES),
+            norm=BoundaryNorm(STEPS, len(SHADES)),
+        )
+        plot.axhline(limit, color=LIGHT.text, lw=1.2, label=("limit computed on the original body"))
+        plot.axhline(GAIN_SHARE * limit, color=LIGHT.text, lw=1.2, ls=(0, (3, 2)), label="default gain")
+        plot.set_title(f"({letter}) {body}, {TEMPLATE[body]} triangles")
+        plot.set_xlabel("set length of the line [% of original]")
+        plot.grid(visible=False)
+        rows += [
+            (body, 100.0 * float(ratio), float(gain), float(swing[j, i]), limit)
+            for j, gain in enumerate(GAINS)
+            for i, ratio in enumerate(SWEPT_RATIOS)
+        ]
+        said.append(
+            f"{body}: limit {limit:.2f}, default {GAIN_SHARE * limit:.2f}; the adaptive force leaves at most "
+            f"{max(calm):.1g} % at any of these lengths"
+        )
+    axes[0].set_ylabel("gain of the conventional force [1]")
+    axes[0].legend(loc="lower right")
+    bar = drawn.colorbar(picture, ax=axes, extend="neither", ticks=STEPS[1:-1])
+    bar.set_ticklabels(["0.001", "0.01", "0.1", "1", "10"])
+    bar.set_label("amplitude per iteration [%]")
+    caption = (
+        f"Largest swing of the volume from turn to turn in the last 12 of {SWEPT_TURNS} turns. Line: the "
+        "gain limit computed at rest before any turn is made; dashed: the default gain. "
+        + "; ".join(said)
+        + "."
+    )
+    columns = ("body", "set_percent", "gain", "swing_percent", "gain_limit_at_rest")
+    return Figure(
+        "fig-9-gain-map", "Stability region of the conventional force", caption, columns, rows, drawn
+    )
+
+
+def _swing(study: Study, body: str, ratio: float, control: str, gain: float) -> float:
+    """Return the largest flip of the volume error from turn to turn at the end of a run [%]."""
+    stages = study.stages(body)
+    asked = line_targets(replace(stages.design.with_line(LINE, float(ratio)), volume=control), stages)
+    targets: LineTargets = replace(asked, gain=float(gain))
+    errors: Floats = np.array(
+        [measured.error for _, measured in iterate(stages.model, lambda: targets, turns=SWEPT_TURNS)]
+    )
+    if len(errors) < SWEPT_TURNS or not np.isfinite(errors).all():
+        return STEPS[-1]
+    # The second difference of a flip-flop is twice its swing; that of a slow approach almost nothing.
+    return float(min(50.0 * np.abs(np.diff(errors[-14:], 2)).max(), STEPS[-1]))
+
+
+RATIOS = (0.97, 0.6)
+
+COLUMNS = (
+    "curve",
+    "body",
+    "control",
+    "set_percent",
+    "turn",
+    "bust_point_change_mm",
+    "volume_error_percent",
+)
+
+
+def figure_10(study: Study) -> Figure:
+    """Draw Figs. 6 and 7 again with slings from the upper edge round each breast."""
+    drawn = sheet(8.4)
+    axes = drawn.subplots(4, 2, height_ratios=(1.35, 1.0, 1.0, 1.0))
+    rows: list[tuple[object, ...]] = []
+    said = []
+    for column, (letter, body) in enumerate(BODIES.items()):
+        own = _show_slings(study, body, axes[0, column], f"({letter}) {body} with slings")
+        for ratio in RATIOS:
+            ends, first = {}, 0.0
+            for digit, control in CONTROLS.items():
+                solution = study.solved(body, ratio, control, TURNS, own_lines=own)
+                records, words = curve(solution), solution.verdict.words
+                height = bust_heights(records)[:, 0]
+                error = np.array([record.error * 100.0 for record in records])
+                style = {"color": COLOURS[control], "label": f"{letter}{digit} {control}"}
+                axes[1 + RATIOS.index(ratio), column].plot(height - height[0], **style)
+                if ratio == RATIOS[0]:
+                    axes[3, column].plot(error, **style)
+                name = (f"{letter}{digit}", body, control, 100.0 * ratio)
+                rows += [
+                    (*name, turn, float(h - height[0]), float(e))
+                    for turn, (h, e) in enumerate(zip(height, error, strict=True))
+                ]
+                ends[digit] = height[-20:].mean() - height[0]
+                first = max(first, float(np.abs(error[:11]).max())) if control == "adaptive" else first
+            said.append(
+                f"{body} at {100 * ratio:.0f} %: bust points {ends['1']:+.2f} and {ends['2']:+.2f} mm, first "
+                f"error {first:.2f} % ({words})"
+            )
+    _name_axes(axes)
+    caption = (
+        "Slings from the upper edge of the control mesh round each breast, glued, in place of the line. "
+        "Conventional and adaptive force at the end, and largest error of the first ten turns, adaptive: "
+        f"{'; '.join(said)}."
+    )
+    return Figure("fig-10-slings", "Slings instead of the line", caption, COLUMNS, rows, drawn)
+
+
+def _name_axes(axes: np.ndarray) -> None:
+    """Say what the plots (4, 2) are of; those beside each other have one height."""
+    for line, ratio in zip(axes[1:3], RATIOS, strict=True):
+        line[0].set_ylabel(f"bust point, change in\nheight [mm], {100 * ratio:.0f} %")
+    axes[3, 0].set_ylabel(f"volume error [%], {100 * RATIOS[0]:.0f} %")
+    for plot in axes[3]:
+        plot.set_xlabel("turn")
+        plot.legend(loc="lower right")
+    for line in axes[1:]:
+        line[1].sharey(line[0])
+        line[0].autoscale(axis="y")
+
+
+def _show_slings(study: Study, body: str, plot: Axes, title: str) -> tuple[CustomLine, ...]:
+    """Show a body with its slings, and return them."""
+    stages = study.stages(body)
+    paths = routes(stages.control)["slings"]
+    points = {name: stages.control.mesh.vertices[list(path)] for name, path in paths.items()}
+    view = view_of(stages.control.mesh, AZIMUTH, ELEVATION, margin=1.5)
+    picture = body_picture(stages.body.mesh, study.occlusion(body), view, paths=points)
+    show(plot, trimmed([picture])[0], title)
+    return tuple(CustomLine(name, path) for name, path in sorted(paths.items()))
