@@ -1,4 +1,4 @@
-"""The installed program tests itself on the sample: one line a part, exit code 0 if all is well."""
+"""Check the installed program on the sample: one line a part, exit code 0 if all pass."""
 
 from __future__ import annotations
 
@@ -8,49 +8,35 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from app.cli.options import add_folder_output
-from app.cli.output import make_folder
-from app.cli.self_test import analysis_checks as advice
-from app.cli.self_test import core_checks as figures
-from app.cli.self_test import fonts as letters
-from app.cli.self_test import installation as program
-from app.cli.self_test import outputs as papers
-from app.cli.self_test import window as screen
-from app.cli.self_test.checks import Part, try_parts
-from app.cli.self_test.fixture import Bench
-from app.cli.self_test.sandbox import apart
+from app.cli.output import DONE, make_folder
+from app.cli.self_test import checks, window
+from app.cli.self_test.parts import Bench, Part, isolated, try_parts
 
 FAILED = 1
-"""The exit code if a part is not well."""
+"""The exit code if a part has failed."""
 
 LINES = "self-test.txt"
-"""The file in the folder of ``--out`` that holds the lines: without a console they have no other place."""
+"""The file in the folder of ``--out`` with the lines: without a console they have no other place."""
 
 _SAMPLE = ("landmarks", "solver")
 
 PARTS: tuple[Part[Bench], ...] = (
-    Part("versions", program.versions),
-    Part("shipped files", program.shipped_files),
-    Part("guide", program.guide),
-    Part("scan formats", figures.scan_formats),
-    Part("landmarks", figures.landmarks),
-    Part("solver", figures.solver, ("landmarks",)),
-    Part("advice", advice.advice, _SAMPLE),
-    Part("compiled loops", figures.compiled_loops, ("landmarks",)),
-    Part("projects", figures.projects, _SAMPLE),
-    Part("damaged project", figures.damaged_projects, ("projects",)),
-    Part("exported files", papers.exports, _SAMPLE),
-    Part("3D drawing", papers.drawing, _SAMPLE),
-    Part("turntable", papers.turntable, (*_SAMPLE, "3D drawing")),
-    Part("Qt", screen.toolkit),
-    Part("Latin font", letters.latin, ("Qt",)),
-    Part("Japanese font", letters.japanese, ("Qt",)),
-    Part("report", papers.report, ("Qt", *_SAMPLE, "3D drawing")),
-    Part("window", screen.window, ("Qt", "projects")),
-    Part("slider", screen.slider, ("window",)),
-    Part("file dialog", screen.file_dialog, ("window",)),
-    Part("closing", screen.closing, ("window",)),
+    Part("versions", checks.versions),
+    Part("shipped files", checks.shipped_files),
+    Part("landmarks", checks.landmarks),
+    Part("solver", checks.solver, ("landmarks",)),
+    Part("compiled loops", checks.compiled_loops, ("landmarks",)),
+    Part("projects", checks.projects, _SAMPLE),
+    Part("exports", checks.exports, _SAMPLE),
+    Part("3D drawing", checks.drawing, _SAMPLE),
+    Part("Qt", window.toolkit),
+    Part("fonts", window.fonts, ("Qt",)),
+    Part("report", window.report, ("Qt", *_SAMPLE, "3D drawing")),
+    Part("window", window.window, ("Qt", "projects")),
+    Part("slider", window.slider, ("window",)),
+    Part("closing", window.closing, ("window",)),
 )
-"""What is tried, in order: what may take the whole program with it, graphics and windows, comes late."""
+"""The parts in order: what may end the whole program, graphics and windows, comes late."""
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -59,28 +45,20 @@ def add_options(parser: ArgumentParser) -> None:
 
 
 def run(options: Namespace) -> int:
-    """Check the installed program, one line a part."""
-    return run_self_test(make_folder(options.out) if options.out is not None else None)
-
-
-def run_self_test(out: Path | None = None) -> int:
-    """Try every part, print a line for each, and return the exit code.
-
-    ``out`` keeps what was made: pictures, sheets, a project, and the lines themselves.
-    """
-    begun = time.perf_counter()
+    """Run every part, and print a line for each; ``--out`` keeps the files and the lines."""
+    start = time.perf_counter()
     with tempfile.TemporaryDirectory(prefix="busk-") as own:
-        folder = (out or Path(own) / "made").resolve()
+        folder = (make_folder(options.out) if options.out is not None else Path(own) / "made").resolve()
         folder.mkdir(parents=True, exist_ok=True)
-        with open(folder / LINES, "w", encoding="utf-8") as lines, apart(Path(own).resolve()):
+        with open(folder / LINES, "w", encoding="utf-8") as lines, isolated(Path(own).resolve()):
 
-            def say(text: str) -> None:
+            def write(text: str) -> None:
                 print(text, end="", file=lines, flush=True)
                 print(text, end="", flush=True)
 
             bench = Bench(folder)
             with bench.held:
-                lost = try_parts(PARTS, bench, say)
-            said = f"failed: {', '.join(lost)}" if lost else "all checks passed"
-            say(f"{said}  ({time.perf_counter() - begun:.0f} s)\n")
-    return FAILED if lost else 0
+                failed = try_parts(PARTS, bench, write)
+            result = f"failed: {', '.join(failed)}" if failed else "all checks passed"
+            write(f"{result}  ({time.perf_counter() - start:.0f} s)\n")
+    return FAILED if failed else DONE

@@ -1,68 +1,184 @@
-"""Parts of a self-test: each is tried and told in one line, and one that fails hides none of the others."""
+"""Check the installation without a window: versions, files, landmarks, solver, projects, exports, drawing."""
 
 from __future__ import annotations
 
-import time
-import traceback
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+import platform
+import sys
+from collections.abc import Callable, Sized
+from contextlib import redirect_stdout
+from dataclasses import replace
+from importlib import metadata, resources
+from io import StringIO
 from pathlib import Path
-from typing import Generic, TypeVar
+from xml.etree import ElementTree
 
-from core.errors import UserError
+import numpy as np
 
-T = TypeVar("T")
+from app.cli.output import DONE
+from app.cli.parser import command_options, runner_of
+from app.cli.self_test.parts import LINE, Bench, PartError, check
+from core import __version__
+from core.document.storage.project_file import open_project, read_scan_file
+from core.geometry import kernels
+from core.pipeline.build import build
+from core.pipeline.solve import solve
+from core.scan.readers.registry import read_raw
 
-Say = Callable[[str], object]
-"""Hears a piece of a line; the line ends with its newline."""
+LIBRARIES = ("PySide6-Essentials", "vtk", "pyvista", "pyvistaqt", "numpy", "scipy")
+BUST_POINT, FOLD = (107.25, -229.14, 346.95), (107.25, -178.96, 299.02)
+"""Their known positions on the left of the mannequin [mm]."""
 
-_WIDE = 18
-
-
-class PartError(Exception):
-    """What a part has found to be wrong, in a sentence."""
-
-
-def check(holds: bool, sentence: str) -> None:
-    """Raise PartError unless it ``holds``."""
-    if not holds:
-        raise PartError(sentence)
-
-
-@dataclass(frozen=True)
-class Part(Generic[T]):
-    """One thing that is tried: ``work`` returns what it has seen, in a few words, or raises.
-
-    It is not tried after one of the parts that it ``needs`` has failed.
-    """
-
-    name: str
-    work: Callable[[T], str]
-    needs: tuple[str, ...] = ()
+_NEAR = 8.0  # mm: landmarks of the sample are detected within 4 mm
+_FRAMES = 4
 
 
-def try_parts(parts: Iterable[Part[T]], bench: T, say: Say) -> list[str]:
-    """Try parts one after the other, and return the names of those that are not well."""
-    lost: list[str] = []
-    for part in parts:
-        missing = [name for name in part.needs if name in lost]
-        # The name comes first: if the program ends in the middle of a part, it is the last that is read.
-        say(f"  {part.name:{_WIDE}} ")
-        begun = time.perf_counter()
-        try:
-            told = f"skipped: requires {', '.join(missing)}" if missing else f"ok      {part.work(bench)}"
-        except Exception as fault:
-            told, missing = f"FAILED  {_in_words(fault)}", [part.name]
-        if missing:
-            lost.append(part.name)
-        say(f"{told}  ({time.perf_counter() - begun:.2f} s)\n")
-    return lost
+def is_frozen() -> bool:
+    """Return whether this is the packaged program."""
+    return bool(getattr(sys, "frozen", False))
 
 
-def _in_words(fault: Exception) -> str:
-    """Return in one line what went wrong; of a fault that nobody thought of also where."""
-    if isinstance(fault, PartError | UserError):
-        return " ".join(str(fault).split())
-    frame = traceback.extract_tb(fault.__traceback__)[-1]
-    said = " ".join(str(fault).split())
-    return f"{type(fault).__name__}: {said} ({Path(frame.filename).name}, line {frame.lineno})"
+def _home() -> Path:
+    """Return the folder that contains the resources."""
+    return Path(str(resources.files("resources"))).parent
+
+
+def versions(bench: Bench) -> str:
+    """Return the versions of program and libraries, and the place of the program."""
+    libraries = ", ".join(f"{name} {metadata.version(name)}" for name in LIBRARIES)
+    kind = "packaged" if is_frozen() else "from source"
+    made_of = f"Busk {__version__}, Python {platform.python_version()}, {libraries}"
+    return f"{made_of}; {kind}, {platform.platform()}, in {_home()}"
+
+
+def shipped_files(bench: Bench) -> str:
+    """Read all tables, words, icons, samples and licences, and find the user guide."""
+    from app.i18n.catalog import read_words  # noqa: PLC0415 (this part reports what cannot be imported)
+    from app.i18n.licences import licences  # noqa: PLC0415
+    from core.control_mesh.template import TEMPLATES, read_template  # noqa: PLC0415
+    from core.document import presets  # noqa: PLC0415
+    from core.garment.elastic_library import built_in as elastics  # noqa: PLC0415
+    from core.garment.pressure_limits import pressure_limits  # noqa: PLC0415
+    from core.measurements.letter_sizes import letter_sizes  # noqa: PLC0415
+    from core.measurements.sizes import built_in as sizes  # noqa: PLC0415
+
+    counts = {
+        "templates": _count("templates", lambda: [read_template(name) for name in TEMPLATES], 2),
+        "presets": _count("presets", presets.built_in, 3),
+        "elastics": _count("elastics", elastics, 6),
+        "size charts": _count("size charts", sizes, 7),
+        "letter sizes": _count("letter sizes", lambda: letter_sizes().tables, 1),
+        "rating limits": _count("rating limits", lambda: [pressure_limits()], 1),
+        "words": _count("words", lambda: [*read_words("ja"), *read_words("ja_messages")], 1000),
+        "icons": _count("icons", lambda: list(_home().glob("resources/icons/*.svg")), 40),
+        "samples": _count("samples", lambda: list(_home().glob("resources/samples/*.ply")), 2),
+        "licences": _count("licences", lambda: [text for _, text in licences() if len(text) > 500], 3),
+    }
+    page = _home() / "site" / "index.html"
+    check(page.is_file() or not is_frozen(), f"no guide at {page}")
+    guide = "the guide" if page.is_file() else "no guide in this checkout"
+    return ", ".join([*(f"{count} {name}" for name, count in counts.items()), guide])
+
+
+def _count(name: str, read: Callable[[], Sized], least: int) -> int:
+    """Return the number of files, and name the kind that cannot be read or is incomplete."""
+    try:
+        count = len(read())
+    except Exception as fault:
+        raise PartError(f"{name} cannot be read: {type(fault).__name__}, {fault}") from fault
+    check(count >= least, f"{count} {name}, not {least}")
+    return count
+
+
+def landmarks(bench: Bench) -> str:
+    """Detect the landmarks of the sample, and compare them with their known positions."""
+    found, farthest = bench.stages.landmarks.points, 0.0
+    for name, place in (("bust_point", BUST_POINT), ("fold", FOLD)):
+        for side, sign in (("left", 1.0), ("right", -1.0)):
+            away = float(np.linalg.norm(found[f"{name}_{side}"].position - np.multiply(place, (sign, 1, 1))))
+            check(away < _NEAR, f"{name}_{side} is {away:.1f} mm from its known position")
+            farthest = max(farthest, away)
+    return f"bust points and inframammary folds within {farthest:.1f} mm of their known positions"
+
+
+def solver(bench: Bench) -> str:
+    """Solve the sample by iterations and exactly, and compare both."""
+    solution = bench.solution
+    check(solution.verdict.motion == "settled", f"the iterations end with status {solution.verdict.words}")
+    error = abs(solution.last.error_ml)
+    check(error < 1.0, f"the volume error is {error:.2f} ml")
+    moved = np.abs(solution.control_points - bench.stages.control.mesh.vertices).max()
+    check(bool(moved > 1.0), "the body did not follow the line")
+    exact = solve(build(replace(bench.stages.design, volume="exact"), bench.stages))
+    apart = float(np.abs(exact.control_points - solution.control_points).max())
+    check(apart < 0.3, f"iterations and exact solution differ by {apart:.3f} mm")
+    converged = f"converged in {solution.last.turn} iterations, volume error {error:.3f} ml"
+    return f"{converged}, {apart:.2f} mm from the exact solution"
+
+
+def compiled_loops(bench: Bench) -> str:
+    """Compile the loops over the dense body, and compare their results with the definitions."""
+    mesh = bench.stages.body.mesh
+    given = mesh.vertices, np.ascontiguousarray(mesh.faces.T), np.zeros_like(mesh.vertices)
+    if not kernels.warm():
+        # Without numba they are slower; a numba that does not work is a fault.
+        check("No module named 'numba'" in kernels.state(), kernels.state())
+        return "numba is not installed: numpy is used"
+    apart = float(np.abs(kernels.normals(*given) - kernels.normals_plain(*given)).max())
+    check(apart < 1e-9, f"compiled loops and their definitions differ by {apart:.2g}")
+    return kernels.state()
+
+
+def projects(bench: Bench) -> str:
+    """Save a project, open it and solve it again: the same values."""
+    design = open_project(bench.project).design
+    check(design.ratio(LINE) == bench.stages.design.ratio(LINE), "the reloaded line differs")
+    check(read_scan_file(design.scan).data == bench.stages.scan.data, "the reloaded scan differs")
+    again = solve(build(design)).control_points
+    apart = float(np.abs(again - bench.solution.control_points).max())
+    check(apart < 1e-9, f"the reloaded body differs by {apart:.3g} mm")
+    return f"saved {bench.project.stat().st_size / 1e6:.1f} MB, opened, solved to the same values"
+
+
+def run_command(*words: str) -> None:
+    """Run a command as the command line does, without its output. Raises PartError unless it is done."""
+    with redirect_stdout(StringIO()):
+        code = runner_of(words[0])(command_options(words[0], words[1:]))
+    check(code == DONE, f"busk {words[0]} ends with {code}")
+
+
+def exports(bench: Bench) -> str:
+    """Write bodies, drawings, measurements and a turntable for other programs, and read them."""
+    import ezdxf  # noqa: PLC0415
+    from PIL import Image, ImageSequence  # noqa: PLC0415
+
+    from core.export.mesh import FORMATS, write_mesh  # noqa: PLC0415 (brings trimesh along)
+    from core.export.units_and_axes import FileSpace  # noqa: PLC0415
+
+    mesh, folder = bench.stages.body.mesh, bench.folder
+    for kind in FORMATS:
+        path = folder / f"body.{kind}"
+        write_mesh(path, mesh, space=FileSpace("mm", "z-up"))
+        count = len(read_raw(path.name, path.read_bytes()).faces)
+        check(count == len(mesh.faces), f"{path.name} was reloaded with {count} triangles")
+    names = {"lines": "lines.dxf", "strips": "strips.svg", "measurements": "m.smis", "turntable": "turn.gif"}
+    files = [word for option, name in names.items() for word in (f"--{option}", str(folder / name))]
+    small = "--frames", str(_FRAMES), "--seconds", "1", "--size", "160x200"
+    run_command("export", str(bench.project), *files, *small)
+    curves = len(ezdxf.readfile(folder / "lines.dxf").modelspace())
+    marks, values = (len(list(ElementTree.parse(folder / name).iter())) for name in ("strips.svg", "m.smis"))
+    check(curves > 0 and marks > 5 and values > 5, f"{curves} curves, {marks} marks, {values} measurements")
+    with Image.open(folder / "turn.gif") as moving:
+        frames = {each.convert("L").tobytes() for each in ImageSequence.Iterator(moving)}
+    check(len(frames) == _FRAMES, f"the turntable has {len(frames)} different frames, not {_FRAMES}")
+    return f"{', '.join(FORMATS)} of {len(mesh.faces):,} triangles, DXF, SVG, SMIS, GIF of {_FRAMES} frames"
+
+
+def drawing(bench: Bench) -> str:
+    """Render the reshaped body off-screen: the picture shows a shaded body."""
+    from PIL import Image  # noqa: PLC0415
+
+    run_command("picture", str(bench.project), "--out", str(bench.folder / "body.png"), "--size", "400x480")
+    with Image.open(bench.folder / "body.png") as picture:
+        colours = len(set(picture.convert("RGB").getdata()))
+    check(colours > 500, f"the body has only {colours} colours")
+    return f"a body of {colours} colours"

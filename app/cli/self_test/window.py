@@ -1,159 +1,137 @@
-"""Parts of a self-test in the window itself: a project, a slider, a dialog of files, and its end."""
+"""Check everything that needs Qt: fonts, the report, the window with a project and a slider, its end."""
 
 from __future__ import annotations
 
+import re
 import tempfile
 import threading
+from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from app.cli.self_test.checks import PartError, check
-from app.cli.self_test.fixture import MOVED, Bench
-from app.cli.self_test.message_capture import hearing
-from app.presenters.samples import sample_path
+from app.cli.self_test.checks import run_command
+from app.cli.self_test.parts import LINE, Bench, captured_faults, check
 from app.rendering.display import off_screen
 
-if TYPE_CHECKING:
-    from PySide6.QtWidgets import QFileDialog
-
-    from app.gui.features.lines.slider import LengthSlider
-
-_SHORTER = 0.03
-"""How much shorter the line is drawn [share of its rest length]."""
+_NO_GLYPH = "\U0010fffd"
+_DRAWN = {"Inter": "AaGgQq059%°±−×·…", "Noto Sans JP": "特徴点ライン"}
+_PAGE = re.compile(rb"/Type\s*/Page\b")
+_FONT = re.compile(rb"/FontName\s*/(?:[A-Z]{6}\+)?([\w-]+)")
 
 
 def toolkit(bench: Bench) -> str:
-    """Begin with Qt: on the display, or off-screen where there is none."""
+    """Start Qt: on the display, or off-screen where there is none."""
     off_screen()
-    from PySide6.QtGui import QGuiApplication  # noqa: PLC0415 (that Qt is missing is told here)
+    from PySide6.QtGui import QGuiApplication  # noqa: PLC0415 (this part reports a missing Qt)
 
     from app.gui.application import application  # noqa: PLC0415
 
     app = application(language="en", dark=False)
-    bench.heard = bench.held.enter_context(hearing())
-    return f"{QGuiApplication.platformName()}, {app.devicePixelRatio():g} pixels to one"
+    bench.faults = bench.held.enter_context(captured_faults())
+    return f"{QGuiApplication.platformName()}, device pixel ratio {app.devicePixelRatio():g}"
+
+
+def fonts(bench: Bench) -> str:
+    """Check that the bundled fonts have the letters of both languages, and that they are rendered."""
+    from PySide6.QtGui import QRawFont  # noqa: PLC0415 (brings Qt along)
+
+    from app.gui.theme.stylesheet import load_fonts  # noqa: PLC0415
+    from app.i18n.catalog import read_words  # noqa: PLC0415
+
+    loaded = load_fonts()
+    missing = [family for family in _DRAWN if family not in loaded]
+    check(not missing, f"{', '.join(missing)} is not among the bundled fonts: {loaded}")
+    words = [text for name in ("ja", "ja_messages") for text in read_words(name).values()]
+    letters = {chr(code) for code in range(33, 127)} | {x for x in "".join(words) if not x.isspace()}
+    bundled = []
+    for file in (resources.files("resources") / "fonts").iterdir():
+        if "Regular" in file.name:
+            font = QRawFont()
+            font.loadFromData(file.read_bytes(), 13.0, font.hintingPreference())
+            bundled.append(font)
+    absent = sorted(x for x in letters if not any(font.supportsCharacter(ord(x)) for font in bundled))
+    check(not absent, f"{len(absent)} glyphs are missing: {''.join(absent[:20])}")
+    for family, drawn in _DRAWN.items():
+        pictures = {_rendered(letter) for letter in (*drawn, _NO_GLYPH)}
+        check(len(pictures) == len(drawn) + 1, f"letters of {family} are rendered as placeholder boxes")
+    return f"{' and '.join(_DRAWN)}, {len(letters)} glyphs"
+
+
+def _rendered(letter: str) -> bytes:
+    """Return the pixels of a letter."""
+    from PySide6.QtCore import Qt  # noqa: PLC0415
+    from PySide6.QtGui import QImage, QPainter  # noqa: PLC0415
+
+    from app.gui.theme.stylesheet import font  # noqa: PLC0415
+
+    image = QImage(40, 40, QImage.Format.Format_Grayscale8)
+    image.fill(Qt.GlobalColor.white)
+    painter = QPainter(image)
+    painter.setFont(font("hero"))
+    painter.drawText(image.rect(), Qt.AlignmentFlag.AlignCenter, letter)
+    painter.end()
+    return bytes(image.constBits())
+
+
+def report(bench: Bench) -> str:
+    """Write the report in both languages, and check its pages, fonts and pictures."""
+    sizes = []
+    for language, family in (("en", b"Inter"), ("ja", b"NotoSansJP")):
+        path = bench.folder / f"report-{language}.pdf"
+        run_command("report", str(bench.project), "--language", language, "--out", str(path))
+        data = path.read_bytes()
+        check(data.startswith(b"%PDF-") and data.rstrip().endswith(b"%%EOF"), f"{path.name} is incomplete")
+        count, used = len(_PAGE.findall(data)), set(_FONT.findall(data))
+        check(count == 2, f"{path.name} has {count} pages, not 2")
+        check(any(name.startswith(family) for name in used), f"{path.name} does not use {family.decode()}")
+        check(b"/Image" in data, f"{path.name} has no pictures")
+        sizes.append(f"{path.name} {len(data) / 1000:.0f} kB")
+    return ", ".join(sizes)
 
 
 def window(bench: Bench) -> str:
-    """Open a project in the window, and look at it."""
+    """Open a project in the window, and check the 3D view."""
     from app.cli.commands.picture import save_window, settled_window  # noqa: PLC0415
 
     opened = bench.window = bench.held.enter_context(settled_window(str(bench.project)))
     check(opened.session.path == bench.project, f"the open file is {opened.session.path}")
     save_window(opened, bench.folder / "window.png")
     picture = opened.view.viewport.picture(labels=False)
-    colours = {
-        picture.pixel(x, y) for x in range(0, picture.width(), 4) for y in range(0, picture.height(), 4)
-    }
-    check(len(colours) > 200, f"the 3D view is empty: it has {len(colours)} colours")
-    bench.check_silence()
-    drawn_in = type(opened.view.viewport.overlay.parentWidget()).__name__
-    return f"{opened.windowTitle()}, {len(colours)} colours in the 3D view, a {drawn_in}"
+    columns, rows = range(0, picture.width(), 4), range(0, picture.height(), 4)
+    colours = len({picture.pixel(x, y) for x in columns for y in rows})
+    check(colours > 200, f"the 3D view is empty: it has {colours} colours")
+    bench.check_faults()
+    return f"{opened.windowTitle()}, {colours} colours in the 3D view"
 
 
 def slider(bench: Bench) -> str:
-    """Drag the slider of a line as a hand does, and wait until the body has followed."""
+    """Shorten a line with the keyboard, and wait until the body has followed."""
+    from PySide6.QtCore import QEvent, Qt  # noqa: PLC0415
+    from PySide6.QtGui import QKeyEvent  # noqa: PLC0415
     from PySide6.QtWidgets import QApplication  # noqa: PLC0415
 
     from app.cli.commands.picture import wait_until  # noqa: PLC0415
 
-    opened = bench.shown()
-    before, handle = opened.session.frame, opened.lines.rows[MOVED].slider
+    opened = bench.window
+    assert opened is not None
+    before, handle = opened.session.frame, opened.lines.rows[LINE].slider
     assert before is not None
     start = handle.ratio()
-    _drag(handle, start - _SHORTER / 2.0, start - _SHORTER)
+    for kind in (QEvent.Type.KeyPress, QEvent.Type.KeyRelease) * 3:  # 1 % each
+        event = QKeyEvent(kind, Qt.Key.Key_Left, Qt.KeyboardModifier.ShiftModifier)
+        QApplication.sendEvent(handle, event)
     wait_until(lambda: opened.session.frame is not before and opened.is_settled(), QApplication.processEvents)
     after = opened.session.frame
     assert after is not None
-    check(handle.ratio() < start, f"the slider is unchanged at {100 * handle.ratio():.1f} %")
     moved = float(abs(after.points - before.points).max())
+    check(handle.ratio() < start, f"the slider is unchanged at {100 * handle.ratio():.1f} %")
     check(moved > 1.0, f"the body has moved by {moved:.2f} mm")
-    check(after.verdict.motion == "settled", f"the solution is {after.verdict.words}")
-    check(
-        opened.session.undo_stack.count() == 1,
-        f"{opened.session.undo_stack.count()} undo steps were created",
-    )
-    bench.check_silence()
-    return f"{MOVED} from {100 * start:.1f} to {100 * handle.ratio():.1f} % moved the body by {moved:.1f} mm"
-
-
-def _drag(handle: LengthSlider, first: float, last: float) -> None:
-    """Press the groove of a slider at a length, move to another and let go, give or take a pixel."""
-    from PySide6.QtCore import QEvent, QPointF, Qt  # noqa: PLC0415
-    from PySide6.QtGui import QMouseEvent  # noqa: PLC0415
-    from PySide6.QtWidgets import QApplication  # noqa: PLC0415
-
-    left, none = Qt.MouseButton.LeftButton, Qt.MouseButton.NoButton
-    span = handle.maximum() - handle.minimum()
-    for kind, length, button, held in (
-        (QEvent.Type.MouseButtonPress, first, left, left),
-        (QEvent.Type.MouseMove, last, none, left),
-        (QEvent.Type.MouseButtonRelease, last, left, none),
-    ):
-        share = (length / handle.ratio() * handle.value() - handle.minimum()) / span
-        place = QPointF(share * handle.width(), handle.height() / 2)
-        event = QMouseEvent(
-            kind, place, handle.mapToGlobal(place), button, held, Qt.KeyboardModifier.NoModifier
-        )
-        QApplication.sendEvent(handle, event)
-
-
-def file_dialog(bench: Bench) -> str:
-    """Open a scan through the dialog that the window asks with, accepting a typed name."""
-    from PySide6.QtCore import Qt, QTimer  # noqa: PLC0415
-    from PySide6.QtWidgets import QApplication  # noqa: PLC0415
-
-    from app.cli.commands.picture import wait_until  # noqa: PLC0415
-
-    opened, seen = bench.shown(), list[str]()
-    opened.session.undo_stack.setClean()  # else it would be asked whether the line is to be saved
-    path = sample_path("person")
-    clock = QTimer(interval=50)
-    clock.timeout.connect(lambda: _answer(path, clock, seen))
-    plain = Qt.ApplicationAttribute.AA_DontUseNativeDialogs
-    before = QApplication.testAttribute(plain)
-    QApplication.setAttribute(plain, True)
-    clock.start()
-    try:
-        opened.project_controller.open()
-    finally:
-        clock.stop()
-        QApplication.setAttribute(plain, before)
-    check(bool(seen), "no dialog opened")
-    wait_until(lambda: opened.session.name == path.stem and opened.is_settled(), QApplication.processEvents)
-    bench.check_silence()
-    return f"{seen[0]!r} accepted and opened {path.name}"
-
-
-def _answer(path: Path, clock: object, seen: list[str]) -> None:
-    """Type a name into the dialog that is open, and accept it."""
-    from PySide6.QtWidgets import QApplication, QFileDialog, QLineEdit  # noqa: PLC0415
-
-    asked = next((each for each in QApplication.topLevelWidgets() if isinstance(each, QFileDialog)), None)
-    if asked is None or not asked.isVisible():
-        return
-    if seen:  # it was answered and still stands: nobody else will close it
-        asked.reject()
-        return
-    seen.append(asked.windowTitle())
-    line = asked.findChild(QLineEdit, "fileNameEdit")
-    if isinstance(line, QLineEdit):
-        line.setText(str(path))
-        _accept(asked)
-    else:
-        asked.reject()
-
-
-def _accept(asked: QFileDialog) -> None:
-    from PySide6.QtWidgets import QDialogButtonBox  # noqa: PLC0415
-
-    box = asked.findChild(QDialogButtonBox)
-    assert box is not None
-    box.button(QDialogButtonBox.StandardButton.Open).click()
+    check(opened.session.undo_stack.count() > 0, "no undo step was created")
+    bench.check_faults()
+    return f"{LINE} from {100 * start:.1f} to {100 * handle.ratio():.1f} % moved the body by {moved:.1f} mm"
 
 
 def closing(bench: Bench) -> str:
-    """Close the window: its threads end, and nothing of it stays behind in the folder of passing files."""
+    """Close the window: its threads end, and no temporary file remains."""
     from PySide6.QtWidgets import QApplication  # noqa: PLC0415
 
     from core.document.storage.recovery import recovery_folder  # noqa: PLC0415
@@ -161,10 +139,9 @@ def closing(bench: Bench) -> str:
     bench.held.close()
     bench.window = None
     QApplication.processEvents()
-    bench.check_silence()
+    bench.check_faults()
     running = [each.name for each in threading.enumerate() if each.name.startswith("busk")]
-    if running:
-        raise PartError(f"running threads: {', '.join(running)}")
+    check(not running, f"running threads: {', '.join(running)}")
     left = [each.name for each in Path(tempfile.gettempdir()).iterdir()]
     left += [str(each) for each in recovery_folder().rglob("*") if each.is_file()]
     left += [each.name for each in bench.folder.glob(".*")]

@@ -149,7 +149,7 @@ def test_the_run_lists_failures_and_draws_every_body(
 ) -> None:
     assert run_accuracy(folder, tmp_path / "out", json=False) == 3
     text = capsys.readouterr().out
-    assert "3 bodies: 1 read the right way round" in text
+    assert "3 bodies: 1 with correct orientation" in text
     assert "clean bodies (1) | degraded scans (2) |" in text
     assert "girth waist" in text
     assert "2 refused; 0 crashed" in text
@@ -169,7 +169,7 @@ def test_the_run_lists_failures_and_draws_every_body(
 def test_of_one_body_it_says_body(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write(folder, {"bodies": {"mannequin": {**TRUTH["mannequin"], "file": "mannequin.ply"}}})
     assert main(["accuracy", str(folder)]) == 0
-    assert "\n1 body: 1 read the right way round" in capsys.readouterr().out
+    assert "\n1 body: 1 with correct orientation" in capsys.readouterr().out
 
 
 def test_who_has_no_truth_is_sent_to_the_page_of_the_guide(tmp_path: Path) -> None:

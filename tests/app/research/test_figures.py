@@ -74,7 +74,7 @@ def test_the_meshes_are_drawn_and_counted(study: Study, tmp_path: Path) -> None:
 
 
 def test_a_figure_that_there_is_not_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(UserError, match="no figure 12"):
+    with pytest.raises(UserError, match="Unknown figure 12"):
         make_some(["12"], tmp_path)
     assert set(FIGURES) == set("123456789") | {"10"}
 
@@ -174,7 +174,7 @@ def test_the_command_draws_what_is_asked(tmp_path: Path, capsys: pytest.CaptureF
     assert sorted(path.name for path in tmp_path.iterdir()) == ["fig-3-person.csv", "fig-3-person.png"]
     assert "Fig. 3" in capsys.readouterr().out
     assert main(["figures", "--only", "12", "--out", str(tmp_path)]) == 2
-    assert "no figure 12" in capsys.readouterr().err
+    assert "Unknown figure 12" in capsys.readouterr().err
 
 
 def test_figures_need_no_window() -> None:
