@@ -111,7 +111,7 @@ def solver(bench: Bench) -> str:
     exact = solve(build(replace(bench.stages.design, volume="exact"), bench.stages))
     apart = float(np.abs(exact.control_points - solution.control_points).max())
     check(apart < 0.3, f"iterations and exact solution differ by {apart:.3f} mm")
-    converged = f"converged in {solution.last.turn} iterations, volume error {error:.3f} ml"
+    converged = f"converged in {solution.last.iteration} iterations, volume error {error:.3f} ml"
     return f"{converged}, {apart:.2f} mm from the exact solution"
 
 

@@ -117,7 +117,7 @@ class Bench:
         from core.document.storage.project_file import save_project  # noqa: PLC0415
 
         path = self.folder / "self-test \N{LATIN SMALL LETTER E WITH ACUTE} 試し.busk"
-        save_project(path, Document.of(self.stages.design), self.stages.scan, None)
+        save_project(path, Document.single(self.stages.design), self.stages.scan, None)
         return path
 
     def check_faults(self) -> None:
