@@ -21,7 +21,7 @@ sys.path.insert(0, str(ROOT))
 
 from PySide6.QtCore import QCoreApplication, QObject, QSettings, QTimer  # noqa: E402
 
-from app.gui.features.project.autosave import KeepingDesk  # noqa: E402
+from app.gui.features.project.autosave import AutosaveController  # noqa: E402
 from app.gui.session.session import Session  # noqa: E402
 from core.document.design import Design, ScanSource  # noqa: E402
 from core.document.document import Document  # noqa: E402
@@ -121,7 +121,7 @@ def work(folder: Path) -> None:
     session.frame = SimpleNamespace(stages=SimpleNamespace(scan=ScanFile("body.ply", SCAN)))
     chance, number = random.Random(), _last(folder / "journal")
     session.document = Document.single(Design(ScanSource("/scans/body.ply"), unknown={"n": number}))
-    desk = KeepingDesk(window)
+    desk = AutosaveController(window)
     session.design_changed.connect(desk.note)
     session.saved.connect(desk.show_saved)
     session.undo_stack.cleanChanged.connect(desk.note)

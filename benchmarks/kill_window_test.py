@@ -68,7 +68,7 @@ class Hand:
         elif what < 0.14:
             do.redo.trigger()
         elif what < 0.18:
-            self.window.variant_desk.segment.button(self.chance.choice("ABC")).click()
+            self.window.variants_controller.segment.button(self.chance.choice("ABC")).click()
         elif what < 0.20:
             do.save.trigger()
         else:
@@ -87,7 +87,7 @@ def work(folder: Path, body: Path) -> None:
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        hand, recovery = Hand(window, folder), window.recovery_desk
+        hand, recovery = Hand(window, folder), window.recovery_controller
         notice = window.notices.notice()
         hand.tell("safe", is_safe_mode())
         hand.tell("said", notice.sentence if notice is not None else "")

@@ -71,11 +71,11 @@ def even(window: MainWindow) -> None:
 def compared(window: MainWindow) -> None:
     """Compare with a scan that has the garment on, made by somewhat softer lines."""
     stages = window.session.frame.stages
-    window.worn_desk.show_page()
-    window.worn_desk.read(worn_scan(stages))
-    wait_for(lambda: window.worn_desk.worn is not None and not window.jobs.at_work())
+    window.scan_comparison_controller.show_page()
+    window.scan_comparison_controller.read(worn_scan(stages))
+    wait_for(lambda: window.scan_comparison_controller.worn is not None and not window.jobs.at_work())
     window.map_desk.choose("worn")
-    window.worn_desk.calibrate()
+    window.scan_comparison_controller.calibrate()
     wait_for(lambda: not window.jobs.at_work())
 
 

@@ -101,7 +101,7 @@ def printed_sheets() -> None:
     """Show the pages of a sheet as they are printed: 100 dots to an inch."""
     with settled_window(scenes.for_somebody()) as window:
         scenes.reported(window)
-        handout = window.report_desk.handout
+        handout = window.report_controller.handout
         assert handout is not None
         for name, language, page in (("sheet-1", "en", 0), ("sheet-2", "en", 1), ("sheet-1-ja", "ja", 0)):
             image = QImage(827, 1169, QImage.Format.Format_RGB32)

@@ -82,10 +82,10 @@ SCREENS: tuple[tuple[str, Callable[[], Design], Scene], ...] = (
     ("model", scenes.sliding, scenes.model_page),
     ("report", for_somebody, scenes.reported),
     ("export", made_of_elastics, sheet(scenes.exporting("lines"))),
-    ("elastics", made_of_elastics, sheet(lambda window: window.elastics_desk.show())),
+    ("elastics", made_of_elastics, sheet(lambda window: window.elastics_controller.show())),
     ("preferences", _mannequin, sheet(scenes.preferring)),
     ("commands", _mannequin, sheet(scenes.searched)),
-    ("keys", _mannequin, sheet(lambda window: window.help.show_keys())),
+    ("keys", _mannequin, sheet(lambda window: window.help_controller.show_keys())),
 )
 
 # Of README and of pages in one language.

@@ -15,7 +15,7 @@ from tempfile import TemporaryDirectory
 from PySide6.QtWidgets import QApplication, QDialog, QWidget
 
 from app.cli.commands.picture import wait_until
-from app.gui.features.help.command_palette import CommandSheet
+from app.gui.features.help.command_palette import CommandPalette
 from app.gui.features.project.recent_files import forget_file, recent_files
 from app.gui.main_window import MainWindow
 from app.gui.session.settings import wish_for
@@ -121,7 +121,7 @@ def tab(name: str, line: str = "") -> Scene:
         if line:
             window.selection.select_line(line)
         if name == "garment":
-            wait_for(lambda: window.pressure_desk.shown is not None)
+            wait_for(lambda: window.pressure_controller.shown is not None)
 
     return there
 
@@ -150,17 +150,17 @@ def pressed(window: MainWindow) -> None:
     """Look at the place that is pressed most."""
     window.navigation.show_step("result")
     window.navigation.show_panel("garment")
-    wait_for(lambda: window.pressure_desk.shown is not None)
+    wait_for(lambda: window.pressure_controller.shown is not None)
     view = window.view.viewport
     view.frame_points(view.scene.bands.spine("mid-bust")[0])
-    window.pressure_desk.card.place.click()
+    window.pressure_controller.card.place.click()
     window.selection.select_line("")
 
 
 def pressed_most(window: MainWindow) -> None:
     """Go to the place that is pressed most."""
     tab("garment")(window)
-    window.pressure_desk.card.place.click()
+    window.pressure_controller.card.place.click()
 
 
 def pin_selected(window: MainWindow) -> None:
@@ -172,10 +172,10 @@ def pin_selected(window: MainWindow) -> None:
 
 def variants(window: MainWindow) -> None:
     """Put two variants side by side."""
-    window.variant_desk.choose("B")
+    window.variants_controller.choose("B")
     window.lines_desk.commit_length("mid-bust", 0.9)
     wait_for(window.is_settled)
-    window.variant_desk.show_side_by_side()
+    window.variants_controller.show_side_by_side()
     window.navigation.show_panel("variants")
 
 
@@ -186,9 +186,9 @@ def start_page(window: MainWindow) -> None:
     for name, ratio in (("Customer 0398", 0.97), ("Customer 0412", 0.92)):
         window.lines_desk.commit_length("mid-bust", ratio)
         wait_for(window.is_settled)
-        window.session.save(str(Path(HOUSE.name) / f"{name}.busk"), window.desk._preview())
+        window.session.save(str(Path(HOUSE.name) / f"{name}.busk"), window.project_controller._preview())
         window.session.finish_saving()
-    window.start_desk.show_page()
+    window.start_controller.show_page()
 
 
 def drawing(window: MainWindow) -> None:
@@ -212,14 +212,14 @@ def asking(window: MainWindow) -> None:
 
 def reported(window: MainWindow) -> None:
     """Show the sheet to work from."""
-    window.report_desk.open()
-    wait_for(window.report_desk.page.does["pdf"].isEnabled)
+    window.report_controller.open()
+    wait_for(window.report_controller.page.does["pdf"].isEnabled)
 
 
 def touring(window: MainWindow) -> None:
     """Begin the tour."""
-    window.start_desk.take_tour()
-    wait_for(lambda: window.is_settled() and window.start_desk.tour.mark.isVisible())
+    window.start_controller.take_tour()
+    wait_for(lambda: window.is_settled() and window.start_controller.tour.mark.isVisible())
 
 
 def verdict(window: MainWindow) -> QWidget:
@@ -230,7 +230,7 @@ def verdict(window: MainWindow) -> QWidget:
 def preferring(window: MainWindow) -> None:
     """Open the preferences, the language of the window chosen."""
     wish_for("language", language())
-    window.preferences.show()
+    window.preferences_controller.show()
 
 
 def sheet(show: Callable[[MainWindow], object]) -> Scene:
@@ -247,8 +247,8 @@ def sheet(show: Callable[[MainWindow], object]) -> Scene:
 
 def searched(window: MainWindow) -> None:
     """Search the commands by a word of the trade."""
-    window.help.find_command()
-    found = next(each for each in window.findChildren(CommandSheet) if each.isVisible())
+    window.help_controller.find_command()
+    found = next(each for each in window.findChildren(CommandPalette) if each.isVisible())
     found.search.setText("カップ" if language() == "ja" else "lift")
 
 
@@ -256,7 +256,7 @@ def exporting(what: str) -> Callable[[MainWindow], None]:
     """Open the sheet of the export with one of its kinds chosen."""
 
     def there(window: MainWindow) -> None:
-        desk = window.export_desk
+        desk = window.export_controller
         desk.show()
         assert desk.sheet is not None
         desk.sheet.items[what].click()

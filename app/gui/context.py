@@ -33,6 +33,7 @@ class Navigation(QObject):
     page_shown = Signal(object)
     panel_focused = Signal()
     step_marked = Signal(str, str, int)
+    tool_started = Signal()
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -66,6 +67,10 @@ class Navigation(QObject):
     def focus_panel(self) -> None:
         """Move the keyboard focus to the panel that is shown."""
         self.panel_focused.emit()
+
+    def start_tool(self) -> None:
+        """Close every tool that takes the pointer in the view, before another one starts."""
+        self.tool_started.emit()
 
     def mark_step(self, step: str, state: str, count: int = 0) -> None:
         """Set the state of a step, one of ``app.gui.step_navigation.STATES``, and its count of issues."""

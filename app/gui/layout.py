@@ -9,11 +9,11 @@ from PySide6.QtCore import QEvent, QObject, QSettings, Qt, QTimer
 from PySide6.QtWidgets import QApplication, QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
 
 from app.gui.context import Navigation
-from app.gui.notification_area import NoticePlace
+from app.gui.notification_area import NotificationArea
 from app.gui.widgets.accessibility import announce
-from app.gui.widgets.basic import OverCard
+from app.gui.widgets.basic import OverlayCard
 from app.gui.widgets.focus_chain import FocusRing, next_stop, stops
-from app.gui.widgets.splitter import Divider
+from app.gui.widgets.splitter import Splitter
 from app.gui.widgets.window_geometry import put_as_last
 from app.i18n.catalog import language, tr
 
@@ -51,12 +51,12 @@ class Layout(QObject):
         self.closers: Sequence[Callable[[], bool]] = ()
         self._folded_as_low = False
         self.pages = QStackedWidget()
-        self._across = Divider(Qt.Orientation.Horizontal, tr("Width of the inspector"))
-        self._down = Divider(Qt.Orientation.Vertical, tr("Height of the live plot"))
+        self._across = Splitter(Qt.Orientation.Horizontal, tr("Width of the inspector"))
+        self._down = Splitter(Qt.Orientation.Vertical, tr("Height of the live plot"))
         self._middle, self._right = QVBoxLayout(), QVBoxLayout()
         self._ring = FocusRing(window)
         self._build()
-        self._notices = NoticePlace(window, self.pages, self._across, self._right)
+        self._notices = NotificationArea(window, self.pages, self._across, self._right)
         self._notices.carry()
         self._across.splitterMoved.connect(self._note_width)
         self._down.splitterMoved.connect(self._note_height)
@@ -185,9 +185,9 @@ class Layout(QObject):
             return True
         return any(close() for close in self.closers)
 
-    def _over(self) -> list[OverCard]:
+    def _over(self) -> list[OverlayCard]:
         """Return the cards that lie over the whole window."""
-        cards = self._window.findChildren(OverCard, options=Qt.FindChildOption.FindDirectChildrenOnly)
+        cards = self._window.findChildren(OverlayCard, options=Qt.FindChildOption.FindDirectChildrenOnly)
         return [card for card in cards if card.isVisible()]
 
     def _stops(self) -> list[QWidget]:

@@ -15,16 +15,17 @@ from PySide6.QtWidgets import (
 
 from app.gui.actions import Actions
 from app.gui.context import AppContext, Navigation, Selection
-from app.gui.features.diagnosis.controller import DoctorDesk
-from app.gui.features.diagnosis.step_badges import VerdictDesk
-from app.gui.features.export.controller import ExportDesk
-from app.gui.features.garment.controller import GarmentDesk
-from app.gui.features.garment.elastic_assignment import ElasticChoice
-from app.gui.features.garment.elastics_controller import ElasticsDesk
+from app.gui.features.convergence.controller import ConvergenceController
+from app.gui.features.diagnosis.assessment import AssessmentController
+from app.gui.features.diagnosis.controller import DiagnosisController
+from app.gui.features.export.controller import ExportController
+from app.gui.features.garment.controller import GarmentController
+from app.gui.features.garment.elastic_assignment import ElasticAssignmentController
+from app.gui.features.garment.elastics_controller import ElasticsController
 from app.gui.features.garment.panel import GarmentPanel
-from app.gui.features.garment.pressure_controller import PressureDesk
-from app.gui.features.help.controller import HelpDesk
-from app.gui.features.help.crash_handler import Rescue
+from app.gui.features.garment.pressure_controller import PressureController
+from app.gui.features.help.controller import HelpController
+from app.gui.features.help.crash_handler import CrashHandler
 from app.gui.features.help.safe_mode import SafeMode
 from app.gui.features.landmarks.controller import LandmarkDesk
 from app.gui.features.landmarks.panel import LandmarksPanel
@@ -37,51 +38,51 @@ from app.gui.features.lines.panel import LinesPanel
 from app.gui.features.lines.path_tool import LineRouting
 from app.gui.features.lines.presets import PresetDesk
 from app.gui.features.maps.controller import MapDesk
-from app.gui.features.measurements.controller import MeasuresDesk
-from app.gui.features.measurements.custom_measures import OwnMeasuresDesk
+from app.gui.features.measurements.controller import MeasurementsController
+from app.gui.features.measurements.custom_measures import CustomMeasuresController
 from app.gui.features.measurements.panel import ResultPanel
 from app.gui.features.model.controller import ModelController
-from app.gui.features.model.panel import ModelDoor, ModelPanel
-from app.gui.features.preferences.controller import PreferencesDesk
-from app.gui.features.project.autosave import KeepingDesk
+from app.gui.features.model.panel import ModelPanel, ModelRow
+from app.gui.features.preferences.controller import PreferencesController
+from app.gui.features.project.autosave import AutosaveController
 from app.gui.features.project.controller import ProjectController
-from app.gui.features.project.opening import OpeningDesk
-from app.gui.features.project.recovery import RecoveryDesk
-from app.gui.features.project.start_controller import StartDesk
-from app.gui.features.report.controller import ReportDesk
+from app.gui.features.project.recovery import RecoveryController
+from app.gui.features.project.start_controller import StartController
+from app.gui.features.report.controller import ReportController
 from app.gui.features.scan.controller import ScanDesk
 from app.gui.features.scan.panel import ScanPanel
-from app.gui.features.scan_comparison.controller import WornDesk
+from app.gui.features.scan_comparison.controller import ScanComparisonController
 from app.gui.features.sections.controller import SectionDesk
 from app.gui.features.symmetry.controller import SymmetryController
 from app.gui.features.target_shape.controller import AskDesk
 from app.gui.features.uncertainty.controller import UncertaintyController
-from app.gui.features.variants.controller import VariantDesk
-from app.gui.features.variants.history_controller import HistoryDesk
+from app.gui.features.variants.controller import VariantsController
+from app.gui.features.variants.history_controller import HistoryController
 from app.gui.features.variants.history_panel import HistoryPanel
 from app.gui.features.variants.panel import VariantsPanel
-from app.gui.features.variants.table import VariantFigures
+from app.gui.features.variants.table import VariantTableController
+from app.gui.features.view.controller import ViewController
+from app.gui.features.view.image_export import ImageExportController
 from app.gui.frame_dispatch import FrameDispatch, ThrottledDispatch
 from app.gui.inspector import Inspector
 from app.gui.layout import Layout
-from app.gui.plots.controller import PlotDesk
-from app.gui.plots.convergence_panel import Strip
-from app.gui.progress_controller import JobDesk
-from app.gui.session.gc_control import Housekeeping
+from app.gui.plots.convergence_panel import ConvergencePanel
+from app.gui.progress_controller import ProgressController
+from app.gui.session.gc_control import GarbageCollection
 from app.gui.session.jobs import Jobs
 from app.gui.session.notifications import Notifications
 from app.gui.session.session import Session
+from app.gui.shortcuts import keys_of_parts
 from app.gui.status_bar import StatusBar
-from app.gui.step_navigation import Rail
-from app.gui.title_bar import TopBar
-from app.gui.viewport.controller import ViewDesk
-from app.gui.viewport.image_export import PictureDesk
+from app.gui.step_navigation import StepNavigation
+from app.gui.title_bar import TitleBar
+from app.gui.tour import Tour
 from app.gui.viewport.view_area import ViewArea
-from app.gui.widgets.basic import OverCard
+from app.gui.widgets.basic import OverlayCard
 from app.gui.widgets.coach_mark import CoachMark
 from app.gui.widgets.first_paint import lay_out
-from app.gui.widgets.navigation_row import Door
-from app.gui.widgets.notification_bar import NoticeBar
+from app.gui.widgets.navigation_row import NavigationRow
+from app.gui.widgets.notification_bar import NotificationBar
 from app.gui.wiring import connect
 from app.i18n.catalog import tr
 from app.presenters.status import facts
@@ -107,12 +108,17 @@ class MainWindow(QMainWindow):
         self.undo_group.addStack(session.undo_stack)
         self.undo_group.setActiveStack(session.undo_stack)
         do = self.actions_ = Actions(self, self.undo_group, self.view.tool_actions)
-        self.top = TopBar(do.bar, do.undo, do.redo, do.export_any)
-        self.rail, self.notices, self.strip, self.status = Rail(), NoticeBar(), Strip(), StatusBar()
+        self.top = TitleBar(do.bar, do.undo, do.redo, do.export_any)
+        self.rail, self.notices, self.strip, self.status = (
+            StepNavigation(),
+            NotificationBar(),
+            ConvergencePanel(),
+            StatusBar(),
+        )
         self.scan, self.landmarks = ScanPanel(), LandmarksPanel()
         self.lines, self.result, self.garment = LinesPanel(), ResultPanel(), GarmentPanel()
-        self.model, self.door = ModelPanel(), ModelDoor()
-        self.ask_door = Door(
+        self.model, self.door = ModelPanel(), ModelRow()
+        self.ask_door = NavigationRow(
             tr("Ask for the result"), tr("Say where the bust is to be; Busk finds the lengths")
         )
         self.history, self.variants, self.inspector = HistoryPanel(), VariantsPanel(), Inspector()
@@ -134,47 +140,107 @@ class MainWindow(QMainWindow):
         self.project_controller.show_title()
 
     def _make_desks(self) -> None:
-        self.job_desk, self.limits_desk = JobDesk(self), LimitsDesk(self)
+        self.job_desk, self.limits_desk = (
+            ProgressController(self.context, self.notices, self.status),
+            LimitsDesk(self),
+        )
         self.landmark_desk, self.scan_desk = LandmarkDesk(self), ScanDesk(self)
-        self.verdict_desk, self.doctor_desk = VerdictDesk(self), DoctorDesk(self)
-        self.project_controller = ProjectController(
-            self.context, lambda frame: self.verdict_desk.of(frame).level
-        )
+        context = self.context
+        self.pressure_controller = PressureController(context, self.garment)
+        self.assessment_controller = AssessmentController(context, self.pressure_controller)
+        self.diagnosis_controller = DiagnosisController(context, self.assessment_controller.of)
+        self.project_controller = ProjectController(context, self.assessment_controller.level_of)
         self.model_controller = ModelController(self.context, self.model, self.door)
-        self.keeping_desk, self.recovery_desk = KeepingDesk(self), RecoveryDesk(self)
-        self.history_desk, self.variant_desk = HistoryDesk(self, self.history), VariantDesk(self)
-        self.variant_figures = VariantFigures(self, self.variants)
-        self.measures_desk = MeasuresDesk(self, self.result)
-        self.uncertainty_controller = UncertaintyController(
-            self.context, self.result, lambda: self.section_desk.is_on or self.report_desk.is_open
-        )
-        self.own_measures_desk = OwnMeasuresDesk(self, self.result)
-        self.symmetry_controller = SymmetryController(
-            self.context, self.result, self.uncertainty_controller.of
-        )
-        self.worn_desk = WornDesk(self, self.result)
-        self.result.feet.addWidget(self.uncertainty_controller.card)
-        self.result.cards.addWidget(self.symmetry_controller.card)
-        self.inspector.add("worn", self.worn_desk.page)
-        self.pressure_desk = PressureDesk(self, self.garment)
+        project = self.project_controller
+        self.autosave_controller = AutosaveController(context, project)
+        self.recovery_controller = RecoveryController(context, project, self.autosave_controller)
+        self._make_variants()
+        self._make_result()
         self.map_desk, self.section_desk = MapDesk(self), SectionDesk(self)
-        self.start_desk, self.plot_desk = StartDesk(self), PlotDesk(self)
-        self.opening_desk = OpeningDesk(self)
-        self.picture_desk, self.export_desk = PictureDesk(self), ExportDesk(self)
-        self.report_desk = ReportDesk(self)
-        for page in (self.start_desk.page, self.report_desk.page):
+        self.start_controller = StartController(context, project, Tour(self), self._is_incomplete)
+        self.convergence_controller = ConvergenceController(context, self.strip)
+        self.image_export_controller = ImageExportController(context)
+        self.export_controller = ExportController(context, self.assessment_controller.of)
+        self.report_controller = ReportController(context, self.uncertainty_controller.on_sheet)
+        self.top.add_primary(self.report_controller.action)
+        for page in (self.start_controller.page, self.report_controller.page):
             self.pages.addWidget(page)
         self.lines_desk, self.line_maker = LinesDesk(self), LineMaker(self)
         self.line_drawing, self.line_routing = LineDrawing(self), LineRouting(self)
         self.preset_desk, self.band_pull = PresetDesk(self), BandPull(self)
-        self.garment_desk, self.elastic_choice = GarmentDesk(self, self.garment), ElasticChoice(self)
-        self.elastics_desk, self.ask_desk = ElasticsDesk(self), AskDesk(self)
-        self.help = HelpDesk(self)
-        self.preferences = PreferencesDesk(self)
-        self.rescuer = Rescue(self)
-        self.view_desk = ViewDesk(self)
-        self.project_controller.pending += [self.landmark_desk.put_down, self.report_desk.page.tell_name]
-        self.housekeeping = Housekeeping(self)
+        self.garment_controller = GarmentController(
+            context, self.garment, lambda: self.pressure_controller.shown
+        )
+        self.elastic_assignment_controller = ElasticAssignmentController(context, self.garment)
+        self.elastics_controller = ElasticsController(context, self.garment)
+        self.ask_desk = AskDesk(self)
+        self.job_desk.carriers += [
+            self.landmark_desk,
+            self.band_pull,
+            self.section_desk,
+            self.ask_desk.handles,
+        ]
+        self._make_help()
+        self.preferences_controller = PreferencesController(context, project.may_leave)
+        self.rail.add_tool("gear-six", self.preferences_controller.open)
+        self.crash_handler = CrashHandler(context, self.rescue)
+        self.view_controller = ViewController(context, self.variants_controller.show_side_by_side)
+        project.pending += [self.landmark_desk.put_down, self.report_controller.page.tell_name]
+        self.housekeeping = GarbageCollection(self)
+
+    def _is_incomplete(self) -> bool:
+        """Return whether a scan is shown that cannot go on."""
+        return self.scan_desk.stuck is not None
+
+    def _make_help(self) -> None:
+        """Make the help, with its buttons below the steps."""
+        parts = {
+            "steps": self.rail,
+            "view": self.view,
+            "section": self.section_desk.panel,
+            "report": self.report_controller.page,
+            "convergence": self.strip,
+            "notifications": self.notices,
+            "scan": self.scan,
+            "landmarks": self.landmarks,
+            "lines": self.lines,
+            "result": self.result,
+            "garment": self.garment,
+            "model": self.model,
+        }
+        pages = {self.report_controller.page: "report", self.start_controller.page: ""}
+        help_ = self.help_controller = HelpController(self.context, parts, keys_of_parts, pages)
+        self.rail.add_tool("search", help_.palette)
+        tool = self.rail.add_tool("question", help_.menu)
+        help_.menu.triggered.connect(lambda: help_.show_menu(tool))
+
+    def _make_variants(self) -> None:
+        """Make what compares variants and goes back to former results."""
+        context, assess = self.context, self.assessment_controller.of
+        self.history_controller = HistoryController(context, self.history, assess)
+        self.variants_controller = VariantsController(context, assess)
+        self.top.place(self.variants_controller.segment)
+        self.top.place(self.variants_controller.button)
+        self.variant_table_controller = VariantTableController(
+            context, self.variants, self.variants_controller, self.pressure_controller.of, assess
+        )
+
+    def _make_result(self) -> None:
+        """Make what is shown at the step Result, in the panel of measures and in its place."""
+        context, panel = self.context, self.result
+        self.uncertainty_controller = UncertaintyController(
+            context, panel, lambda: self.section_desk.is_on or self.report_controller.is_open
+        )
+        self.measurements_controller = MeasurementsController(
+            context, panel, lambda: self.uncertainty_controller.shown
+        )
+        self.custom_measures_controller = CustomMeasuresController(context, panel)
+        self.symmetry_controller = SymmetryController(context, panel, self.uncertainty_controller.of)
+        self.scan_comparison_controller = ScanComparisonController(context)
+        panel.feet.addWidget(self.uncertainty_controller.card)
+        panel.cards.addWidget(self.symmetry_controller.card)
+        panel.doors.addWidget(self.scan_comparison_controller.door)
+        self.inspector.add("worn", self.scan_comparison_controller.page)
 
     def _dispatch(self) -> None:
         """State in which order a frame, and a document that was opened, reach their receivers."""
@@ -183,32 +249,32 @@ class MainWindow(QMainWindow):
                 self.model_controller.show_frame,
                 self.lines_desk.show_frame,
                 self._show_status,
-                self.verdict_desk.show_frame,
-                self.plot_desk.show_frame,
-                self.measures_desk.show_frame,
+                self.assessment_controller.show_frame,
+                self.convergence_controller.show_frame,
+                self.measurements_controller.show_frame,
             ],
             self,
         )
         self.frames = FrameDispatch(
             [
                 self.limits_desk.follow,
-                self.doctor_desk.follow,
+                self.diagnosis_controller.follow,
                 self.landmark_desk.follow,
                 self.notifications.show_frame,
                 self.scan_desk.show_frame,
                 self.view.show_frame,
                 self.throttled.show_frame,
-                lambda _: self.pressure_desk.follow(),
+                lambda _: self.pressure_controller.follow(),
                 lambda _: self.symmetry_controller.follow(),
-                lambda _: self.worn_desk.follow(),
+                lambda _: self.scan_comparison_controller.follow(),
                 lambda _: self.uncertainty_controller.follow(),
-                self.export_desk.show_frame,
-                lambda _: self.report_desk.follow(),
-                self.garment_desk.follow,
-                lambda _: self.history_desk.note(),
-                lambda _: self.variant_figures.follow(),
-                lambda _: self.opening_desk.follow(),
-                self.plot_desk.mark_edit,
+                self.export_controller.show_frame,
+                lambda _: self.report_controller.follow(),
+                self.garment_controller.follow,
+                lambda _: self.history_controller.note(),
+                lambda _: self.variant_table_controller.follow(),
+                lambda _: self.project_controller.follow_opening(),
+                self.convergence_controller.mark_edit,
                 # What the view shows of a frame is there before it is coloured and cut.
                 lambda _: self.map_desk.follow(),
                 lambda _: self.section_desk.follow(),
@@ -219,20 +285,20 @@ class MainWindow(QMainWindow):
             [
                 self.project_controller.show_opened,
                 self.scan_desk.show_opened,
-                lambda _: self.report_desk.forget(),
-                lambda _: self.garment_desk.forget(),
-                lambda _: self.keeping_desk.show_opened(),
-                lambda _: self.recovery_desk.show_opened(),
-                lambda _: self.history_desk.show_opened(),
-                lambda _: self.variant_desk.close_side_by_side(),
-                lambda _: self.start_desk.show_opened(),
+                lambda _: self.report_controller.forget(),
+                lambda _: self.garment_controller.forget(),
+                lambda _: self.autosave_controller.show_opened(),
+                lambda _: self.recovery_controller.show_opened(),
+                lambda _: self.history_controller.show_opened(),
+                lambda _: self.variants_controller.close_side_by_side(),
+                lambda _: self.start_controller.show_opened(),
             ],
             self,
         )
         self.session.frame_ready.connect(self.frames.show_frame)
         self.session.opened.connect(self.opened.show_frame)
         self.layout_.closers = (
-            self.report_desk.close,
+            self.report_controller.close,
             self.ask_desk.leave,
             self._close_panel,
             self.view.close_comparison,
@@ -245,7 +311,7 @@ class MainWindow(QMainWindow):
 
     def _close_panel(self) -> bool:
         """Leave a panel that takes the place of another one; returns whether one did."""
-        panels = {"model": self.model.left, "worn": self.worn_desk.page.left}
+        panels = {"model": self.model.left, "worn": self.scan_comparison_controller.page.closed}
         left = panels.get(self.navigation.panel)
         if left is not None:
             left.emit()
@@ -253,8 +319,8 @@ class MainWindow(QMainWindow):
 
     def _show_page(self, page: QWidget | None) -> None:
         """Highlight no step and offer no variants where the start page hides what they are about."""
-        at_start = page is self.start_desk.page
-        self.variant_desk.set_shown(not at_start)
+        at_start = page is self.start_controller.page
+        self.variants_controller.set_shown(not at_start)
         self.rail.set_current("" if at_start else self.navigation.step)
 
     def _fill_inspector(self) -> None:
@@ -289,15 +355,15 @@ class MainWindow(QMainWindow):
 
     def tell_graphics(self, why: str) -> None:
         """Say once why the view is drawn safely, if it is, and notice when it has been drawn."""
-        self.safe_mode = SafeMode(self, why)
+        self.safe_mode = SafeMode(self.context, why)
 
     def rescue(self) -> str:
         """Keep the design aside after a fault; returns where, or an empty text if it was not kept."""
-        return self.keeping_desk.rescue()
+        return self.autosave_controller.rescue()
 
     def end(self) -> None:
         """Close without a question; what is not saved stays where it is kept aside, for the next start."""
-        self.keeping_desk.leaves = True
+        self.autosave_controller.leaves = True
         self.close()
 
     def focusNextPrevChild(self, next: bool) -> bool:  # noqa: N802
@@ -316,7 +382,7 @@ class MainWindow(QMainWindow):
         return super().event(event)
 
     def _has_card(self) -> bool:
-        cards = self.findChildren(OverCard)
+        cards = self.findChildren(OverlayCard)
         return any(card.isVisible() and not isinstance(card, CoachMark) for card in cards)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
@@ -342,19 +408,19 @@ class MainWindow(QMainWindow):
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
         """Ask about changes; then solver, background work and 3D view end before the window does."""
-        if not self.keeping_desk.leaves and not self.project_controller.may_leave():
+        if not self.autosave_controller.leaves and not self.project_controller.may_leave():
             event.ignore()
             return
         self.layout_.keep()
         # The solver may be in the middle of reading a scan: nobody has to watch the window wait for it.
         self.hide()
         self.throttled.close()
-        self.history_desk.close()
-        self.recovery_desk.close()
+        self.history_controller.close()
+        self.recovery_controller.close()
         self.jobs.close()
         self.session.close()
-        self.keeping_desk.close()
+        self.autosave_controller.close()
         self.view.close_view()
         self.housekeeping.close()
-        self.rescuer.close()
+        self.crash_handler.close()
         event.accept()

@@ -17,7 +17,7 @@ _LEAST = 440
 """Width that notices need beside the tools at the upper edge of the view [px]."""
 
 
-class NoticePlace(QObject):
+class NotificationArea(QObject):
     """Keeps the notices on what is shown; on the view they never change its size."""
 
     def __init__(self, window: MainWindow, pages: QStackedWidget, work: QWidget, head: QVBoxLayout) -> None:

@@ -1,4 +1,4 @@
-"""What the window does about work that takes its time: it names it, shows how far it is, lets go of it."""
+"""Work that takes time: named, with its progress, and cancelled."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Protocol
 
 from PySide6.QtCore import QObject
 
+from app.gui.status_bar import StatusBar
+from app.gui.widgets.notification_bar import NotificationBar
 from app.presenters.scan import work_steps, work_words
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
     from app.gui.session.jobs import Job
 
 AGE = 0.3
@@ -19,7 +21,7 @@ AGE = 0.3
 
 
 class Carrier(Protocol):
-    """A desk whose things a hand carries over the body."""
+    """A controller whose things are dragged over the body."""
 
     @property
     def carries(self) -> bool:
@@ -31,14 +33,23 @@ class Carrier(Protocol):
         ...
 
 
-class JobDesk(QObject):
-    """Shows the work in hand: what the solver's thread reads and builds, else the first of the jobs."""
+class ProgressController(QObject):
+    """Show what the solver's thread reads and builds, else the first of the jobs.
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window = window
-        self._session = window.session
+    While one of ``carriers`` carries something, nothing is waited for, and notifications are hidden.
+    """
+
+    def __init__(self, context: AppContext, bar: NotificationBar, status: StatusBar) -> None:
+        super().__init__(context.session)
+        self._context, self._session = context, context.session
+        self._bar, self._status = bar, status
         self._built = ("", 1.0)
+        self.carriers: list[Carrier] = []
+        context.session.working.connect(self.show_work)
+        context.jobs.changed.connect(self.show)
+        context.view.busy.cancelled.connect(self.cancel)
+        context.actions.cancel.triggered.connect(self.cancel)
+        status.job_cancelled.connect(self.cancel)
 
     def show_work(self, what: str, share: float) -> None:
         """Name what is read or built, and how much of it is done; an empty name ends it."""
@@ -49,9 +60,8 @@ class JobDesk(QObject):
 
     def show(self) -> None:
         """Show the work that the user waits for, with a card, else a job beside it in the status bar."""
-        window = self._window
         # While a hand carries something the model follows all the time: that is no work to wait for.
-        carried = any(desk.carries for desk in self._carriers())
+        carried = any(desk.carries for desk in self.carriers)
         words, share = ("", 1.0) if carried else self._built
         job = None if words else self._shown_job()
         waited = bool(words) or (job is not None and job.waited)
@@ -59,27 +69,23 @@ class JobDesk(QObject):
         shown: float | None = share
         if job is not None:
             words, shown = job.words, job.share
-        window.notices.set_aside(carried)
-        window.status.set_job(words, shown)
+        self._bar.set_aside(carried)
+        self._status.set_job(words, shown)
         at_once = bool(steps and self._session.opening)
-        window.view.busy.show_work(words if waited else "", shown, steps, at_once)
-        window.actions_.cancel.setEnabled(waited or carried)
+        self._context.view.busy.show_work(words if waited else "", shown, steps, at_once)
+        self._context.actions.cancel.setEnabled(waited or carried)
 
     def cancel(self) -> None:
         """Let go of what a hand carries, else of the work that is shown; all is as it was before."""
-        if any(desk.let_go() for desk in self._carriers()):
+        if any(desk.let_go() for desk in self.carriers):
             return
         if self._built[0]:
             self._session.cancel()
             self.show_work("", 1.0)
         else:
-            self._window.jobs.leave(self._shown_job())
-
-    def _carriers(self) -> tuple[Carrier, ...]:
-        window = self._window
-        return window.landmark_desk, window.band_pull, window.section_desk, window.ask_desk.handles
+            self._context.jobs.leave(self._shown_job())
 
     def _shown_job(self) -> Job | None:
         now = time.monotonic()
-        jobs = self._window.jobs.at_work()
+        jobs = self._context.jobs.at_work()
         return next((job for job in jobs if job.waited or now - job.began > AGE), None)

@@ -42,13 +42,13 @@ def run_window(file: str | None = None, safe: bool = False) -> int:
         window = make_window()
         window.tell_graphics(why)
         if what is None:
-            window.start_desk.show_page()
+            window.start_controller.show_page()
         window.layout_.restore()
         when_painted(window, partial(_go_on, window, what))
         window.show()
-        window.recovery_desk.look()
+        window.recovery_controller.look()
         if first:
-            window.start_desk.tour.begin_when_settled()
+            window.start_controller.tour.begin_when_settled()
         code = _run(app, window)
         hand_files_to(None)
         graphics_work()
@@ -59,7 +59,7 @@ def run_window(file: str | None = None, safe: bool = False) -> int:
 
 def _run(app: QApplication, window: MainWindow) -> int:
     """Run the event loop until the window is closed or a signal ends the program; returns the exit code."""
-    termination = Termination(window)
+    termination = Termination(window.session, window.project_controller.complete_edits, window.rescue)
     code = app.exec()
     termination.close()
     if termination.code:
@@ -76,14 +76,14 @@ def _go_on(window: MainWindow, what: str | Design | None) -> None:
     """Do what takes long, now that the window is there: read the body, load the 3D libraries."""
     _open(window, what)
     hand_files_to(window.project_controller.open_file)
-    window.view.prepare(window.housekeeping.spare, window.rescuer.note)
+    window.view.prepare(window.housekeeping.spare, window.crash_handler.note)
 
 
 def open_window(what: str | Design | None) -> MainWindow:
     """Return a window, not shown yet, that is opening a file or a design, or has the start page."""
     window = make_window()
     if what is None:
-        window.start_desk.show_page()
+        window.start_controller.show_page()
     _open(window, what)
     return window
 

@@ -20,7 +20,7 @@ STATES = ("missing", "available", "done", "look", "bad")
 """A step has nothing to show yet, can be entered, is done, wants to be looked at, or shows no result."""
 
 
-class Rail(QWidget):
+class StepNavigation(QWidget):
     """The four steps; none is ever locked, a missing one says what it waits for."""
 
     step_chosen = Signal(str)
@@ -33,9 +33,9 @@ class Rail(QWidget):
         self._column.setSpacing(2)
         group = self._group = QButtonGroup(self)
         titles = (tr("Scan"), tr("Landmarks"), tr("Lines"), tr("Result"))
-        self.items: dict[str, RailItem] = {}
+        self.items: dict[str, StepButton] = {}
         for number, (step, title) in enumerate(zip(STEP_ICONS, titles, strict=True), start=1):
-            item = RailItem(step, title, QKeySequence(f"Ctrl+{number}"))
+            item = StepButton(step, title, QKeySequence(f"Ctrl+{number}"))
             item.clicked.connect(lambda _=False, chosen=step: self.step_chosen.emit(chosen))
             group.addButton(item)
             self._column.addWidget(item)
@@ -68,7 +68,7 @@ class Rail(QWidget):
         painter.fillRect(self.width() - 1, 0, 1, self.height(), QColor(tokens_of(self).line))
 
 
-class RailItem(QAbstractButton):
+class StepButton(QAbstractButton):
     """One step: its drawing, its name, and a badge when it is done or wants a look."""
 
     def __init__(self, step: str, title: str, key: QKeySequence) -> None:

@@ -13,7 +13,7 @@ from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 
 
-class TopBar(QWidget):
+class TitleBar(QWidget):
     """Word mark and menus on the left, the title in the middle, what is always wanted on the right."""
 
     def __init__(self, menu: QMenuBar, undo: QAction, redo: QAction, export: QAction) -> None:

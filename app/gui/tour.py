@@ -95,7 +95,7 @@ class Tour(QObject):
         self._window.navigation.show_step("lines")
         self._window.strip.set_folded(False)
         if stop.report:
-            self._window.report_desk.open()
+            self._window.report_controller.open()
         self.mark.show_step(self._place, len(stops), stop.title, stop.words)
         self._point()
         self.mark.setFocus(Qt.FocusReason.OtherFocusReason)
@@ -159,7 +159,7 @@ class Tour(QObject):
                     "The verdict, the lift and what to cut, with pictures: print it or save it as a PDF. "
                     "Esc returns to the body."
                 ),
-                lambda: self._place_of(self._window.report_desk.page.does["pdf"]),
+                lambda: self._place_of(self._window.report_controller.page.does["pdf"]),
                 report=True,
             ),
         )
@@ -170,8 +170,8 @@ class Tour(QObject):
         """Return what the card must not cover."""
         window = self._window
         notices = [self._place_of(window.notices)] if window.notices.isVisible() else []
-        if window.report_desk.is_open:
-            page = window.report_desk.page
+        if window.report_controller.is_open:
+            page = window.report_controller.page
             return [*notices, self._place_of(page.paper), *map(self._place_of, page.does.values())]
         beside = [self._place_of(each) for each in (window.rail, window.inspector) if each.isVisible()]
         return [*notices, *beside, self._bust_place(), self._verdict_place()]

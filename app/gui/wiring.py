@@ -21,18 +21,11 @@ def connect(window: MainWindow) -> None:
     _connect_start(window)
     _connect_project(window)
     _connect_safe(window)
-    _connect_plots(window)
     _connect_maps(window)
 
 
 def _connect_work(window: MainWindow) -> None:
-    job_desk = window.job_desk
-    window.session.working.connect(job_desk.show_work)
     window.lines_desk.leeways = window.limits_desk.leeways
-    window.jobs.changed.connect(job_desk.show)
-    window.view.busy.cancelled.connect(job_desk.cancel)
-    window.status.job_cancelled.connect(job_desk.cancel)
-    window.actions_.cancel.triggered.connect(job_desk.cancel)
 
 
 def _connect_landmarks(window: MainWindow) -> None:
@@ -52,24 +45,23 @@ def _connect_landmarks(window: MainWindow) -> None:
 
 def _connect_session(window: MainWindow) -> None:
     session, scan_desk = window.session, window.scan_desk
-    session.design_changed.connect(lambda *_: window.worn_desk.follow())
-    session.failed.connect(lambda *_: window.pressure_desk.found.emit())
     uncertainty, symmetry, result = window.uncertainty_controller, window.symmetry_controller, window.result
-    uncertainty.changed.connect(window.measures_desk.show_spread)
+    uncertainty.changed.connect(window.measurements_controller.show_spread)
     uncertainty.changed.connect(window.section_desk.show_spread)
-    uncertainty.changed.connect(window.report_desk.follow)
+    uncertainty.changed.connect(window.report_controller.follow)
     uncertainty.changed.connect(symmetry.follow)
     uncertainty.summarized.connect(result.show_summary)
     result.summary_clicked.connect(lambda: result.bring(uncertainty.card))
     result.opened.connect(uncertainty.follow)
     result.opened.connect(symmetry.open)
+    window.custom_measures_controller.tried.connect(window.measurements_controller.try_out)
+    window.assessment_controller.assessed.connect(window.strip.set_verdict)
+    window.strip.why_asked.connect(window.diagnosis_controller.ask)
+    window.lines.elastic_asked.connect(window.elastic_assignment_controller.show)
     symmetry.targets_proposed.connect(window.ask_desk.begin)
     symmetry.map_asked.connect(window.map_desk.choose)
-    window.report_desk.action.triggered.connect(window.uncertainty_controller.follow)
-    session.design_changed.connect(lambda *_: window.report_desk.follow())
-    session.failed.connect(lambda *_: window.report_desk.follow())
+    window.report_controller.action.triggered.connect(window.uncertainty_controller.follow)
     session.failed.connect(lambda _: window.throttled.repeat() if session.failure is not None else None)
-    session.failed.connect(window.doctor_desk.refuse)
     session.failed.connect(scan_desk.show_refused)
     session.asked.connect(scan_desk.show_stuck)
 
@@ -78,30 +70,19 @@ def _connect_project(window: MainWindow) -> None:
     project = window.project_controller
     project.titled.connect(window.show_title)
     project.save_state.connect(window.status.set_saved)
+    project.opening.connect(window.lines.show_opening)
 
 
 def _connect_safe(window: MainWindow) -> None:
-    session, safe, history = window.session, window.keeping_desk, window.history_desk
-    stack = session.undo_stack
-    stack.indexChanged.connect(lambda _: forget_refused())
-    session.saved.connect(safe.show_saved)
-    session.design_changed.connect(safe.note)
-    session.design_changed.connect(history.show_snapshots)
-    session.design_changed.connect(window.variant_desk.show_variants)
-    for changed in (session.design_changed, window.variant_desk.solved):
-        changed.connect(lambda *_: window.variant_figures.follow())
-    window.pressure_desk.found.connect(window.verdict_desk.refresh)
-    window.pressure_desk.found.connect(window.variant_figures.follow)
-    stack.cleanChanged.connect(safe.note)
-    stack.indexChanged.connect(history.show_edits)
-    window.history.jumped.connect(history.jump)
-    window.history.restored.connect(history.restore)
+    window.session.undo_stack.indexChanged.connect(lambda _: forget_refused())
+    window.pressure_controller.changed.connect(window.assessment_controller.refresh)
+    window.pressure_controller.changed.connect(window.variant_table_controller.follow)
 
 
 def _connect_panels(window: MainWindow) -> None:
     session, project, scan_desk = window.session, window.project_controller, window.scan_desk
     window.lines.opened.connect(window.lines_desk.show_rows)
-    window.pressure_desk.found.connect(window.lines_desk.show_rows)
+    window.pressure_controller.changed.connect(window.lines_desk.show_rows)
     window.lines.length_previewed.connect(session.preview_line)
     window.lines.length_committed.connect(window.lines_desk.commit_length)
     window.lines.drag_cancelled.connect(lambda _: session.cancel_preview())
@@ -109,7 +90,6 @@ def _connect_panels(window: MainWindow) -> None:
     window.lines.visibility_changed.connect(window.lines_desk.set_visible)
     window.lines.decided.connect(window.lines_desk.decide)
     window.lines.reset_all.connect(session.reset_lines)
-    window.strip.control_chosen.connect(session.choose_control)
     window.lines.add_asked.connect(window.line_maker.show_menu)
     window.lines.presets_asked.connect(window.preset_desk.show_menu)
     window.lines.draw_asked.connect(window.line_drawing.begin)
@@ -125,27 +105,8 @@ def _connect_panels(window: MainWindow) -> None:
 
 
 def _connect_start(window: MainWindow) -> None:
-    session, project, start = window.session, window.project_controller, window.start_desk
-    for changed in (session.working, session.failed, session.asked):
-        changed.connect(lambda *_: window.opening_desk.follow())
-    session.working.connect(start.show_work)
-    session.failed.connect(start.show_failure)
-    session.asked.connect(start.leave_page)
-    start.page.open_asked.connect(project.open)
-    start.page.sample_asked.connect(project.open_sample)
-    start.page.tour_asked.connect(start.take_tour)
-    start.page.guide_asked.connect(window.help.show_first_steps)
-    start.page.project_chosen.connect(project.open_file)
-    start.page.locate_asked.connect(start.locate)
-    start.page.forget_asked.connect(start.forget)
-    start.page.left.connect(start.leave_page)
-
-
-def _connect_plots(window: MainWindow) -> None:
-    plots = window.plot_desk
-    window.strip.export_asked.connect(plots.export)
-    window.strip.quantity_chosen.connect(plots.keep_quantity)
-    plots.slow.toggled.connect(plots.set_slow)
+    window.lines_page.currentChanged.connect(lambda at: window.recovery_controller.set_aside(at > 0))
+    window.start_controller.page.guide_asked.connect(window.help_controller.show_first_steps)
 
 
 def _connect_view(window: MainWindow) -> None:
@@ -162,7 +123,6 @@ def _connect_view(window: MainWindow) -> None:
     view.tools.view_chosen.connect(view.viewport.set_view)
     view.tools.fit_asked.connect(view.viewport.frame_all)
     view.tools.toggled.connect(view.set_layer)
-    view.tools.picture_asked.connect(window.picture_desk.save)
     view.compare.way_chosen.connect(view.compare_by)
     view.compare.toggled.connect(view.set_layer)
 
@@ -175,7 +135,12 @@ def _connect_maps(window: MainWindow) -> None:
     tools["section"].triggered.connect(section.set_on)
     maps.changed.connect(section.refresh)
     maps.changed.connect(lambda: window.symmetry_controller.show_map(maps.name))
-    maps.changed.connect(window.worn_desk.follow)
+    maps.changed.connect(lambda: window.scan_comparison_controller.show_map(maps.name))
+    maps.changed.connect(lambda: window.view_controller.show_map(maps.name))
+    window.scan_comparison_controller.map_asked.connect(maps.choose)
+    window.view_controller.map_chosen.connect(maps.choose)
+    window.view_controller.material_shown.connect(maps.refresh)
+    window.preferences_controller.material_chosen.connect(window.view_controller.choose_material)
     window.symmetry_controller.changed.connect(maps.refresh)
     window.landmarks.landmark_selected.connect(section.follow_landmark)
     view.viewport.pin_pressed.connect(section.follow_landmark)
@@ -187,22 +152,13 @@ def _connect_maps(window: MainWindow) -> None:
 
 def _connect_actions(window: MainWindow) -> None:
     session, do = window.session, window.actions_
-    do.export.triggered.connect(window.export_desk.export_body)
-    do.export_any.triggered.connect(window.export_desk.show)
     do.quit.triggered.connect(window.close)
     do.reset.triggered.connect(session.reset_lines)
     _connect_layout(window)
-    do.strip.toggled.connect(lambda on: window.strip.set_folded(not on))
-    window.strip.folded.connect(lambda folded: do.strip.setChecked(not folded))
     do.draw_line.triggered.connect(window.line_drawing.begin)
     do.own_line.triggered.connect(window.line_maker.ask)
-    for group, ask in (
-        (do.add_lines, window.line_maker.add),
-        (do.themes, lambda theme: window.preferences.choose("theme", theme)),
-        (do.languages, lambda language: window.preferences.choose("language", language)),
-    ):
-        for name, action in group.items():
-            action.triggered.connect(lambda _=False, ask=ask, name=name: ask(name))
+    for name, action in do.add_lines.items():
+        action.triggered.connect(lambda _=False, name=name: window.line_maker.add(name))
 
 
 def _connect_layout(window: MainWindow) -> None:

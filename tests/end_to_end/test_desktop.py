@@ -15,12 +15,12 @@ from PySide6.QtWidgets import QApplication, QWidget
 from window_tools import Script, drag, run_main, settled, undrawn
 
 from app.gui.application import log_folder
-from app.gui.features.help.about import AboutSheet, DiagnosticsSheet
-from app.gui.features.help.command_palette import CommandSheet
-from app.gui.features.help.crash_dialog import FaultSheet
-from app.gui.features.preferences.dialog import PreferencesSheet
+from app.gui.features.help.about import AboutDialog, DiagnosticsDialog
+from app.gui.features.help.command_palette import CommandPalette
+from app.gui.features.help.crash_dialog import CrashDialog
+from app.gui.features.preferences.dialog import PreferencesDialog
 from app.gui.main_window import MainWindow
-from app.gui.widgets.dialog import Sheet
+from app.gui.widgets.dialog import Dialog
 from app.gui.widgets.splitter import STEP
 from app.rendering.palette import DARK
 from core.document.storage.backups import backups_folder
@@ -29,7 +29,7 @@ from core.document.storage.recovery import recovery_folder
 pytestmark = pytest.mark.usefixtures("empty_house")
 
 
-def sheet_of(window: MainWindow, kind: type[Sheet]) -> Sheet:
+def sheet_of(window: MainWindow, kind: type[Dialog]) -> Dialog:
     return next(each for each in window.findChildren(kind) if each.isVisible())
 
 
@@ -40,14 +40,14 @@ def test_help_finds_keys_commands_versions_and_licences() -> None:
         window.activateWindow()
         yield window.isActiveWindow
         QTest.keyClick(window, Qt.Key.Key_K, Qt.KeyboardModifier.ControlModifier)
-        found = sheet_of(window, CommandSheet)
-        assert isinstance(found, CommandSheet)
+        found = sheet_of(window, CommandPalette)
+        assert isinstance(found, CommandPalette)
         found.search.setText("no such thing")
         assert found.list.chosen() is None
         found.search.setText("環境設定")  # Japanese in the English window
         QTest.keyClick(found.search, Qt.Key.Key_Return)
-        preferences = sheet_of(window, PreferencesSheet)
-        assert isinstance(preferences, PreferencesSheet)
+        preferences = sheet_of(window, PreferencesDialog)
+        assert isinstance(preferences, PreferencesDialog)
         preferences.fields["theme"].chosen.emit("dark")
         assert window.palette().window().color().name().upper() == DARK.panel
         preferences.fields["autosave"].chosen.emit(2.0)
@@ -57,9 +57,9 @@ def test_help_finds_keys_commands_versions_and_licences() -> None:
         preferences.fields["mouse"].chosen.emit("blender")
         preferences.accept()
         the_hand_of_another_program_is_understood(window)
-        window.help.show_keys()
-        keys = sheet_of(window, CommandSheet)
-        assert isinstance(keys, CommandSheet)
+        window.help_controller.show_keys()
+        keys = sheet_of(window, CommandPalette)
+        assert isinstance(keys, CommandPalette)
         said = {
             keys.list.topLevelItem(row).text(2): keys.list.topLevelItem(row).text(0)
             for row in range(keys.list.topLevelItemCount())
@@ -71,18 +71,18 @@ def test_help_finds_keys_commands_versions_and_licences() -> None:
         keys.accept()
         recovery_folder().mkdir(parents=True, exist_ok=True)
         shutil.rmtree(backups_folder(), ignore_errors=True)
-        window.help.show_machine()
-        machine = sheet_of(window, DiagnosticsSheet)
-        assert isinstance(machine, DiagnosticsSheet)
+        window.help_controller.show_machine()
+        machine = sheet_of(window, DiagnosticsDialog)
+        assert isinstance(machine, DiagnosticsDialog)
         machine.copy.click()
         copied = QGuiApplication.clipboard().text()
         assert "vtk" in copied
         assert "Renderer" in copied or "OpenGL" in copied
         the_folders_are_named_and_opened(window, machine, copied)
         machine.accept()
-        window.help.show_about()
-        about = sheet_of(window, AboutSheet)
-        assert isinstance(about, AboutSheet)
+        window.help_controller.show_about()
+        about = sheet_of(window, AboutDialog)
+        assert isinstance(about, AboutDialog)
         texts = [about.texts.widget(place).toPlainText() for place in range(about.texts.count())]
         assert ["Apache License" in texts[0], "shiboken6" in texts[1], "SIL OPEN FONT" in texts[2]] == [
             True
@@ -92,7 +92,7 @@ def test_help_finds_keys_commands_versions_and_licences() -> None:
     run_main([], script)
 
 
-def the_folders_are_named_and_opened(window: MainWindow, sheet: DiagnosticsSheet, said: str) -> None:
+def the_folders_are_named_and_opened(window: MainWindow, sheet: DiagnosticsDialog, said: str) -> None:
     assert all(str(each()) in said for each in (log_folder, recovery_folder, backups_folder))
     asked: list[str] = []
     with pytest.MonkeyPatch.context() as patch:
@@ -207,7 +207,7 @@ def test_a_fault_is_told_once_and_the_work_goes_on(monkeypatch: pytest.MonkeyPat
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        monkeypatch.setattr(window, "rescue", lambda: rescued.append(1) or "/a/safe/place")
+        monkeypatch.setattr(window.crash_handler, "_rescue", lambda: rescued.append(1) or "/a/safe/place")
         storm = QTimer(window, interval=0)
         storm.timeout.connect(lambda: {}["nothing"])
         storm.start()
@@ -215,12 +215,15 @@ def test_a_fault_is_told_once_and_the_work_goes_on(monkeypatch: pytest.MonkeyPat
         thread.start()
         thread.join()
         yield (
-            lambda: window.rescuer.sheet is not None and "ZeroDivisionError" in window.rescuer.sheet.report()
+            lambda: (
+                window.crash_handler.sheet is not None
+                and "ZeroDivisionError" in window.crash_handler.sheet.report()
+            )
         )
         for _ in range(20):
             QApplication.processEvents()
         storm.stop()
-        sheets = window.findChildren(FaultSheet)
+        sheets = window.findChildren(CrashDialog)
         assert len(sheets) == 1
         assert len(rescued) == 1
         assert "/a/safe/place" in sheets[0].said.text()

@@ -12,14 +12,14 @@ from window_tools import Script, run_main, run_undrawn, settled, undrawn
 import app.gui.features.garment.pressure_controller
 from app.gui.features.diagnosis.controller import ABOUT
 from app.gui.main_window import MainWindow
-from app.gui.widgets.notification_bar import REFUSED, Notice
+from app.gui.widgets.notification_bar import REFUSED, Notification
 from app.presenters.assessment import tone
 from core.garment.pressure_list import pressure_list
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
 
-def notice_of(window: MainWindow) -> Notice:
+def notice_of(window: MainWindow) -> Notification:
     notice = window.notices.notice()
     assert notice is not None
     return notice
@@ -28,7 +28,7 @@ def notice_of(window: MainWindow) -> Notice:
 def told(window: MainWindow) -> bool:
     """Whether the doctor has said what he found: then there are figures to unfold."""
     notice = window.notices.notice()
-    return notice is not None and bool(notice.details) and window.doctor_desk._job is None
+    return notice is not None and bool(notice.details) and window.diagnosis_controller._job is None
 
 
 def words(window: MainWindow) -> list[str]:
@@ -78,13 +78,13 @@ def test_strain_is_told_calmly_once_and_never_again() -> None:
         yield settled(window)
         window.session.preview_line("mid-bust", 0.9)
         yield lambda: window.session.frame is not None and not window.session.frame.is_running
-        assert not window.doctor_desk._later.isActive(), "while a hand drags nothing is said"
+        assert not window.diagnosis_controller._later.isActive(), "while a hand drags nothing is said"
         window.lines_desk.commit_length("mid-bust", 0.9)
         yield settled(window)
         assert window.notices.notice() is None
-        assert window.doctor_desk._later.isActive(), "who is still at work hears nothing"
+        assert window.diagnosis_controller._later.isActive(), "who is still at work hears nothing"
         yield lambda: told(window)
-        overall = window.verdict_desk.of(window.session.frame)
+        overall = window.assessment_controller.of(window.session.frame)
         assert notice_of(window).tone == tone(overall.level), "not calm beside a red verdict"
         assert not notice_of(window).lasting
         assert words(window)[0].startswith("Lengthen Mid-bust by ")
@@ -93,8 +93,8 @@ def test_strain_is_told_calmly_once_and_never_again() -> None:
         yield settled(window)
         window.actions_.undo.trigger()
         yield settled(window)
-        assert not window.doctor_desk._later.isActive()
-        window.doctor_desk.ask()
+        assert not window.diagnosis_controller._later.isActive()
+        window.diagnosis_controller.ask()
         yield lambda: told(window)
         window.notices._buttons[0].click()
         yield settled(window)
@@ -135,7 +135,7 @@ def test_asked_of_a_calm_design_he_says_that_nothing_is_wrong() -> None:
         (command,) = (each for _, each in window.actions_.all() if each.text() == "What is wrong here?")
         command.trigger()
         yield lambda: told(window)
-        overall = window.verdict_desk.of(window.session.frame)
+        overall = window.assessment_controller.of(window.session.frame)
         assert notice_of(window).tone == tone(overall.level)
         for message, _ in overall.reasons:
             assert message in notice_of(window).sentence, "it contradicts the verdict nowhere"
@@ -159,12 +159,12 @@ def test_asked_before_the_verdict_is_known_he_says_what_presses(monkeypatch: pyt
         window.lines_desk.commit_length("mid-bust", 0.93)
         yield settled(window)
         frame = window.session.frame
-        assert window.verdict_desk.of(frame).level == "pending"
-        window.doctor_desk.ask()
+        assert window.assessment_controller.of(frame).level == "pending"
+        window.diagnosis_controller.ask()
         yield lambda: told(window)
         asked.append((notice_of(window).tone, notice_of(window).sentence))
         known.set()
-        yield lambda: window.verdict_desk.of(frame).level == "bad"
+        yield lambda: window.assessment_controller.of(frame).level == "bad"
 
     try:
         run_undrawn([], script)
@@ -180,11 +180,11 @@ def test_what_is_asked_before_the_first_frame_is_answered_with_it() -> None:
         yield settled(window)
         window.lines_desk.commit_length("mid-bust", 0.97)
         assert not window.session.is_answered
-        window.doctor_desk.ask()
+        window.diagnosis_controller.ask()
         yield settled(window)
         yield lambda: told(window)
         assert notice_of(window).lasting
-        assert window.doctor_desk._about is window.session.design
+        assert window.diagnosis_controller._about is window.session.design
 
     run_undrawn([], script)
 
@@ -200,9 +200,9 @@ def test_what_was_closed_stays_away_until_something_else_is_wrong() -> None:
         window.lines_desk.commit_length("mid-bust", 0.705)
         yield settled(window)
         assert window.session.frame.verdict.display_state == state  # type: ignore[union-attr]
-        yield lambda: window.doctor_desk._job is None
+        yield lambda: window.diagnosis_controller._job is None
         assert window.notices.notice() is None
-        window.doctor_desk.ask()
+        window.diagnosis_controller.ask()
         yield lambda: told(window)
         window.notices.close_notice()
         window.lines_desk.commit_length("mid-bust", 0.97)
@@ -233,8 +233,8 @@ def test_what_was_edited_meanwhile_is_not_told_of() -> None:
         undrawn(window)
         yield settled(window)
         window.lines_desk.commit_length("mid-bust", 0.6)
-        yield lambda: window.doctor_desk._job is not None
-        job = window.doctor_desk._job
+        yield lambda: window.diagnosis_controller._job is not None
+        job = window.diagnosis_controller._job
         assert notice_of(window).sentence.startswith("The skin folds over")
         window.lines_desk.commit_length("mid-bust", 0.96)
         yield settled(window)
@@ -265,7 +265,7 @@ def test_the_pill_opens_what_the_button_ends_and_what_will_still_be_strained() -
         QTest.keyClick(chip, Qt.Key.Key_Space)
         yield lambda: told(window)
         notice = notice_of(window)
-        level = window.verdict_desk.of(window.session.frame).level
+        level = window.assessment_controller.of(window.session.frame).level
         assert (notice.tone, notice.lasting) == (tone(level), True), "who asks is not hurried"
         assert "pull against each other: skin is pressed" in notice.sentence
         assert "apart in what they do to the skin" in notice.details.splitlines()[0]

@@ -21,13 +21,13 @@ from app.cli.environment import is_seen_in_window, path_of, set_up_streams
 from app.cli.main import BAD_INPUT, INTERRUPTED, main
 from app.gui.application import Application, hand_files_to
 from app.gui.main_window import MainWindow
-from app.gui.widgets.notification_bar import NoticeBar
+from app.gui.widgets.notification_bar import NotificationBar
 
 ROOT = Path(__file__).parents[2]
 
 
 def said_by(window: MainWindow) -> str:
-    notice = window.findChild(NoticeBar).notice()
+    notice = window.findChild(NotificationBar).notice()
     return "" if notice is None else f"{notice.sentence} {notice.hint}"
 
 
@@ -79,7 +79,7 @@ def test_a_double_click_on_what_cannot_be_opened_is_answered_in_the_window(
     monkeypatch.setattr("app.cli.main.is_seen_in_window", lambda _: True)
 
     def script(window: MainWindow) -> Script:
-        yield lambda: window.start_desk.page.isVisible() and bool(said_by(window))
+        yield lambda: window.start_controller.page.isVisible() and bool(said_by(window))
         heard.append(said_by(window))
 
     heard: list[str] = []

@@ -17,7 +17,7 @@ from window_tools import Script, run_main, settled, undrawn
 
 import app.gui.features.export.controller
 import app.rendering.offscreen
-from app.gui.features.export.dialog import ExportSheet
+from app.gui.features.export.dialog import ExportDialog
 from app.gui.main_window import MainWindow
 from app.presenters.export import exports
 
@@ -38,7 +38,7 @@ def test_a_body_is_exported_by_keys_alone_in_the_unit_that_was_chosen(
         QTest.keyClick(
             window, Qt.Key.Key_E, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier
         )
-        yield lambda: isinstance(QApplication.activeModalWidget(), ExportSheet)
+        yield lambda: isinstance(QApplication.activeModalWidget(), ExportDialog)
         sheet: Any = QApplication.activeModalWidget()
         yield told(sheet)
         assert sheet._contents.text() == "32,873 points, 65,742 triangles, in m, y-up"
@@ -87,7 +87,7 @@ def test_choices_are_remembered_for_each_thing_and_each_format(tmp_path: Path) -
     def again(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        choices = window.export_desk._choices
+        choices = window.export_controller._choices
         sheet = opened(window)
         assert sheet.items["body"].isChecked()
         assert choices.values("body") == {"format": "obj", "shape": "", "unit": "mm", "axes": "y-up"}

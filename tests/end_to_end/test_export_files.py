@@ -128,7 +128,7 @@ def test_a_full_disk_leaves_what_stood_there_and_is_told(
         yield settled(window)
         sheet = opened(window, what)
         yield told(sheet)
-        path = tmp_path / f"a.{window.export_desk._choices.kind(what)}"
+        path = tmp_path / f"a.{window.export_controller._choices.kind(what)}"
         path.write_text("what stood there")
         saved_as(monkeypatch, path)
         monkeypatch.setattr(os, "fsync", full)
@@ -210,7 +210,7 @@ def test_two_exports_do_not_share_a_name(tmp_path: Path, monkeypatch: pytest.Mon
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        desk = window.export_desk
+        desk = window.export_controller
         assert desk._ask_and_write("body", "body")
         assert desk._ask_and_write("control", "control") is None
         assert window.notices.notice().sentence == "anna.obj is still being written."

@@ -13,11 +13,11 @@ from PySide6.QtWidgets import QPushButton, QWidget
 from pytestqt.qtbot import QtBot
 from window_tools import Script, run_main
 
+from app.gui.features.view import image_export as picture_desk
+from app.gui.features.view.image_export import fitted
 from app.gui.main_window import MainWindow
-from app.gui.viewport import image_export as picture_desk
 from app.gui.viewport import screenshot as fine_picture
-from app.gui.viewport.image_export import fitted
-from app.gui.viewport.split_handle import WipeHandle
+from app.gui.viewport.split_handle import SplitHandle
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -44,7 +44,7 @@ def test_pictures_are_fine_and_leave_by_three_ways(tmp_path: Path, monkeypatch: 
 
     def script(window: MainWindow) -> Script:
         yield lambda: window.is_settled() and window.view.is_shaded
-        window.start_desk.tour.end()
+        window.start_controller.tour.end()
         view = window.view
         room, size = view.panes.size(), view.panes.size() * view.devicePixelRatioF()
         view.tools.actions_by_name["picture"].trigger()
@@ -61,7 +61,7 @@ def test_pictures_are_fine_and_leave_by_three_ways(tmp_path: Path, monkeypatch: 
         action.trigger()
         window.notices.clear()
         assert np.array_equal(pixels(QGuiApplication.clipboard().image()), pixels(QImage(str(saved))))
-        window.picture_desk.print_out()
+        window.image_export_controller.print_out()
         assert paper.read_bytes().startswith(b"%PDF")
         assert paper.stat().st_size > 20_000
         a_map_takes_its_legend_along(window)
@@ -114,7 +114,7 @@ def test_a_picture_is_as_large_as_the_page() -> None:
 
 
 def test_a_wiped_picture_has_the_border_and_no_knob(qtbot: QtBot) -> None:
-    handle = WipeHandle(room := QWidget())
+    handle = SplitHandle(room := QWidget())
     qtbot.addWidget(room)
     handle.resize(handle.width(), 120)
 
@@ -133,7 +133,7 @@ def test_a_wiped_picture_has_the_border_and_no_knob(qtbot: QtBot) -> None:
 
 def test_the_knob_of_a_wipe_is_out_while_a_picture_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
     said: list[bool] = []
-    monkeypatch.setattr(WipeHandle, "set_bare", lambda _, bare: said.append(bare))
+    monkeypatch.setattr(SplitHandle, "set_bare", lambda _, bare: said.append(bare))
 
     def script(window: MainWindow) -> Script:
         yield window.is_settled

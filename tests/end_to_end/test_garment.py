@@ -12,9 +12,9 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
 from window_tools import Script, run_undrawn, settled
 
+from app.gui import file_export as tables
 from app.gui.features.garment.elastic_assignment import LIFT_TOLD
 from app.gui.main_window import MainWindow
-from app.gui.widgets import table_export as tables
 from app.i18n.catalog import number
 from app.presenters.bust_shift import bust_shift
 from core.garment.elastic_options import FIRST_STRETCH, KEEP_CUT

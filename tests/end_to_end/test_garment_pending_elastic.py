@@ -34,7 +34,7 @@ def take(window: MainWindow, line: str) -> None:
     """Choose an elastic for a line before its effect is known."""
     design = window.session.design
     assert design is not None
-    window.elastic_choice.choose(design.linked_pair(line), find_elastic("strap 15"))
+    window.elastic_assignment_controller.choose(design.linked(line), find_elastic("strap 15"))
 
 
 def test_an_elastic_goes_to_no_other_variant_and_to_no_other_document(gate: threading.Event) -> None:
@@ -43,7 +43,7 @@ def test_an_elastic_goes_to_no_other_variant_and_to_no_other_document(gate: thre
         window.navigation.show_panel("garment")
         take(window, "mid-bust")
         assert window.jobs.at_work()
-        window.variant_desk.choose("B")
+        window.variants_controller.choose("B")
         gate.set()
         yield at_rest(window)
         document = window.session.document

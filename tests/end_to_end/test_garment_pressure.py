@@ -133,10 +133,10 @@ def test_variants_side_by_side_are_pressed_in_one_range(asked: list[float]) -> N
         yield settled(window)
         wear(window)
         yield settled(window)
-        window.variant_desk.choose("B")
+        window.variants_controller.choose("B")
         window.session.commit_line("mid-bust", "Mid-bust", 0.7)
         yield settled(window)
-        window.variant_desk.show_side_by_side()
+        window.variants_controller.show_side_by_side()
         yield lambda: len(window.view.beside.bodies) == 2
         window.map_desk.choose("pressure")
         yield lambda: all(window.map_desk._on_bands[view].values for view in window.view.beside.bodies)
@@ -162,7 +162,7 @@ def test_beside_the_cut_list_stands_what_each_line_presses_with(asked: list[floa
         window.navigation.show_panel("history")
         wear(window)
         yield settled(window)
-        desk, panel, card = window.pressure_desk, window.garment, window.pressure_desk.card
+        desk, panel, card = window.pressure_controller, window.garment, window.pressure_controller.card
         yield lambda: asked == [0.95, 0.8]
         window.navigation.show_step("result")
         window.navigation.show_panel("garment")
@@ -251,7 +251,7 @@ def a_click_turns_to_the_place(window: MainWindow, listed: PressureList) -> Scri
     view, (row,) = window.view.viewport, listed.rows
     view.set_view("back")
     place = np.array(row.place)
-    QTest.mouseClick(window.pressure_desk.card.place, Qt.MouseButton.LeftButton)
+    QTest.mouseClick(window.pressure_controller.card.place, Qt.MouseButton.LeftButton)
     yield lambda: bool(window.map_desk.flags.flags)
     assert window.map_desk.name == "pressure"
     (flag,) = window.map_desk.flags.flags
@@ -261,7 +261,7 @@ def a_click_turns_to_the_place(window: MainWindow, listed: PressureList) -> Scri
     x, y, *_ = view.scene.view.to_picture(place[None], view.width(), view.height())[0]
     assert 0 < x < view.width()
     assert 0 < y < view.height()
-    QTest.mouseClick(window.pressure_desk.card.place, Qt.MouseButton.LeftButton)
+    QTest.mouseClick(window.pressure_controller.card.place, Qt.MouseButton.LeftButton)
     assert len(window.map_desk.flags.flags) == 1, "it is pinned already"
     window.map_desk.choose("")
 
@@ -277,13 +277,13 @@ def test_pressures_that_cannot_be_computed_are_no_reason_to_wait(monkeypatch: py
         drag(window, "mid-bust", -10)
         yield settled(window)
         yield lambda: window.notices.notice() is not None
-        view = window.verdict_desk.of(window.session.frame)
+        view = window.assessment_controller.of(window.session.frame)
         assert (view.level, view.waiting) == ("caution", "")
         assert view.first.startswith("The contact pressure was not computed.")
         assert window.rail.items["result"].state() == "look"
         monkeypatch.setattr(desk_module, "pressure_list", pressing)
         drag(window, "mid-bust", -10)
         yield settled(window)
-        yield lambda: window.verdict_desk.of(window.session.frame).level == "bad"
+        yield lambda: window.assessment_controller.of(window.session.frame).level == "bad"
 
     run_undrawn([], script)

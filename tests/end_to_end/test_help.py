@@ -58,9 +58,9 @@ def go_everywhere(window: MainWindow) -> None:
     window.actions_.guide.trigger()
     window.model_controller.show()
     window.actions_.guide.trigger()
-    window.report_desk.open()
+    window.report_controller.open()
     window.actions_.guide.trigger()
-    window.start_desk.show_page()
+    window.start_controller.show_page()
     window.actions_.guide.trigger()
 
 
@@ -68,7 +68,7 @@ def test_f1_opens_the_page_that_fits_what_is_being_done(opened: list[str]) -> No
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield window.is_settled
-        window.start_desk.tour.end()
+        window.start_controller.tour.end()
         go_everywhere(window)
         assert opened == [
             *("how-to/open-scan", "how-to/landmarks", "how-to/lines", "how-to/measurements"),
@@ -80,7 +80,9 @@ def test_f1_opens_the_page_that_fits_what_is_being_done(opened: list[str]) -> No
         QTest.keyClick(window, Qt.Key.Key_F1)
         assert opened == ["index"]
         begin = next(
-            each for each in window.start_desk.page.findChildren(QPushButton) if "ten minutes" in each.text()
+            each
+            for each in window.start_controller.page.findChildren(QPushButton)
+            if "ten minutes" in each.text()
         )
         begin.click()
         assert opened == ["index", "tutorial/quick-start"]

@@ -10,7 +10,7 @@ import pytest
 from PySide6.QtWidgets import QLabel
 from window_tools import PATIENCE, Script, run_main, settled, undrawn
 
-from app.gui.features.diagnosis import step_badges as verdict_desk
+from app.gui.features.diagnosis import assessment as verdict_desk
 from app.gui.features.garment import pressure_controller as pressure_desk
 from app.gui.features.measurements import controller as measures_desk
 from app.gui.features.measurements import custom_measures as own_measures_desk
@@ -66,28 +66,28 @@ def test_what_is_stopped_says_so_and_is_worked_out_when_it_is_looked_at_again(ga
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.report_desk.open()
+        window.report_controller.open()
         stop(window, "Making the sheet")
-        state = window.report_desk.page.state
+        state = window.report_controller.page.state
         assert state.text() == "Stopped: the sheet is made when you open it again."
-        window.report_desk.leave()
+        window.report_controller.leave()
         window.navigation.show_panel("garment")
         stop(window, "Working out the pressure")
         assert window.notices.notice().sentence == "Stopped: Working out the pressure"
         yield lambda: window.strip.chip.state() != "pending"  # nothing is computed any more
         assert "pressure was not computed" in window.strip._hint.text()
-        assert "was not computed" in window.pressure_desk.card.says.text()
+        assert "was not computed" in window.pressure_controller.card.says.text()
         window.navigation.show_step("result")
         stop(window, "Measuring the body")
         assert window.result._waiting.text().startswith("Stopped")
         gate.set()
         window.navigation.show_step("lines")
         window.navigation.show_panel("garment")
-        yield lambda: window.pressure_desk.shown is not None
+        yield lambda: window.pressure_controller.shown is not None
         window.navigation.show_step("result")
         yield lambda: bool(window.result.measured) and not window.result.stale
-        window.report_desk.open()
-        yield window.report_desk.page.does["pdf"].isEnabled
+        window.report_controller.open()
+        yield window.report_controller.page.does["pdf"].isEnabled
 
     run_gated(gate, script)
 
@@ -96,7 +96,7 @@ def test_a_measure_of_ones_own_that_is_stopped_is_measured_at_the_next_change(ga
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.own_measures_desk.action.trigger()
+        window.custom_measures_controller.action.trigger()
         stop(window, "Measuring the body")
         form = window.result.editor
         for name in ("bust_point_left", "front_centre"):
@@ -105,7 +105,7 @@ def test_a_measure_of_ones_own_that_is_stopped_is_measured_at_the_next_change(ga
         assert form.doubt.text().startswith("Stopped")
         gate.set()
         form.show_draft(form.draft)
-        window.own_measures_desk._follow()
+        window.custom_measures_controller._follow()
         yield lambda: bool(form.value.text())
 
     run_gated(gate, script)
@@ -126,8 +126,8 @@ def test_what_fails_is_told_and_waits_no_longer(monkeypatch: pytest.MonkeyPatch)
         yield lambda: window.result._waiting.text() == "The body could not be measured."
         assert "inside Busk" in window.notices.notice().sentence
         yield lambda: "pressure was not computed" in window.strip._hint.text()
-        window.report_desk.open()
-        yield lambda: window.report_desk.page.state.text() == "The sheet could not be made."
+        window.report_controller.open()
+        yield lambda: window.report_controller.page.state.text() == "The sheet could not be made."
 
     run_main([], script)
 

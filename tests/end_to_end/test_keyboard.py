@@ -24,7 +24,7 @@ def begun(window: MainWindow) -> Script:
     """Wait until the sample stands in an active window."""
     undrawn(window)
     yield settled(window)
-    window.start_desk.tour.end()
+    window.start_controller.tour.end()
     window.activateWindow()
     yield window.isActiveWindow
 
@@ -70,7 +70,7 @@ def test_a_card_over_the_window_takes_the_keyboard_and_goes_by_esc_or_once_somet
 ) -> None:
     def script(window: MainWindow) -> Script:
         yield from begun(window)
-        desk, let_go = window.recovery_desk, []
+        desk, let_go = window.recovery_controller, []
         monkeypatch.setattr(desk, "_offers", [(object(), _Left(let_go))])
         desk.card.offer(RecoveryView("anna", "today", QImage()))
         assert desk.card.take.hasFocus()

@@ -9,8 +9,8 @@ from PySide6.QtWidgets import QApplication
 from window_tools import Script, drag, run_main, settled, undrawn
 
 from app.gui.main_window import MainWindow
-from app.gui.session.document_editor import Editing
-from app.gui.widgets.notification_bar import Notice
+from app.gui.session.document_editor import DocumentEditor
+from app.gui.widgets.notification_bar import Notification
 from app.presenters.lines import titled
 from core.analysis.length_limits.zones import LengthLimits, Reason, Zone
 from core.document.design import Design, ScanSource
@@ -229,13 +229,13 @@ def a_preset_that_leads_lines_otherwise_says_so_and_can_be_taken_back(window: Ma
         session.undo_stack.undo()
 
 
-def _notice(window: MainWindow) -> Notice:
+def _notice(window: MainWindow) -> Notification:
     notice = window.notices.notice()
     assert notice is not None
     return notice
 
 
-class _Editing(Editing):
+class _Editing(DocumentEditor):
     """Editing that solves nothing."""
 
     def __init__(self, design: Design) -> None:

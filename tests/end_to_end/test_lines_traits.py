@@ -61,6 +61,6 @@ def test_the_plots_stay_when_a_line_is_renamed_locked_or_undone() -> None:
         frame = window.session.frame
         assert frame is not None
         assert {control: len(records) for control, records in frame.tracks.items()} == turns
-        assert len(window.plot_desk._events) == 1, "only what acts has a mark on the axis"
+        assert len(window.convergence_controller._events) == 1, "only what acts has a mark on the axis"
 
     assert run_main([], script) == 0

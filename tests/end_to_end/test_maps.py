@@ -95,10 +95,10 @@ def what_is_pinned_stays_when_the_map_changes(window: MainWindow) -> None:
 
 
 def the_zero_of_a_map_is_the_material(window: MainWindow) -> None:
-    window.view_desk.choose_material("graphite")
+    window.view_controller.choose_material("graphite")
     stops = window.map_desk.legend.bar._stops
     assert stops[len(stops) // 2] == appearance_of(window.view.viewport.scene.dark, "graphite").clay
-    window.view_desk.choose_material("clay")
+    window.view_controller.choose_material("clay")
 
 
 def the_sides_at_rest_are_worked_out_once(window: MainWindow) -> None:

@@ -43,9 +43,9 @@ def test_the_legend_goes_from_where_it_covers_what_it_explains() -> None:
         maps.choose("pull")
         maps._place.choose()
         assert not covers(window, floating.seen(legend))
-        window.variant_desk.choose("B")
+        window.variants_controller.choose("B")
         yield settled(window)
-        window.variant_desk.show_side_by_side()
+        window.variants_controller.show_side_by_side()
         yield lambda: len(window.view.beside.bodies) == 2
         window.selection.select_line("full-bust")
         legend.set_size("full")

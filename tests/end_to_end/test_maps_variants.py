@@ -16,12 +16,12 @@ def test_variants_side_by_side_are_all_coloured_in_one_range() -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.variant_desk.choose("B")
+        window.variants_controller.choose("B")
         yield settled(window)
         window.lines_desk.commit_length("mid-bust", 0.9)
         yield settled(window)
         view, maps = window.view, window.map_desk
-        window.variant_desk.show_side_by_side()
+        window.variants_controller.show_side_by_side()
         yield lambda: len(view.beside.bodies) == 2
         clay = [colours(body.viewport.scene) for body in view.beside.bodies]
         maps.choose("displacement")

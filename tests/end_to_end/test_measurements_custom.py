@@ -12,10 +12,10 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 from window_tools import Script, run_main, settled, undrawn
 
+from app.gui import file_export as tables
 from app.gui.features.measurements.table import MeasureTable
 from app.gui.main_window import MainWindow
-from app.gui.widgets import table_export as tables
-from app.gui.widgets.landmark_combo import MarkField
+from app.gui.widgets.landmark_combo import LandmarkCombo
 from core.document.custom_measures import CustomMeasurement
 from core.measurements.table import before_after
 from tests.end_to_end.test_accessibility import shortcomings
@@ -30,7 +30,7 @@ def begun(window: MainWindow) -> Script:
     """Open the window on the sample, and its form for a measure."""
     undrawn(window)
     yield settled(window)
-    window.own_measures_desk.action.trigger()
+    window.custom_measures_controller.action.trigger()
     assert window.result.editing
 
 
@@ -119,7 +119,7 @@ def test_a_landmark_that_is_chosen_is_not_moved_and_a_second_click_gives_it_up()
         QTest.keyClick(window.view.viewport, KEY.Key_Escape)
         assert not window.result.editing
         assert not window.view.viewport.overlay.pins, "the pins went with the form"
-        window.own_measures_desk.begin()
+        window.custom_measures_controller.begin()
         window.rail.setFocus()
         yield lambda: not window.jobs.at_work()  # which Esc would end first
         for _ in range(2):  # the tour of the first start lies over it
@@ -152,7 +152,7 @@ def test_a_girth_lies_where_the_skin_is_clicked_or_off_a_landmark() -> None:
         height = f"{level.level:.0f} mm above the lowest point of the scan"
         assert height in view.tip
         assert height in level.text, "the command line says the same"
-        window.own_measures_desk.begin()
+        window.custom_measures_controller.begin()
         form.kind.button("girth").click()
         form.at.chosen.emit("fold_left")
         typed(form.level, "-30")
@@ -259,7 +259,7 @@ def all_have_a_name_and_room(window: MainWindow) -> Script:
     assert not set(shortcomings(window))
 
 
-def choose(field: MarkField, turn: int) -> None:
+def choose(field: LandmarkCombo, turn: int) -> None:
     """Open the menu of a field by the keyboard, and go down so far."""
     field.setFocus()
     QTest.keyClick(field, KEY.Key_Space)

@@ -214,7 +214,10 @@ def test_every_choice_has_its_words_and_the_door_says_what_is_not_usual() -> Non
 def test_another_body_is_opened_with_its_lines_in_sight() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        for show, page in ((window.model_controller.show, "lines"), (window.worn_desk.show_page, "result")):
+        for show, page in (
+            (window.model_controller.show, "lines"),
+            (window.scan_comparison_controller.show_page, "result"),
+        ):
             show()
             left = window.inspector.panel()
             before = window.session.frame.stages.body

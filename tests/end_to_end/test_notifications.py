@@ -34,10 +34,10 @@ def they_float(window: MainWindow) -> Script:
     drag(window, "mid-bust", -10, release=False)
     assert notices.isVisible(), "a slider lies beside the view"
     drag(window, "mid-bust", 0)
-    window.start_desk.show_page()
-    yield window.start_desk.page.isVisible
+    window.start_controller.show_page()
+    yield window.start_controller.page.isVisible
     assert notices.isVisible(), "a page that takes the place of the work shows them too"
-    window.start_desk.leave_page()
+    window.start_controller.leave_page()
     yield view.isVisible
     assert view.isAncestorOf(notices)
     assert view.geometry() == before

@@ -13,7 +13,7 @@ from PySide6.QtGui import QImage
 from PySide6.QtSvg import QSvgRenderer
 from window_tools import Script, drag, run_main, settled
 
-import app.gui.plots.controller
+import app.gui.features.convergence.controller
 from app.gui.main_window import MainWindow
 from app.presenters.measurements import measure_views
 from app.presenters.plots import PLOTTED_TURNS, tracks
@@ -23,7 +23,9 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 
 
 def test_turns_can_be_watched_marked_and_saved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(app.gui.plots.controller, "ask_save", lambda *given: str(tmp_path / given[2]))
+    monkeypatch.setattr(
+        app.gui.features.convergence.controller, "ask_save", lambda *given: str(tmp_path / given[2])
+    )
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -39,7 +41,7 @@ def test_turns_can_be_watched_marked_and_saved(tmp_path: Path, monkeypatch: pyte
 
 def each_turn_is_seen_while_they_are_slow(window: MainWindow) -> Script:
     seen: list[Frame] = []
-    window.plot_desk.slow.trigger()
+    window.convergence_controller.slow.trigger()
     window.lines.length_committed.emit("mid-bust", 0.9)
     design = window.session.design
     window.session.frame_ready.connect(seen.append)
@@ -51,7 +53,7 @@ def each_turn_is_seen_while_they_are_slow(window: MainWindow) -> Script:
     assert min(moves) > 0.0, "each is to be seen on the body"
     assert {frame.verdict.motion for frame in shown} == {"settling"}, "and the verdict waits"
     window.session.frame_ready.disconnect(seen.append)
-    window.plot_desk.slow.trigger()
+    window.convergence_controller.slow.trigger()
     yield settled(window)
 
 

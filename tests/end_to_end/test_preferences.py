@@ -34,9 +34,9 @@ def test_a_language_is_found_in_any_other_and_changes_by_a_button(
         window.layout_.keep()
         assert QSettings().value("window/folded") == "false", "in a higher window they are not"
         for typed in ("japanese", "日本語", "language"):
-            found = [each for each in window.help.commands() if plain(typed) in each.words]
+            found = [each for each in window.help_controller.commands() if plain(typed) in each.words]
             assert "日本語" in [each.title for each in found], typed
-        window.preferences.choose("language", "ja")
+        window.preferences_controller.choose("language", "ja")
         (restart,) = (b for b in window.notices.findChildren(QPushButton) if b.text() == "Restart now")
         restart.click()
         yield lambda: bool(begun)

@@ -28,10 +28,10 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 
 def crash(window: MainWindow) -> None:
     """Leave behind what a window leaves that is killed: its folder, with nobody who holds it."""
-    recovery = window.keeping_desk._recovery
+    recovery = window.autosave_controller._recovery
     assert recovery is not None
     recovery.leave()
-    window.keeping_desk._recovery = None
+    window.autosave_controller._recovery = None
 
 
 def test_a_crash_loses_nothing_and_the_next_start_offers_it(
@@ -48,14 +48,14 @@ def test_a_crash_loses_nothing_and_the_next_start_offers_it(
         yield path.exists
         drag(window, "mid-bust", -20)
         yield settled(window)
-        yield lambda: window.keeping_desk._kept is window.session.document
+        yield lambda: window.autosave_controller._kept is window.session.document
         crash(window)
-        window.keeping_desk._clock.stop()
+        window.autosave_controller._clock.stop()
         seen.append((window.session.document, points(window).copy()))
 
     def again(window: MainWindow) -> Script:
         document, body = seen[0]
-        card = window.recovery_desk.card
+        card = window.recovery_controller.card
         yield card.isVisible
         assert "anna" in card.accessibleName()
         assert find_unsaved()[0] == [], "no other window may take what this one offers"
@@ -66,8 +66,8 @@ def test_a_crash_loses_nothing_and_the_next_start_offers_it(
         assert window.session.design.lines == document.design.lines
         assert np.abs(points(window) - body).max() < 0.3
         assert "*" in window.windowTitle(), "it is as unsaved as it was"
-        assert window.keeping_desk._recovery is not None
-        assert list(recovery_folder().iterdir()) == [window.keeping_desk._recovery.folder]
+        assert window.autosave_controller._recovery is not None
+        assert list(recovery_folder().iterdir()) == [window.autosave_controller._recovery.folder]
         window.project_controller.save()
         assert window.session.finish_saving()
         assert open_project(path).design.lines == document.design.lines
@@ -90,19 +90,19 @@ def test_what_is_not_restored_stays_until_it_is_discarded(monkeypatch: pytest.Mo
         crash(window)
 
     def later(window: MainWindow) -> Script:
-        yield window.recovery_desk.card.isVisible
-        window.recovery_desk.card.later.emit()
-        assert not window.recovery_desk.card.isVisible()
+        yield window.recovery_controller.card.isVisible
+        window.recovery_controller.card.later.emit()
+        assert not window.recovery_controller.card.isVisible()
 
     def discard(window: MainWindow) -> Script:
-        yield window.recovery_desk.card.isVisible
+        yield window.recovery_controller.card.isVisible
         yield settled(window)
         window.ask_desk.begin()
-        assert not window.recovery_desk.card.isVisible(), "it would lie on the handles"
+        assert not window.recovery_controller.card.isVisible(), "it would lie on the handles"
         window.ask_desk.leave()
-        assert window.recovery_desk.card.isVisible(), "the offer stands again when the asking is over"
-        window.recovery_desk.card.drop.click()
-        assert not window.recovery_desk.card.isVisible()
+        assert window.recovery_controller.card.isVisible(), "the offer stands again when the asking is over"
+        window.recovery_controller.card.drop.click()
+        assert not window.recovery_controller.card.isVisible()
 
     for script in (first, later, discard):
         run_undrawn([], script)
@@ -187,7 +187,7 @@ def test_two_windows_and_a_change_from_outside_are_told(
             assert window.session.finish_saving() == written
             assert asked.pop() == ("lotte", True), "who protected it is asked"
             assert (path.read_bytes() != former) == written
-        window.keeping_desk._lock.release()
+        window.autosave_controller._lock.release()
         assert other.tryLock(0)
         window.project_controller.open_file(str(path))
         yield lambda: window.notices.notice() is not None
@@ -241,7 +241,7 @@ def test_variants_are_chosen_undone_and_seen_side_by_side(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def script(window: MainWindow) -> Script:
-        session, segment, area = window.session, window.variant_desk.segment, window.view
+        session, segment, area = window.session, window.variants_controller.segment, window.view
         yield settled(window)
         assert "copy of A" in segment.button("B").toolTip()
         segment.button("B").click()
@@ -253,7 +253,7 @@ def test_variants_are_chosen_undone_and_seen_side_by_side(
         assert segment.button("A").isChecked()
         assert list(session.document.variants) == ["A"]
         session.undo_stack.setIndex(2)
-        window.variant_desk.show_side_by_side()
+        window.variants_controller.show_side_by_side()
         yield lambda: area.beside.way == "variants"
         assert len(area.beside.bodies) == 2
         beside = area.beside.bodies[1].frame
@@ -268,11 +268,11 @@ def test_variants_are_chosen_undone_and_seen_side_by_side(
         yield from the_history_goes_back_in_the_variant_of_a_result(window)
         session.remove_variant("B")
         assert area.beside.way == "after"
-        window.variant_desk.choose("B")
-        window.variant_desk.choose("A")
+        window.variants_controller.choose("B")
+        window.variants_controller.choose("A")
         monkeypatch.setattr(app.gui.features.variants.controller, "converged_frame", endless([]))
-        window.variant_desk._solved.clear()
-        window.variant_desk.show_side_by_side()
+        window.variants_controller._solved.clear()
+        window.variants_controller.show_side_by_side()
         assert len([job for job in window.jobs.at_work() if job.waited]) == 1
         session.opened.emit(session.frame)
         assert not [job for job in window.jobs.at_work() if job.waited], "it is of another document"
@@ -287,7 +287,7 @@ def the_history_goes_back_in_the_variant_of_a_result(window: MainWindow) -> Scri
     yield settled(window)
     yield lambda: panel.snapshots.count() > 0 and panel.snapshots.item(0).text().startswith("A: Full-bust")
     kept = session.design
-    window.variant_desk.choose("B")
+    window.variants_controller.choose("B")
     placed = session.design.with_placed("bust_point_left", (0.1, 0.2, 0.3))
     session.edit(lambda _: placed, "placed since")
     before = session.document.variants

@@ -61,7 +61,7 @@ def test_the_first_customer_as_the_guide_tells_it(tmp_path: Path) -> None:
 
 def opened(window: MainWindow) -> Script:
     """Steps 1 to 3: the tour is there and skipped, the scan is opened and understood."""
-    mark = window.start_desk.tour.mark
+    mark = window.start_controller.tour.mark
     yield mark.isVisible
     QTest.keyClick(mark, Qt.Key.Key_Escape)
     assert not mark.isVisible()
@@ -132,7 +132,7 @@ def cut(window: MainWindow) -> Script:
 
 def pressed(window: MainWindow) -> Script:
     """Steps 13 and 14: the band can be worn; a shorter one lifts and presses more."""
-    desk = window.pressure_desk
+    desk = window.pressure_controller
     yield lambda: desk.shown is not None and at_rest(window)()
     assert window.session.frame is not None
     before = most(window)
@@ -145,12 +145,12 @@ def pressed(window: MainWindow) -> Script:
 
 def most(window: MainWindow) -> float:
     """The largest contact pressure [kPa]."""
-    return max(row.max_kpa or 0.0 for row in window.pressure_desk.shown.rows)
+    return max(row.max_kpa or 0.0 for row in window.pressure_controller.shown.rows)
 
 
 def printed(window: MainWindow, folder: Path) -> Script:
     """Steps 15 to 17: the customer is named, the sheet saved."""
-    desk = window.report_desk
+    desk = window.report_controller
     window.top.primary.click()
     desk.page.customer.setFocus()
     QTest.keyClicks(desk.page.customer, "Anna 0412")

@@ -27,7 +27,7 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 
 def made(window: MainWindow) -> Callable[[], bool]:
     """The sheet is there, and of the design that is shown."""
-    return window.report_desk.page.does["pdf"].isEnabled
+    return window.report_controller.page.does["pdf"].isEnabled
 
 
 def test_the_sheet_takes_the_place_of_the_work_and_gives_it_back() -> None:
@@ -35,7 +35,7 @@ def test_the_sheet_takes_the_place_of_the_work_and_gives_it_back() -> None:
         undrawn(window)
         assert not window.top.primary.isEnabled(), "no body is open yet"
         yield settled(window)
-        desk, work = window.report_desk, window.pages.currentWidget()
+        desk, work = window.report_controller, window.pages.currentWidget()
         assert desk.action.shortcut().toString() == "Ctrl+P"
         window.top.primary.click()
         assert window.pages.currentWidget() is desk.page
@@ -71,16 +71,16 @@ def test_the_sheet_follows_and_a_former_one_is_not_given_away() -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.report_desk.open()
+        window.report_controller.open()
         yield made(window)
-        former = window.report_desk.handout
+        former = window.report_controller.handout
         assert former is not None
         assert former.report.cuts.rows == ()
         window.session.commit_line("mid-bust", "Mid-bust", 0.96)
-        assert not any(press.isEnabled() for press in window.report_desk.page.does.values())
-        assert window.report_desk.page.state.text() == "The sheet is made as soon as the run rests."
+        assert not any(press.isEnabled() for press in window.report_controller.page.does.values())
+        assert window.report_controller.page.state.text() == "The sheet is made as soon as the run rests."
         yield made(window)
-        sheet = window.report_desk.handout.report
+        sheet = window.report_controller.handout.sheet
         assert [row.line for row in sheet.cuts.rows] == ["mid-bust"]
         assert sheet.lift is not None
         frame = window.session.frame
@@ -91,14 +91,14 @@ def test_the_sheet_follows_and_a_former_one_is_not_given_away() -> None:
         yield settled(window)
         window.session.commit_line("mid-bust", "Mid-bust", 0.96)
         yield lambda: settled(window)() and made(window)()
-        again = window.report_desk.handout.report
+        again = window.report_controller.handout.sheet
         assert again.turns == sheet.turns, "a garment is plotted from rest, not from the edit before"
         assert (again.lift, again.volume) == (sheet.lift, sheet.volume)
         for _ in range(2):
             window.actions_.undo.trigger()
         window.actions_.undo.trigger()
         yield made(window)
-        assert window.report_desk.handout.report.cuts.rows == ()
+        assert window.report_controller.handout.sheet.cuts.rows == ()
 
     assert run_main(["resources/samples/mannequin.ply"], script) == 0
 
@@ -106,11 +106,11 @@ def test_the_sheet_follows_and_a_former_one_is_not_given_away() -> None:
 def test_what_came_of_an_edit_on_the_sheet_is_kept_with_its_picture() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.report_desk.open()
+        window.report_controller.open()
         window.session.edit(lambda design: replace(design, customer="Anna"), "Customer Anna")
         yield made(window)
         QTest.qWait(600)  # longer than a result must have stood
-        window.report_desk.leave()
+        window.report_controller.leave()
         kept = window.history.snapshots
         yield lambda: kept.count() == 1
         assert kept.item(0).data(VIEW).picture is not None
@@ -128,7 +128,7 @@ def test_the_customer_is_one_step_and_measures_nothing_again(monkeypatch: pytest
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        desk, page = window.report_desk, window.report_desk.page
+        desk, page = window.report_controller, window.report_controller.page
         desk.open()
         yield made(window)
         page.customer.setFocus()
@@ -161,7 +161,7 @@ def test_a_name_that_is_typed_goes_out_with_the_next_press(
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        desk, page = window.report_desk, window.report_desk.page
+        desk, page = window.report_controller, window.report_controller.page
         desk.open()
         page.customer.setFocus()
         QTest.keyClicks(page.customer, "Anna")
@@ -193,7 +193,7 @@ def test_the_sheet_is_saved_in_another_language(tmp_path: Path, monkeypatch: pyt
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        desk, page = window.report_desk, window.report_desk.page
+        desk, page = window.report_controller, window.report_controller.page
         desk.open()
         yield made(window)
         page.languages.button("ja").click()
@@ -226,11 +226,11 @@ def test_the_printer_gets_the_same_pages(tmp_path: Path, monkeypatch: pytest.Mon
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.report_desk.open()
+        window.report_controller.open()
         yield made(window)
-        window.report_desk.page.does["print"].click()
+        window.report_controller.page.does["print"].click()
         printed = Pdf(tmp_path / "printed.pdf")
-        write_pdf(tmp_path / "written.pdf", window.report_desk.pages, "sheet")
+        write_pdf(tmp_path / "written.pdf", window.report_controller.pages, "sheet")
         written = Pdf(tmp_path / "written.pdf")
         assert printed.sizes == written.sizes == [(210, 297)] * 2
         assert printed.text() == written.text()
@@ -257,11 +257,11 @@ def test_only_the_pages_that_were_chosen_are_printed(tmp_path: Path, monkeypatch
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.report_desk.open()
+        window.report_controller.open()
         yield made(window)
-        window.report_desk.page.does["print"].click()
+        window.report_controller.page.does["print"].click()
         printed = Pdf(tmp_path / "printed.pdf")
-        write_pdf(tmp_path / "written.pdf", window.report_desk.pages, "sheet")
+        write_pdf(tmp_path / "written.pdf", window.report_controller.pages, "sheet")
         assert printed.sizes == [(210, 297)]
         second = [piece.text for piece in Pdf(tmp_path / "written.pdf").pieces(1)]
         assert [piece.text for piece in printed.pieces(0)] == second
@@ -278,10 +278,10 @@ def test_the_sheet_comes_without_pictures_where_they_cannot_be_drawn(monkeypatch
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.report_desk.open()
+        window.report_controller.open()
         yield made(window)
-        assert window.report_desk.handout is not None
-        assert window.report_desk.handout.pictures == {}
+        assert window.report_controller.handout is not None
+        assert window.report_controller.handout.pictures == {}
 
     assert run_main(["resources/samples/mannequin.ply"], script) == 0
 
@@ -290,7 +290,7 @@ def test_the_window_closes_while_the_sheet_is_being_made() -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.report_desk.open()
+        window.report_controller.open()
         yield lambda: bool(window.jobs.at_work())
 
     assert run_main(["resources/samples/mannequin.ply"], script) == 0

@@ -16,16 +16,16 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 
 def typed(window: MainWindow, name: str) -> None:
     """Type a name on the sheet, without Enter."""
-    window.report_desk.open()
-    window.report_desk.page.customer.setFocus()
-    QTest.keyClicks(window.report_desk.page.customer, name)
+    window.report_controller.open()
+    window.report_controller.page.customer.setFocus()
+    QTest.keyClicks(window.report_controller.page.customer, name)
 
 
 def test_a_typed_name_does_not_go_to_the_next_document() -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        desk = window.report_desk
+        desk = window.report_controller
         typed(window, "Clara")
         opened = []
         window.session.opened.connect(opened.append)
@@ -43,7 +43,7 @@ def test_nothing_of_a_former_document_is_kept_or_shown() -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        desk = window.report_desk
+        desk = window.report_controller
         desk.open()
         yield desk.page.does["pdf"].isEnabled
         assert desk.page.paper.leaves

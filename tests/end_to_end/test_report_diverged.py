@@ -22,16 +22,16 @@ def test_of_a_run_that_ran_away_there_is_no_sheet_and_no_light() -> None:
             "worn",
         )
         window.navigation.show_panel("garment")
-        window.pressure_desk.follow()
-        card = window.pressure_desk.card
-        yield lambda: settled(window)() and window.pressure_desk.shown is not None
-        assert window.pressure_desk.shown.rows[0].light
+        window.pressure_controller.follow()
+        card = window.pressure_controller.card
+        yield lambda: settled(window)() and window.pressure_controller.shown is not None
+        assert window.pressure_controller.shown.rows[0].light
         window.session.change({"volume": "conventional", "gain": 10.0}, "too much")
         yield lambda: window.session.frame.verdict.motion == "diverging" and settled(window)()
         yield lambda: not window.jobs.at_work()
         assert card.says.text() == "Diverging: these figures are no result to sew for."
-        assert window.pressure_desk.shown is None, "nor does it leave with the cut list"
-        desk = window.report_desk
+        assert window.pressure_controller.shown is None, "nor does it leave with the cut list"
+        desk = window.report_controller
         desk.open()
         yield lambda: "ran away" in desk.page.state.text()
         assert desk.handout is None

@@ -11,9 +11,9 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
-import app.gui.widgets.table_export
+import app.gui.file_export
 from app.gui.main_window import MainWindow
-from app.gui.widgets.thumbnail_list import VIEW, PictureRow
+from app.gui.widgets.thumbnail_list import VIEW, ThumbnailRow
 from app.i18n.catalog import number
 from core.mechanics.mesh_quality import STRAINED_RANGE
 from core.pipeline.frame import Frame
@@ -32,9 +32,9 @@ def strip_says(window: MainWindow) -> dict[str, str]:
     return {name.text(): value.text() for name, value in window.strip._pairs if name.text()}
 
 
-def kept(window: MainWindow, place: int = 0) -> PictureRow:
+def kept(window: MainWindow, place: int = 0) -> ThumbnailRow:
     row = window.history.snapshots.item(place).data(VIEW)
-    assert isinstance(row, PictureRow)
+    assert isinstance(row, ThumbnailRow)
     return row
 
 
@@ -46,7 +46,7 @@ def test_the_whole_window_tells_one_lift_that_of_the_bust_points() -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.variant_desk.choose("B")
+        window.variants_controller.choose("B")
         window.lines_desk.commit_length("mid-bust", 0.9)
         yield settled(window)
         now, rest = frame_of(window).marks, frame_of(window).stages.rest_marks
@@ -74,7 +74,7 @@ def test_the_whole_window_tells_one_lift_that_of_the_bust_points() -> None:
         )
         table = {row.label: row.figures[0].values[1] for row in window.variants.view.rows}
         assert (table["Bust point, up"], table["Bust point, forward"]) == (up, forward)
-        window.variant_desk.flip_side_by_side()
+        window.variants_controller.flip_side_by_side()
         assert title_of_b(window) == [
             f"Variant B   {window.strip.chip.accessibleName()}",
             f"Bust point {said}",
@@ -106,7 +106,7 @@ def test_a_settled_body_that_is_strained_says_so_in_one_voice() -> None:
         assert condition is not None
         assert condition.shortest < STRAINED_RANGE[0]
         yield lambda: window.strip.chip.state() in ("caution", "bad")
-        overall = window.verdict_desk.of(frame_of(window))
+        overall = window.assessment_controller.of(frame_of(window))
         said = [message for message, _ in overall.reasons]
         assert any(each.startswith("Skin is compressed or stretched by over 20 %") for each in said)
         assert window.strip._hint.text() == overall.first, "the worst reason stands in the strip"
@@ -131,7 +131,7 @@ def test_a_run_that_never_rests_is_no_result_and_has_a_way_out() -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.variant_desk.choose("B")
+        window.variants_controller.choose("B")
         window.session.choose_control("conventional")
         window.lines_desk.commit_length("mid-bust", 0.6)
         yield settled(window)
@@ -150,7 +150,7 @@ def test_a_run_that_never_rests_is_no_result_and_has_a_way_out() -> None:
         table = {row.label: row.figures[0].values for row in window.variants.view.rows}
         assert table["Bust point, up"][0] is not None
         assert table["Bust point, up"][1] is None
-        window.variant_desk.flip_side_by_side()
+        window.variants_controller.flip_side_by_side()
         assert title_of_b(window) == ["Variant B   Do not use", "Mid-bust 60.0 %"]
         window.navigation.show_step("result")
         assert "no result" in window.result.doubt
@@ -185,9 +185,9 @@ def test_the_same_key_puts_variants_side_by_side_and_back() -> None:
         yield settled(window)
         window.activateWindow()
         yield window.isActiveWindow
-        flip, button = window.variant_desk.beside, window.variant_desk._button
+        flip, button = window.variants_controller.beside, window.variants_controller._button
         assert not button.isVisible(), "there is one variant"
-        window.variant_desk.choose("B")
+        window.variants_controller.choose("B")
         yield settled(window)
         assert button.isVisible()
         keys = Qt.Key.Key_V, Qt.KeyboardModifier.ShiftModifier
@@ -209,7 +209,7 @@ def test_measures_say_from_where_they_count_and_leave_as_a_table(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "measures.csv"
-    monkeypatch.setattr(app.gui.widgets.table_export, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(app.gui.file_export, "ask_save", lambda *_: str(path))
 
     def script(window: MainWindow) -> Script:
         undrawn(window)

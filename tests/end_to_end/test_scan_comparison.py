@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QApplication, QLabel, QScrollArea
 from window_tools import Script, run_main, settled, undrawn
 
 import app.gui.features.scan_comparison.controller
-from app.gui.features.scan_comparison.page import WornPage, WornView
+from app.gui.features.scan_comparison.page import ScanComparisonPage, ScanComparisonView
 from app.gui.main_window import MainWindow
 from app.i18n.catalog import speaking
 from app.presenters.samples import sample_design
@@ -57,7 +57,7 @@ def test_a_worn_scan_is_compared_and_learnt_from(pair: tuple[str, str, str]) -> 
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        desk, page = window.worn_desk, window.worn_desk.page
+        desk, page = window.scan_comparison_controller, window.scan_comparison_controller.page
         window.map_desk.choose("worn")
         assert "worn scan first" in window.map_desk.legend._note.text()
         window.map_desk.choose("")
@@ -77,7 +77,7 @@ def test_a_worn_scan_is_compared_and_learnt_from(pair: tuple[str, str, str]) -> 
         assert page.view.lies.startswith("100 % of the skin that no line moves")
         frame = window.session.frame
         assert frame is not None
-        values = window.worn_desk.values(frame)
+        values = window.scan_comparison_controller.values(frame)
         assert 0.8 < np.isfinite(values[: frame.stages.moving.count]).mean() < 1.0, "there is a hole"
         QTest.mouseClick(page.look, Qt.MouseButton.LeftButton)
         assert window.focusWidget() is not area, "no frame round all of the page"
@@ -116,7 +116,7 @@ def test_another_person_is_refused_and_an_edit_makes_the_comparison_old(pair: tu
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        desk, page = window.worn_desk, window.worn_desk.page
+        desk, page = window.scan_comparison_controller, window.scan_comparison_controller.page
         desk.show_page()
         desk.read(other)
         yield lambda: "does not fit the first" in said(window)
@@ -148,7 +148,7 @@ def test_a_shape_that_has_settled_is_compared_while_turns_beside_it_go_on(pair: 
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.worn_desk.read(scan)
+        window.scan_comparison_controller.read(scan)
         window.map_desk.choose("worn")
         window.session.choose_control("adaptive")
         yield lambda: settled(window)() and not window.jobs.at_work()
@@ -158,7 +158,7 @@ def test_a_shape_that_has_settled_is_compared_while_turns_beside_it_go_on(pair: 
         def compared() -> bool:
             frame = window.session.frame
             assert frame is not None
-            return bool(np.isfinite(window.worn_desk.values(frame)).any())
+            return bool(np.isfinite(window.scan_comparison_controller.values(frame)).any())
 
         yield lambda: not compared()
         yield compared
@@ -183,9 +183,9 @@ def test_where_the_bust_points_are_is_said_without_a_sign() -> None:
 
 
 def test_what_is_no_finding_is_not_offered_with_the_strongest_button(qapp: QApplication) -> None:
-    page = WornPage()
+    page = ScanComparisonPage()
     for doubtful, kind in ((True, "secondary"), (False, "primary")):
-        page.show_view(WornView(better="0.9 → 0.8 mm", helped=True, doubtful=doubtful))
+        page.show_view(ScanComparisonView(better="0.9 → 0.8 mm", helped=True, doubtful=doubtful))
         assert not page.apply.isHidden(), "it can be taken all the same"
         assert page.apply.property("kind") == kind
     page.deleteLater()
@@ -221,7 +221,7 @@ def test_what_is_begun_with_another_thickness_is_never_shown(
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        desk, page = window.worn_desk, window.worn_desk.page
+        desk, page = window.scan_comparison_controller, window.scan_comparison_controller.page
         desk.show_page()
         gate.set()
         desk.read(scan)

@@ -51,7 +51,7 @@ def looked_at(window: MainWindow) -> Script:
     tools = window.view.tool_actions
     for name in ("map", "section", "ghost", "wipe"):
         tools[name].trigger()
-    window.plot_desk.slow.trigger()
+    window.convergence_controller.slow.trigger()
     window.session.commit_line("mid-bust", "Mid-bust", 0.9)
     yield lambda: window.session.frame.stages.design is window.session.design
     window.line_drawing.begin()
@@ -60,12 +60,12 @@ def looked_at(window: MainWindow) -> Script:
 
 def beside(window: MainWindow) -> Script:
     """Two variants side by side, with the preferences and the search for commands open."""
-    window.variant_desk.segment.button("B").click()
+    window.variants_controller.segment.button("B").click()
     drag(window, "mid-bust", -20)
     yield settled(window)
-    window.variant_desk.show_side_by_side()
+    window.variants_controller.show_side_by_side()
     yield lambda: window.view.beside.way == "variants"
-    window.preferences.show()
+    window.preferences_controller.show()
     window.actions_.about.trigger()
     window.actions_.menus["lines"].popup(window.pos())
 
@@ -91,7 +91,7 @@ def loading(window: MainWindow) -> Script:
 def writing(window: MainWindow) -> Script:
     """A project that is being saved, and edits that are being kept aside, on a slow disk."""
     window.session.commit_line("mid-bust", "Mid-bust", 0.9)
-    yield lambda: window.keeping_desk._writing.at_work
+    yield lambda: window.autosave_controller._writing.at_work
     assert window.project_controller.save()
     window.session.commit_line("mid-bust", "Mid-bust", 0.95)
     assert window.session._saving.at_work
@@ -100,7 +100,7 @@ def writing(window: MainWindow) -> Script:
 def at_first(window: MainWindow) -> Script:
     """The tour of the first start."""
     QSettings().clear()
-    window.start_desk.take_tour()
+    window.start_controller.take_tour()
     yield settled(window)
 
 

@@ -35,7 +35,7 @@ def test_a_solver_that_fails_for_long_loses_nothing(
     caplog.set_level(logging.CRITICAL)
 
     def script(window: MainWindow) -> Script:
-        session, keeping, bar = window.session, window.keeping_desk, window.notices
+        session, keeping, bar = window.session, window.autosave_controller, window.notices
         yield settled(window)
         edit(session, 20)
         yield settled(window)
@@ -48,9 +48,9 @@ def test_a_solver_that_fails_for_long_loses_nothing(
         assert window.rail.items["result"].state() == "available", "no tick on what is not computed"
         assert window.lines.rows["mid-bust"].slider.ratio() == pytest.approx(0.9), "as it is set"
         assert "Settled" not in window.status._facts.text()
-        window.report_desk.open()
-        assert window.report_desk.page.state.text().startswith("The shape could not be computed")
-        window.report_desk.leave()
+        window.report_controller.open()
+        assert window.report_controller.page.state.text().startswith("The shape could not be computed")
+        window.report_controller.leave()
         drag(window, "full-bust", -20)
         yield lambda: session.failure.revision == session._revision
         session.undo_stack.undo()

@@ -30,11 +30,11 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 
 def cards(window: MainWindow) -> dict[str, ProjectCard]:
     """The cards of the start page by the names on them."""
-    return {card.view.name: card for card in window.start_desk.page.shelf.cards}
+    return {card.view.name: card for card in window.start_controller.page.shelf.cards}
 
 
 def at_start(window: MainWindow) -> bool:
-    return window.start_desk.page.isVisible()
+    return window.start_controller.page.isVisible()
 
 
 def test_the_first_start_leads_through_the_sample_and_later_ones_go_on(
@@ -49,16 +49,16 @@ def test_the_first_start_leads_through_the_sample_and_later_ones_go_on(
         yield settled(window)
         assert window.session.name == "mannequin"
         assert not at_start(window)
-        yield lambda: window.start_desk.tour.place == 0
-        QTest.keyClick(window.start_desk.tour.mark, Qt.Key.Key_Escape)
-        assert not window.start_desk.tour.mark.isVisible()
+        yield lambda: window.start_controller.tour.place == 0
+        QTest.keyClick(window.start_controller.tour.mark, Qt.Key.Key_Escape)
+        assert not window.start_controller.tour.mark.isVisible()
         window.project_controller.save_as()
         yield lambda: window.session.path == saved
 
     def second(window: MainWindow) -> Script:
         yield lambda: at_start(window)
         assert window.session.design is None
-        assert window.start_desk.tour.place == -1
+        assert window.start_controller.tour.place == -1
         the_cards_show_what_was_open(window)
         a_file_over_the_window_is_named_until_it_leaves(window)
         cards(window)["customer 0340"].click()
@@ -76,14 +76,14 @@ def test_the_first_start_leads_through_the_sample_and_later_ones_go_on(
         window.project_controller.open_file(str(person))
         yield lambda: window.session.name == "person"
         assert recent_files() == [str(saved)], "samples can always be had"
-        window.start_desk.show_page()
+        window.start_controller.show_page()
         assert at_start(window)
         assert not window.rail.current(), "no step is open"
-        assert window.variant_desk.segment.isHidden()
-        QTest.keyClick(window.start_desk.page, Qt.Key.Key_Escape)
+        assert window.variants_controller.segment.isHidden()
+        QTest.keyClick(window.start_controller.page, Qt.Key.Key_Escape)
         assert not at_start(window)
         assert window.rail.current() == "scan", "the step that was open"
-        assert window.variant_desk.segment.isVisible()
+        assert window.variants_controller.segment.isVisible()
 
     run_main([], first)
     remember_file(str(gone))
@@ -104,7 +104,7 @@ def the_cards_show_what_was_open(window: MainWindow) -> None:
 
 
 def a_file_over_the_window_is_named_until_it_leaves(window: MainWindow) -> None:
-    data, veil = QMimeData(), window.start_desk.veil
+    data, veil = QMimeData(), window.start_controller.veil
     data.setUrls([QUrl.fromLocalFile(str(Path.home() / "customer.ply"))])
     no_button, no_key = Qt.MouseButton.NoButton, Qt.KeyboardModifier.NoModifier
     event = QDragEnterEvent(QPoint(200, 200), Qt.DropAction.CopyAction, data, no_button, no_key)

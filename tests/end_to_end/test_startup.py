@@ -17,7 +17,7 @@ from window_tools import Script, run_main, settled, small_view
 
 import app.gui.startup
 from app.gui.main_window import MainWindow
-from app.gui.session.gc_control import Housekeeping
+from app.gui.session.gc_control import GarbageCollection
 from app.gui.session.jobs import Jobs
 from app.gui.widgets import first_paint
 
@@ -87,10 +87,10 @@ def use_it(window: MainWindow) -> None:
     view.tools.actions_by_name["control-mesh"].trigger()
     view.tools.actions_by_name["perspective"].trigger()
     view.viewport.set_view("left")
-    window.view_desk.choose_material("graphite")
+    window.view_controller.choose_material("graphite")
     view.set_after(False)
-    window.preferences.choose("theme", "dark")
-    window.preferences.choose("theme", "light")
+    window.preferences_controller.choose("theme", "dark")
+    window.preferences_controller.choose("theme", "light")
     QTest.mouseClick(view.viewport.overlay.parentWidget(), Qt.MouseButton.LeftButton)
     assert view.viewport.skin_at(view.viewport.rect().center().toPointF()) is None
 
@@ -125,7 +125,7 @@ def test_what_waits_for_the_first_paint_is_done_once_whether_it_comes_or_not(
 def test_what_is_spared_from_the_search_is_no_garbage(qtbot: QtBot) -> None:
     parent = QWidget()
     qtbot.addWidget(parent)
-    housekeeping = Housekeeping(parent)
+    housekeeping = GarbageCollection(parent)
     ring = Ring()
     ring.itself, gone = ring, weakref.ref(ring)
     del ring

@@ -37,7 +37,7 @@ def begin(window, what):
 def look():
     window, = windows
     if is_over(window) or time.monotonic() > began + 300:
-        print(window.view.viewport.shows_body, window.rescuer.sheet, sorted(set(faults)), *seen)
+        print(window.view.viewport.shows_body, window.crash_handler.sheet, sorted(set(faults)), *seen)
         window.session.undo_stack.setClean()
         window.close()
     else:
@@ -58,7 +58,7 @@ def at_the_libraries():
 def when_begun(window):
     assert half.wait(300) and "pyvista.plotting" in sys.modules
     window.view.viewport.frame_all()
-    window.preferences.choose("theme", "dark")
+    window.preferences_controller.choose("theme", "dark")
     seen.append(window.view.picture().width() > 0)
 
 def is_over(window):

@@ -234,9 +234,9 @@ def sends_to_apply_or_cancel(window: MainWindow) -> Script:
     desk = window.ask_desk
     desk.begin([Goal("out", -4.0)])
     yield answered(window)
-    window.report_desk.open()
-    assert "apply what is asked for, or cancel it, first" in window.report_desk.page.state.text()
-    window.report_desk.leave()
+    window.report_controller.open()
+    assert "apply what is asked for, or cancel it, first" in window.report_controller.page.state.text()
+    window.report_controller.leave()
     window.navigation.show_step("result")
     yield lambda: bool(window.result.measured) and not window.result.stale
     assert desk.is_tried_on

@@ -13,7 +13,7 @@ from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
 from app.gui.main_window import MainWindow
-from app.gui.viewport.target_curve import WishCurve
+from app.gui.viewport.target_curve import TargetCurve
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -35,7 +35,7 @@ def draws_a_profile(window: MainWindow) -> Script:
     assert viewport.view.name == "left", "a profile is seen from its side"
     assert all(handle.isVisible() for handle in handles)
     assert not any(handle.isVisible() for handle in desk.handles.by_side.values())
-    curve = viewport.overlay.parentWidget().findChild(WishCurve)
+    curve = viewport.overlay.parentWidget().findChild(TargetCurve)
     assert curve.isVisible()
     assert np.abs(curve._wished - curve._reached).max() < 0.5, "it begins with the skin"
     # Nothing lies under the tools, nothing over another.
@@ -51,7 +51,7 @@ def draws_a_profile(window: MainWindow) -> Script:
 def wishes_what_is_dragged(window: MainWindow) -> Script:
     desk, viewport = window.ask_desk, window.view.viewport
     handles = desk.handles.profile.handles["profile left"]
-    curve = viewport.overlay.parentWidget().findChild(WishCurve)
+    curve = viewport.overlay.parentWidget().findChild(TargetCurve)
     # Dragged, it is wished; the body follows, and how far it is off is told.
     middle = len(handles) // 2
     drag(handles[middle], 12, 0, drop=False)

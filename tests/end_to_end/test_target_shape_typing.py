@@ -9,13 +9,13 @@ from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
 from app.gui.main_window import MainWindow
-from app.gui.widgets.value_edit import FigureField
+from app.gui.widgets.value_edit import ValueEdit
 from core.analysis.inverse_design.quantities import Goal
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
 
-def half_typed(window: MainWindow, key: str, text: str) -> FigureField:
+def half_typed(window: MainWindow, key: str, text: str) -> ValueEdit:
     """Type over a field and stay in it."""
     field = window.ask_desk.card.wishes[key].field
     field.setFocus()
@@ -72,7 +72,7 @@ def is_not_applied_unseen_where_it_cannot_be_had(window: MainWindow) -> Script:
 
 def rows(window: MainWindow) -> int:
     """Return how many rows of wishes are to be seen, whoever keeps them."""
-    fields = window.ask_desk.card.findChildren(FigureField)
+    fields = window.ask_desk.card.findChildren(ValueEdit)
     return sum(field.isVisible() for field in fields)
 
 

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 from window_tools import Script, drag, run_main, settled
 
-from app.gui.features.report.controller import ReportDesk
+from app.gui.features.report.controller import ReportController
 from app.gui.main_window import MainWindow
 from app.gui.widgets.coach_mark import CoachMark
 from app.presenters.bust_shift import bust_shift, shift_between, up_words
@@ -39,7 +39,7 @@ def test_the_band_of_a_sample_lifts_the_bust_and_can_be_worn(name: str) -> None:
 def test_the_tour_leads_from_the_lifted_bust_to_the_sheet() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        tour = window.start_desk.tour
+        tour = window.start_controller.tour
         yield lambda: tour.place == 0
         assert window.session.design == lifted_sample(FIRST_SAMPLE)
         yield lambda: window.strip.chip.state() != "pending"
@@ -54,7 +54,7 @@ def test_the_tour_leads_from_the_lifted_bust_to_the_sheet() -> None:
         assert tour.place == -1
         assert not tour.mark.isVisible()
         assert lift(window) > SEEN
-        assert window.report_desk.is_open, "the sheet is there when the tour is over"
+        assert window.report_controller.is_open, "the sheet is there when the tour is over"
         the_samples_open_as_at_first(window)
         yield settled(window)
 
@@ -63,7 +63,7 @@ def test_the_tour_leads_from_the_lifted_bust_to_the_sheet() -> None:
 
 def before_and_after(window: MainWindow) -> Script:
     """The number that is told is that of the body; Space shows the original one, and the reshaped again."""
-    mark = window.start_desk.tour.mark
+    mark = window.start_controller.tour.mark
     assert lift(window) > SEEN
     assert up_words(lift(window)) in mark.accessibleName()
     window.activateWindow()
@@ -75,7 +75,7 @@ def before_and_after(window: MainWindow) -> Script:
 
 
 def four_steps(window: MainWindow) -> Script:
-    mark = window.start_desk.tour.mark
+    mark = window.start_controller.tour.mark
     assert "Ctrl+O" in mark.accessibleName(), "the way to a scan of one's own"
     assert all(mark.ring.geometry().contains(place_of(window, each)) for each in window.rail.items.values())
     window.rail.items["landmarks"].click()
@@ -102,13 +102,13 @@ def a_line(window: MainWindow) -> Script:
 
 def the_verdict(window: MainWindow) -> Script:
     """A click on the verdict opens what it is made of."""
-    ring = window.start_desk.tour.mark.ring.geometry()
+    ring = window.start_controller.tour.mark.ring.geometry()
     assert ring.contains(place_of(window, window.strip.chip))
     yield settled(window)
 
 
 def the_sheet(window: MainWindow) -> Script:
-    desk: ReportDesk = window.report_desk
+    desk: ReportController = window.report_controller
     assert desk.is_open
     yield desk.page.does["pdf"].isEnabled
     assert desk.handout is not None
@@ -118,14 +118,14 @@ def the_sheet(window: MainWindow) -> Script:
 
 def covers_nothing_that_must_be_seen(window: MainWindow) -> Script:
     """The card is off the bust, the rail, the menus and its own subject; it makes way for a notice."""
-    mark = window.start_desk.tour.mark
+    mark = window.start_controller.tour.mark
     yield lambda: not seen_of(mark).intersects(mark.ring.geometry())
     window.notices.show_notice("warn", "The scan has holes.", "Fill them.", lasting=True, about="test")
     yield lambda: window.notices.isVisible() and not seen_of(mark).intersects(notice_of(window))
     assert window.rect().contains(mark.geometry())
     for part in (window.top, window.rail):
         assert not seen_of(mark).intersects(place_of(window, part))
-    if not window.report_desk.is_open:
+    if not window.report_controller.is_open:
         assert not seen_of(mark).intersects(bust_of(window))
     window.notices.withdraw("test")
     yield settled(window)
@@ -162,10 +162,10 @@ def test_a_later_step_of_fewer_words_is_lower(mark: CoachMark) -> None:
 def test_the_tour_of_a_scan_without_lines_tells_that_nothing_moved(person: Path) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.start_desk.take_tour()
-        assert "0.0 mm" in window.start_desk.tour.mark.accessibleName()
+        window.start_controller.take_tour()
+        assert "0.0 mm" in window.start_controller.tour.mark.accessibleName()
         assert not window.view.compare.actions_by_name["ghost"].isChecked(), "that is for the samples"
-        window.start_desk.tour.end()
+        window.start_controller.tour.end()
 
     run_main([str(person)], script)
 
@@ -188,7 +188,7 @@ def lift(window: MainWindow) -> float:
 def pressure(window: MainWindow) -> float:
     """The largest contact pressure [kPa], 0 until it is known."""
     assert window.session.frame is not None
-    listed = window.pressure_desk.of(window.session.frame)
+    listed = window.pressure_controller.of(window.session.frame)
     return max(row.max_kpa or 0.0 for row in listed.rows) if listed is not None else 0.0
 
 

@@ -17,7 +17,7 @@ from window_tools import Script, points, run_main, settled
 
 import app.gui.features.uncertainty.controller
 from app.gui.main_window import MainWindow
-from app.gui.widgets.inline_edit import TypedField
+from app.gui.widgets.inline_edit import InlineEdit
 from app.i18n.catalog import LANGUAGES
 from core.analysis.uncertainty.input_uncertainty import origins
 from core.document.custom_measures import CustomMeasurement
@@ -84,7 +84,7 @@ def written(root: QObject) -> Iterator[str]:
 
 def too_narrow(root: QObject) -> Iterator[str]:
     """Give what a field has no room for."""
-    for field in root.findChildren(TypedField):
+    for field in root.findChildren(InlineEdit):
         option = QStyleOptionFrame()
         field.initStyleOption(option)
         inside = field.style().subElementRect(QStyle.SubElement.SE_LineEditContents, option, field)
@@ -170,7 +170,7 @@ def every_part(window: MainWindow) -> Iterator[str | Callable[[], bool]]:
         )
     )
     yield "measures"
-    window.own_measures_desk.action.trigger()
+    window.custom_measures_controller.action.trigger()
     yield "own measures"
     window.ask_door.click()
     yield answered(window)
@@ -179,13 +179,13 @@ def every_part(window: MainWindow) -> Iterator[str | Callable[[], bool]]:
     yield settled(window)
     window.garment.elastics_asked.emit()
     yield "elastics"
-    window.elastics_desk.sheet.close()
-    window.export_desk.show()
-    for what in window.export_desk.sheet.items:
-        window.export_desk._choose_export(what)
+    window.elastics_controller.sheet.close()
+    window.export_controller.show()
+    for what in window.export_controller.sheet.items:
+        window.export_controller._choose_export(what)
         yield lambda: not window.jobs.at_work()
         yield f"export {what}"
-    window.export_desk.sheet.close()
-    window.report_desk.open()
-    yield window.report_desk.page.does["pdf"].isEnabled
+    window.export_controller.sheet.close()
+    window.report_controller.open()
+    yield window.report_controller.page.does["pdf"].isEnabled
     yield "sheet"

@@ -12,7 +12,7 @@ from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
 import app.gui.features.variants.controller
-import app.gui.widgets.table_export
+import app.gui.file_export
 from app.gui.main_window import MainWindow
 from app.gui.viewport import compare_key as flip_key
 from core.document.design import Design
@@ -32,7 +32,7 @@ def test_the_space_bar_goes_back_to_the_way_it_was_flipped_from(monkeypatch: pyt
         view = window.view
         window.activateWindow()
         yield window.isActiveWindow
-        window.variant_desk.choose("B")
+        window.variants_controller.choose("B")
         yield settled(window)
         for way in ("variants", "side", "wipe"):
             show(window, way)
@@ -63,13 +63,13 @@ def test_the_figures_of_all_variants_stand_beside_each_other(
     path = tmp_path / "variants.csv"
 
     def script(window: MainWindow) -> Script:
-        panel, desk = window.variants, window.variant_figures
+        panel, desk = window.variants, window.variant_table_controller
         undrawn(window)
         yield settled(window)
         window.navigation.show_panel("variants")
         assert panel.view is None, "one variant has nothing to be compared with"
         first = window.session.frame
-        window.variant_desk.choose("B")
+        window.variants_controller.choose("B")
         window.lines_desk.commit_length("mid-bust", 0.92)
         yield settled(window)
         yield lambda: panel.view is not None and not {"", "pending"} & set(panel.view.levels)
@@ -83,7 +83,7 @@ def test_the_figures_of_all_variants_stand_beside_each_other(
         lift = next(row for row in panel.view.rows if row.label == "Bust point, up").figures[0]
         assert lift.values[1] == pytest.approx(lift_of(window.session.frame))
         assert lift.values[0] == pytest.approx(lift_of(first), abs=0.2), "solved anew, from rest"
-        monkeypatch.setattr(app.gui.widgets.table_export, "ask_save", lambda *_: str(path))
+        monkeypatch.setattr(app.gui.file_export, "ask_save", lambda *_: str(path))
         desk.export()
         table = list(csv.reader(path.read_text("utf-8-sig").splitlines()))
         assert table[0] == ["Figure", "Unit", "A", "B", "B - A"]
@@ -103,7 +103,7 @@ def test_variants_that_differ_in_elastics_alone_are_told_apart() -> None:
         undrawn(window)
         yield settled(window)
         window.navigation.show_panel("variants")
-        window.variant_desk.choose("B")
+        window.variants_controller.choose("B")
         band = find_elastic("plush back 18")
 
         def made(design: Design) -> Design:
@@ -127,8 +127,8 @@ def test_variants_that_differ_in_elastics_alone_are_told_apart() -> None:
         cut, made_of, kpa = rows["Under-bust: to cut, elastic, pressure"]
         assert cut.values == (None, pytest.approx(cuts["under-bust"].cut_mm))
         assert made_of.values == ("", band.name)
-        assert kpa.values[1] == pytest.approx(window.pressure_desk.of(frame).rows[0].max_kpa)
-        window.variant_figures.copy()
+        assert kpa.values[1] == pytest.approx(window.pressure_controller.of(frame).rows[0].max_kpa)
+        window.variant_table_controller.copy()
         told = QGuiApplication.clipboard().text().splitlines()
         assert any(line.split("\t")[1:] == ["", "", band.name, ""] for line in told)
 
@@ -143,7 +143,7 @@ def what_cannot_be_solved_is_told_once(window: MainWindow, monkeypatch: pytest.M
         raise LineError("No balance holds this.", "Set it longer.")
 
     monkeypatch.setattr(app.gui.features.variants.controller, "converged_frame", refuse)
-    window.variant_desk.choose("A")
+    window.variants_controller.choose("A")
     yield lambda: bool(asked)
     yield settled(window)
     window.lines_desk.commit_length("full-bust", 0.99)
@@ -161,6 +161,6 @@ def lift_of(frame: Frame) -> float:
 
 def show(window: MainWindow, way: str) -> None:
     if way == "variants":
-        window.variant_desk.show_side_by_side()
+        window.variants_controller.show_side_by_side()
     else:
         window.view.compare_by(way)

@@ -49,7 +49,7 @@ def the_body_is_of_another_material_and_the_line_is_framed(window: MainWindow) -
     view, body = window.view.viewport, window.view.viewport.scene.body
     assert body is not None
     far, clay = view.scene.view, body.colours.astype(int)
-    window.view_desk.materials["plaster"].trigger()
+    window.view_controller.materials["plaster"].trigger()
     assert wish("material") == "plaster"
     red, _, blue = (body.colours.astype(int) - clay).mean(axis=0)
     assert blue > red + 10.0  # clay is warm, plaster is grey

@@ -12,7 +12,7 @@ from PySide6.QtTest import QTest
 from window_tools import settled
 
 from app.gui.main_window import MainWindow
-from app.gui.viewport.target_handle import BustHandle
+from app.gui.viewport.target_handle import TargetHandle
 
 
 def wear(window: MainWindow, mid: float = 0.97, full: float = 0.98) -> Callable[[], bool]:
@@ -48,7 +48,7 @@ def type_wish(window: MainWindow, key: str, text: str) -> None:
     QTest.keyClick(field, Qt.Key.Key_Return)
 
 
-def drag(handle: BustHandle, right: int, down: int, *, fine: bool = False, drop: bool = True) -> None:
+def drag(handle: TargetHandle, right: int, down: int, *, fine: bool = False, drop: bool = True) -> None:
     """Drag a handle over the picture by so many pixels."""
     keys = Qt.KeyboardModifier.ShiftModifier if fine else Qt.KeyboardModifier.NoModifier
     middle, way = handle.rect().center(), QPoint(right, down)

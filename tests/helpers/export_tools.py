@@ -10,28 +10,28 @@ import pytest
 from PySide6.QtWidgets import QApplication
 
 import app.gui.features.export.controller
-from app.gui.features.export.dialog import ExportSheet
+from app.gui.features.export.dialog import ExportDialog
 from app.gui.main_window import MainWindow
 
 READY = "Looking what will be in it…"
 
 
-def opened(window: MainWindow, what: str = "") -> ExportSheet:
+def opened(window: MainWindow, what: str = "") -> ExportDialog:
     """Open the sheet as the menu does, and choose what to export."""
     window.actions_.export_any.trigger()
     sheet = QApplication.activeModalWidget()
-    assert isinstance(sheet, ExportSheet)
+    assert isinstance(sheet, ExportDialog)
     if what:
         sheet.items[what].click()
     return sheet
 
 
-def told(sheet: ExportSheet) -> Callable[[], bool]:
+def told(sheet: ExportDialog) -> Callable[[], bool]:
     """What will be in the file has been worked out."""
     return lambda: sheet._contents.text() != READY
 
 
-def choose(sheet: ExportSheet, key: str, value: str) -> None:
+def choose(sheet: ExportDialog, key: str, value: str) -> None:
     sheet.fields[key].chosen.emit(value)
 
 

@@ -27,13 +27,13 @@ from app.gui.features.lines.panel import LinesPanel, LineView
 from app.gui.features.measurements.panel import ResultPanel
 from app.gui.features.model.panel import ModelPanel
 from app.gui.features.scan.panel import ScanPanel
-from app.gui.plots.convergence_panel import Strip
+from app.gui.plots.convergence_panel import ConvergencePanel
 from app.gui.status_bar import StatusBar
-from app.gui.step_navigation import Rail
+from app.gui.step_navigation import StepNavigation
 from app.gui.theme.stylesheet import apply_theme, tokens_of
-from app.gui.title_bar import TopBar
+from app.gui.title_bar import TitleBar
 from app.gui.viewport.toolbar import CompareTools, ViewTools
-from app.gui.widgets.notification_bar import NoticeBar
+from app.gui.widgets.notification_bar import NotificationBar
 from app.i18n import catalog as words
 from app.i18n.catalog import tr
 from app.presenters.landmarks import GROUPS, kind_of, landmark_title
@@ -94,7 +94,7 @@ class Mock(QWidget):
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setSpacing(0)
         self.inspector = self._inspector(page)
-        self.notice, self.strip, self.view = NoticeBar(), Strip(), QWidget()
+        self.notice, self.strip, self.view = NotificationBar(), ConvergencePanel(), QWidget()
         middle = QVBoxLayout()
         middle.setSpacing(0)
         middle.addWidget(self.notice)
@@ -134,18 +134,18 @@ class Mock(QWidget):
         painter.fillRect(self.view.geometry(), QColor("#2E3036" if tokens.dark else "#EDEAE6"))
         painter.fillRect(self.inspector.x(), 44, 1, self.height() - 70, QColor(tokens.line))
 
-    def _top(self) -> TopBar:
+    def _top(self) -> TitleBar:
         menu = QMenuBar()
         for title in ("File", "Edit", "View", "Solve", "Help"):
             menu.addMenu(tr(title))
         undo, redo, export = QAction(tr("Undo"), self), QAction(tr("Redo"), self), QAction("", self)
         redo.setEnabled(False)
-        bar = TopBar(menu, undo, redo, export)
+        bar = TitleBar(menu, undo, redo, export)
         bar.set_title("Customer 0412", unsaved=True)
         return bar
 
-    def _rail(self, page: str) -> Rail:
-        rail = Rail()
+    def _rail(self, page: str) -> StepNavigation:
+        rail = StepNavigation()
         rail.set_state("scan", "done")
         rail.set_state("landmarks", "look", 2)
         rail.set_state("lines", "available")

@@ -38,7 +38,7 @@ def mark(window: MainWindow, elastic: str) -> Script:
 
 def chooser_of(window: MainWindow) -> ElasticChooser:
     """Return the chooser that is open."""
-    chooser = window.elastic_choice.offer.chooser
+    chooser = window.elastic_assignment_controller.offer.chooser
     assert chooser is not None
     return chooser
 

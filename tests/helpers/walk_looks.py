@@ -34,7 +34,7 @@ def differences_seen(window: MainWindow, document: Document) -> list[str]:
                 found.append(f"{key}: {field.edit.text()!r} for {shown!r}")
         if window.model._present[key] != getattr(design, key):
             found.append(f"{key}: {window.model._present[key]} for {getattr(design, key)}")
-    do, segment = window.actions_, window.variant_desk.segment
+    do, segment = window.actions_, window.variants_controller.segment
     for name, said in (
         ("control", do.controls[design.volume].isChecked()),
         ("template", do.templates[design.template].isChecked()),

@@ -192,7 +192,7 @@ class Walker(LinesWalk):
 
     def restore(self) -> None:
         """Go back to a settled result."""
-        rows, kept = self.window.history.snapshots, self.window.history_desk._snapshots
+        rows, kept = self.window.history.snapshots, self.window.history_controller._snapshots
         if rows.count():
             place = self.chance.randrange(rows.count())
             after = kept[len(kept) - 1 - place].within(self.document)
@@ -209,7 +209,7 @@ class Walker(LinesWalk):
         elif self.chance.random() < 0.2:
             menu.actions()[-1].trigger()
         else:
-            self.window.variant_desk.segment.button(name).click()
+            self.window.variants_controller.segment.button(name).click()
             if name != self.document.shown:
                 self.note(self.document.with_shown(name))
 
@@ -283,5 +283,5 @@ class Walker(LinesWalk):
     def wait(self) -> Script:
         """Let all come to rest, and stand long enough for a picture of it."""
         yield self.window.is_settled
-        clock = self.window.history_desk._clock
+        clock = self.window.history_controller._clock
         yield lambda: not clock.isActive()

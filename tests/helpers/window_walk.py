@@ -132,7 +132,7 @@ class WindowWalk:
 
     def is_at_rest(self) -> bool:
         """Tell whether all is solved and shown, and what is not saved kept aside."""
-        keeping, document = self.window.keeping_desk, self.session.document
+        keeping, document = self.window.autosave_controller, self.session.document
         kept = keeping._kept is document or not self.session.unsaved
         return self.window.is_settled() and not self.window.landmark_desk.carries and kept
 
@@ -150,7 +150,7 @@ class WindowWalk:
         exact = np.subtract(astuple(shown.exact_marks), astuple(alone.exact_marks))
         run = shown.control_points - alone.control_points
         self.far = max(self.far[0], float(np.abs(exact).max())), max(self.far[1], float(np.abs(run).max()))
-        recovery = self.window.keeping_desk._recovery
+        recovery = self.window.autosave_controller._recovery
         if self.session.unsaved and recovery is not None:
             kept = load_unsaved(recovery.folder).document
             self.must(with_scan(kept, "", "") == with_scan(self.document, "", ""), "another one is kept")

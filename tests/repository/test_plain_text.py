@@ -66,10 +66,10 @@ def test_no_label_and_no_tooltip_of_the_window_is_read_as_html(hostile_project: 
             window.navigation.show_panel(panel)
             yield lambda: True
             taken |= read_as_html()
-        window.report_desk.open()
+        window.report_controller.open()
         yield lambda: True
         taken |= read_as_html()
-        window.start_desk.show_page()
+        window.start_controller.show_page()
         yield lambda: True
         taken |= read_as_html()
         assert not taken, "\n".join(sorted(taken))

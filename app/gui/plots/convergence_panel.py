@@ -49,7 +49,7 @@ class VerdictView(Protocol):
     def settling(self) -> bool: ...
 
 
-class Strip(QWidget):
+class ConvergencePanel(QWidget):
     """Verdict and method on the left, volume error and a height over the turns live beside it.
 
     ``export_asked`` carries csv, png or svg; ``quantity_chosen`` the name of what a plot shows now;

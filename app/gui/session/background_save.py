@@ -13,7 +13,7 @@ Done = Callable[[Exception | None], None]
 """What follows, in the window's thread: it hears why nothing was written, or None if all went well."""
 
 
-class Writing(QObject):
+class BackgroundSave(QObject):
     """Writes one file after the other."""
 
     _over = Signal()

@@ -20,7 +20,7 @@ from core.document.lines import CustomLine
 from core.errors import UserError
 
 
-class Editing(QObject):
+class DocumentEditor(QObject):
     """The part of a session that edits.
 
     ``document`` is what is committed, ``design`` its shown variant; while something is dragged the solver

@@ -10,7 +10,7 @@ from PySide6.QtGui import QUndoCommand
 from core.document.document import Document
 
 if TYPE_CHECKING:
-    from app.gui.session.document_editor import Editing
+    from app.gui.session.document_editor import DocumentEditor
 
 PAUSE = 1.0
 """Seconds between two edits of one thing after which they are two in the history; a wheel turns faster."""
@@ -24,7 +24,13 @@ class Edit(QUndoCommand):
     """
 
     def __init__(
-        self, session: Editing, before: Document, after: Document, text: str, shown: bool, what: str = ""
+        self,
+        session: DocumentEditor,
+        before: Document,
+        after: Document,
+        text: str,
+        shown: bool,
+        what: str = "",
     ) -> None:
         super().__init__(text)
         self._session = session

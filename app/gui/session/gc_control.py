@@ -13,7 +13,7 @@ _SELDOM = 30
 """Every so many looks, what is old is looked at too."""
 
 
-class Housekeeping(QObject):
+class GarbageCollection(QObject):
     """Looks for garbage by a clock of its own, as long as a window is open.
 
     Left to itself Python does it in whatever thread is at work, and the solver's would destroy Qt and VTK

@@ -12,7 +12,7 @@ from PySide6.QtCore import QObject, Signal
 
 from app.gui.session.app_folders import show_folder, shown_folder
 from app.gui.session.session import Session
-from app.gui.widgets.notification_bar import FAULT, REFUSED, Action, NoticeBar
+from app.gui.widgets.notification_bar import FAULT, REFUSED, Action, NotificationBar
 from app.i18n.catalog import tr
 from app.presenters.lines import titled
 from app.presenters.status import error_text, solver_error_text
@@ -29,7 +29,7 @@ class Notifications(QObject):
 
     closed = Signal()
 
-    def __init__(self, session: Session, bar: NoticeBar) -> None:
+    def __init__(self, session: Session, bar: NotificationBar) -> None:
         super().__init__(session)
         self._session, self._bar = session, bar
         self._refused_by: Design | None = None

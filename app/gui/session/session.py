@@ -8,10 +8,10 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from app.gui.session.background_save import Writing
-from app.gui.session.document_editor import Editing
+from app.gui.session.background_save import BackgroundSave
+from app.gui.session.document_editor import DocumentEditor
 from app.gui.session.edit_command import Edit
-from app.gui.session.solver_bridge import Solving
+from app.gui.session.solver_bridge import SolverBridge
 from app.i18n.catalog import tr
 from core.document.design import Design, ScanSource
 from core.document.document import Document
@@ -41,7 +41,7 @@ class _Opening:
     revision: int
 
 
-class Session(Editing):
+class Session(DocumentEditor):
     """What the window shows and asks.
 
     Verbs (open, preview, commit, save ...) are called by the window; what follows is told by signals.
@@ -69,9 +69,9 @@ class Session(Editing):
         self.stamp: Stamp | None = None
         self.trial: Design | None = None
         self._opening: _Opening | None = None
-        self._saving = Writing(self)
+        self._saving = BackgroundSave(self)
         self._oldest = 0
-        self._solving = Solving(self)
+        self._solving = SolverBridge(self)
         self._solving.answered.connect(self._answer)
         self._solving.refused.connect(self._fail)
         self._solving.working.connect(self.working)

@@ -13,7 +13,7 @@ FRAME_INTERVAL = 16
 """Milliseconds between two looks at the solver, which also says itself when there is something to see."""
 
 
-class Solving(QObject):
+class SolverBridge(QObject):
     """Holds the LiveSolver. ``answered`` carries a Frame, ``refused`` a Failure; ``working`` the work in hand
     and the share done.
     """

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import logging
 import signal
+from collections.abc import Callable
 from contextlib import suppress
 from types import FrameType
-from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QCoreApplication, QObject, QTimer
 from PySide6.QtGui import QGuiApplication
 
-if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+from app.gui.session.session import Session
 
 _NAMES = ("SIGTERM", "SIGINT", "SIGHUP", "SIGBREAK")  # a system has some of them
 
@@ -30,9 +29,11 @@ class Termination(QObject):
     the program itself.
     """
 
-    def __init__(self, window: MainWindow) -> None:
+    def __init__(
+        self, session: Session, complete_edits: Callable[[], object], rescue: Callable[[], object]
+    ) -> None:
         super().__init__()
-        self._window = window
+        self._session, self._complete_edits, self._rescue = session, complete_edits, rescue
         self._number = self.code = 0
         numbers = [getattr(signal, name) for name in _NAMES if hasattr(signal, name)]
         # What is ignored stays so: nohup has SIGHUP ignored.
@@ -51,9 +52,9 @@ class Termination(QObject):
     def keep(self) -> None:
         """Keep the document aside, if it is not saved."""
         with suppress(Exception):  # an edit that cannot be completed must not prevent the copy
-            self._window.project_controller.complete_edits()
-        if self._window.session.unsaved:
-            self._window.rescue()
+            self._complete_edits()
+        if self._session.unsaved:
+            self._rescue()
 
     def close(self) -> None:
         """Give the signals back."""

@@ -12,7 +12,7 @@ FINEST = 2.5
 """Details of a large body that are smaller than so many pixels are not drawn without a graphics card."""
 
 
-class Smoothing:
+class Antialiasing:
     """Chooses filter, light and detail of one canvas."""
 
     def __init__(self, canvas: Canvas, scene: Scene) -> None:

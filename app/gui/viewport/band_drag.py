@@ -10,7 +10,7 @@ FINE = 0.1
 """What is left of a pull while Shift is held [1]."""
 
 
-class BandGrip(QObject):
+class BandHandle(QObject):
     """What a pointer pulls at; ``cursor_of`` tells how it looks over a band, None where that is not pulled.
 
     ``taken`` names the band, ``pulled`` carries how far it went up since [px], a tenth of it with Shift, and

@@ -10,7 +10,7 @@ GLIDE = 220
 """Duration of a move to another view [ms]."""
 
 
-class Glide(QVariantAnimation):
+class CameraAnimation(QVariantAnimation):
     """Says by ``passed`` which views are seen on the way."""
 
     passed = Signal(View)

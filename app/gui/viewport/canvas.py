@@ -33,7 +33,7 @@ from core.errors import UserError
 if TYPE_CHECKING:
     import pyvista as pv
 
-    from app.gui.viewport.offscreen_canvas import Pictures
+    from app.gui.viewport.offscreen_canvas import OffscreenCanvas
 
 _GL_RENDERER = 0x1F01
 _loading = threading.Lock()
@@ -110,7 +110,7 @@ class Canvas(QWidget):
         self.setMouseTracking(True)
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self.painted = is_painted()
-        self._pictures: Pictures | None = None
+        self._pictures: OffscreenCanvas | None = None
         self._interactor: Any = None
         self._image: QImage | None = None
         if not self.painted:
@@ -122,9 +122,9 @@ class Canvas(QWidget):
         """Load the 3D libraries, if they are not, and return the plotter whose scene is shown from now on."""
         load_libraries()
         if self.painted:
-            from app.gui.viewport.offscreen_canvas import Pictures  # noqa: PLC0415 (brings VTK along)
+            from app.gui.viewport.offscreen_canvas import OffscreenCanvas  # noqa: PLC0415 (brings VTK along)
 
-            self._pictures = Pictures()
+            self._pictures = OffscreenCanvas()
             return self._pictures.plotter
         from pyvistaqt import QtInteractor  # noqa: PLC0415 (brings VTK along)
 

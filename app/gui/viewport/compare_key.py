@@ -14,7 +14,7 @@ HOLD = 350
 """Milliseconds from which on a pressed key is held and no longer tapped."""
 
 
-class FlipKey(QObject):
+class CompareKey(QObject):
     """Flips to the body at rest when ``flip`` is triggered, and back to what it was flipped from.
 
     If its key is let go after having been held it flips back at once. ``show_variants`` puts these side by

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from app.gui.viewport.body_view import BodyView
-from app.gui.viewport.split_view import Panes
+from app.gui.viewport.split_view import SplitView
 from app.gui.viewport.viewport import Viewport
 from app.i18n.catalog import tr
 from core.pipeline.live_solver import Frame
@@ -16,14 +16,14 @@ WAYS = ("before", "after", "wipe", "side")
 _LAYERS = ("control", "bands", "ghost", "colours")
 
 
-class Beside:
+class ViewComparison:
     """Owns the views beside the main one, from when they are wanted until they are not.
 
     ``way`` is one of ``WAYS``, or "variants". ``bodies`` are all that are seen, ``live`` those of them that
     show the frame of the session; the main one is always there and the first of both.
     """
 
-    def __init__(self, main: BodyView, panes: Panes) -> None:
+    def __init__(self, main: BodyView, panes: SplitView) -> None:
         self._panes = panes
         self._main = main
         self.way = "after"

@@ -30,7 +30,7 @@ def keys_in_words() -> list[tuple[str, str]]:
     ]
 
 
-class Hand(QObject):
+class DrawingTool(QObject):
     """Listens before the pointer of ``view`` does, while it is ``at_work``.
 
     ``clicked`` and ``hovered`` carry places on the canvas, ``asked`` one of: keep, back, leave. What

@@ -16,7 +16,7 @@ FINE = 0.1
 """What is left of a drag while Shift is held [1]."""
 
 
-class Knob(QWidget):
+class Handle(QWidget):
     """Stands where its place is seen and keeps the hand that holds it; what a step means says ``_pull``.
 
     ``taken`` and ``dropped`` when a hand closes and opens, or what it holds is hidden.

@@ -10,7 +10,7 @@ from PySide6.QtCore import QEvent, QObject, QPointF, Qt, Signal
 from PySide6.QtGui import QMouseEvent, QNativeGestureEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from app.gui.viewport.band_drag import BandGrip
+from app.gui.viewport.band_drag import BandHandle
 from app.gui.viewport.mouse_bindings import ORBIT, PAN, ZOOM, chosen_gestures
 from app.gui.viewport.overlay import Overlay
 from app.rendering.camera import View
@@ -55,7 +55,7 @@ class Pointer(QObject):
         super().__init__(canvas)
         self._canvas = canvas
         self._overlay = overlay
-        self.band_grip = BandGrip(self)
+        self.band_grip = BandHandle(self)
         self._pressed = QPointF()
         self._last = QPointF()
         self._grip = self._drags = ""

@@ -14,7 +14,7 @@ from core.geometry.mesh import Points
 from core.landmarks.types import Landmark
 
 
-class PinBoard:
+class LandmarkPins:
     """Keeps the pins of every viewport on which the body of the document is seen, the first one in front.
 
     ``accepted`` are places that contradict their rules and have been found right.

@@ -22,7 +22,7 @@ _HELD = _SHIFT | _CTRL
 
 
 @dataclass(frozen=True)
-class Gestures:
+class MouseBindings:
     """What a drag does by its button and the key held, and what the wheel does by the key held."""
 
     drags: Mapping[tuple[Qt.MouseButton, Qt.KeyboardModifier], str]
@@ -40,27 +40,27 @@ class Gestures:
 _WITH_LEFT = {(_LEFT, _NONE): ORBIT, (_LEFT, _SHIFT): PAN, (_LEFT, _CTRL): ZOOM}
 
 PRESETS = {
-    "busk": Gestures({**_WITH_LEFT, (_MIDDLE, _NONE): PAN, (_RIGHT, _NONE): ZOOM}, {_NONE: ZOOM}),
-    "cad": Gestures(
+    "busk": MouseBindings({**_WITH_LEFT, (_MIDDLE, _NONE): PAN, (_RIGHT, _NONE): ZOOM}, {_NONE: ZOOM}),
+    "cad": MouseBindings(
         {(_LEFT, _NONE): ORBIT, (_MIDDLE, _NONE): ORBIT, (_MIDDLE, _CTRL): PAN, (_MIDDLE, _SHIFT): ZOOM}
         | {(_RIGHT, _NONE): PAN},
         {_NONE: ZOOM},
     ),
-    "blender": Gestures(
+    "blender": MouseBindings(
         {(_LEFT, _NONE): ORBIT, (_MIDDLE, _NONE): ORBIT, (_MIDDLE, _SHIFT): PAN, (_MIDDLE, _CTRL): ZOOM},
         {_NONE: ZOOM, _SHIFT: PAN},
     ),
-    "trackpad": Gestures(_WITH_LEFT, {_NONE: ORBIT, _SHIFT: PAN, _CTRL: ZOOM}),
+    "trackpad": MouseBindings(_WITH_LEFT, {_NONE: ORBIT, _SHIFT: PAN, _CTRL: ZOOM}),
 }
 """The presets by name."""
 
 
-def chosen_gestures() -> Gestures:
+def chosen_gestures() -> MouseBindings:
     """Return the gestures of the preset that the user has wished for."""
     return PRESETS.get(wish("mouse"), PRESETS["busk"])
 
 
-def gestures_in_words(gestures: Gestures) -> list[tuple[str, str]]:
+def gestures_in_words(gestures: MouseBindings) -> list[tuple[str, str]]:
     """Return what a hand does in the view and what comes of it, ready to read."""
     acts = {ORBIT: tr("Turn the body"), PAN: tr("Move the body"), ZOOM: tr("Closer or farther")}
     buttons = {_LEFT: tr("Left drag"), _MIDDLE: tr("Middle drag"), _RIGHT: tr("Right drag")}

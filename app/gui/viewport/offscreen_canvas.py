@@ -14,7 +14,7 @@ from vtkmodules.vtkRenderingCore import vtkProp
 from app.rendering.layer_cache import StaticLayerCache
 
 
-class Pictures:
+class OffscreenCanvas:
     """Draws an off-screen plotter; no OpenGL is needed from Qt.
 
     While ``quick`` is set, what ``still`` returns is drawn again only if it has changed.

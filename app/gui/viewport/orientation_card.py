@@ -22,7 +22,7 @@ PICTURES = 4
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
+class OrientationChoice:
     """What can be answered: ``up`` and ``front`` as the scan is told, a ``picture`` of it and its words."""
 
     up: str
@@ -31,7 +31,7 @@ class Answer:
     words: str
 
 
-class QuestionCard(FloatingPanel):
+class OrientationCard(FloatingPanel):
     """Asks once, calmly; ``answered`` with (up, front), ``left`` when it is closed without an answer."""
 
     answered = Signal(str, str)
@@ -39,7 +39,7 @@ class QuestionCard(FloatingPanel):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.pictures: list[PictureButton] = []
+        self.pictures: list[OrientationButton] = []
         column = QVBoxLayout()
         column.setSpacing(4)
         head = QHBoxLayout()
@@ -57,19 +57,19 @@ class QuestionCard(FloatingPanel):
         self.row.addLayout(column)
         self.hide()
 
-    def ask(self, answers: Sequence[Answer]) -> None:
+    def ask(self, answers: Sequence[OrientationChoice]) -> None:
         """Show these pictures, the likeliest first."""
         for old in self.pictures:
             self._pictures.removeWidget(old)
             old.deleteLater()
-        self.pictures = [PictureButton(answer) for answer in answers[:PICTURES]]
+        self.pictures = [OrientationButton(answer) for answer in answers[:PICTURES]]
         for each in self.pictures:
             self._pictures.addWidget(each)
             each.clicked.connect(lambda _=False, given=each.answer: self._answer(given))
         self.setVisible(bool(self.pictures))
         self.adjustSize()
 
-    def _answer(self, answer: Answer) -> None:
+    def _answer(self, answer: OrientationChoice) -> None:
         self.hide()
         self.answered.emit(answer.up, answer.front)
 
@@ -78,10 +78,10 @@ class QuestionCard(FloatingPanel):
         self.left.emit()
 
 
-class PictureButton(QAbstractButton):
+class OrientationButton(QAbstractButton):
     """A picture of the body as it would stand, with how the file lies then."""
 
-    def __init__(self, answer: Answer) -> None:
+    def __init__(self, answer: OrientationChoice) -> None:
         super().__init__()
         self.answer = answer
         self.setText(answer.words)

@@ -8,7 +8,7 @@ from PySide6.QtCore import QPointF, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QPolygonF
 
 from app.gui.theme.stylesheet import tokens_of
-from app.gui.viewport.handle import Knob
+from app.gui.viewport.handle import Handle
 from app.gui.viewport.viewport import Viewport
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
@@ -25,7 +25,7 @@ _CELLS = 24  # the sheet is looked through in so many rows and columns, then its
 _FLATTEST = 0.35  # a normal seen shorter than this points at the eye: the drag then goes up and down
 
 
-class PlaneHandle(Knob):
+class PlaneHandle(Handle):
     """A knob that stands on the plane's sheet and stays there until the camera moves.
 
     ``pulled`` carries each step along the normal [mm], a tenth of it while Shift is held. Where the normal

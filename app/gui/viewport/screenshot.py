@@ -14,7 +14,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkRenderingCore import vtkResizingWindowToImageFilter
 
 from app.gui.viewport.plane_handle import PlaneHandle
-from app.gui.viewport.split_view import Panes
+from app.gui.viewport.split_view import SplitView
 from app.gui.viewport.viewport import Viewport
 
 SAMPLES = 2
@@ -24,7 +24,7 @@ MOST = 8192
 """Width and height that every graphics driver can draw [px]."""
 
 
-def fine_picture(panes: Panes, finer: float) -> QImage:
+def fine_picture(panes: SplitView, finer: float) -> QImage:
     """Return all that is seen with ``finer`` times the pixels of the screen in both directions.
 
     No line is marked as selected; pins, values and titles stay. Belongs to the thread of the window.

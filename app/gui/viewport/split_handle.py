@@ -27,7 +27,7 @@ def keys_in_words() -> list[tuple[str, str]]:
     return [("← →", tr("Wipe by 1 %")), ("Page Up, Page Down", tr("Wipe by 10 %"))]
 
 
-class WipeHandle(QAbstractSlider):
+class SplitHandle(QAbstractSlider):
     """A slider as high as the view, ``2 REACH`` wide; its parent puts it where its value says."""
 
     def __init__(self, parent: QWidget) -> None:

@@ -10,12 +10,12 @@ from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPaintEvent, Q
 from PySide6.QtWidgets import QWidget
 
 from app.gui.theme.stylesheet import font, tokens_of
-from app.gui.viewport.split_handle import WipeHandle
+from app.gui.viewport.split_handle import SplitHandle
 from app.gui.viewport.viewport import Viewport
 from app.gui.widgets.overlay_layout import GAP
 
 
-class Panes(QWidget):
+class SplitView(QWidget):
     """Holds the ``main`` viewport for good, and others beside it or under it for as long as they are wanted.
 
     ``obstacle`` is a sibling that floats over the panes: no title is hidden under it.
@@ -28,7 +28,7 @@ class Panes(QWidget):
         self.titles: tuple[PaneTitle, ...] = ()
         self.obstacle: QWidget | None = None
         self._wiped = QWidget(self)
-        self.handle = WipeHandle(self)
+        self.handle = SplitHandle(self)
         self.handle.valueChanged.connect(self._lay_out)
         self._take((main,), (), wiped=False)
 

@@ -14,7 +14,7 @@ from app.gui.viewport.viewport import Viewport
 from core.geometry.mesh import Points
 
 
-class WishCurve(QWidget):
+class TargetCurve(QWidget):
     """Two curves over one view, seen and never hit: what is wished is dashed, what is reached is not."""
 
     def __init__(self, viewport: Viewport, side: str) -> None:

@@ -9,7 +9,7 @@ from PySide6.QtGui import QColor, QHideEvent, QKeyEvent, QMouseEvent, QPainter, 
 from PySide6.QtWidgets import QWidget
 
 from app.gui.theme.stylesheet import tokens_of
-from app.gui.viewport.handle import Knob
+from app.gui.viewport.handle import Handle
 from app.gui.viewport.viewport import Viewport
 from app.i18n.catalog import tr
 from app.i18n.lengths import arrow_step, length
@@ -24,7 +24,7 @@ _FLATTEST = 0.35  # a way seen shorter than this part of a mm across points at t
 _FACING = {"left": np.array([0.42, -0.91, 0.0]), "right": np.array([-0.42, -0.91, 0.0])}  # of each breast
 
 
-class BustHandle(Knob):
+class TargetHandle(Handle):
     """A knob where a place of the breast on a ``side`` is wished, with a thread to where it is.
 
     ``name`` is heard. A ``small`` one has neither arrows nor thread.

@@ -12,16 +12,16 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from app.gui.session.jobs import Job, Jobs
 from app.gui.viewport.body_view import BodyView
 from app.gui.viewport.canvas import load_libraries
-from app.gui.viewport.comparison import Beside
-from app.gui.viewport.landmark_pins import PinBoard
+from app.gui.viewport.comparison import ViewComparison
+from app.gui.viewport.landmark_pins import LandmarkPins
 from app.gui.viewport.opening_cover import OpeningCover
-from app.gui.viewport.orientation_card import QuestionCard
-from app.gui.viewport.split_view import Panes
+from app.gui.viewport.orientation_card import OrientationCard
+from app.gui.viewport.split_view import SplitView
 from app.gui.viewport.toolbar import CompareTools, ViewTools
 from app.gui.viewport.viewport import Viewport
 from app.gui.widgets.basic import ToolButton
-from app.gui.widgets.overlay_layout import Floating
-from app.gui.widgets.progress_card import BusyCard
+from app.gui.widgets.overlay_layout import OverlayLayout
+from app.gui.widgets.progress_card import ProgressCard
 from app.i18n.catalog import tr
 from app.rendering.ambient_occlusion import bake_occlusion
 from core.geometry.mesh import Floats
@@ -44,19 +44,19 @@ class ViewArea(QWidget):
         self._jobs = jobs
         self._baking: Job | None = None
         self.viewport = Viewport()
-        self.panes = Panes(self.viewport, self)
+        self.panes = SplitView(self.viewport, self)
         self.tools = ViewTools(self)
         self.compare = CompareTools(self)
-        self.busy, self.question = BusyCard(self), QuestionCard(self)
+        self.busy, self.question = ProgressCard(self), OrientationCard(self)
         self._main = BodyView(self.viewport)
-        self.beside = Beside(self._main, self.panes)
-        self.pins = PinBoard([self.viewport])
+        self.beside = ViewComparison(self._main, self.panes)
+        self.pins = LandmarkPins([self.viewport])
         self._shades: tuple[Body, Floats] | None = None
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.panes)
         self.cover = OpeningCover(self)
-        self.floating = Floating(self)
+        self.floating = OverlayLayout(self)
         self._explaining: list[QWidget] = []
         for panel, corner in (
             (self.tools, "bottom"),

@@ -11,7 +11,7 @@ from PySide6.QtGui import QImage, QResizeEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.gui.theme.stylesheet import tokens_of
-from app.gui.viewport.camera_animation import Glide
+from app.gui.viewport.camera_animation import CameraAnimation
 from app.gui.viewport.canvas import Canvas
 from app.gui.viewport.interaction import Pointer
 from app.gui.viewport.labels import Labels
@@ -64,7 +64,7 @@ class Viewport(QWidget):
         self._scene: Scene | None = None
         self._rest = QTimer(self, singleShot=True, interval=REST)
         self._rest.timeout.connect(self._refine)
-        self._glide = Glide(self)
+        self._glide = CameraAnimation(self)
         self._glide.passed.connect(self._look_from)
         self._fit: Callable[[float], View] | None = None
         self._open = True
@@ -95,14 +95,14 @@ class Viewport(QWidget):
 
     def _make_scene(self) -> Scene:
         plotter = self._canvas.make_plotter()
-        from app.gui.viewport.antialiasing import Smoothing  # noqa: PLC0415 (so does this)
+        from app.gui.viewport.antialiasing import Antialiasing  # noqa: PLC0415 (so does this)
         from app.rendering.scene import Scene  # noqa: PLC0415 (brings VTK along)
 
         self._scene = scene = Scene(plotter, tokens_of(self).dark, self.devicePixelRatioF())
         scene.set_camera(self._view)
         scene.set_material(self._material)
         self._canvas.draw_still(scene.static_actors)
-        self._smoothing = Smoothing(self._canvas, scene)
+        self._smoothing = Antialiasing(self._canvas, scene)
         self._pointer.look_at(scene)
         self.request_draw()
         return scene

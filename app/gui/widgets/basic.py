@@ -251,7 +251,7 @@ class FloatingPanel(QWidget):
         QPainter(self).drawPixmap(0, 0, floating_ground(self.width(), self.height(), ratio, dark))
 
 
-class OverCard(FloatingPanel):
+class OverlayCard(FloatingPanel):
     """A card over the whole window, which waits for an answer; ``given_up`` by Esc from wherever."""
 
     given_up = Signal()

@@ -10,14 +10,14 @@ from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPaintEvent, QPen, QRegio
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.gui.theme.stylesheet import label, tokens_of
-from app.gui.widgets.basic import OverCard, button, sentence
+from app.gui.widgets.basic import OverlayCard, button, sentence
 from app.i18n.catalog import tr
 
 _WIDTH = 228  # as narrow as leaves the body in sight beside the steps
 _AWAY = 8
 
 
-class CoachMark(OverCard):
+class CoachMark(OverlayCard):
     """Title, sentence and the way on; Enter or the right arrow go on, the left one back, Esc skips the rest.
 
     The space bar is left to the window: it may be what the step speaks of.

@@ -22,7 +22,7 @@ from app.gui.widgets.focus_chain import next_stop, stops
 from app.i18n.catalog import tr
 
 
-class Sheet(QDialog):
+class Dialog(QDialog):
     """A dialog that goes when it is closed; ``body`` takes what it shows, ``foot`` its buttons.
 
     A height of 0 in its size means as high as it needs.

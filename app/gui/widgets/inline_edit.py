@@ -44,11 +44,11 @@ def read_figure(text: str) -> float | None:
 def forget_refused() -> None:
     """Show the present value in the field that has the keyboard, if what it holds was refused."""
     field = QApplication.focusWidget()
-    if isinstance(field, TypedField) and field.refused:
+    if isinstance(field, InlineEdit) and field.refused:
         field._show()
 
 
-class TypedField(QLineEdit):
+class InlineEdit(QLineEdit):
     """The part of a field that is alike for every kind of value; ``left`` at Enter, once taken, or Esc.
 
     What cannot be is ringed in red, and a card under the field says why until something else is typed.

@@ -9,12 +9,12 @@ from PySide6.QtGui import QActionGroup
 from PySide6.QtWidgets import QSizePolicy
 
 from app.gui.widgets.menu import Menu, pull_down
-from app.gui.widgets.option_field import PullDown
+from app.gui.widgets.option_field import OptionCombo
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 
 
-class MarkField(PullDown):
+class LandmarkCombo(OptionCombo):
     """Shows a landmark and opens the menu of all; ``chosen`` names another one.
 
     With ``none`` in words none of them can be chosen too: an empty name.

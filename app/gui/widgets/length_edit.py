@@ -7,7 +7,7 @@ from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QFocusEvent
 
 from app.gui.theme.stylesheet import font
-from app.gui.widgets.inline_edit import TypedField
+from app.gui.widgets.inline_edit import InlineEdit
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import joined, number, say, tr
 from app.i18n.lengths import length_number, shown_unit
@@ -18,7 +18,7 @@ _FOCUS = Qt.FocusReason
 _BY_KEY = (_FOCUS.TabFocusReason, _FOCUS.BacktabFocusReason, _FOCUS.ShortcutFocusReason)
 
 
-class NumberField(TypedField):
+class NumberField(InlineEdit):
     """A number with its unit.
 
     ``opened`` when typing may begin, ``entered`` (share of the rest length) when another length was typed.

@@ -19,7 +19,7 @@ from PySide6.QtWidgets import QLineEdit, QSizePolicy, QWidget
 
 from app.gui.theme.stylesheet import font, tokens_of
 from app.gui.widgets.basic import ElidedLabel
-from app.gui.widgets.inline_edit import TypedField, read_figure
+from app.gui.widgets.inline_edit import InlineEdit, read_figure
 from app.gui.widgets.menu import Menu
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr
@@ -162,7 +162,7 @@ class _Editor(QLineEdit):
             event.accept()  # the list would open the length for typing
 
 
-class StiffnessField(TypedField):
+class StiffnessField(InlineEdit):
     """The stiffness of one line; nothing typed means: as the model. ``entered`` carries a number or None."""
 
     entered = Signal(object)

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QLineEdit, QWidget
 
 from app.gui.theme.stylesheet import label
 from app.gui.widgets.basic import sentence
-from app.gui.widgets.dialog import Sheet
+from app.gui.widgets.dialog import Dialog
 from app.i18n.catalog import tr
 
 LOSING = ("delete", "discard", "replace")
@@ -24,7 +24,7 @@ def ask(parent: QWidget | None, question: str, said: str, answers: Sequence[tupl
     ``answers`` are names with the words on their buttons: first the one that Enter gives, then others, from
     right to left. Esc, and the button *Cancel*, give none, and so does Enter where the first is ``LOSING``.
     """
-    sheet, chosen = Sheet(parent, question, (_WIDTH, 0)), [""]
+    sheet, chosen = Dialog(parent, question, (_WIDTH, 0)), [""]
     sheet.setWindowTitle("Busk")
 
     def choose(name: str) -> None:
@@ -48,7 +48,7 @@ def ask(parent: QWidget | None, question: str, said: str, answers: Sequence[tupl
 
 def ask_name(parent: QWidget | None, title: str, what: str, name: str, longest: int) -> str:
     """Return a name that is typed for something, at most so long, or an empty text."""
-    sheet, typed = Sheet(parent, title, (_WIDTH, 0)), [""]
+    sheet, typed = Dialog(parent, title, (_WIDTH, 0)), [""]
     field = QLineEdit(name)
     field.setMaxLength(longest)
     field.setAccessibleName(what)

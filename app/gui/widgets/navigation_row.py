@@ -18,7 +18,7 @@ DOOR_HEIGHT = 52
 _LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
 
 
-class Door(QAbstractButton):
+class NavigationRow(QAbstractButton):
     """A title over a quiet line of words."""
 
     def __init__(self, title: str, words: str = "") -> None:

@@ -38,7 +38,7 @@ _BUTTON_KINDS = ("primary", "secondary", "quiet")
 
 
 @dataclass(frozen=True)
-class Notice:
+class Notification:
     """One thing to say; ``lasting`` keeps it until it is closed, or until what it is ``about`` is over."""
 
     tone: str
@@ -50,7 +50,7 @@ class Notice:
     about: str = ""
 
 
-class NoticeBar(FloatingPanel):
+class NotificationBar(FloatingPanel):
     """A card with one notice at a time, the others wait; it takes no room while there is none.
 
     What goes wrong now, or goes away by itself, is said at once: what stands there waits, if it lasts.
@@ -60,8 +60,8 @@ class NoticeBar(FloatingPanel):
 
     def __init__(self) -> None:
         super().__init__()
-        self._shown: Notice | None = None
-        self._waiting: deque[Notice] = deque()
+        self._shown: Notification | None = None
+        self._waiting: deque[Notification] = deque()
         self._lines, self._aside = _MOST_LINES, False
         self._timer = QTimer(self)
         self._timer.setSingleShot(True)
@@ -84,7 +84,7 @@ class NoticeBar(FloatingPanel):
         ``details`` unfold when they are asked for; by what it is ``about`` it can be withdrawn.
         A sentence that already stands or waits there is not said twice.
         """
-        notice = Notice(tone, sentence, hint, tuple(actions), lasting, details, about)
+        notice = Notification(tone, sentence, hint, tuple(actions), lasting, details, about)
         if any(each.sentence == sentence for each in (self._shown, *self._waiting) if each):
             return
         if self._shown is None or (lasting and tone != "bad"):
@@ -98,7 +98,7 @@ class NoticeBar(FloatingPanel):
         else:
             self._show_waiting()
 
-    def notice(self) -> Notice | None:
+    def notice(self) -> Notification | None:
         """Return the notice that stands there."""
         return self._shown
 

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSizePolicy, QWidget
 from app.gui.theme.icons import paint_icon
 from app.gui.theme.stylesheet import font, tokens_of
 from app.gui.widgets.basic import Segment
-from app.gui.widgets.inline_edit import TypedField, read_figure
+from app.gui.widgets.inline_edit import InlineEdit, read_figure
 from app.gui.widgets.menu import Menu
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr
@@ -75,7 +75,7 @@ class MenuField(Field):
             action.triggered.connect(lambda _=False, chosen=value: self.chosen.emit(chosen))
             self._menu.addAction(action)
             self.actions_by_value[value] = action
-        self._button = PullDown()
+        self._button = OptionCombo()
         self._button.clicked.connect(self._open)
         self.hold(self._button)
 
@@ -94,7 +94,7 @@ class MenuField(Field):
         self._menu.popup(self._button.mapToGlobal(self._button.rect().bottomLeft()))
 
 
-class PullDown(QPushButton):
+class OptionCombo(QPushButton):
     """A button that opens a menu."""
 
     def __init__(self) -> None:
@@ -132,7 +132,7 @@ class AmountField(Field):
         self.edit.show_value(value)
 
 
-class AmountEdit(TypedField):
+class AmountEdit(InlineEdit):
     """The number itself; ``entered`` carries another one that was typed, or None for none."""
 
     entered = Signal(object)

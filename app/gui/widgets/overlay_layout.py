@@ -17,7 +17,7 @@ CORNERS = ("bottom", "bottom-left", "bottom-right", "top-left", "top-right", "to
 """Where panels can be; panels of one corner are piled up, the first one at the edge."""
 
 
-class Floating(QObject):
+class OverlayLayout(QObject):
     """Keeps panels in their corners of ``view`` while it, or what they hold, changes its size.
 
     What stands in the middle of the lower edge keeps its place: a panel of a corner that would lie on it

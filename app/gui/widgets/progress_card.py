@@ -25,7 +25,7 @@ STEP = 21
 """Height of a step in the list [px]."""
 
 
-class BusyCard(FloatingPanel):
+class ProgressCard(FloatingPanel):
     """The work in hand; ``cancelled`` when the user does not want it any more."""
 
     cancelled = Signal()

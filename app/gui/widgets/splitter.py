@@ -29,7 +29,7 @@ def keys_in_words() -> list[tuple[str, str]]:
     ]
 
 
-class Divider(QSplitter):
+class Splitter(QSplitter):
     """Two parts beside or above each other, with a hairline between that keys move too."""
 
     def __init__(self, orientation: Qt.Orientation, name: str) -> None:
@@ -45,7 +45,7 @@ class Divider(QSplitter):
 class _Line(QSplitterHandle):
     """The hairline; as long as it has the keyboard it is three pixels in the colour of focus."""
 
-    def __init__(self, orientation: Qt.Orientation, parent: Divider, name: str) -> None:
+    def __init__(self, orientation: Qt.Orientation, parent: Splitter, name: str) -> None:
         super().__init__(orientation, parent)
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setAccessibleName(name)

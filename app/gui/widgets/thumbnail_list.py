@@ -30,7 +30,7 @@ _LEFT = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft
 
 
 @dataclass(frozen=True, eq=False)
-class PictureRow:
+class ThumbnailRow:
     """What a row shows: title, time and a few words, and a picture if there is one.
 
     ``present`` says that it is what the window shows now; ``mark`` is a tone and an icon before the words.
@@ -44,7 +44,7 @@ class PictureRow:
     mark: tuple[str, str] | None = None
 
 
-class PaintedList(QListWidget):
+class ThumbnailList(QListWidget):
     """Rows that are painted by a delegate and can be walked through by keys."""
 
     def __init__(self, delegate: QStyledItemDelegate) -> None:
@@ -64,7 +64,7 @@ class PaintedList(QListWidget):
             item.setData(Qt.ItemDataRole.AccessibleTextRole, f"{item.text()}, {tr('shown now')}")
             self.setCurrentItem(item)
 
-    def show_rows(self, views: Sequence[PictureRow]) -> None:
+    def show_rows(self, views: Sequence[ThumbnailRow]) -> None:
         """Show rows with pictures."""
         self.clear()
         for view in views:
@@ -136,7 +136,7 @@ class RowPainter(QStyledItemDelegate):
         painter.drawText(area, _LEFT, said)
 
 
-class PictureRowPainter(RowPainter):
+class ThumbnailRowPainter(RowPainter):
     """A small picture, the title with its time, and the words under it."""
 
     HEIGHT = 72

@@ -6,13 +6,13 @@ from __future__ import annotations
 from PySide6.QtCore import QSize, Qt, Signal
 
 from app.gui.theme.stylesheet import font
-from app.gui.widgets.inline_edit import TypedField, read_figure
+from app.gui.widgets.inline_edit import InlineEdit, read_figure
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length_number, read_length, shown_unit, widest_length
 
 
-class FigureField(TypedField):
+class ValueEdit(InlineEdit):
     """Shows a value in ``unit`` with ``digits``; ``entered`` carries another one that was typed.
 
     A value in "mm" is shown in the unit of lengths in use, and can be typed in any other.

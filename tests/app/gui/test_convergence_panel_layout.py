@@ -7,8 +7,8 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.gui.layout import LOW, NARROW, TALLER
-from app.gui.plots.convergence_panel import Strip
-from app.gui.step_navigation import Rail
+from app.gui.plots.convergence_panel import ConvergencePanel
+from app.gui.step_navigation import StepNavigation
 from app.gui.theme.stylesheet import apply_theme, load_fonts
 from app.i18n.catalog import speaking
 from app.presenters.status import ConvergenceView
@@ -29,9 +29,9 @@ def test_a_hint_of_three_lines_keeps_off_the_controls(qtbot: QtBot, qapp: QAppli
     load_fonts()
     apply_theme(qapp, dark=False)
     with speaking(code):
-        strip = Strip()
+        strip = ConvergencePanel()
     qtbot.addWidget(strip)
-    strip.resize(1180 - NARROW - Rail().width(), LOW + TALLER.get(code, 0))
+    strip.resize(1180 - NARROW - StepNavigation().width(), LOW + TALLER.get(code, 0))
     strip.show()
     numbers, hint = NUMBERS[code], strip._hint
     strip.set_verdict(

@@ -14,7 +14,7 @@ from pytestqt.qtbot import QtBot
 from app.gui.application import application
 from app.gui.features.help import system_info as machine
 from app.gui.session.app_folders import shown_folder
-from app.gui.widgets.dialog import Sheet
+from app.gui.widgets.dialog import Dialog
 from app.gui.widgets.file_dialogs import (
     ask_about_changes,
     ask_open,
@@ -41,23 +41,23 @@ def save(parent: QWidget, monkeypatch: pytest.MonkeyPatch, typed: Path, kind: st
     return ask_save(parent, "Export", "body.ply", KINDS, ".ply")
 
 
-def when_asked(do: Callable[[Sheet], None]) -> None:
+def when_asked(do: Callable[[Dialog], None]) -> None:
     """Do something with the sheet that asks next."""
 
     def answer() -> None:
         sheet = QApplication.activeModalWidget()
-        assert isinstance(sheet, Sheet)
+        assert isinstance(sheet, Dialog)
         do(sheet)
         sheet.reject()
 
     QTimer.singleShot(0, answer)
 
 
-def press(words: str) -> Callable[[Sheet], None]:
+def press(words: str) -> Callable[[Dialog], None]:
     return lambda sheet: next(each for each in buttons(sheet) if each.text() == words).click()
 
 
-def buttons(sheet: Sheet) -> list:
+def buttons(sheet: Dialog) -> list:
     return [sheet.foot.itemAt(k).widget() for k in range(1, sheet.foot.count())]
 
 
@@ -154,7 +154,7 @@ def test_a_free_name_is_counted_on(tmp_path: Path) -> None:
 def test_the_question_offers_three_ways_in_words(parent: QWidget, words: str, answer: str) -> None:
     seen = []
 
-    def look(sheet: Sheet) -> None:
+    def look(sheet: Dialog) -> None:
         seen.extend(each.text() for each in sheet.findChildren(QLabel))
         assert [each.icon().isNull() for each in buttons(sheet)] == [True] * 3
         press(words)(sheet)
@@ -178,7 +178,7 @@ def test_enter_loses_nothing_that_cannot_be_brought_back(parent: QWidget) -> Non
 
 
 def test_a_name_that_is_asked_for_is_not_empty(parent: QWidget) -> None:
-    def type_nothing(sheet: Sheet) -> None:
+    def type_nothing(sheet: Dialog) -> None:
         sheet.findChild(QLineEdit).setText("  ")
         assert not buttons(sheet)[-1].isEnabled()
 

@@ -9,12 +9,12 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QHBoxLayout, QPushButton, QScrollArea, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.gui.features.preferences.dialog import PreferencesSheet
+from app.gui.features.preferences.dialog import PreferencesDialog
 from app.gui.menus import Menus
 from app.gui.session.settings import UNTIL_THEN
 from app.gui.widgets.focus_chain import next_stop, stops
 from app.gui.widgets.option_field import field_of
-from app.gui.widgets.splitter import Divider
+from app.gui.widgets.splitter import Splitter
 from app.i18n.catalog import use_language
 from app.presenters.model_options import Choice
 
@@ -47,7 +47,7 @@ def test_tab_goes_round_in_the_preferences_both_ways_and_the_focus_comes_back(
     window: QWidget, qtbot: QtBot
 ) -> None:
     button(window, "right 1").setFocus()
-    sheet = PreferencesSheet(window, dict(UNTIL_THEN))
+    sheet = PreferencesDialog(window, dict(UNTIL_THEN))
     sheet.open()
     qtbot.waitUntil(sheet.isActiveWindow)
     order = stops(sheet)
@@ -108,7 +108,7 @@ class _Canvas(QPushButton):
 
 
 def test_a_divider_leaves_no_colour_on_what_lies_beside_it(qtbot: QtBot) -> None:
-    divider, canvas = Divider(Qt.Orientation.Horizontal, "Width"), _Canvas()
+    divider, canvas = Splitter(Qt.Orientation.Horizontal, "Width"), _Canvas()
     qtbot.addWidget(divider)
     other = QPushButton("other")
     for each in (canvas, other):

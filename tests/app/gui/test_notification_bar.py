@@ -6,13 +6,13 @@ import pytest
 from PySide6.QtWidgets import QApplication, QLabel, QPushButton
 from pytestqt.qtbot import QtBot
 
-from app.gui.widgets.notification_bar import NoticeBar
+from app.gui.widgets.notification_bar import NotificationBar
 
 pytestmark = pytest.mark.usefixtures("light_theme")
 
 
 def test_notices_wait_for_each_other(qtbot: QtBot) -> None:
-    bar, acted = NoticeBar(), []
+    bar, acted = NotificationBar(), []
     qtbot.addWidget(bar)
     bar.show_notice("warn", "First.", "Do this.", [("Do", lambda: acted.append("done"))], lasting=True)
     bar.show_notice("warn", "Second <b>.", lasting=True)
@@ -29,7 +29,7 @@ def test_notices_wait_for_each_other(qtbot: QtBot) -> None:
 
 
 def test_what_goes_wrong_now_is_said_now_and_the_others_can_be_looked_at(qtbot: QtBot) -> None:
-    bar = NoticeBar()
+    bar = NotificationBar()
     qtbot.addWidget(bar)
     bar.show_notice("warn", "Look at this.", lasting=True)
     bar.show_notice("bad", "Not read.", lasting=True)
@@ -48,7 +48,7 @@ def test_what_goes_wrong_now_is_said_now_and_the_others_can_be_looked_at(qtbot: 
 
 
 def test_only_what_a_notice_is_about_takes_it_away(qtbot: QtBot) -> None:
-    bar = NoticeBar()
+    bar = NotificationBar()
     qtbot.addWidget(bar)
     for sentence, about in (("Refused.", "refused"), ("Not written.", "files"), ("Open twice.", "")):
         bar.show_notice("bad", sentence, lasting=True, about=about)
@@ -62,7 +62,7 @@ def test_only_what_a_notice_is_about_takes_it_away(qtbot: QtBot) -> None:
 
 
 def test_a_wide_button_stands_under_the_words_and_a_short_one_beside_them(qtbot: QtBot) -> None:
-    bar = NoticeBar()
+    bar = NotificationBar()
     qtbot.addWidget(bar)
     bar.resize(700, 90)
     for words, width, below in (
@@ -83,7 +83,7 @@ def test_a_wide_button_stands_under_the_words_and_a_short_one_beside_them(qtbot:
 
 
 def test_no_button_is_cut_off(qtbot: QtBot) -> None:
-    bar = NoticeBar()
+    bar = NotificationBar()
     qtbot.addWidget(bar)
     words = ["Lengthen Mid-bust by 37.1 mm", "Lengthen Mid-bust by 2.6 mm"]
     bar.show_notice("warn", "It is strained.", actions=[(each, print) for each in words], details="Figures")

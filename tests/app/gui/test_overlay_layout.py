@@ -14,7 +14,7 @@ from app.gui.features.lines.draw_card import DrawCard
 from app.gui.theme.shadow import floating_ground
 from app.gui.theme.stylesheet import Sentence, apply_theme
 from app.gui.widgets.basic import FloatingPanel
-from app.gui.widgets.overlay_layout import APART, GAP, Floating
+from app.gui.widgets.overlay_layout import APART, GAP, OverlayLayout
 from app.rendering.palette import DARK, LIGHT
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -40,7 +40,7 @@ class Panel(FloatingPanel):
 def test_panels_keep_their_corners_and_clear_each_other() -> None:
     view = QWidget()
     view.resize(1160, 760)
-    floating = Floating(view)
+    floating = OverlayLayout(view)
     tools, card, legend, inset = Panel(520, 44), Panel(300, 60), Panel(104, 240), Panel(264, 302)
     for panel, corner in (
         (tools, "bottom"),
@@ -80,7 +80,7 @@ def test_panels_keep_their_corners_and_clear_each_other() -> None:
 def test_headroom_leaves_room_for_what_is_piled_on_a_panel() -> None:
     view = QWidget()
     view.resize(760, 440)
-    floating = Floating(view)
+    floating = OverlayLayout(view)
     bar, low, high = Panel(200, 40), Panel(220, 250), Panel(240, 120)
     for panel, corner in ((bar, "top-left"), (low, "bottom-left"), (high, "bottom-left")):
         floating.place(panel, corner)

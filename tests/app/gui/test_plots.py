@@ -10,7 +10,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.gui.plots.convergence_panel import Strip
+from app.gui.plots.convergence_panel import ConvergencePanel
 from app.gui.plots.live_plot import LivePlot
 from app.gui.plots.painting import curve_path
 from app.presenters.plots import (
@@ -117,9 +117,9 @@ def test_broken_numbers_do_not_break_the_plot(qtbot: QtBot) -> None:
 
 
 @pytest.fixture
-def strip(qtbot: QtBot) -> Strip:
+def strip(qtbot: QtBot) -> ConvergencePanel:
     """Two runs of 101 and 51 turns: percent t/100, ml t/10, bust 2t, apex 3t; the second half of it."""
-    result = Strip()
+    result = ConvergencePanel()
     qtbot.addWidget(result)
     result.resize(1100, 172)
     result.show()
@@ -144,7 +144,7 @@ def wheel(widget: QWidget, at: QPointF, notches: int) -> None:
     QApplication.sendEvent(widget, event)
 
 
-def test_pointing_reads_every_curve_of_both_plots(strip: Strip, qtbot: QtBot) -> None:
+def test_pointing_reads_every_curve_of_both_plots(strip: ConvergencePanel, qtbot: QtBot) -> None:
     error, height = (plot.canvas for plot in strip.plots)
     with qtbot.waitSignal(strip.error_plot.pointed) as pointed:
         QTest.mouseMove(error, QPoint(round(error.scale().x(20.3)), error.height() // 2))
@@ -166,7 +166,7 @@ def test_pointing_reads_every_curve_of_both_plots(strip: Strip, qtbot: QtBot) ->
     assert error.readout() == []
 
 
-def test_the_wheel_zooms_both_plots_about_the_pointer_and_a_drag_shifts_them(strip: Strip) -> None:
+def test_the_wheel_zooms_both_plots_about_the_pointer_and_a_drag_shifts_them(strip: ConvergencePanel) -> None:
     error, height = (plot.canvas for plot in strip.plots)
     at = QPointF(error.scale().x(40.0), 20.0)
     for _ in range(4):
@@ -185,7 +185,7 @@ def test_the_wheel_zooms_both_plots_about_the_pointer_and_a_drag_shifts_them(str
     assert error.turns() == height.turns() == (0.0, 100.0)
 
 
-def test_the_keyboard_points_and_zooms_as_the_mouse_does(strip: Strip) -> None:
+def test_the_keyboard_points_and_zooms_as_the_mouse_does(strip: ConvergencePanel) -> None:
     error = strip.error_plot.canvas
     for key in (Qt.Key.Key_Right, Qt.Key.Key_Left, Qt.Key.Key_Left):
         QTest.keyClick(error, key)
@@ -199,7 +199,7 @@ def test_the_keyboard_points_and_zooms_as_the_mouse_does(strip: Strip) -> None:
     assert error.readout() == []
 
 
-def test_another_quantity_is_chosen_at_the_title(strip: Strip) -> None:
+def test_another_quantity_is_chosen_at_the_title(strip: ConvergencePanel) -> None:
     for plot, name in zip(strip.plots, ("error_ml", "apex_mm"), strict=True):
         next(each for each in plot.title.menu.actions() if not each.isChecked()).trigger()
         assert plot.quantity.name == name
@@ -210,7 +210,7 @@ def test_another_quantity_is_chosen_at_the_title(strip: Strip) -> None:
     assert tolerance_of("apex_mm", None) == 0.0
 
 
-def test_a_run_that_begins_anew_is_shown_whole(strip: Strip) -> None:
+def test_a_run_that_begins_anew_is_shown_whole(strip: ConvergencePanel) -> None:
     strip.show_turns((60.0, 90.0))
     turns = np.arange(30.0)
     strip.set_run({"adaptive": Track(turns, turns, turns, turns, turns)}, "adaptive", None)
@@ -218,7 +218,7 @@ def test_a_run_that_begins_anew_is_shown_whole(strip: Strip) -> None:
 
 
 @pytest.mark.parametrize(("width", "place"), [(1400, 0), (960, 1), (860, 1)])
-def test_the_curves_are_named_all_in_one_place(strip: Strip, width: int, place: int) -> None:
+def test_the_curves_are_named_all_in_one_place(strip: ConvergencePanel, width: int, place: int) -> None:
     strip.resize(width, 172)
     strip.show()
     QApplication.processEvents()

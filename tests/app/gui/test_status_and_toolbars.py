@@ -12,10 +12,10 @@ from PySide6.QtWidgets import QApplication, QLabel, QPushButton, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.gui.features.lines.slider import LengthSlider
-from app.gui.plots.convergence_panel import Strip
+from app.gui.plots.convergence_panel import ConvergencePanel
 from app.gui.plots.status_chip import SHORTEST_SHOW_MS, VerdictChip
 from app.gui.status_bar import StatusBar
-from app.gui.step_navigation import Rail
+from app.gui.step_navigation import StepNavigation
 from app.gui.theme.stylesheet import tokens_of
 from app.gui.viewport.toolbar import VIEWS, CompareTools, ViewTools
 from app.gui.widgets.line_widgets import LineChip
@@ -29,7 +29,7 @@ pytestmark = pytest.mark.usefixtures("light_theme")
 
 
 def test_the_rail_says_what_is_chosen_not_what_is_set(qtbot: QtBot) -> None:
-    rail = Rail()
+    rail = StepNavigation()
     qtbot.addWidget(rail)
     with qtbot.assertNotEmitted(rail.step_chosen):
         rail.set_current("lines")
@@ -54,7 +54,7 @@ class Paints(QObject):
 
 
 def rail_item() -> tuple[QWidget, Callable[[str], None]]:
-    item = Rail().items["lines"]
+    item = StepNavigation().items["lines"]
     item.setParent(None)
     return item, lambda state: item.set_state(state, 0)
 
@@ -192,15 +192,15 @@ def run(values: np.ndarray) -> Track:
 
 
 @pytest.fixture
-def strip(qtbot: QtBot) -> Strip:
-    result = Strip()
+def strip(qtbot: QtBot) -> ConvergencePanel:
+    result = ConvergencePanel()
     qtbot.addWidget(result)
     result.resize(1100, 172)
     result.show()
     return result
 
 
-def test_the_strip_says_the_verdict(strip: Strip, qtbot: QtBot) -> None:
+def test_the_strip_says_the_verdict(strip: ConvergencePanel, qtbot: QtBot) -> None:
     strip.set_verdict(Said("vibrating"))
     qtbot.waitUntil(lambda: strip.chip.state() == "bad")
     assert strip.chip.accessibleName() == "Do not use"
@@ -209,7 +209,7 @@ def test_the_strip_says_the_verdict(strip: Strip, qtbot: QtBot) -> None:
     assert set(TONES) == {*STATES, "strained", "stale", "paused", *LEVELS, IDLE}
 
 
-def test_the_strip_says_what_to_do_about_a_fold(strip: Strip) -> None:
+def test_the_strip_says_what_to_do_about_a_fold(strip: ConvergencePanel) -> None:
     strip.set_run({"adaptive": run(np.linspace(0.0, 2.0, 50))}, "adaptive", None)
     high = strip.height()
     strip.set_verdict(Said("folded", hint="The skin folds over. Set Mid-bust longer."))
@@ -223,7 +223,7 @@ def test_the_strip_says_what_to_do_about_a_fold(strip: Strip) -> None:
     assert "Mid-bust longer." in hints[1].toolTip(), "in a narrow window its end is cut"
 
 
-def test_what_has_no_room_in_the_folded_strip_is_left_out_whole(strip: Strip) -> None:
+def test_what_has_no_room_in_the_folded_strip_is_left_out_whole(strip: ConvergencePanel) -> None:
     line = strip._said
     line.show_parts(("Set Mid-bust longer.", "Volume error 0.1 %", "", "Bust point 0.2 mm up"))
     need = line.fontMetrics().horizontalAdvance(line.text())
@@ -240,7 +240,7 @@ def test_what_has_no_room_in_the_folded_strip_is_left_out_whole(strip: Strip) ->
 
 @pytest.mark.parametrize("settling", [False, True])
 def test_the_range_of_the_plots_only_grows_while_a_run_settles_whatever_its_word(
-    strip: Strip, settling: bool
+    strip: ConvergencePanel, settling: bool
 ) -> None:
     for top in (4.0, 2.0):
         strip.set_verdict(Said("overstrained", settling=settling))
@@ -249,7 +249,7 @@ def test_the_range_of_the_plots_only_grows_while_a_run_settles_whatever_its_word
 
 
 @pytest.mark.parametrize(("state", "token"), [("settled", "accent"), ("vibrating", "warn_mark")])
-def test_a_vibrating_run_is_amber(strip: Strip, state: str, token: str) -> None:
+def test_a_vibrating_run_is_amber(strip: ConvergencePanel, state: str, token: str) -> None:
     strip.set_verdict(Said(state))
     strip.set_run({"conventional": run(np.linspace(0.0, 2.0, 50))}, "conventional", None)
     QApplication.processEvents()
@@ -259,7 +259,7 @@ def test_a_vibrating_run_is_amber(strip: Strip, state: str, token: str) -> None:
     assert sum(name == wanted for name in names) > 50
 
 
-def test_the_strip_folds_to_one_line(strip: Strip, qtbot: QtBot) -> None:
+def test_the_strip_folds_to_one_line(strip: ConvergencePanel, qtbot: QtBot) -> None:
     with qtbot.waitSignal(strip.folded) as said:
         strip.set_folded(True)
     assert said.args == [True]
@@ -269,7 +269,7 @@ def test_the_strip_folds_to_one_line(strip: Strip, qtbot: QtBot) -> None:
     assert strip.minimumHeight() > 100
 
 
-def test_the_strip_is_empty_before_a_run_and_without_one_track(strip: Strip) -> None:
+def test_the_strip_is_empty_before_a_run_and_without_one_track(strip: ConvergencePanel) -> None:
     assert not strip.error_plot.isVisible()
     strip.set_run({"adaptive": run(np.empty(0))}, "adaptive", None)
     assert not strip.error_plot.isVisible()
@@ -277,7 +277,7 @@ def test_the_strip_is_empty_before_a_run_and_without_one_track(strip: Strip) -> 
     assert strip.error_plot.isVisible()
 
 
-def test_the_method_is_asked_for(strip: Strip, qtbot: QtBot) -> None:
+def test_the_method_is_asked_for(strip: ConvergencePanel, qtbot: QtBot) -> None:
     with qtbot.assertNotEmitted(strip.control_chosen):
         strip.set_control("adaptive")
     with qtbot.waitSignal(strip.control_chosen) as said:

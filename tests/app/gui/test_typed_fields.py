@@ -11,7 +11,7 @@ from pytestqt.qtbot import QtBot
 from app.gui.widgets.inline_edit import Refusal
 from app.gui.widgets.length_edit import NumberField
 from app.gui.widgets.line_widgets import StiffnessField
-from app.gui.widgets.value_edit import FigureField
+from app.gui.widgets.value_edit import ValueEdit
 
 pytestmark = pytest.mark.usefixtures("qapp")
 
@@ -84,7 +84,7 @@ def test_a_stiffness_that_cannot_be_names_its_range(text: str) -> None:
     ("text", "mm"), [("-3cm", -30.0), ("12", 12.0), ("12 mm", 12.0), ("−1.5in", -38.1), ("1,5 cm", 15.0)]
 )
 def test_a_field_of_millimetres_takes_other_units_of_length(qtbot: QtBot, text: str, mm: float) -> None:
-    field, heard = FigureField("mm", "Place", widest="−888.8"), []
+    field, heard = ValueEdit("mm", "Place", widest="−888.8"), []
     qtbot.addWidget(field)
     field.entered.connect(heard.append)
     for typed in (text, "3 kg"):

@@ -6,7 +6,7 @@ import pytest
 from PySide6.QtCore import Qt
 from window_tools import Script, run_main, settled, undrawn
 
-from app.gui.features.help.command_palette import CommandSheet, plain
+from app.gui.features.help.command_palette import CommandPalette, plain
 from app.gui.main_window import MainWindow
 from app.i18n.search_terms import SYNONYMS
 
@@ -19,8 +19,8 @@ def test_what_a_designer_types_is_found() -> None:
         yield settled(window)
         titles = {action.text().replace("&", "") for _, action in window.actions_.all()}
         assert SYNONYMS.keys() <= titles, "each word leads somewhere"
-        window.help.find_command()
-        sheet = window.findChild(CommandSheet)
+        window.help_controller.find_command()
+        sheet = window.findChild(CommandPalette)
 
         def first(typed: str) -> str:
             sheet.search.setText(typed)

@@ -7,7 +7,7 @@ from pytestqt.qtbot import QtBot
 
 from app.gui.features.lines.row import LineRow, LineView
 from app.gui.widgets.length_edit import NumberField
-from app.gui.widgets.value_edit import FigureField
+from app.gui.widgets.value_edit import ValueEdit
 from app.i18n.catalog import say, use_language
 from app.i18n.lengths import length, read_length, use_unit
 from app.presenters.bust_shift import up_words
@@ -112,7 +112,7 @@ def test_an_unknown_unit_leaves_millimetres() -> None:
 
 def test_fields_show_and_take_the_unit_in_use(qtbot: QtBot) -> None:
     use_unit("in")
-    place, heard = FigureField("mm", "Place", widest="−888.8"), []
+    place, heard = ValueEdit("mm", "Place", widest="−888.8"), []
     qtbot.addWidget(place)
     place.show_value(254.0)
     assert place.text() == "10.00"
@@ -127,7 +127,7 @@ def test_fields_show_and_take_the_unit_in_use(qtbot: QtBot) -> None:
     assert of_line._read("482.6mm") == pytest.approx(0.95)
     assert of_line._read("19 1/2") == of_line._read('19½"') == pytest.approx(0.975)
     assert of_line._read("-1/2") == pytest.approx(0.975), "shorter by that"
-    assert FigureField("%", "Share", widest="+100")._read("12") == 12.0, "other units stay"
+    assert ValueEdit("%", "Share", widest="+100")._read("12") == 12.0, "other units stay"
 
 
 def test_a_line_is_shown_in_the_unit_in_use(qtbot: QtBot) -> None:

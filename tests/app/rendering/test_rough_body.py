@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QApplication
 
 from app.gui.theme.stylesheet import apply_theme
 from app.gui.viewport.screenshot import fine_picture
-from app.gui.viewport.split_view import Panes
+from app.gui.viewport.split_view import SplitView
 from app.gui.viewport.viewport import Viewport
 from app.presenters.lines import bands
 from app.rendering import render_mesh as piece_module
@@ -139,7 +139,7 @@ def test_what_a_body_was_moved_by_is_told_as_it_is_shown(ball, scene):
 def test_the_view_draws_every_detail_only_of_what_is_seen_near(qtbot, ball, monkeypatch):
     apply_theme(QApplication.instance(), dark=False)
     view = Viewport()
-    panes = Panes(view)
+    panes = SplitView(view)
     qtbot.addWidget(panes)
     view.motion = False
     panes.resize(360, 270)

@@ -7,7 +7,7 @@ import json
 import pytest
 from PySide6.QtWidgets import QApplication
 
-from app.gui.session.document_editor import Editing
+from app.gui.session.document_editor import DocumentEditor
 from core.document.custom_measures import CustomMeasurement, parse_measurement
 from core.document.design import Design, ScanSource
 from core.document.document import Document
@@ -94,7 +94,7 @@ def test_all_variants_are_measured_alike() -> None:
     assert [design.own_measures for _, design in document.designs] == [(GORE,), (GORE,)]
 
 
-class _Editing(Editing):
+class _Editing(DocumentEditor):
     """Editing that solves nothing."""
 
     def _submit(self, design: Design, fresh: bool = False) -> None:

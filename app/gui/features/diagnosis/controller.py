@@ -1,4 +1,4 @@
-"""The desk of the doctor: a notice of what is wrong with a design, and a button that ends it as one step."""
+"""The diagnosis: a notification of what is wrong with a design, and buttons that fix it as one step."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from core.pipeline.live_solver import Frame
 from core.progress import Progress
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 ABOUT = "doctor"
 """What its notices are about."""
@@ -65,15 +65,15 @@ def _severity(level: str) -> int:
     return LEVELS.index(level) if level in LEVELS else 0
 
 
-class DoctorDesk(QObject):
-    """Tells at once that a design is no result, and what ends it as soon as that is known.
+class DiagnosisController(QObject):
+    """Show at once that a design is no result, and what fixes it as soon as that is known.
 
-    Of mere strain it speaks calmly: once a design has rested for a while, and once only.
+    Mere strain is shown once, after a pause in the work. ``assess`` returns the overall verdict of a frame.
     """
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window = window
+    def __init__(self, context: AppContext, assess: Callable[[Frame], AssessmentView]) -> None:
+        super().__init__(context.session)
+        self._context, self._assess = context, assess
         self._frame: Frame | None = None
         self._about: Design | None = None
         self._quiet: set[Design] = set()
@@ -82,12 +82,12 @@ class DoctorDesk(QObject):
         self._closed: _Trouble | None = None
         self._job: Job | None = None
         self._asked = False
-        window.notifications.closed.connect(self._note_closed)
+        context.notifications.closed.connect(self._note_closed)
         self._later = QTimer(self, interval=PATIENCE, singleShot=True)
         self._later.timeout.connect(self._look)
-        window.strip.why_asked.connect(self.ask)
+        context.session.failed.connect(self.refuse)
         said = tr("Say what fights in this design, and what ends it")
-        window.actions_.add("solve", tr("What is wrong here?"), tip=said, do=self.ask, of_document=True)
+        context.actions.add("solve", tr("What is wrong here?"), tip=said, do=self.ask, of_document=True)
 
     def follow(self, frame: Frame) -> None:
         """Tell of a design that has come to its end; whatever is edited meanwhile ends that."""
@@ -98,12 +98,12 @@ class DoctorDesk(QObject):
         if design is self._about:
             return
         self._forget()
-        if frame.is_running or design is not self._window.session.design:
+        if frame.at_work or design is not self._context.session.design:
             return
         state = display_state(frame)
         if state == "settling" and design is self._cured:
             self._cured = None
-            self._window.session.go_on()  # back from a fold it takes more turns: the doctor knows
+            self._context.session.go_on()  # back from a fold it takes more turns: the doctor knows
             return
         self._about = design
         if state not in _BAD:
@@ -116,10 +116,10 @@ class DoctorDesk(QObject):
 
     def refuse(self, error: Exception) -> None:
         """Look at a design whose lengths were refused; the notice of the refusal stands already."""
-        frame = self._window.session.frame
+        frame = self._context.session.frame
         if isinstance(error, NoEquilibriumError) and frame is not None:
             self._forget()
-            self._about = self._window.session.design  # what stands again: its frames change nothing
+            self._about = self._context.session.design  # what stands again: its frames change nothing
 
             def work(progress: Progress) -> Diagnosis:
                 return diagnose(build(error.design, frame.stages), progress)
@@ -133,7 +133,7 @@ class DoctorDesk(QObject):
 
     def _begin_asked(self) -> None:
         """Begin with what was asked for, unless the first frame of the design is still to come."""
-        frame, session = self._frame, self._window.session
+        frame, session = self._frame, self._context.session
         if frame is None or not (frame is session.frame and (session.is_answered or session.failure)):
             return
         self._asked = False
@@ -145,7 +145,7 @@ class DoctorDesk(QObject):
     def _forget(self) -> None:
         """Let go of what was said or looked for of another design."""
         self._later.stop()
-        self._window.jobs.cancel(self._job)
+        self._context.jobs.cancel(self._job)
         self._job = None
         if self._about is not None:
             self._about = None
@@ -159,14 +159,14 @@ class DoctorDesk(QObject):
     def _run(
         self, work: Callable[[Progress], object], done: Callable[[object], None], *, waited: bool = False
     ) -> None:
-        self._job = self._window.jobs.run(
+        self._job = self._context.jobs.run(
             tr("Finding out what fights"), work, done, self._miss, waited=waited
         )
 
     def _miss(self, error: Exception) -> None:
         self._job = None
         if isinstance(error, UserError):
-            self._window.notifications.error(error, ABOUT)
+            self._context.notifications.error(error, ABOUT)
         else:
             logging.error("the doctor failed", exc_info=error)
 
@@ -213,7 +213,7 @@ class DoctorDesk(QObject):
 
     def _judged(self, frame: Frame, found: Diagnosis) -> AssessmentView:
         """Return the overall verdict of a frame; what it waits for the diagnosis knows already."""
-        overall = self._window.verdict_desk.of(frame)
+        overall = self._assess(frame)
         if overall.level != PENDING:
             return overall
         own = assessment_view(Assessment(found.findings), frame.stages.design)
@@ -223,7 +223,7 @@ class DoctorDesk(QObject):
         """Tell why lengths were refused, and the nearest that are not, in place of the bare refusal."""
         assert isinstance(found, Diagnosis)
         self._job = None
-        notifications = self._window.notifications
+        notifications = self._context.notifications
         said = say(titled(error.message, error.design))
         fights = words.sentence(found, 0.0) if found.problem and found.forces.worst else ""
         notifications.withdraw(REFUSED)
@@ -257,16 +257,16 @@ class DoctorDesk(QObject):
             return
         self._withdraw()
         lasting = asked or (trouble is not None and trouble.complaint not in _CALM)
-        self._window.notifications.show(tone(level), sentence, hint, actions, lasting, details, ABOUT)
+        self._context.notifications.show(tone(level), sentence, hint, actions, lasting, details, ABOUT)
         self._said = trouble if lasting else None
 
     def _withdraw(self) -> None:
         self._said = None
-        self._window.notifications.withdraw(ABOUT)
+        self._context.notifications.withdraw(ABOUT)
 
     def _note_closed(self) -> None:
         """Remember what was closed by hand: it is not told again before something else is wrong."""
-        if self._said is not None and not self._window.notifications.is_shown(ABOUT):
+        if self._said is not None and not self._context.notifications.is_shown(ABOUT):
             self._closed, self._said = self._said, None
 
     def _fixes(self, found: Diagnosis) -> list[Action]:
@@ -277,8 +277,8 @@ class DoctorDesk(QObject):
     def _apply(self, said: str, cured: Design) -> None:
         """Make the change as one step, whatever was only called otherwise since."""
         changed = {name: getattr(cured, name) for name in _CURED}
-        self._window.session.edit(lambda design: replace(design, **changed), said)
-        design = self._window.session.design
+        self._context.session.edit(lambda design: replace(design, **changed), said)
+        design = self._context.session.design
         if design is not None:
             self._quiet.add(design)
             self._cured = design

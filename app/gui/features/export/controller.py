@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -9,13 +10,14 @@ from typing import TYPE_CHECKING, Any, cast
 
 from PySide6.QtCore import QObject
 
-from app.gui.features.export.dialog import ExportSheet
-from app.gui.features.export.worker import ExportWork
+from app.gui.features.export.dialog import ExportDialog
+from app.gui.features.export.worker import ExportWorker
 from app.gui.session.jobs import Job
 from app.gui.session.settings import wish, wish_for
 from app.gui.widgets.file_dialogs import ask_save, free_name, last_folder
 from app.gui.widgets.message_box import ask
 from app.i18n.catalog import colon, joined, say, tr
+from app.presenters.assessment import AssessmentView
 from app.presenters.export import ExportOptions, ExportSettings, ExportSource, exports, format_title
 from app.presenters.export_preview import ExportPreview, prepare_export
 from app.presenters.status import display_state, is_result, state_title
@@ -25,29 +27,31 @@ from core.garment.assessment import BAD
 from core.pipeline.live_solver import Frame
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 _DOUBT = "export"  # what a notice of an export of an unfinished run is about
 
 
-class ExportDesk(QObject):
-    """Opens the sheet of what can be exported, tells what will be in a file, and writes it.
+class ExportController(QObject):
+    """Open the dialog of exports, preview what will be in a file, and write it.
 
     ``sheet`` is there while it is open.
     """
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window = window
+    def __init__(self, context: AppContext, assess: Callable[[Frame], AssessmentView]) -> None:
+        super().__init__(context.session)
+        self._context, self._assess = context, assess
         self._choices = ExportSettings(wish("export"))
-        self.sheet: ExportSheet | None = None
+        self.sheet: ExportDialog | None = None
         self._outcome: ExportSource | None = None
         self._job: Job | None = None
-        self._works: list[ExportWork] = []
+        self._works: list[ExportWorker] = []
+        context.actions.export.triggered.connect(self.export_body)
+        context.actions.export_any.triggered.connect(self.show)
 
     def show(self) -> None:
         """Show all that can be exported."""
-        sheet = self.sheet = ExportSheet(self._window, exports())
+        sheet = self.sheet = ExportDialog(self._context.window, exports())
         sheet.chosen.connect(self._choose_export)
         sheet.changed.connect(self._choose)
         sheet.save_asked.connect(self._save)
@@ -61,9 +65,9 @@ class ExportDesk(QObject):
         frame = self._ask_and_write("body", tr("Export body"), reshaped=True)
         doubt = self._doubt(frame) if frame is not None else ""
         if frame is not None:
-            self._window.notifications.withdraw(_DOUBT)
+            self._context.notifications.withdraw(_DOUBT)
         if doubt:
-            self._window.notifications.warn(doubt, topic=_DOUBT)
+            self._context.notifications.warn(doubt, topic=_DOUBT)
 
     def show_frame(self, frame: Frame) -> None:
         """Tell of the body as it is now, if somebody looks and it rests."""
@@ -91,15 +95,15 @@ class ExportDesk(QObject):
 
     def _tell(self) -> None:
         """Work out beside the window what will be in the file, and say so."""
-        window, frame, sheet = self._window, self._window.session.frame, self.sheet
-        window.jobs.cancel(self._job)
+        context, frame, sheet = self._context, self._context.session.frame, self.sheet
+        context.jobs.cancel(self._job)
         if frame is None or sheet is None:
             return
         what = self._choices.export.what
         name, outcome, manner = self._file_name(what), self._outcome_of(frame), self._manner(what)
         doubt = "" if manner.before and what != "flat" else self._doubt(frame)
         sheet.show_contents(name, tr("Looking what will be in it…"), doubt)
-        self._job = window.jobs.run(
+        self._job = context.jobs.run(
             tr("Preparing the export"),
             lambda progress: prepare_export(what, name, outcome, manner),
             lambda ready: sheet.show_contents(name, _sentence(cast(ExportPreview, ready)), doubt),
@@ -110,11 +114,11 @@ class ExportDesk(QObject):
         if isinstance(error, UserError) and self.sheet is not None:
             self.sheet.show_contents(name, "", joined((say(error.message), say(error.hint))), possible=False)
         else:
-            self._window.notifications.error(error)
+            self._context.notifications.error(error)
 
     def _forget(self) -> None:
         self.sheet = self._outcome = None  # a body is much to hold, and quickly worked out again
-        self._window.jobs.cancel(self._job)
+        self._context.jobs.cancel(self._job)
 
     # -- a file
 
@@ -131,7 +135,7 @@ class ExportDesk(QObject):
         filters = ";;".join(f"{format_title(kind)} (*.{kind})" for kind in kinds)
         path = ask_save(self._parent, title, f"{self._stem(what)}.{usual}", filters, f".{usual}")
         # A run may go on behind the dialog: what is written is what is shown when it closes.
-        frame = self._window.session.frame
+        frame = self._context.session.frame
         if not path or frame is None:
             return None
         manner = self._manner(what, Path(path).suffix.lower().lstrip("."))
@@ -140,9 +144,9 @@ class ExportDesk(QObject):
         if what == "turntable" and not self._may_number(Path(path), manner):
             return None
         if any(work.path == Path(path) and work.at_work for work in self._works):
-            self._window.notifications.error(still_writing_error(Path(path)), f"export {what}")
+            self._context.notifications.error(still_writing_error(Path(path)), f"export {what}")
             return None
-        work = ExportWork(self._window, what, Path(path), self._outcome_of(frame), manner)
+        work = ExportWorker(self._context, what, Path(path), self._outcome_of(frame), manner)
         self._works = [*(each for each in self._works if each.at_work), work]
         work.begin()
         return frame
@@ -161,13 +165,13 @@ class ExportDesk(QObject):
 
     @property
     def _parent(self) -> Any:
-        return self.sheet or self._window
+        return self.sheet or self._context.window
 
     def _outcome_of(self, frame: Frame) -> ExportSource:
         """Return what came out: while nothing changes the same one, with all that it has worked out."""
-        view, known = self._window.view, self._outcome
+        view, known = self._context.view, self._outcome
         material = view.viewport.scene.material
-        session = self._window.session
+        session = self._context.session
         named = session.name, session.design.customer if session.design else ""
         looks = view.hidden_lines, material, named
         same = known is not None and known.control_points is frame.control_points
@@ -178,19 +182,19 @@ class ExportDesk(QObject):
         return known
 
     def _manner(self, what: str, kind: str = "") -> ExportOptions:
-        return self._choices.manner(what, kind, self._window.view.viewport.scene.view)
+        return self._choices.manner(what, kind, self._context.view.viewport.scene.view)
 
     def _stem(self, what: str) -> str:
-        return f"{self._window.session.name}-{what}"
+        return f"{self._context.session.name}-{what}"
 
     def _doubt(self, frame: Frame) -> str:
         """Return what to mind of a reshaped body that would be written, or nothing."""
-        if self._window.session.failure is not None:
+        if self._context.session.failure is not None:
             return tr("The design could not be computed: the file holds the last computed shape.")
         if frame.is_running:
             return tr("The run is still under way: what is written is how far it is.")
         if is_result(frame):
-            overall = self._window.verdict_desk.of(frame)
+            overall = self._assess(frame)
             return f"{overall.headline}{colon()}{overall.first}" if overall.level == BAD else ""
         return tr("{state}: this is no shape to work from.").format(state=state_title(display_state(frame)))
 

@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 from app.gui.theme.icons import paint_icon
 from app.gui.theme.stylesheet import font, label, set_tag, tokens_of
 from app.gui.widgets.basic import IconLabel, hairline, paint_card, sentence
-from app.gui.widgets.dialog import Sheet
+from app.gui.widgets.dialog import Dialog
 from app.gui.widgets.option_field import Field, field_of
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
@@ -32,7 +32,7 @@ SIZE = (800, 620)
 """Width and height of the sheet: room for what has most choices [px]."""
 
 
-class ExportSheet(Sheet):
+class ExportDialog(Dialog):
     """All that can be exported.
 
     ``chosen`` carries the word of something else to export, ``changed`` key and value of a choice for it;

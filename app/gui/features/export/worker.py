@@ -1,4 +1,4 @@
-"""One file on its way out of the window."""
+"""One file on its way out of the context."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from app.presenters.export_preview import ExportPreview, prepare_export
 from core.progress import Progress
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 
-class ExportWork:
+class ExportWorker:
     """Makes a file ready in a thread, draws its pictures piece by piece here, and writes it in a thread.
 
     Each of these is a job that the user waits for and may leave; then nothing is written. At the end a notice
@@ -24,16 +24,16 @@ class ExportWork:
     """
 
     def __init__(
-        self, window: MainWindow, what: str, path: Path, outcome: ExportSource, manner: ExportOptions
+        self, context: AppContext, what: str, path: Path, outcome: ExportSource, manner: ExportOptions
     ) -> None:
-        self._window, self.path, self._about = window, path, f"export {what}"
+        self._context, self.path, self._about = context, path, f"export {what}"
         self._make = partial(prepare_export, what, path, outcome, manner)
         self._job: Job | None = None
 
     @property
     def at_work(self) -> bool:
         """Whether the file is still on its way."""
-        return self._job in self._window.jobs.at_work()
+        return self._job in self._context.jobs.at_work()
 
     def begin(self) -> None:
         """Begin with the first of the jobs."""
@@ -49,7 +49,7 @@ class ExportWork:
         if ready.draw is None:
             self._done(ready, files)
             return
-        words, jobs = tr("Drawing {name}").format(name=self.path.name), self._window.jobs
+        words, jobs = tr("Drawing {name}").format(name=self.path.name), self._context.jobs
         self._job = jobs.run_pieces(
             words, ready.draw(), partial(self._drawn, ready), self._failed, waited=True
         )
@@ -63,15 +63,15 @@ class ExportWork:
 
     def _run(self, words: str, work: Any, done: Any) -> None:
         said = words.format(name=self.path.name)
-        self._job = self._window.jobs.run(said, work, done, self._failed, waited=True)
+        self._job = self._context.jobs.run(said, work, done, self._failed, waited=True)
 
     def _failed(self, error: Exception) -> None:
-        self._window.notifications.error(error, self._about)
+        self._context.notifications.error(error, self._about)
 
     def _done(self, ready: ExportPreview, files: list[Path]) -> None:
         first, last = files[0].name, files[-1].name
         name = first if len(files) == 1 else tr("{first} to {last}").format(first=first, last=last)
         said = tr("{name} written, {how}.") if ready.how else tr("{name} written.")
-        self._window.notifications.file_written(
+        self._context.notifications.file_written(
             self._about, said.format(name=name, how=ready.how), str(files[0])
         )

@@ -1,39 +1,43 @@
-"""The desk of the garment: the cut list of a body that rests, shown, copied, written to a file."""
+"""The garment: the cut list of a body that rests, shown, copied, written to a file."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 
 from app.gui.features.garment.panel import GarmentPanel
-from app.gui.widgets.table_export import copy_table, save_table
+from app.gui.file_export import copy_table, save_table
 from app.i18n.catalog import number, say, tr
 from app.presenters.cut_list import CutListView, as_table, cut_list_view
 from app.presenters.status import invalid_reason
 from core.errors import LineError
 from core.garment.cut_list import cut_list
+from core.garment.pressure_list import PressureList
 from core.pipeline.live_solver import Frame
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 
-class GarmentDesk(QObject):
-    """Fills the cut list where it is seen, once a run rests: while the body moves there is nothing to cut."""
+class GarmentController(QObject):
+    """Fill the cut list where it is seen, once a run rests: while the body moves there is nothing to cut."""
 
-    def __init__(self, window: MainWindow, panel: GarmentPanel) -> None:
-        super().__init__(window)
-        self._window, self._panel = window, panel
+    def __init__(
+        self, context: AppContext, panel: GarmentPanel, pressures: Callable[[], PressureList | None]
+    ) -> None:
+        super().__init__(context.session)
+        self._context, self._panel, self._pressures = context, panel, pressures
         self._frame: Frame | None = None
         self._shown: Frame | None = None
         panel.opened.connect(self.refresh)
-        panel.selected.connect(window.selection.select_line)
-        panel.lines_asked.connect(lambda: window.navigation.show_panel("lines"))
+        panel.selected.connect(context.selection.select_line)
+        panel.lines_asked.connect(lambda: context.navigation.show_panel("lines"))
         panel.tissue.entered.connect(self._set_tissue)
-        panel.copy_asked.connect(lambda: copy_table(window, self._as_table()))
+        panel.copy_asked.connect(lambda: copy_table(context, self._as_table()))
         panel.table_asked.connect(
-            lambda: save_table(window, self._as_table(), tr("Save the cut list"), "cut-list")
+            lambda: save_table(context, self._as_table(), tr("Save the cut list"), "cut-list")
         )
 
     def follow(self, frame: Frame) -> None:
@@ -51,7 +55,7 @@ class GarmentDesk(QObject):
         frame = self._frame
         if frame is None or frame is self._shown:
             return
-        rests = self._window.session.is_converged
+        rests = self._context.session.is_converged
         if rests or self._shown is None:
             self._show(frame)
         if rests:
@@ -69,11 +73,11 @@ class GarmentDesk(QObject):
 
     def _set_tissue(self, stiffness: float) -> None:
         said = tr("Tissue {value} N/m").format(value=number(stiffness, 0))
-        self._window.session.change({"tissue_stiffness": stiffness}, said)
+        self._context.session.change({"tissue_stiffness": stiffness}, said)
 
     def _as_table(self) -> list[list[str]]:
         frame = self._shown
         if frame is None:
             return []
         cuts = cut_list(frame.stages, frame.control_points)
-        return as_table(frame.stages, cuts, self._window.pressure_desk.shown)
+        return as_table(frame.stages, cuts, self._pressures())

@@ -1,4 +1,4 @@
-"""The desk of elastics: lines are made of one, as one undo step, with the lift before and after."""
+"""Elastics of lines: lines are made of one, as one undo step, with the lift before and after."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, cast
 
 from PySide6.QtCore import QObject
 
-from app.gui.features.garment.elastic_offer import Asked, ElasticOffer
+from app.gui.features.garment.elastic_offer import ElasticOffer, ElasticRequest
+from app.gui.features.garment.panel import GarmentPanel
 from app.gui.session.jobs import Job
 from app.i18n.catalog import number, tr
 from app.presenters.bust_shift import up_words
@@ -17,31 +18,31 @@ from core.document.elastic import Elastic
 from core.garment.elastic_options import KEEP_FIT, ElasticOption, Outcome
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 LIFT_TOLD = 0.2
 """From so much on it is told that the bust points stand lower or higher than before [mm]."""
 
 
-class ElasticChoice(QObject):
-    """Makes lines of elastics, as one undo step.
+class ElasticAssignmentController(QObject):
+    """Make lines of elastics, as one undo step.
 
     The length of a line is then that of its elastic unstretched; see ``elastic_options`` for what
     is kept. What was asked for goes with the design it was asked of: another document, variant or an undo
     lets go of it.
     """
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window, self._session = window, window.session
-        self.offer = ElasticOffer(window, self._use)
+    def __init__(self, context: AppContext, panel: GarmentPanel) -> None:
+        super().__init__(context.session)
+        self._context, self._session = context, context.session
+        self.offer = ElasticOffer(context, self._use)
+        self.offer.library_asked.connect(panel.elastics_asked)
         self._job: Job | None = None
         self._asked: Design | None = None
         self._variant, self._index = "", 0
-        window.garment.elastic_asked.connect(self.show)
-        window.lines.elastic_asked.connect(self.show)
-        window.garment.all_asked.connect(self.show_all)
-        window.garment.stretched.connect(self.stretch)
+        panel.elastic_asked.connect(self.show)
+        panel.all_asked.connect(self.show_all)
+        panel.stretched.connect(self.stretch)
         self._session.opened.connect(lambda *_: self._let_go())
         self._session.undo_stack.indexChanged.connect(self._follow)
 
@@ -65,14 +66,14 @@ class ElasticChoice(QObject):
         frame, design = self._session.frame, self._session.design
         if frame is None or design is None:
             return
-        self._window.jobs.cancel(self._job)
+        self._context.jobs.cancel(self._job)
         self._asked, self._variant = design, self._shown_variant()
-        asked, mode = Asked(frame, design, names), self.offer.mode
-        self._job = self._window.jobs.run(
+        asked, mode = ElasticRequest(frame, design, names), self.offer.mode
+        self._job = self._context.jobs.run(
             tr("Computing the cut length…"),
             lambda progress: asked.option(elastic, mode),
             lambda option: self._take(asked, elastic, cast(ElasticOption, option)),
-            self._window.notifications.error,
+            self._context.notifications.error,
             waited=True,
         )
 
@@ -88,13 +89,13 @@ class ElasticChoice(QObject):
     def _open(self, names: tuple[str, ...], chosen: str | None) -> None:
         frame, design = self._session.frame, self._session.design
         if frame is not None and design is not None:
-            self.offer.open(Asked(frame, design, names), chosen)
+            self.offer.open(ElasticRequest(frame, design, names), chosen)
 
     def _shown_variant(self) -> str:
         return self._session.document.shown if self._session.document is not None else ""
 
     def _let_go(self) -> None:
-        self._window.jobs.cancel(self._job)
+        self._context.jobs.cancel(self._job)
         self.offer.close()
 
     def _follow(self, index: int) -> None:
@@ -102,15 +103,15 @@ class ElasticChoice(QObject):
         undone = index < self._index and self._session.design is not self._asked
         self._index = index
         if undone or self._shown_variant() != self._variant:
-            self._window.jobs.cancel(self._job)
+            self._context.jobs.cancel(self._job)
 
-    def _take(self, asked: Asked, elastic: Elastic | None, option: ElasticOption) -> None:
+    def _take(self, asked: ElasticRequest, elastic: Elastic | None, option: ElasticOption) -> None:
         if option.outcome is not None or self._session.design is not asked.design:
             self._use(asked, option.outcome, elastic)
         elif option.problem is not None:
-            self._window.notifications.error(option.problem)
+            self._context.notifications.error(option.problem)
 
-    def _use(self, asked: Asked, outcome: Outcome | None, elastic: Elastic | None) -> None:
+    def _use(self, asked: ElasticRequest, outcome: Outcome | None, elastic: Elastic | None) -> None:
         """Make the lines of an elastic, and show what became of the lift where the fit is kept.
 
         What was computed of a design that was edited meanwhile is computed again.
@@ -132,9 +133,9 @@ class ElasticChoice(QObject):
         if self._session.design is outcome.design and self._reshapes(asked):
             tone = "ok" if abs(outcome.lift - asked.lift) < LIFT_TOLD else "warn"
             words = _told(asked.lift, outcome.lift, bool(elastic))
-            self._window.notifications.show(tone, tr("{text}.").format(text=text), words)
+            self._context.notifications.show(tone, tr("{text}.").format(text=text), words)
 
-    def _reshapes(self, asked: Asked) -> bool:
+    def _reshapes(self, asked: ElasticRequest) -> bool:
         """Return whether an elastic changes how the lines act, with the fit kept."""
         if self.offer.mode != KEEP_FIT or asked.design.line_hold == "held":
             return False
@@ -142,7 +143,7 @@ class ElasticChoice(QObject):
         return bool(moving & asked.design.active_lines() & set(asked.names))
 
 
-def _is_made(asked: Asked, outcome: Outcome, elastic: Elastic | None) -> bool:
+def _is_made(asked: ElasticRequest, outcome: Outcome, elastic: Elastic | None) -> bool:
     """Return whether the lines are made of the elastic already, so that a search would only add noise."""
     made = {each.name: each for each in asked.design.elastics}
     alike = all(made.get(asked.design.line_settings(name).elastic) == elastic for name in asked.names)

@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
 from app.gui.features.garment.elastics_dialog import ElasticTable
 from app.gui.theme.stylesheet import font, set_tag, tokens_of
 from app.gui.widgets.basic import Segment, button, sentence
-from app.gui.widgets.dialog import Sheet
+from app.gui.widgets.dialog import Dialog
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 from app.i18n.lengths import length_unit
@@ -29,7 +29,7 @@ TITLE, STRETCH, CUT, REACHED, LIFT, NOTE = range(6)
 _RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 
 
-class ElasticChooser(Sheet):
+class ElasticChooser(Dialog):
     """The elastics for some lines; ``chosen`` carries a row and whether it is used at its limit.
 
     ``mode_asked`` names what is to be kept, ``marked`` the row that advice is wanted for.

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Signal
 
 from app.gui.features.garment.elastic_chooser import ElasticChooser
 from app.gui.features.garment.elastic_list import Entry, elastic_entries
@@ -22,14 +22,14 @@ from core.pipeline.build import Stages, build
 from core.pipeline.live_solver import Frame
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
-Use = Callable[["Asked", Outcome, Elastic | None], None]
+Use = Callable[["ElasticRequest", Outcome, Elastic | None], None]
 """Takes an outcome for the lines that it was asked for."""
 
 
 @dataclass
-class Asked:
+class ElasticRequest:
     """The lines ``names`` of a ``design`` for which an elastic is chosen; computed in other threads."""
 
     frame: Frame
@@ -62,7 +62,7 @@ class Asked:
 class _Offer:
     """What is asked, the elastics to choose from, and what is known of them by mode and place."""
 
-    asked: Asked
+    asked: ElasticRequest
     entries: list[Entry]
     known: dict[str, dict[int, ElasticOption]] = field(default_factory=dict)
 
@@ -76,24 +76,26 @@ class _Offer:
 
 
 class ElasticOffer(QObject):
-    """Opens the chooser and fills it; ``use`` takes what is chosen in it."""
+    """Open the chooser and fill it; ``use`` takes what is chosen in it, ``library_asked`` asks for more."""
 
-    def __init__(self, window: MainWindow, use: Use) -> None:
-        super().__init__(window)
-        self._window, self._use_outcome = window, use
+    library_asked = Signal()
+
+    def __init__(self, context: AppContext, use: Use) -> None:
+        super().__init__(context.session)
+        self._context, self._use_outcome = context, use
         self.mode = KEEP_FIT
         self.chooser: ElasticChooser | None = None
         self._offer: _Offer | None = None
         self._job: Job | None = None
 
-    def open(self, asked: Asked, chosen: str | None) -> None:
+    def open(self, asked: ElasticRequest, chosen: str | None) -> None:
         """Open the chooser, the elastic called ``chosen`` marked: empty for none, None for several."""
         design = asked.design
         entries, problems = elastic_entries(design.elastics)
         self._offer = _Offer(asked, entries)
         modes = mode_titles() if design.line_hold == "spring" else []
         title = tr("Elastic for {line}").format(line=asked.title())
-        chooser = self.chooser = ElasticChooser(self._window, title, modes)
+        chooser = self.chooser = ElasticChooser(self._context.window, title, modes)
         chooser.mode_asked.connect(self.set_mode)
         chooser.marked.connect(lambda _: self._advise())
         chooser.chosen.connect(self._use)
@@ -144,7 +146,7 @@ class ElasticOffer(QObject):
             return
         (mode, at), asked = missing, offer.asked
         elastic = offer.entries[at][1]
-        self._job = self._window.jobs.run(
+        self._job = self._context.jobs.run(
             tr("Computing elastics…"),
             lambda progress: asked.option(elastic, mode),
             lambda option: self._take(offer, mode, at, cast(ElasticOption, option)),
@@ -155,7 +157,7 @@ class ElasticOffer(QObject):
         """Show an option, unless the chooser is closed or was opened for another design meanwhile."""
         if offer is not self._offer or self.chooser is None:
             return
-        if self._window.session.design is not offer.asked.design:
+        if self._context.session.design is not offer.asked.design:
             self.close()
             return
         offer.known_in(mode)[at] = option
@@ -167,7 +169,7 @@ class ElasticOffer(QObject):
 
     def _fail(self, error: Exception) -> None:
         self.close()
-        self._window.notifications.error(error)
+        self._context.notifications.error(error)
 
     def _use(self, at: int, limited: bool) -> None:
         """Take the option at a place, at its limit if that is wished for."""
@@ -181,10 +183,10 @@ class ElasticOffer(QObject):
 
     def _leave_for_library(self) -> None:
         self.close()
-        self._window.garment.elastics_asked.emit()
+        self.library_asked.emit()
 
     def _closed(self) -> None:
-        self._window.jobs.cancel(self._job)
+        self._context.jobs.cancel(self._job)
         self.chooser = self._offer = self._job = None
 
 

@@ -1,4 +1,4 @@
-"""The desk of the elastics there are: shown, brought in from tables, taken away."""
+"""The library of elastics: shown, imported from tables, exported and deleted."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 
-from app.gui.features.garment.elastics_dialog import ElasticsSheet
+from app.gui.features.garment.elastics_dialog import ElasticsDialog
+from app.gui.features.garment.panel import GarmentPanel
 from app.gui.widgets.file_dialogs import ask_save, ask_table
 from app.gui.widgets.message_box import ask
 from app.i18n.catalog import tr
@@ -32,27 +33,27 @@ from core.garment.elastic_library import (
 )
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 
-class ElasticsDesk(QObject):
-    """Shows the sheet of elastics, and does what is asked for there; refusals stand in the sheet."""
+class ElasticsController(QObject):
+    """Show the dialog of elastics, and carry out its commands; refusals are shown in the dialog."""
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window = window
-        do = window.actions_
+    def __init__(self, context: AppContext, panel: GarmentPanel) -> None:
+        super().__init__(context.session)
+        self._context = context
+        do = context.actions
         do.rule("lines")
         said = tr("See the elastics there are, bring in your own, take them away")
         do.add("lines", tr("Elastics…"), tip=said, do=self.show)
         said = tr("See how long to cut each worn line, of what, and how far it is stretched")
         do.add("lines", tr("Cut list"), tip=said, do=self._show_cuts, of_document=True)
-        window.garment.elastics_asked.connect(self.show)
-        self.sheet: ElasticsSheet | None = None
+        panel.elastics_asked.connect(self.show)
+        self.sheet: ElasticsDialog | None = None
 
     def show(self) -> None:
         """Show the elastics there are."""
-        self.sheet = sheet = ElasticsSheet(self._window)
+        self.sheet = sheet = ElasticsDialog(self._context.window)
         sheet.finished.connect(self._forget)
         sheet.import_asked.connect(self.bring_in)
         sheet.export_asked.connect(self.hand_on)
@@ -64,7 +65,7 @@ class ElasticsDesk(QObject):
     def bring_in(self) -> None:
         """Ask for a table of the designer's own and keep its elastic."""
         sheet = self.sheet
-        path = ask_table(sheet or self._window, tr("Import an elastic"))
+        path = ask_table(sheet or self._context.window, tr("Import an elastic"))
         if not path or sheet is None:
             return
         try:
@@ -88,7 +89,7 @@ class ElasticsDesk(QObject):
 
     def hand_on(self, name: str) -> None:
         """Ask for a place and write an elastic as a table."""
-        design = self._window.session.design
+        design = self._context.session.design
         known = {each.name: each for each in (*(design.elastics if design else ()), *library().values())}
         title = tr("Export an elastic")
         self._write(title, name, lambda path: write_elastic(path, known[name]), "")
@@ -100,7 +101,7 @@ class ElasticsDesk(QObject):
 
     def _write(self, title: str, name: str, write: Callable[[Path], None], hint: str) -> None:
         sheet = self.sheet
-        path = ask_save(sheet or self._window, title, f"{safe_name(name)}.csv", "CSV (*.csv)", ".csv")
+        path = ask_save(sheet or self._context.window, title, f"{safe_name(name)}.csv", "CSV (*.csv)", ".csv")
         if not path or sheet is None:
             return
         sheet.notices.clear()
@@ -125,7 +126,7 @@ class ElasticsDesk(QObject):
         self._fill()
 
     def _fill(self, marked: str = "") -> None:
-        sheet, design = self.sheet, self._window.session.design
+        sheet, design = self.sheet, self._context.session.design
         if sheet is None:
             return
         own, problems = user_elastics()
@@ -134,9 +135,9 @@ class ElasticsDesk(QObject):
             sheet.notices.show_notice("warn", problem.message, problem.hint, lasting=True)
 
     def _show_cuts(self) -> None:
-        self._window.navigation.show_step("lines")
-        self._window.navigation.show_panel("garment")
-        self._window.navigation.focus_panel()
+        self._context.navigation.show_step("lines")
+        self._context.navigation.show_panel("garment")
+        self._context.navigation.focus_panel()
 
     def _forget(self) -> None:
         self.sheet = None

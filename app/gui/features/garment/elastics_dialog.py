@@ -19,8 +19,8 @@ from PySide6.QtWidgets import (
 
 from app.gui.theme.stylesheet import font, label, set_tag, tokens_of
 from app.gui.widgets.basic import sentence
-from app.gui.widgets.dialog import Sheet
-from app.gui.widgets.notification_bar import NoticeBar
+from app.gui.widgets.dialog import Dialog
+from app.gui.widgets.notification_bar import NotificationBar
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length_unit
@@ -29,7 +29,7 @@ from app.presenters.elastics import TOLD_AT, ElasticView
 _NAME = Qt.ItemDataRole.UserRole
 
 
-class ElasticsSheet(Sheet):
+class ElasticsDialog(Dialog):
     """All elastics; ``export_asked`` names the marked one, ``delete_asked`` one of one's own."""
 
     import_asked = Signal()
@@ -39,7 +39,7 @@ class ElasticsSheet(Sheet):
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent, tr("Elastics"), (780, 600))
-        self.notices = NoticeBar()
+        self.notices = NotificationBar()
         self.views: dict[str, ElasticView] = {}
         self.table, self.curve = _Table(), ElasticCurve()
         self.title, self.source = label("", "name"), sentence("", "caption")

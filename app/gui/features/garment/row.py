@@ -12,7 +12,7 @@ from app.gui.widgets.basic import ElidedLabel, sentence
 from app.gui.widgets.elastic_button import ElasticPull
 from app.gui.widgets.line_widgets import LineChip
 from app.gui.widgets.tooltip import set_tip
-from app.gui.widgets.value_edit import FigureField
+from app.gui.widgets.value_edit import ValueEdit
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length_unit
 from app.presenters.cut_list import CutView
@@ -155,7 +155,7 @@ class GarmentRow(QFrame):
         self.notes.setContentsMargins(5, 2, 0, 2)
 
 
-class _StretchField(FigureField):
+class _StretchField(ValueEdit):
     """How far a band that does not move the body is stretched: the designer says it."""
 
     MOST = 100.0

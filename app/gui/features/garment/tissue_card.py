@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 from app.gui.theme.stylesheet import label
 from app.gui.widgets.basic import hairline, sentence
 from app.gui.widgets.tooltip import set_tip
-from app.gui.widgets.value_edit import FigureField
+from app.gui.widgets.value_edit import ValueEdit
 from app.i18n.catalog import number, tr
 from core.document.elastic import TISSUE_LIMITS, TISSUE_STIFFNESS
 
@@ -45,7 +45,7 @@ class TissueCard(QWidget):
         self.notes.setText("".join(f'<p style="margin:0 0 4px 0">{escape(note)}</p>' for note in notes))
 
 
-class _TissueField(FigureField):
+class _TissueField(ValueEdit):
     """A stiffness within what tissue may have."""
 
     def __init__(self) -> None:

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QStackedWidget, QWidget
 
 from app.gui.theme.stylesheet import label
 from app.gui.widgets.basic import Segment, button, sentence
-from app.gui.widgets.dialog import Sheet, reading
+from app.gui.widgets.dialog import Dialog, reading
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 
@@ -19,7 +19,7 @@ Facts = Sequence[tuple[str, Sequence[tuple[str, str]]]]
 """Groups of facts, each with its title: name and value, ready to read."""
 
 
-class AboutSheet(Sheet):
+class AboutDialog(Dialog):
     """What Busk is, with the licences to read."""
 
     def __init__(self, parent: QWidget, version: str, licences: Sequence[tuple[str, str]]) -> None:
@@ -44,7 +44,7 @@ class AboutSheet(Sheet):
         self.tabs.set_choice(str(place))
 
 
-class DiagnosticsSheet(Sheet):
+class DiagnosticsDialog(Dialog):
     """Facts about program and machine, to copy for whoever is asked for help.
 
     ``folders`` are those that the program writes to; ``folder_asked`` carries the path of one to be shown.

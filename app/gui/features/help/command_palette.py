@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QHeaderView, QLineEdit, QTreeWidget, QTreeWidgetIt
 
 from app.gui.theme.stylesheet import font
 from app.gui.widgets.basic import sentence
-from app.gui.widgets.dialog import Sheet
+from app.gui.widgets.dialog import Dialog
 from app.i18n.catalog import tr
 
 
@@ -88,7 +88,7 @@ class CommandList(QTreeWidget):
         return None if item is None else item.data(0, Qt.ItemDataRole.UserRole)
 
 
-class CommandSheet(Sheet):
+class CommandPalette(Dialog):
     """A field to search in over a list of commands; ``to_give`` has Enter give the chosen one."""
 
     def __init__(self, parent: QWidget, title: str, commands: Sequence[Command], to_give: bool) -> None:

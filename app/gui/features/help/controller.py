@@ -1,20 +1,20 @@
-"""What the window does when it is asked for help: keys, commands by their words, What's This."""
+"""Help: keys, commands by their words, What's this, the guide, diagnostics."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QPoint
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QWhatsThis, QWidget
 
-from app.gui.features.help.about import AboutSheet, DiagnosticsSheet
-from app.gui.features.help.command_palette import Command, CommandSheet, plain
+from app.gui.features.help.about import AboutDialog, DiagnosticsDialog
+from app.gui.features.help.command_palette import Command, CommandPalette, plain
 from app.gui.features.help.system_info import machine_facts
 from app.gui.features.help.user_guide import first_page, fitting_page, show_page
 from app.gui.features.help.whats_this import explain
 from app.gui.session.app_folders import folders, show_folder
-from app.gui.shortcuts import keys_of_parts
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import in_all_languages, tr
 from app.i18n.licences import licences
@@ -22,74 +22,81 @@ from app.i18n.search_terms import SYNONYMS
 from core import __version__
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 
-class HelpDesk(QObject):
-    """Adds the help menu and opens what it offers; what it tells is read from the actions themselves."""
+class HelpController(QObject):
+    """Add the help menu and open what it offers; commands and keys are read from the actions themselves.
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window = window
-        add = window.actions_.add
+    ``parts`` are explained by What's this, see ``whats_this``; ``pages`` names those of the guide for pages
+    that take the place of the work. ``menu`` is for a button that shows the help menu.
+    """
+
+    def __init__(
+        self,
+        context: AppContext,
+        parts: Mapping[str, QWidget],
+        keys_of_parts: Callable[[], Iterable[Command]],
+        pages: Mapping[QWidget, str],
+    ) -> None:
+        super().__init__(context.session)
+        self._context, self._keys_of_parts, self._pages = context, keys_of_parts, pages
+        add = context.actions.add
         said = tr("Find any command by its words, and give it")
         self.palette = add("help", tr("Find a command…"), "Ctrl+K", said, do=self.find_command)
-        window.rail.add_tool("search", self.palette)
         add("help", tr("Keyboard shortcuts"), "Ctrl+/", do=self.show_keys)
-        explain(window)
+        explain(parts)
         said = tr("Then click on something, and read what it is for")
         add("help", tr("What's this?"), "Shift+F1", said, do=QWhatsThis.enterWhatsThisMode)
-        window.actions_.rule("help")
+        context.actions.rule("help")
         add(
             "help", tr("Diagnostics"), tip=tr("Versions, graphics and folders, to copy"), do=self.show_machine
         )
-        window.actions_.guide.triggered.connect(self.show_guide)
-        window.actions_.first_steps.triggered.connect(self.show_first_steps)
-        window.actions_.about.triggered.connect(self.show_about)
-        menu = QAction(tr("Help"), window)
-        set_tip(menu, tr("Keys, tour, What's This and more"))
-        tool = window.rail.add_tool("question", menu)
-        menu.triggered.connect(lambda: self._show_menu(tool))
+        context.actions.guide.triggered.connect(self.show_guide)
+        context.actions.first_steps.triggered.connect(self.show_first_steps)
+        context.actions.about.triggered.connect(self.show_about)
+        self.menu = QAction(tr("Help"), self)
+        set_tip(self.menu, tr("Keys, tour, What's This and more"))
 
     def commands(self) -> list[Command]:
         """Return every command of the menus."""
-        return [_command(where, action) for where, action in self._window.actions_.all()]
+        return [_command(where, action) for where, action in self._context.actions.all()]
 
     def find_command(self) -> None:
         """Search all commands by their words."""
-        CommandSheet(self._window, tr("Find a command"), self.commands(), to_give=True).open()
+        CommandPalette(self._context.window, tr("Find a command"), self.commands(), to_give=True).open()
 
     def show_keys(self) -> None:
         """Show every key: those of the commands, and those that parts of the window read themselves."""
         keyed = [command for command in self.commands() if command.keys]
-        keys = [*keyed, *keys_of_parts()]
-        CommandSheet(self._window, tr("Keyboard shortcuts"), keys, to_give=False).open()
+        keys = [*keyed, *self._keys_of_parts()]
+        CommandPalette(self._context.window, tr("Keyboard shortcuts"), keys, to_give=False).open()
 
     def show_guide(self) -> None:
         """Show the page of the guide that fits what is being done."""
-        window = self._window
-        shown: dict[QWidget | None, str] = {window.report_desk.page: "report", window.start_desk.page: ""}
-        panels: dict[QWidget | None, str] = {window.garment: "garment", window.model: "model"}
-        at = panels.get(window.inspector.panel(), window.navigation.step)
-        show_page(fitting_page(shown.get(window.navigation.page, at)), window.notices)
+        navigation = self._context.navigation
+        at = navigation.panel if navigation.panel in ("garment", "model") else navigation.step
+        if navigation.page is not None:
+            at = self._pages.get(navigation.page, at)
+        show_page(fitting_page(at), self._context.notifications)
 
     def show_first_steps(self) -> None:
         """Show the page for somebody who is here for the first time."""
-        show_page(first_page(), self._window.notices)
+        show_page(first_page(), self._context.notifications)
 
     def show_machine(self) -> None:
         """Show what the program is made of, what draws for it, and where it writes."""
-        sheet = DiagnosticsSheet(self._window, machine_facts(self._window), folders())
-        sheet.folder_asked.connect(lambda folder: show_folder(folder, self._window.notifications.info))
+        sheet = DiagnosticsDialog(self._context.window, machine_facts(self._context.window), folders())
+        sheet.folder_asked.connect(lambda folder: show_folder(folder, self._context.notifications.info))
         sheet.open()
 
     def show_about(self) -> None:
         """Say what Busk is, and under which licences."""
-        AboutSheet(self._window, __version__, licences()).open()
+        AboutDialog(self._context.window, __version__, licences()).open()
 
-    def _show_menu(self, place: QWidget) -> None:
+    def show_menu(self, place: QWidget) -> None:
         """Open the help menu beside the button that asks for it."""
-        self._window.actions_.menus["help"].popup(place.mapToGlobal(QPoint(place.width() + 4, 0)))
+        self._context.actions.menus["help"].popup(place.mapToGlobal(QPoint(place.width() + 4, 0)))
 
 
 def _command(where: str, action: QAction) -> Command:

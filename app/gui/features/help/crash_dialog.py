@@ -7,11 +7,11 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QWidget
 
 from app.gui.widgets.basic import Disclosure, sentence
-from app.gui.widgets.dialog import Sheet, reading
+from app.gui.widgets.dialog import Dialog, reading
 from app.i18n.catalog import tr
 
 
-class FaultSheet(Sheet):
+class CrashDialog(Dialog):
     """Says that something went wrong, where the design was kept, and what can be done."""
 
     quit_asked = Signal()

@@ -7,27 +7,28 @@ import sys
 import threading
 import traceback
 from collections import Counter
+from collections.abc import Callable
 from types import TracebackType
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Qt, Signal
 
 from app.gui.features.help.about import as_text
-from app.gui.features.help.crash_dialog import FaultSheet
+from app.gui.features.help.crash_dialog import CrashDialog
 from app.gui.features.help.system_info import machine_facts
 from app.gui.widgets.notification_bar import REFUSED
 from app.i18n.catalog import tr
 from core.errors import UserError, as_exception
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 _LOGGED = 3  # times that one fault is written to the log
 _TOLD = 5  # different faults that are asked about in a session
 
 
-class Rescue(QObject):
-    """Hears of faults in slots, events and threads while a window is open.
+class CrashHandler(QObject):
+    """Handle faults in slots, events and threads while a window is open.
 
     One fault may come again sixty times a second: it is told once, and written down a few times. Of a
     UserError, which says itself what to do, a notice tells.
@@ -35,16 +36,16 @@ class Rescue(QObject):
 
     _fell = Signal(object, str)
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window = window
+    def __init__(self, context: AppContext, rescue: Callable[[], str]) -> None:
+        super().__init__(context.session)
+        self._context, self._rescue = context, rescue
         self._seen: Counter[str] = Counter()
-        self.sheet: FaultSheet | None = None
+        self.sheet: CrashDialog | None = None
         self._hooks = sys.excepthook, threading.excepthook
         sys.excepthook, threading.excepthook = self._note, self._note_in_thread
         # The fault may have come in a thread, or while something was being painted: it is told afterwards.
         self._fell.connect(self._tell, Qt.ConnectionType.QueuedConnection)
-        window.session.opened.connect(self._tell_anew)
+        context.session.opened.connect(self._tell_anew)
 
     def close(self) -> None:
         """Hear of faults no longer."""
@@ -73,14 +74,16 @@ class Rescue(QObject):
     def _tell(self, fault: Exception, trace: str) -> None:
         """Keep the design aside, then say what happened; a second fault joins the first."""
         if isinstance(fault, UserError):
-            notifications = self._window.notifications
+            notifications = self._context.notifications
             notifications.show("bad", fault.message, fault.hint, lasting=True, details=trace, topic=REFUSED)
             return
         if self.sheet is not None:
             self.sheet.add_details(trace)
             return
-        sheet = self.sheet = FaultSheet(self._window, self._keep_aside(), trace, self._about_machine())
-        sheet.quit_asked.connect(self._window.close)
+        sheet = self.sheet = CrashDialog(
+            self._context.window, self._keep_aside(), trace, self._about_machine()
+        )
+        sheet.quit_asked.connect(self._context.window.close)
         sheet.finished.connect(self._forget)
         sheet.open()
 
@@ -92,7 +95,7 @@ class Rescue(QObject):
     def _keep_aside(self) -> str:
         """Return where the design has been kept, or an empty text."""
         try:
-            return self._window.rescue()
+            return self._rescue()
         except Exception:
             # Whatever is broken here, the question must still be asked.
             logging.exception("the design could not be kept aside")
@@ -100,7 +103,7 @@ class Rescue(QObject):
 
     def _about_machine(self) -> str:
         try:
-            return as_text(machine_facts(self._window))
+            return as_text(machine_facts(self._context.window))
         except Exception:
             logging.exception("the machine could not be looked at")
             return tr("not known")

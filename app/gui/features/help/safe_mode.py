@@ -1,4 +1,4 @@
-"""What the window says and does when the 3D view is painted without OpenGL in the window."""
+"""What the window says and does when the 3D view is painted without OpenGL in the context."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from app.gui.viewport.opengl import graphics_work, spare_graphics, try_graphics
 from app.i18n.catalog import tr
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 _DRAWN_FOR = 1000
 """Milliseconds after which a window that is made, or a view that is drawn, has shown that it can be."""
@@ -19,19 +19,19 @@ _DRAWN_FOR = 1000
 class SafeMode(QObject):
     """Says once why the view is drawn safely; ``why`` is what ``begin_graphics`` answered."""
 
-    def __init__(self, window: MainWindow, why: str) -> None:
-        super().__init__(window)
-        self._window, self._why = window, why
+    def __init__(self, context: AppContext, why: str) -> None:
+        super().__init__(context.session)
+        self._context, self._why = context, why
         # While the start page waits, or a scan is read, nothing is drawn: an end then is not its fault.
         self._clock = QTimer(self, interval=_DRAWN_FOR, singleShot=True)
         self._clock.timeout.connect(self._stop)
         self._drawn = False
         if not why:
             self._clock.start()
-        window.session.opened.connect(self._show_opened)
+        context.session.opened.connect(self._show_opened)
 
     def _show_opened(self) -> None:
-        self._window.session.opened.disconnect(self._show_opened)
+        self._context.session.opened.disconnect(self._show_opened)
         if not self._why:
             if not self._clock.isActive():
                 try_graphics()
@@ -44,7 +44,7 @@ class SafeMode(QObject):
         }
         hint = tr("All else works as ever, the view more slowly.")
         act = (tr("Normal next time"), graphics_work) if self._why == "failed" else None
-        self._window.notifications.warn(said[self._why], hint, [act] if act else ())
+        self._context.notifications.warn(said[self._why], hint, [act] if act else ())
 
     def _stop(self) -> None:
         if self._drawn:

@@ -6,7 +6,7 @@ from importlib import resources
 from pathlib import Path
 
 from app.gui.session.app_folders import open_outside
-from app.gui.widgets.notification_bar import NoticeBar
+from app.gui.session.notifications import Notifications
 from app.i18n.catalog import language, tr
 
 PAGES = {
@@ -43,7 +43,7 @@ def first_page() -> str:
     return FIRST[language() == "ja"]
 
 
-def show_page(page: str, notices: NoticeBar) -> None:
+def show_page(page: str, notifications: Notifications) -> None:
     """Show a page of the guide in the browser, from ``#`` a heading on; where that fails, say where it is."""
     name, _, heading = page.partition("#")
     path = guide_folder() / f"{name}.html"
@@ -53,4 +53,4 @@ def show_page(page: str, notices: NoticeBar) -> None:
         hint = tr("Open this file in a browser: {file}").format(file=path)
     else:
         hint = tr("It is not built here. In a checkout of Busk, 'make docs' builds it.")
-    notices.show_notice("info", tr("The user guide cannot be opened here."), hint, lasting=True)
+    notifications.info(tr("The user guide cannot be opened here."), hint, lasting=True)

@@ -9,7 +9,7 @@ from PySide6.QtGui import QCursor, QHelpEvent
 
 from app.gui.features.lines.row import LineRow, locked_tip
 from app.gui.features.lines.slider_groove import LONGEST, RESISTANCE, SHORTEST, resisted, wall_of
-from app.gui.viewport.band_drag import BandGrip
+from app.gui.viewport.band_drag import BandHandle
 from app.gui.widgets.tooltip import hide_tip, show_tip
 from app.i18n.catalog import tr
 from app.presenters.length_limits import resistance_reason
@@ -37,7 +37,7 @@ class BandPull(QObject):
         self._way = 0.0
         self._leeway: LengthLimits | None = None
         self._wall: float | None = None
-        grip = self._viewport.findChild(BandGrip)
+        grip = self._viewport.findChild(BandHandle)
         assert grip is not None
         grip.cursor_of = self._cursor_of
         grip.taken.connect(self._take)

@@ -63,7 +63,8 @@ class LinesDesk(QObject):
             if self._session.failure is not None:
                 design = self._session.design or design  # what is set, though it could not be computed
             views = line_views(design, frame, hidden, self.leeways(frame))
-            pressed = self._window.pressure_desk.of_listed(frame)
+            seen = self._window.lines.isVisible()
+            pressed = self._window.pressure_controller.of_active(frame) if seen else None
             tried, design = self._window.ask_desk.around.is_tried_on, frame.stages.design
             views = [replace(view, tried=tried(view.names, design)) for view in views]
             self._window.lines.set_lines([line_pressure_view(view, pressed) for view in views])

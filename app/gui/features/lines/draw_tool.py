@@ -56,6 +56,7 @@ class LineDrawing(QObject):
         card.moved.connect(self._move)
         card.snap.toggled.connect(self._choose)
         self._sketching.lost.connect(self.leave)
+        window.navigation.tool_started.connect(self.leave)
 
     @property
     def at_work(self) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 from PySide6.QtCore import QObject, QPointF, Signal
 
 from app.gui.features.lines.draw_card import DrawCard
-from app.gui.viewport.drawing_tool import Hand
+from app.gui.viewport.drawing_tool import DrawingTool
 from app.rendering.ribbon_mesh import RibbonSurface
 from core.control_mesh.fit import ControlMesh
 from core.geometry.mesh import Points
@@ -37,7 +37,7 @@ class Sketching(QObject):
         viewport = window.view.viewport
         canvas = viewport.overlay.parentWidget()
         assert canvas is not None
-        self.hand = Hand(viewport, canvas)
+        self.hand = DrawingTool(viewport, canvas)
         self.card = DrawCard(window.view)
         window.view.place(self.card, "bottom-left")  # beside the body: lines go over its middle
         self._sketch: SketchActor | None = None

@@ -54,6 +54,7 @@ class LineRouting(QObject):
         card.back.connect(self.back)
         card.left.connect(self.leave)
         self._sketching.lost.connect(self.leave)
+        window.navigation.tool_started.connect(self.leave)
         window.session.design_changed.connect(self._check)
 
     @property

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.gui.theme.stylesheet import font, tokens_of
 from app.gui.widgets.tooltip import set_tip
-from app.gui.widgets.value_edit import FigureField
+from app.gui.widgets.value_edit import ValueEdit
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import shown_digits, shown_value
 from app.presenters.maps import Mark
@@ -48,7 +48,7 @@ class LegendBar(QWidget):
         self._marks: tuple[Mark, ...] = ()
         self._bar = QRectF(BAR)
         ends = tr("Highest value of the colours"), tr("Lowest value of the colours")
-        self.high, self.low = (FigureField("", name, widest="−100.0") for name in ends)
+        self.high, self.low = (ValueEdit("", name, widest="−100.0") for name in ends)
         for field in (self.high, self.low):
             field.setParent(self)
             field.setAlignment(_LEFT)

@@ -51,7 +51,7 @@ class MapDesk(QObject):
         self._window, self._view = window, window.view
         self._kinds = {kind.name: kind for kind in map_kinds()}
         self.name, self._last = "", MAPS[0]
-        desks = window.pressure_desk, window.symmetry_controller, window.worn_desk
+        desks = window.pressure_controller, window.symmetry_controller, window.scan_comparison_controller
         self._seen = MapValues(self._view.beside, *desks)
         self.pinned: tuple[Pinned, ...] = ()
         self._flagged: tuple[Pinned, ...] = ()
@@ -78,9 +78,9 @@ class MapDesk(QObject):
         self.legend.theme_changed.connect(lambda: QTimer.singleShot(0, self, self.refresh))
         self.flags.pinned.connect(self.pin)
         self.flags.pulled.connect(self.unpin)
-        self._window.pressure_desk.found.connect(self.refresh)
-        self._window.worn_desk.compared.connect(self.refresh)
-        self._window.pressure_desk.place_asked.connect(self.look_at_most)
+        self._window.pressure_controller.changed.connect(self.refresh)
+        self._window.scan_comparison_controller.compared.connect(self.refresh)
+        self._window.pressure_controller.place_asked.connect(self.look_at_most)
 
     @property
     def now(self) -> BodyState | None:
@@ -95,7 +95,7 @@ class MapDesk(QObject):
 
     def cycle(self) -> None:
         """Go on to the next map, and after the last one to the first."""
-        names = [name for name in MAPS if name != "worn" or self._window.worn_desk.worn]
+        names = [name for name in MAPS if name != "worn" or self._window.scan_comparison_controller.worn]
         self.choose(names[(names.index(self.name) + 1) % len(names) if self.name in names else 0])
 
     def choose(self, name: str) -> None:
@@ -138,7 +138,7 @@ class MapDesk(QObject):
 
     def look_at_most(self) -> None:
         """Turn to the place that is pressed most, and pin what it is pressed with."""
-        listed = self._window.pressure_desk.shown
+        listed = self._window.pressure_controller.shown
         if listed is None or listed.highest is None:
             return
         line = listed.highest.line

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from weakref import WeakKeyDictionary
 
-from app.gui.features.garment.pressure_controller import PressureDesk
+from app.gui.features.garment.pressure_controller import PressureController
 from app.gui.features.maps.band_coloring import BandValues, pressures_on, pulls_on
-from app.gui.features.scan_comparison.controller import WornDesk
+from app.gui.features.scan_comparison.controller import ScanComparisonController
 from app.gui.features.symmetry.controller import SymmetryController
 from app.gui.viewport.body_view import BodyView
-from app.gui.viewport.comparison import Beside
+from app.gui.viewport.comparison import ViewComparison
 from app.i18n.catalog import tr
 from app.presenters.maps import BodyState, pressure_note
 from core.garment.pressure_list import PressureList
@@ -21,7 +21,11 @@ class MapValues:
     """Reads maps off the bodies that ``beside`` shows; ``now`` is the session's own, once there is one."""
 
     def __init__(
-        self, beside: Beside, pressure: PressureDesk, even: SymmetryController, worn: WornDesk
+        self,
+        beside: ViewComparison,
+        pressure: PressureController,
+        even: SymmetryController,
+        worn: ScanComparisonController,
     ) -> None:
         self._beside, self._pressure, self._even, self._worn = beside, pressure, even, worn
         self.now: BodyState | None = None

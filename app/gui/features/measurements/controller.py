@@ -1,16 +1,16 @@
-"""The desk of the table of measures: worked out where it is seen, copied, written to a file."""
+"""The table of measures: computed where it is seen, copied, written to a file."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, cast
 
 from PySide6.QtCore import QObject
 
 from app.gui.features.measurements.panel import ResultPanel
+from app.gui.file_export import copy_table, save_table
 from app.gui.session.jobs import Job
 from app.gui.session.settings import wish, wish_for
-from app.gui.widgets.table_export import copy_table, save_table
 from app.i18n.catalog import tr
 from app.i18n.lengths import length
 from app.presenters.measurements import MeasureView, as_table, measure_views, measured_views
@@ -25,15 +25,23 @@ from core.pipeline.live_solver import Frame
 from core.scan.body import Body
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 
-class MeasuresDesk(QObject):
-    """Fills the panel of measures: what the model says with every frame, the body once the run rests."""
+class MeasurementsController(QObject):
+    """Fill the panel of measures: values of the model with every frame, of the body once the run rests.
 
-    def __init__(self, window: MainWindow, panel: ResultPanel) -> None:
-        super().__init__(window)
-        self._window, self._panel = window, panel
+    ``uncertainties`` returns those of the design that is shown, and whether they are out of date.
+    """
+
+    def __init__(
+        self,
+        context: AppContext,
+        panel: ResultPanel,
+        uncertainties: Callable[[], tuple[Spread | None, bool]],
+    ) -> None:
+        super().__init__(context.session)
+        self._context, self._panel, self._uncertainties = context, panel, uncertainties
         self._frame: Frame | None = None
         self._asked: Frame | None = None
         self._body: Body | None = None
@@ -46,10 +54,10 @@ class MeasuresDesk(QObject):
         panel.marked.connect(self._show_mark)
         panel.framed.connect(self._look_at)
         panel.opened.connect(self.refresh)
-        window.view.compared.connect(self._show_mark)
-        panel.copy_asked.connect(lambda: copy_table(window, self._as_table()))
+        context.view.compared.connect(self._show_mark)
+        panel.copy_asked.connect(lambda: copy_table(context, self._as_table()))
         panel.table_asked.connect(
-            lambda: save_table(window, self._as_table(), tr("Save the table of measures"), "measures")
+            lambda: save_table(context, self._as_table(), tr("Save the table of measures"), "measures")
         )
         panel.sizes.chosen.connect(self._choose)
         panel.sizes.allowed.connect(self._allow)
@@ -78,14 +86,14 @@ class MeasuresDesk(QObject):
             self._panel.set_stale(stale)
 
     def _spread(self, views: Sequence[MeasureView]) -> list[MeasureView]:
-        return with_uncertainty(views, *self._window.uncertainty_controller.shown)
+        return with_uncertainty(views, *self._uncertainties())
 
     def _measure(self, frame: Frame) -> None:
         """Measure the body of a frame beside the window, once it rests."""
-        window = self._window
+        context = self._context
         if self._asked is frame:
             return
-        window.jobs.cancel(self._job)
+        context.jobs.cancel(self._job)
         self._job = self._asked = None
         if not self._panel.measured or self._body is not frame.stages.body:
             self._body = frame.stages.body
@@ -94,9 +102,9 @@ class MeasuresDesk(QObject):
             self._panel.set_measured([], self._waiting())
         self._panel.set_stale(True)
         self._show_mark()
-        if window.session.is_at_rest:
+        if context.session.is_at_rest:
             self._asked = frame
-            self._job = window.jobs.run(
+            self._job = context.jobs.run(
                 tr("Measuring the body"),
                 lambda progress: before_after(frame.stages, frame.control_points),
                 self._show_measured,
@@ -106,9 +114,9 @@ class MeasuresDesk(QObject):
 
     def _waiting(self) -> str:
         """Return why nothing is measured yet."""
-        if self._window.session.failure is not None:
+        if self._context.session.failure is not None:
             return not_computed()
-        if self._window.session.is_at_rest:
+        if self._context.session.is_at_rest:
             return tr("Measuring the body")
         return tr("The body is measured as soon as the run rests.")
 
@@ -122,11 +130,11 @@ class MeasuresDesk(QObject):
         self._show_mark()
 
     def _fail(self, error: Exception) -> None:
-        self._window.notifications.error(error)
+        self._context.notifications.error(error)
         self._give_up(tr("The body could not be measured."))
 
     def _leave_off(self) -> None:
-        self._window.notifications.stopped(tr("Measuring the body"))
+        self._context.notifications.stopped(tr("Measuring the body"))
         self._give_up(tr("Stopped: the body is measured when this list is shown again."))
 
     def _give_up(self, why: str) -> None:
@@ -146,7 +154,7 @@ class MeasuresDesk(QObject):
         rest, worn = (() if self._panel.stale else self._curves(found) for found in (self._rest, self._worn))
         if self._tried is not None:
             rest, worn = (found.curves for found in self._tried)
-        for body in self._window.view.beside.live:
+        for body in self._context.view.beside.live:
             if body.body is None:
                 continue
             trace = body.viewport.scene.measure
@@ -155,7 +163,7 @@ class MeasuresDesk(QObject):
                 body.viewport.request_draw()
 
     def _look_at(self) -> None:
-        viewport = self._window.view.viewport
+        viewport = self._context.view.viewport
         if viewport.shows_body and viewport.scene.measure.shown:
             viewport.frame_points(viewport.scene.measure.points)
 
@@ -169,11 +177,11 @@ class MeasuresDesk(QObject):
 
     def _allow(self, mm: float) -> None:
         said = tr("Worn tight: {length} off the under-bust").format(length=length(mm))
-        self._window.session.change({"worn_tight_mm": mm}, said)
+        self._context.session.change({"worn_tight_mm": mm}, said)
         self._show_sizes()
 
     def _show_sizes(self) -> None:
-        design = self._window.session.design
+        design = self._context.session.design
         allowance = design.worn_tight_mm if design else 0.0
         self._sized = self._sure
         views, why = size_views(self._rest, allowance, self._sized) if self._rest else ([], "")
@@ -182,7 +190,7 @@ class MeasuresDesk(QObject):
     @property
     def _sure(self) -> Spread | None:
         """How far the girths of the shown body may be off, once all of it is known."""
-        spread, faint = self._window.uncertainty_controller.shown
+        spread, faint = self._uncertainties()
         return None if faint else spread
 
     def _as_table(self) -> list[list[str]]:

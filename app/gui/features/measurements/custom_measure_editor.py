@@ -12,9 +12,9 @@ from PySide6.QtWidgets import QAbstractButton, QFormLayout, QHBoxLayout, QLineEd
 
 from app.gui.theme.stylesheet import font, label, set_tag
 from app.gui.widgets.basic import Segment, ToolButton, button, hairline, sentence
-from app.gui.widgets.landmark_combo import MarkField
+from app.gui.widgets.landmark_combo import LandmarkCombo
 from app.gui.widgets.tooltip import set_tip
-from app.gui.widgets.value_edit import FigureField
+from app.gui.widgets.value_edit import ValueEdit
 from app.i18n.catalog import tr
 from app.presenters.measurements import Draft
 from core.document.custom_measures import FURTHEST, LONGEST_NAME
@@ -45,12 +45,12 @@ class MeasureEditor(QWidget):
         self.kind = Segment(kinds, small=True, wide=True)
         set_tip(self.kind, tr("Straight through the air, along the skin, or round with a level tape"))
         self.kind.chosen.connect(lambda kind: self._set(kind=kind))
-        self.start, self.end = MarkField(tr("From")), MarkField(tr("To"))
-        self.at = MarkField(tr("Level of"), tr("a height"))
+        self.start, self.end = LandmarkCombo(tr("From")), LandmarkCombo(tr("To"))
+        self.at = LandmarkCombo(tr("Level of"), tr("a height"))
         self.start.chosen.connect(lambda mark: self._set(ends=(mark, self._other(mark, 1))))
         self.end.chosen.connect(lambda mark: self._set(ends=(self._other(mark, 0), mark)))
         self.at.chosen.connect(lambda mark: self._set(at=mark, level=0.0))
-        self.level = FigureField("mm", tr("How far above"), widest="−2,999.9")
+        self.level = ValueEdit("mm", tr("How far above"), widest="−2,999.9")
         self.level.entered.connect(self._set_level)
         self.value, self.said = label("", "hero", tabular=True), sentence("", "secondary")
         self.doubt = sentence("", "secondary")

@@ -1,4 +1,4 @@
-"""The desk of one's own measures: made by clicks on landmarks or from lists, changed, and removed."""
+"""Custom measures: made by clicks on landmarks or from lists, changed, and removed."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
-from PySide6.QtCore import QObject, QPointF
+from PySide6.QtCore import QObject, QPointF, Signal
 
 from app.gui.features.measurements.panel import ResultPanel
 from app.gui.session.jobs import Job
-from app.gui.viewport.drawing_tool import Hand
+from app.gui.viewport.drawing_tool import DrawingTool
 from app.i18n.catalog import say, tr
 from app.presenters.landmarks import landmark_title
 from app.presenters.measurements import Draft, from_draft, suggested_name, to_draft, value_texts
@@ -23,19 +23,24 @@ from core.measurements.table import custom_before_after
 from core.pipeline.live_solver import Frame
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 
-class OwnMeasuresDesk(QObject):
-    """Brings what is chosen in the view and in the form together, and shows on the body what it measures."""
+class CustomMeasuresController(QObject):
+    """Keep the form and the places chosen in the view alike.
 
-    def __init__(self, window: MainWindow, panel: ResultPanel) -> None:
-        super().__init__(window)
-        self._window, self._panel, self._form = window, panel, panel.editor
-        viewport = window.view.viewport
+    ``tried`` carries the measure that is being made, before and after, or None.
+    """
+
+    tried = Signal(object)
+
+    def __init__(self, context: AppContext, panel: ResultPanel) -> None:
+        super().__init__(context.session)
+        self._context, self._panel, self._form = context, panel, panel.editor
+        viewport = context.view.viewport
         canvas = viewport.overlay.parentWidget()
         assert canvas is not None
-        self._hand = Hand(viewport, canvas)
+        self._hand = DrawingTool(viewport, canvas)
         self._hand.grabs = self._grab
         self._hand.clicked.connect(self._click)
         self._hand.dropped.connect(lambda _: self._form.show_draft(self._form.draft.picked(self._held)))
@@ -53,10 +58,10 @@ class OwnMeasuresDesk(QObject):
         panel.adding.connect(self.begin)
         panel.changing.connect(lambda key: self.begin(key.removeprefix(OWN)))
         panel.removing.connect(self.remove)
-        window.session.frame_ready.connect(self._follow)
-        window.session.opened.connect(lambda *_: self.leave())
+        context.session.frame_ready.connect(self._follow)
+        context.session.opened.connect(lambda *_: self.leave())
         said = tr("Measure between two landmarks, or round the body at a height")
-        do = window.actions_
+        do = context.actions
         do.rule("edit")
         self.action = do.add("edit", tr("Add a measure…"), tip=said, do=self.begin, of_document=True)
 
@@ -67,12 +72,11 @@ class OwnMeasuresDesk(QObject):
 
     def begin(self, former: str = "") -> None:
         """Make a measure, or change the ``former`` one of that name."""
-        frame, design = self._window.session.frame, self._window.session.design
+        frame, design = self._context.session.frame, self._context.session.design
         if frame is None or design is None:
             return
-        for drawing in (self._window.line_drawing, self._window.line_routing):
-            drawing.leave()
-        self._window.navigation.show_step("result")
+        self._context.navigation.start_tool()
+        self._context.navigation.show_step("result")
         known = next((each for each in design.own_measures if each.name == former), None)
         self._former = former if known else ""
         points = frame.stages.landmarks.points
@@ -80,8 +84,8 @@ class OwnMeasuresDesk(QObject):
         self._asked = None
         self._panel.unmark()
         if not self.at_work:
-            self._banded = self._window.view.viewport.scene.is_visible("bands")
-            self._window.view.set_layer("bands", False)  # they would cover what is shown
+            self._banded = self._context.view.viewport.scene.is_visible("bands")
+            self._context.view.set_layer("bands", False)  # they would cover what is shown
         self._panel.set_editing(True)
         self._hand.begin()
         self._form.begin(to_draft(known) if known else Draft(), self._titles, self._former)
@@ -91,13 +95,13 @@ class OwnMeasuresDesk(QObject):
         """Make none any more."""
         if not self.at_work:
             return
-        self._window.jobs.cancel(self._job)
+        self._context.jobs.cancel(self._job)
         self._job = self._asked = None
         self._hand.end()
         self._panel.set_editing(False)
-        self._window.view.pins.offer(None)
-        self._window.view.set_layer("bands", self._banded)
-        self._window.measures_desk.try_out(None)
+        self._context.view.pins.offer(None)
+        self._context.view.set_layer("bands", self._banded)
+        self.tried.emit(None)
 
     def keep(self) -> None:
         """Add the measure, or put it in the place of the one that was changed, as one step."""
@@ -106,7 +110,7 @@ class OwnMeasuresDesk(QObject):
             return
         text = tr("Measure changed: {name}") if former else tr("Measure added: {name}")
         self.leave()
-        self._window.session.edit(
+        self._context.session.edit(
             lambda design: design.with_custom_measurement(wished, former), text.format(name=wished.name)
         )
         self._panel.select(OWN + wished.name)
@@ -117,18 +121,18 @@ class OwnMeasuresDesk(QObject):
         self.leave()
         self._panel.unmark()
         text = tr("Measure deleted: {name}").format(name=name)
-        self._window.session.edit(lambda design: design.without_custom_measurement(name), text)
+        self._context.session.edit(lambda design: design.without_custom_measurement(name), text)
 
     # -- the view speaks
 
     def _grab(self, at: QPointF) -> bool:
         """Hold a pin rather than let the view carry it off; where it is let go it is chosen."""
-        self._held = self._window.view.viewport.overlay.chosen_at(at)
+        self._held = self._context.view.viewport.overlay.chosen_at(at)
         return bool(self._held)
 
     def _click(self, at: QPointF) -> None:
         """Take the height of the skin that is clicked."""
-        frame, place = self._window.session.frame, self._window.view.viewport.skin_at(at)
+        frame, place = self._context.session.frame, self._context.view.viewport.skin_at(at)
         if frame is not None and place is not None and self._form.draft.kind == "girth":
             self._form.set_height(round(float(place[2]) - float(frame.stages.body.mesh.vertices[:, 2].min())))
 
@@ -144,10 +148,10 @@ class OwnMeasuresDesk(QObject):
 
     def _follow(self, _: object = None) -> None:
         """Show the chosen landmarks, and measure beside the window what is wished for."""
-        frame = self._window.session.frame
+        frame = self._context.session.frame
         if not self.at_work or frame is None:
             return
-        self._window.view.pins.offer(self._form.draft.marks)
+        self._context.view.pins.offer(self._form.draft.marks)
         try:
             wished = self._wished()
         except UserError as refusal:
@@ -155,16 +159,16 @@ class OwnMeasuresDesk(QObject):
             return
         if wished is None:
             self._show(None)
-        elif not self._window.session.is_at_rest:
+        elif not self._context.session.is_at_rest:
             self._show(None, tr("The body is measured as soon as the run rests."))
         elif (frame, replace(wished, name="?")) != self._asked:
             self._begin_measuring(frame, replace(wished, name="?"))
 
     def _begin_measuring(self, frame: Frame, wished: CustomMeasurement) -> None:
-        self._window.jobs.cancel(self._job)
+        self._context.jobs.cancel(self._job)
         self._asked = frame, wished
         self._form.show_value("", "", "", self._suggested())  # the former one is of another measure
-        self._job = self._window.jobs.run(
+        self._job = self._context.jobs.run(
             tr("Measuring the body"),
             lambda progress: custom_before_after(frame.stages, frame.control_points, wished),
             lambda found: self._show(cast(tuple[Measure, Measure], found)),
@@ -173,24 +177,24 @@ class OwnMeasuresDesk(QObject):
         )
 
     def _fail(self, error: Exception) -> None:
-        self._window.notifications.error(error)
+        self._context.notifications.error(error)
         self._show(None, tr("The body could not be measured."))
 
     def _show(self, found: tuple[Measure, Measure] | None, why: str = "") -> None:
         """Show what was measured, or why nothing is."""
         if found is None:
-            self._window.jobs.cancel(self._job)
+            self._context.jobs.cancel(self._job)
             self._job = self._asked = None
         value, said, doubt = value_texts(*found) if found else ("", "", why)
         self._form.show_value(value, said, doubt, self._suggested())
-        self._window.measures_desk.try_out(found)
+        self.tried.emit(found)
 
     def _suggested(self) -> str:
         return suggested_name(self._form.draft, self._titles)
 
     def _wished(self) -> CustomMeasurement | None:
         """Return what is wished for, None while places are missing. Raises UserError for what cannot be."""
-        frame, design = self._window.session.frame, self._window.session.design
+        frame, design = self._context.session.frame, self._context.session.design
         if frame is None or design is None:
             return None
         taken = {each.name for each in design.own_measures} - {self._former}

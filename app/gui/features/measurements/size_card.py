@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QPushButton, QVB
 from app.gui.theme.stylesheet import font, label, set_tag
 from app.gui.widgets.basic import Disclosure, button, hairline, sentence
 from app.gui.widgets.tooltip import set_tip
-from app.gui.widgets.value_edit import FigureField
+from app.gui.widgets.value_edit import ValueEdit
 from app.i18n.catalog import tr
 from app.i18n.lengths import length, length_number
 from app.presenters.sizes import SizeView
@@ -139,7 +139,7 @@ def _caution(side: Qt.AlignmentFlag = Qt.AlignmentFlag.AlignHCenter) -> QLabel:
     return result
 
 
-class _AllowanceField(FigureField):
+class _AllowanceField(ValueEdit):
     """What a tape that is worn tight takes off: an estimate, and not much."""
 
     def _read(self, text: str) -> float:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 
-from app.gui.features.model.panel import ModelDoor, ModelPanel
+from app.gui.features.model.panel import ModelPanel, ModelRow
 from core.document.design import Design
 from core.pipeline.live_solver import Frame
 
@@ -20,7 +20,7 @@ PANEL = "model"
 class ModelController(QObject):
     """Show the options of the model, and make changes of them edits of the design."""
 
-    def __init__(self, context: AppContext, panel: ModelPanel, door: ModelDoor) -> None:
+    def __init__(self, context: AppContext, panel: ModelPanel, door: ModelRow) -> None:
         super().__init__(context.session)
         self._context, self._panel, self._door = context, panel, door
         session, do = context.session, context.actions

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWi
 
 from app.gui.theme.stylesheet import label, set_tag
 from app.gui.widgets.basic import button, hairline, sentence
-from app.gui.widgets.navigation_row import DOOR_HEIGHT, Door, page_head
+from app.gui.widgets.navigation_row import DOOR_HEIGHT, NavigationRow, page_head
 from app.gui.widgets.option_field import AmountField, Field, field_of
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import colon, number, tr
@@ -120,7 +120,7 @@ class ModelPanel(QWidget):
             self.changed.emit(changes, f"{setting.title}{colon()}{setting.words(value)}")
 
 
-class ModelDoor(Door):
+class ModelRow(NavigationRow):
     """The way to the settings from under the lines: what is chosen, in a line."""
 
     def __init__(self) -> None:

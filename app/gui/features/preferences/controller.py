@@ -1,15 +1,16 @@
-"""What the window does when the user wishes it to look or behave otherwise."""
+"""The preferences: shown, stored, and applied at once where that is possible."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QApplication
 
 from app.gui.application import chosen_dark, log_folder
-from app.gui.features.preferences.dialog import PreferencesSheet
+from app.gui.features.preferences.dialog import PreferencesDialog
 from app.gui.session.app_folders import show_folder, start_again
 from app.gui.session.settings import UNTIL_THEN, wants_motion, wish, wish_for
 from app.gui.theme.stylesheet import apply_theme
@@ -17,29 +18,36 @@ from app.gui.viewport.viewport import Viewport
 from app.i18n.catalog import tr
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 
-class PreferencesDesk(QObject):
-    """Opens the preferences, and brings each wish to where it counts."""
+class PreferencesController(QObject):
+    """Open the preferences, and apply each of them.
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window = window
-        do = window.actions_
+    ``may_leave`` asks about unsaved changes before a restart.
+    """
+
+    material_chosen = Signal(str)
+
+    def __init__(self, context: AppContext, may_leave: Callable[[], bool]) -> None:
+        super().__init__(context.session)
+        self._context, self._may_leave = context, may_leave
+        do = context.actions
         do.rule("edit")
         self.open = do.add("edit", tr("Preferences…"), "Ctrl+,", tr("Language, theme, mouse and more"))
         self.open.setMenuRole(QAction.MenuRole.PreferencesRole)
         self.open.triggered.connect(self.show)
         do.end("edit", 2)
-        window.rail.add_tool("gear-six", self.open)
         do.add("help", tr("Open the log folder"), tip=tr("Faults are written there"), do=self.open_log)
+        for key, actions in (("theme", do.themes), ("language", do.languages)):
+            for value, action in actions.items():
+                action.triggered.connect(lambda _=False, key=key, value=value: self.choose(key, value))
         self._show_choices()
         self.set_motion()
 
     def show(self) -> None:
         """Show the preferences."""
-        sheet = PreferencesSheet(self._window, {key: wish(key) for key in UNTIL_THEN})
+        sheet = PreferencesDialog(self._context.window, {key: wish(key) for key in UNTIL_THEN})
         sheet.changed.connect(self.choose)
         sheet.log_asked.connect(self.open_log)
         sheet.open()
@@ -54,36 +62,36 @@ class PreferencesDesk(QObject):
             said = tr("The language changes when Busk is started again.")
             if key == "unit":
                 said = tr("The unit of lengths changes when Busk is started again.")
-            self._window.notifications.info(said, "", [(tr("Restart now"), self.restart)])
+            self._context.notifications.info(said, "", [(tr("Restart now"), self.restart)])
         elif key == "motion":
             self.set_motion()
         elif key == "material":
-            self._window.view_desk.choose_material(value)
+            self.material_chosen.emit(value)
         self._show_choices()
 
     def restart(self) -> None:
         """Start the program again on the same document, after a question about unsaved changes."""
-        window = self._window
-        if not window.project_controller.may_leave():
+        context = self._context
+        if not self._may_leave():
             return
-        document, design = window.session.path, window.session.design
+        document, design = context.session.path, context.session.design
         scan = "" if design is None or design.scan.member else design.scan.path
-        window.session.undo_stack.setClean()  # what is unsaved was given up a moment ago
-        if window.close():
+        context.session.undo_stack.setClean()  # what is unsaved was given up a moment ago
+        if context.window.close():
             start_again(str(document or scan))
 
     def set_motion(self) -> None:
         """Let the views glide, or jump."""
-        for view in self._window.findChildren(Viewport):
+        for view in self._context.view.findChildren(Viewport):
             view.motion = wants_motion()
 
     def open_log(self) -> None:
         """Show the folder of the log, if there is one."""
-        show_folder(log_folder(), self._window.notifications.info)
+        show_folder(log_folder(), self._context.notifications.info)
 
     def _show_choices(self) -> None:
         for key, actions in (
-            ("theme", self._window.actions_.themes),
-            ("language", self._window.actions_.languages),
+            ("theme", self._context.actions.themes),
+            ("language", self._context.actions.languages),
         ):
             actions.get(wish(key), actions[UNTIL_THEN[key]]).setChecked(True)

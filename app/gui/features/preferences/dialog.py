@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QGridLayout, QWidget
 
 from app.gui.theme.stylesheet import label
 from app.gui.widgets.basic import sentence
-from app.gui.widgets.dialog import Sheet
+from app.gui.widgets.dialog import Dialog
 from app.gui.widgets.option_field import Field, field_of
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import LANGUAGES, tr
@@ -19,7 +19,7 @@ AUTOSAVE = 5, 600
 """Shortest and longest time between two automatic saves [s]."""
 
 
-class PreferencesSheet(Sheet):
+class PreferencesDialog(Dialog):
     """All wishes by group; ``changed`` tells the key of one and its new value, as text."""
 
     changed = Signal(str, str)

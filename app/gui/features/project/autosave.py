@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Qt, QTimer
 from PySide6.QtGui import QGuiApplication
 
+from app.gui.features.project.controller import ProjectController
 from app.gui.features.project.recent_files import day_of
-from app.gui.session.background_save import Writing
+from app.gui.session.background_save import BackgroundSave
 from app.gui.session.project_lock import ProjectLock
 from app.gui.session.project_thumbnail import project_picture
 from app.gui.session.settings import wish
@@ -26,32 +27,35 @@ from core.errors import UserError
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 
 _ASIDE, _HELD = "kept aside", "held"
 """Causes of notices: the recovery copy cannot be written; another window has the project open."""
 
 
-class KeepingDesk(QObject):
-    """Keeps the document aside while it is not saved, and the project to itself.
+class AutosaveController(QObject):
+    """Keep the document aside while it is not saved, and the project to itself.
 
     The recovery folder is this window's own as long as it runs; it goes when the window closes in order.
     Where the window ``leaves`` without a question, it stays if anything is not saved.
     """
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window = window
-        self._session = window.session
+    def __init__(self, context: AppContext, project: ProjectController) -> None:
+        super().__init__(context.session)
+        self._context, self._project = context, project
+        self._session = context.session
         self._recovery: Recovery | None = None
         self._kept: Document | None = None
         self._told = False
         self.leaves = False
         self._lock = ProjectLock()
-        self._writing = Writing(self)
+        self._writing = BackgroundSave(self)
         self._clock = QTimer(self, singleShot=True)
         self._clock.timeout.connect(self.keep)
+        self._session.saved.connect(lambda _: self.show_saved())
+        self._session.design_changed.connect(lambda _: self.note())
+        self._session.undo_stack.cleanChanged.connect(lambda _: self.note())
 
     def note(self) -> None:
         """Hear that something was edited, or saved."""
@@ -62,7 +66,7 @@ class KeepingDesk(QObject):
 
     def keep(self) -> None:
         """Keep the document aside, in a passing thread; again until there is a picture of it."""
-        session, view = self._session, self._window.view
+        session, view = self._session, self._context.view
         document, frame = session.document, session.frame
         if document is None or frame is None or not session.unsaved:
             return
@@ -143,33 +147,33 @@ class KeepingDesk(QObject):
         self._kept = document if fault is None else None
         if fault is None:
             self._told = False
-            self._window.notifications.withdraw(_ASIDE)
+            self._context.notifications.withdraw(_ASIDE)
             self.note()
             return
         logging.error("the document could not be kept aside", exc_info=fault)
         if not self._told:
             said = (fault.message, fault.hint) if isinstance(fault, UserError) else (str(fault), "")
-            self._window.notifications.warn(*said, topic=_ASIDE)
+            self._context.notifications.warn(*said, topic=_ASIDE)
         self._told = True
         self._clock.start(60_000)
 
     def _picture(self) -> bytes | None:
         """Return a picture of the view, unless a hand or a run would have to wait for it."""
-        view, frame = self._window.view, self._session.frame
-        if frame is None or not view.isVisible() or not self._window.session.is_converged:
+        view, frame = self._context.view, self._session.frame
+        if frame is None or not view.isVisible() or not self._context.session.is_converged:
             return None
         if QGuiApplication.mouseButtons() != Qt.MouseButton.NoButton:
             return None
         picture = view.viewport.picture(labels=False, fine=False)
-        return project_picture(picture, self._window.verdict_desk.of(frame).level)
+        return project_picture(picture, self._project.level_of(frame))
 
     def _hold_project(self) -> None:
-        self._window.notifications.withdraw(_HELD)
+        self._context.notifications.withdraw(_HELD)
         since = self._lock.take(self._session.path)
         if since is None:
             return
         sentence = tr("{name} is open in another window ({time}).")
-        self._window.notifications.show(
+        self._context.notifications.show(
             "warn",
             sentence.format(name=self._session.name, time=day_of(since, time.time())),
             tr("Who saves last replaces what the other has saved."),
@@ -180,7 +184,7 @@ class KeepingDesk(QObject):
 
     def _detach(self) -> None:
         self._session.detach()
-        self._window.project_controller.show_title()
+        self._project.show_title()
 
 
 def _do_nothing() -> None:

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QDialog, QDialogButtonBox, QVBoxLayout, QWidget
 
 from app.gui.features.project.recent_files import day_of, picture_of
 from app.gui.widgets.basic import EmptyState, sentence
-from app.gui.widgets.thumbnail_list import PaintedList, PictureRow, PictureRowPainter
+from app.gui.widgets.thumbnail_list import ThumbnailList, ThumbnailRow, ThumbnailRowPainter
 from app.i18n.catalog import tr
 from core.document.storage.backups import Backup, backups
 
@@ -22,7 +22,7 @@ class BackupsDialog(QDialog):
         super().__init__(parent)
         self.setWindowTitle(tr("Open a backup"))
         self.resize(520, 560)
-        self.rows = PaintedList(PictureRowPainter(self))
+        self.rows = ThumbnailList(ThumbnailRowPainter(self))
         self.rows.setAccessibleName(tr("Former versions"))
         self.rows.show_rows([_row_of(backup) for backup in found])
         self.rows.itemActivated.connect(self.accept)
@@ -62,6 +62,6 @@ def ask_backup(parent: QWidget, project: Path | None) -> Backup | None:
     return found[dialog.rows.currentRow()] if chosen else None
 
 
-def _row_of(backup: Backup) -> PictureRow:
+def _row_of(backup: Backup) -> ThumbnailRow:
     day = day_of(backup.time, time.time())
-    return PictureRow(backup.project.stem, day, (str(backup.project.parent),), picture_of(backup.path))
+    return ThumbnailRow(backup.project.stem, day, (str(backup.project.parent),), picture_of(backup.path))

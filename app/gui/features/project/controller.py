@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
-from app.gui.features.project.recent_files import fill_recent_menu, remember_file
+from app.gui.features.project.recent_files import fill_recent_menu, picture_of, remember_file
 from app.gui.session.project_thumbnail import project_picture
 from app.gui.widgets.file_dialogs import ask_about_changes, ask_open, ask_overwrite, ask_save, remember_folder
 from app.gui.widgets.notification_bar import FILES
 from app.i18n.catalog import tr
 from app.presenters.samples import lifted_sample
 from core.document.design import Design
-from core.document.storage.project_file import is_protected
+from core.document.storage.project_file import is_project, is_protected
 from core.pipeline.live_solver import Frame
 
 if TYPE_CHECKING:
@@ -26,20 +26,22 @@ if TYPE_CHECKING:
 class ProjectController(QObject):
     """Open and save the document.
 
-    ``titled`` carries its name and whether it is unsaved, ``save_state`` when it was saved. ``level_of``
+    ``titled`` carries its name and whether it is unsaved, ``save_state`` when it was saved, ``opening`` the
+    name of the file that is being opened, empty once it is. ``level_of``
     returns the level of the overall verdict of a frame; each of ``pending`` completes an edit that is being
     made, such as a name that is being typed, before the document is saved or left.
     """
 
     titled = Signal(str, bool)
     save_state = Signal(str)
+    opening = Signal(str)
 
     def __init__(self, context: AppContext, level_of: Callable[[Frame], str]) -> None:
         super().__init__(context.session)
         self._context, self._session = context, context.session
-        self._level_of = level_of
+        self.level_of = level_of
         self.pending: list[Callable[[], object]] = []
-        self._chosen = ""
+        self._chosen = self._opening = ""
         self._connect()
 
     def _connect(self) -> None:
@@ -56,7 +58,20 @@ class ProjectController(QObject):
         for name, action in do.samples.items():
             action.triggered.connect(lambda _=False, sample=name: self.open_sample(sample))
 
+        for changed in (session.working, session.failed, session.asked):
+            changed.connect(lambda *_: self.follow_opening())
+
     # -- what is shown
+
+    def follow_opening(self) -> None:
+        """Show the stored picture of what is being opened, until it is open, refused or cancelled."""
+        path = self._session.opening
+        if path == self._opening:
+            return
+        self._opening = path
+        self.opening.emit(Path(path).name if path else "")
+        stored = picture_of(Path(path)) if path and is_project(path) else None
+        self._context.view.cover.show_picture(stored)
 
     def show_opened(self, frame: Frame) -> None:
         """Show a document that has just been opened."""
@@ -145,5 +160,5 @@ class ProjectController(QObject):
     def _preview(self) -> bytes:
         """Return a small picture of the view, for the project file."""
         frame = self._session.frame
-        level = self._level_of(frame) if frame is not None else ""
+        level = self.level_of(frame) if frame is not None else ""
         return project_picture(self._context.view.viewport.picture(labels=False), level)

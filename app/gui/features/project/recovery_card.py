@@ -10,7 +10,7 @@ from PySide6.QtGui import QImage, QPainter, QPainterPath, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.gui.theme.stylesheet import label
-from app.gui.widgets.basic import OverCard, ToolButton, button, sentence
+from app.gui.widgets.basic import OverlayCard, ToolButton, button, sentence
 from app.i18n.catalog import tr
 
 _PICTURE = QSize(116, 110)
@@ -26,7 +26,7 @@ class RecoveryView:
     more: int = 0
 
 
-class RecoveryCard(OverCard):
+class RecoveryCard(OverlayCard):
     """Asks once, calmly; ``later`` leaves the offer to the next start."""
 
     restore = Signal()

@@ -1,55 +1,96 @@
-"""The start page at work: when it is shown, what its cards do, and files that are dropped on the window."""
+"""The start page at work: when it is shown, what its cards do, and files that are dropped on the context."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QDragEnterEvent
 
+from app.gui.features.project.controller import ProjectController
 from app.gui.features.project.drop_zone import DropVeil
 from app.gui.features.project.recent_files import forget_file, project_views, remember_file
 from app.gui.features.project.start_page import StartPage
-from app.gui.tour import Tour
 from app.gui.widgets.file_dialogs import ask_open
 from app.i18n.catalog import tr
 from app.presenters.samples import FIRST_SAMPLE, LIFTING_LINE, SAMPLES, lifted_sample, sample_path
 from core.document.storage.recovery import recovery_folder
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 
-class StartDesk(QObject):
-    """Puts the start page in the place of the work, and the work back once a file is being opened."""
+class Tour(Protocol):
+    """A tour through the window."""
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window = window
+    @property
+    def place(self) -> int:
+        """Which stop is shown, from 0; -1 while there is no tour."""
+        ...
+
+    def begin(self) -> None:
+        """Begin with the first stop."""
+        ...
+
+    def begin_when_settled(self) -> None:
+        """Begin once the body that is being opened has converged."""
+        ...
+
+    def end(self) -> None:
+        """End it, for good."""
+        ...
+
+
+class StartController(QObject):
+    """Show the start page in the place of the work, and the work again once a file is being opened.
+
+    ``is_incomplete`` returns whether a scan is shown that cannot go on.
+    """
+
+    def __init__(
+        self, context: AppContext, project: ProjectController, tour: Tour, is_incomplete: Callable[[], bool]
+    ) -> None:
+        super().__init__(context.session)
+        self._context, self._project, self._is_incomplete = context, project, is_incomplete
         self.page = StartPage()
-        self.tour = Tour(window)
-        self.veil = DropVeil(window)
-        window.installEventFilter(self)
+        self.tour = tour
+        self.veil = DropVeil(context.window)
+        context.window.installEventFilter(self)
+        self._connect()
         said = tr("Begin with a scan, or go on with what was open before")
-        window.actions_.add("file", tr("Start page"), "Ctrl+Shift+N", said, do=self.show_page)
-        window.actions_.add(
+        context.actions.add("file", tr("Start page"), "Ctrl+Shift+N", said, do=self.show_page)
+        context.actions.add(
             "help", tr("Tour"), tip=tr("Show the main parts of the window, step by step"), do=self.take_tour
         )
 
+    def _connect(self) -> None:
+        session, page, project = self._context.session, self.page, self._project
+        session.working.connect(self.show_work)
+        session.failed.connect(lambda _: self.show_failure())
+        session.asked.connect(lambda _: self.leave_page())
+        page.open_asked.connect(project.open)
+        page.sample_asked.connect(project.open_sample)
+        page.tour_asked.connect(self.take_tour)
+        page.project_chosen.connect(project.open_file)
+        page.locate_asked.connect(self.locate)
+        page.forget_asked.connect(self.forget)
+        page.left.connect(self.leave_page)
+
     def show_page(self) -> None:
         """Show the start page; what is open stays as it is."""
-        window = self._window
+        context = self._context
         if self.tour.place >= 0:
             self.tour.end()
-        self.page.set_document(window.session.name if window.session.frame is not None else "")
+        self.page.set_document(context.session.name if context.session.frame is not None else "")
         self.page.set_projects(project_views())
-        window.navigation.show_page(self.page)
+        context.navigation.show_page(self.page)
         self.page.zone.choose.setFocus()
 
     def leave_page(self) -> None:
         """Show the work again."""
-        self._window.navigation.close_page(self.page)
+        self._context.navigation.close_page(self.page)
 
     def show_work(self, what: str, _share: float) -> None:
         """Leave the page as soon as a body is being read: its progress is shown beside the view."""
@@ -58,7 +99,7 @@ class StartDesk(QObject):
 
     def show_failure(self) -> None:
         """Come back where there is nothing else to show; the notice stands above the page."""
-        if self._window.session.frame is None and self._window.scan_desk.stuck is None:
+        if self._context.session.frame is None and not self._is_incomplete():
             self.show_page()
         else:
             self.leave_page()
@@ -66,7 +107,7 @@ class StartDesk(QObject):
     def show_opened(self) -> None:
         """Remember what was opened, unless it is a sample."""
         self.leave_page()
-        session = self._window.session
+        session = self._context.session
         if session.path is not None:
             remember_file(str(session.path))
             return
@@ -81,16 +122,16 @@ class StartDesk(QObject):
 
     def _show_lift(self) -> None:
         """Show from near by what the band of a sample does, against the original body."""
-        view = self._window.view
-        self._window.selection.select_line(LIFTING_LINE)
+        view = self._context.view
+        self._context.selection.select_line(LIFTING_LINE)
         view.set_layer("ghost", True)
         view.viewport.frame_points(view.viewport.scene.bands.spine(LIFTING_LINE)[0])
 
     def take_tour(self) -> None:
         """Lead through the window, on what is open or else on the sample."""
-        window = self._window
-        if window.session.frame is None:
-            window.project_controller.open_sample(FIRST_SAMPLE)
+        context = self._context
+        if context.session.frame is None:
+            self._project.open_sample(FIRST_SAMPLE)
             self.tour.begin_when_settled()
         else:
             self.leave_page()
@@ -98,10 +139,10 @@ class StartDesk(QObject):
 
     def locate(self, path: str) -> None:
         """Ask where a file that is gone has moved to, and open it there."""
-        found = ask_open(self._window)
+        found = ask_open(self._context.window)
         if found:
             forget_file(path)
-            self._window.project_controller.open_file(found)
+            self._project.open_file(found)
 
     def forget(self, path: str) -> None:
         """Take a file off the list."""

@@ -1,4 +1,4 @@
-"""The sheet to work from in the window: made beside it as soon as the run rests, shown, saved, printed."""
+"""The report: made in the background once the run has converged, shown, saved, printed."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from PySide6.QtGui import QImage, QPageLayout, QPageSize, QPainter
 from PySide6.QtPrintSupport import QPrintDialog, QPrinter
 
 from app.gui.features.report.page import ReportPage
+from app.gui.file_export import write_file
 from app.gui.session.jobs import Job
 from app.gui.session.settings import wish
 from app.gui.widgets.file_dialogs import ask_save
@@ -36,18 +37,24 @@ from core.pipeline.live_solver import Frame
 from core.progress import Progress
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
+
+WithUncertainties = Callable[[Report, Frame | None, Frame | None], Report]
+"""Returns a sheet of a frame, with its uncertainties by the whole run of that."""
 
 STILL = 0.005
 """Control points that moved less are where they were [mm]: a run at rest that goes on moves so far."""
 
 
-class ReportDesk(QObject):
-    """Puts the sheet in the place of the work; while it is seen it follows the design."""
+class ReportController(QObject):
+    """Show the report in the place of the work; while it is seen it follows the design.
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window = window
+    ``with_uncertainties`` returns a sheet with the uncertainties of its frame, once they are known.
+    """
+
+    def __init__(self, context: AppContext, with_uncertainties: WithUncertainties) -> None:
+        super().__init__(context.session)
+        self._context, self._with_uncertainties = context, with_uncertainties
         self.page = ReportPage()
         self.pages: Pages | None = None
         self.handout: ReportDocument | None = None
@@ -60,34 +67,35 @@ class ReportDesk(QObject):
         self._whole: Frame | None = None  # its figures are of
         self._occlusion: tuple[object, Floats] | None = None
         said = tr("Sizes, lengths to cut, measures, pressures and pictures on paper: look, save, print")
-        do = window.actions_
+        do = context.actions
         self.action = do.add("file", tr("Report…"), "Ctrl+P", said, do=self.open, of_document=True)
-        window.top.add_primary(self.action)
         self.page.left.connect(self.leave)
         self.page.named.connect(self._name)
         self.page.language_chosen.connect(self._speak)
         self.page.wanted.connect(self._give)
+        context.session.design_changed.connect(lambda _: self.follow())
+        context.session.failed.connect(lambda _: self.follow())
 
     # -- what is asked
 
     @property
     def is_open(self) -> bool:
         """Whether the sheet stands in the place of the work."""
-        return self._window.navigation.page is self.page
+        return self._context.navigation.page is self.page
 
     def open(self) -> None:
         """Show the sheet of the design that is shown."""
         self._language = self._language or language()
-        self._window.navigation.show_page(self.page)
+        self._context.navigation.show_page(self.page)
         self.page.paper.setFocus()
         self.follow()
 
     def leave(self) -> None:
         """Show the work again."""
         if self.is_open:
-            self._window.jobs.cancel(self._job)
+            self._context.jobs.cancel(self._job)
             self._job, self._asked, self._refused = None, None, ""
-            self._window.navigation.close_page(self.page)
+            self._context.navigation.close_page(self.page)
 
     def close(self) -> bool:
         """Show the work again; returns whether the sheet took its place."""
@@ -97,21 +105,21 @@ class ReportDesk(QObject):
 
     def forget(self) -> None:
         """Let go of the sheet of a document that has gone: nobody is to see it under the next one."""
-        document = self._window.session.document
+        document = self._context.session.document
         # Before the page hides: a name that was being typed is not that of the next customer.
         self.page.customer.setText(document.customer if document is not None else "")
-        self._window.jobs.cancel(self._job)
+        self._context.jobs.cancel(self._job)
         self._frame = self._asked = self._job = self.handout = self.pages = self._occlusion = None
         self._laid = None, ""
         self.page.show_pages(None)
         self.leave()
 
     def _name(self, customer: str) -> None:
-        design = self._window.session.design
+        design = self._context.session.design
         if design is None or design.customer == customer:
             return
         said = tr("Customer {name}").format(name=customer) if customer else tr("No customer")
-        self._window.session.change({"customer": customer}, said)
+        self._context.session.change({"customer": customer}, said)
         if self.handout is not None:
             self._take(self.handout)  # at once: it may be given away with the next word
 
@@ -123,7 +131,7 @@ class ReportDesk(QObject):
 
     def follow(self) -> None:
         """Bring the sheet up to date, if it is seen: its heading at once, its figures once the run rests."""
-        window, frame = self._window, self._window.session.frame
+        context, frame = self._context, self._context.session.frame
         if frame is None or not self.is_open:
             return
         if self._is_of(frame):
@@ -132,10 +140,10 @@ class ReportDesk(QObject):
             return
         if self._asked is not None and _alike(self._asked, frame):
             return
-        window.jobs.cancel(self._job)
+        context.jobs.cancel(self._job)
         self._job, self._asked, self._refused = None, None, ""
         self._show()
-        if window.session.is_converged:
+        if context.session.is_converged:
             self._make(frame)
 
     def _is_of(self, frame: Frame) -> bool:
@@ -143,11 +151,11 @@ class ReportDesk(QObject):
             return False
         former, now = self.handout.report.heading, self._heading()
         sizes_alike = (former.system, former.allowance_mm) == (now.system, now.allowance_mm)
-        return sizes_alike and self._window.session.is_converged and _alike(self._frame, frame)
+        return sizes_alike and self._context.session.is_converged and _alike(self._frame, frame)
 
     def _make(self, frame: Frame) -> None:
         """Work out the sheet beside the window, then draw its pictures piece by piece."""
-        window, heading = self._window, self._heading()
+        context, heading = self._context, self._heading()
         self._asked = frame
         body, known = frame.stages.body, self._occlusion
 
@@ -167,13 +175,13 @@ class ReportDesk(QObject):
             self._occlusion, self._whole = (body, baked), whole
             finish, left = partial(done, ReportDocument(sheet, {}, self._colours(frame))), self._leave_off
             drawing, pieces = tr("Drawing the pictures of the sheet"), render_images(whole, baked)
-            self._job = window.jobs.run_pieces(drawing, pieces, finish, lambda _: finish({}), left=left)
+            self._job = context.jobs.run_pieces(drawing, pieces, finish, lambda _: finish({}), left=left)
 
         def done(plain: ReportDocument, pictures: Mapping[str, QImage]) -> None:
             self._frame, self._asked, self._job = frame, None, None
             self._take(replace(plain, pictures=pictures))
 
-        self._job = window.jobs.run(tr("Making the sheet"), work, draw, self._fail, left=self._leave_off)
+        self._job = context.jobs.run(tr("Making the sheet"), work, draw, self._fail, left=self._leave_off)
 
     def _leave_off(self) -> None:
         self._job = self._asked = None
@@ -185,21 +193,21 @@ class ReportDesk(QObject):
         if isinstance(error, UserError):
             self._refused = f"{say(error.message)} {say(error.hint)}"
         else:
-            self._window.notifications.error(error)
+            self._context.notifications.error(error)
             self._refused = tr("The sheet could not be made.")
         self._show()
 
     def _take(self, handout: ReportDocument) -> None:
         """Show a sheet under its present heading; its sizes are those that it was made with."""
-        made, spread = handout.report.heading, self._window.uncertainty_controller.on_sheet
+        made = handout.sheet.heading
         heading = replace(self._heading(), system=made.system, allowance_mm=made.allowance_mm)
-        sheet = replace(spread(handout.report, self._frame, self._whole), heading=heading)
+        sheet = replace(self._with_uncertainties(handout.sheet, self._frame, self._whole), heading=heading)
         self.handout = replace(handout, report=sheet)
         self._show()
 
     def _show(self) -> None:
         """Show the sheet as far as it is known, and what is under way."""
-        design, frame = self._window.session.design, self._window.session.frame
+        design, frame = self._context.session.design, self._context.session.frame
         stale = frame is None or not self._is_of(frame)
         if self._laid != (self.handout, self._language):
             # Not with every frame of a run: it takes as long as some of them.
@@ -211,17 +219,19 @@ class ReportDesk(QObject):
 
     def _waits_for(self) -> str:
         """Return why there is no sheet yet."""
-        if self._window.session.failure is not None:
+        if self._context.session.failure is not None:
             return tr("The shape could not be computed: there is no sheet of this design.")
-        if self._window.session.is_converged:
+        if self._context.session.is_converged:
             return tr("The sheet is being made.")
-        return self._window.ask_desk.around.first(tr("The sheet is made as soon as the run rests."))
+        if self._context.session.is_at_rest:
+            return tr("The sheet is of what is applied: apply what is asked for, or cancel it, first.")
+        return tr("The sheet is made as soon as the run rests.")
 
     def _heading(self) -> Heading:
-        document = self._window.session.document
+        document = self._context.session.document
         assert document is not None
         return Heading(
-            self._window.session.name,
+            self._context.session.name,
             datetime.date.today().isoformat(),
             document.customer,
             document.shown if len(document.designs) > 1 else "",
@@ -241,7 +251,7 @@ class ReportDesk(QObject):
     def _save_pdf(self) -> None:
         pages = self.pages
         if (path := self._asked_for(tr("Save the sheet"), ".pdf", "PDF (*.pdf)")) and pages is not None:
-            self._write(path, lambda: write_pdf(path, pages, self._window.session.name))
+            self._write(path, lambda: write_pdf(path, pages, self._context.session.name))
 
     def _save_data(self) -> None:
         self._save_text(tr("Save the data of the sheet"), ".json", "JSON (*.json)")
@@ -258,32 +268,25 @@ class ReportDesk(QObject):
         self._write(path, lambda: write_text(Path(path).absolute(), text, code))
 
     def _asked_for(self, title: str, ending: str, kinds: str) -> str:
-        name = f"{self._window.session.name}-{tr('sheet')}{ending}"
-        return ask_save(self._window, title, name, kinds, ending)
+        name = f"{self._context.session.name}-{tr('sheet')}{ending}"
+        return ask_save(self._context.window, title, name, kinds, ending)
 
     def _write(self, path: str, write: Callable[[], None]) -> None:
-        try:
-            write()
-        except UserError as problem:
-            self._window.notifications.error(problem, "sheet")
-        else:
-            self._window.notifications.file_written(
-                "sheet", tr("{name} written.").format(name=Path(path).name), path
-            )
+        write_file(self._context.notifications, "sheet", path, lambda _: write())
 
     def _print(self) -> None:
         pages = self.pages
         printer = QPrinter(QPrinter.PrinterMode.HighResolution)
-        printer.setDocName(self._window.session.name)
+        printer.setDocName(self._context.session.name)
         size, upright = QPageSize(QPageSize.PageSizeId.A4), QPageLayout.Orientation.Portrait
         printer.setPageLayout(QPageLayout(size, upright, QMarginsF(0, 0, 0, 0)))
         printer.setFullPage(True)
-        if pages is None or not QPrintDialog(printer, self._window).exec():
+        if pages is None or not QPrintDialog(printer, self._context.window).exec():
             return
         painter = QPainter()
         if not painter.begin(printer):
             said = tr("The sheet could not be printed."), tr("Choose another printer.")
-            self._window.notifications.error(ProjectError(*said), "print")
+            self._context.notifications.error(ProjectError(*said), "print")
             return
         wished = range(pages.count)
         if printer.printRange() == QPrinter.PrintRange.PageRange:
@@ -296,7 +299,7 @@ class ReportDesk(QObject):
             painter.scale(scale, scale)
             pages.paint(painter, page)
         painter.end()
-        self._window.notifications.withdraw("print")
+        self._context.notifications.withdraw("print")
 
 
 def _alike(one: Frame, other: Frame) -> bool:

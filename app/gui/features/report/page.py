@@ -155,7 +155,7 @@ class _Desk(QScrollArea):
         self.empty = sentence("", "body")
         self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._lay.addWidget(self.empty)
-        self.leaves: list[Leaf] = []
+        self.leaves: list[ReportSheet] = []
         self._by, self._width = "width", 0.0
         self.viewport().installEventFilter(self)
 
@@ -167,7 +167,7 @@ class _Desk(QScrollArea):
             self._lay.removeWidget(leaf)
             leaf.deleteLater()
         while len(self.leaves) < count:
-            leaf = Leaf(len(self.leaves))
+            leaf = ReportSheet(len(self.leaves))
             self.leaves.append(leaf)
             self._lay.addWidget(leaf, alignment=Qt.AlignmentFlag.AlignHCenter)
         for leaf in self.leaves:
@@ -213,7 +213,7 @@ class _Ground(QWidget):
         QPainter(self).fillRect(event.rect(), QColor(tokens_of(self).app))
 
 
-class Leaf(QWidget):
+class ReportSheet(QWidget):
     """One page, white in every theme; it is painted once, and kept until page or size change."""
 
     def __init__(self, number: int) -> None:

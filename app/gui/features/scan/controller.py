@@ -11,7 +11,7 @@ from PySide6.QtGui import QColor, QImage
 
 from app.gui.session.jobs import Job
 from app.gui.theme.stylesheet import tokens_of
-from app.gui.viewport.orientation_card import PICTURE, Answer
+from app.gui.viewport.orientation_card import PICTURE, OrientationChoice
 from app.gui.widgets.notification_bar import REFUSED, SCAN
 from app.i18n.catalog import tr
 from app.presenters.scan import scan_view
@@ -241,7 +241,7 @@ class ScanDesk(QObject):
         assert isinstance(painted, list)
         self._painting = None
         self._window.view.question.ask(
-            [Answer(way.up, way.front, _image(picture), _words(way)) for way, picture in painted]
+            [OrientationChoice(way.up, way.front, _image(picture), _words(way)) for way, picture in painted]
         )
 
     def _show_no_question(self, error: Exception) -> None:

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 from app.gui.theme.stylesheet import label
 from app.gui.widgets.basic import Segment, button, hairline, sentence
 from app.gui.widgets.tooltip import set_tip
-from app.gui.widgets.value_edit import FigureField
+from app.gui.widgets.value_edit import ValueEdit
 from app.i18n.catalog import joined, say, tr
 from app.i18n.lengths import length
 from app.presenters.scan import EditsView, HoleView
@@ -19,7 +19,7 @@ from core.errors import UserError
 from core.scan.edits import UNEDITED, ScanEdits
 
 
-class LevelField(FigureField):
+class LevelField(ValueEdit):
     """A level of the crop; ``check`` raises UserError for one that cannot be."""
 
     def __init__(self, name: str, check: Callable[[float], object]) -> None:

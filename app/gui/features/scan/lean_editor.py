@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 from app.gui.theme.stylesheet import label
 from app.gui.widgets.basic import button
 from app.gui.widgets.tooltip import set_tip
-from app.gui.widgets.value_edit import FigureField
+from app.gui.widgets.value_edit import ValueEdit
 from app.i18n.catalog import tr
 from app.presenters.scan import LeanView
 
@@ -16,7 +16,7 @@ MOST = 45.0
 """The largest lean that can be typed [degrees]."""
 
 
-class AngleField(FigureField):
+class AngleField(ValueEdit):
     """An angle within 45 degrees."""
 
     def __init__(self, name: str) -> None:

@@ -1,4 +1,4 @@
-"""The desk of the worn scan: it is read, laid on the first, compared with what is shown, and learnt from."""
+"""The worn scan: read, registered to the first, compared with the prediction, calibrated on."""
 
 from __future__ import annotations
 
@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING, cast
 
 from PySide6.QtCore import QObject, Signal
 
-from app.gui.features.measurements.panel import ResultPanel
-from app.gui.features.scan_comparison.page import WornPage, WornView
+from app.gui.features.scan_comparison.page import ScanComparisonPage, ScanComparisonView
 from app.gui.session.jobs import Job
 from app.gui.widgets.file_dialogs import ask_scan
-from app.gui.widgets.navigation_row import Door
+from app.gui.widgets.navigation_row import NavigationRow
 from app.i18n.catalog import tr
 from app.presenters import scan_comparison as words
 from core.analysis.calibration.api import (
@@ -27,28 +26,32 @@ from core.pipeline.live_solver import Frame
 from core.scan.body import Body
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 MAP = "worn"
 """The map Predicted less real."""
 
+PANEL = "worn"
+"""The name of the page in the inspector."""
+
 _REFUSED = "the worn scan"  # what a refusal is about, which the next scan takes away
 
 
-class WornDesk(QObject):
-    """Keeps one worn scan of the body shown; ``compared`` says that there is another comparison, or none.
+class ScanComparisonController(QObject):
+    """Keep one worn scan of the body shown, and compare and calibrate with it.
 
-    What was found is of one design alone, and goes with it; the scan goes with its body.
+    ``compared`` is emitted when there is another comparison, or none, ``map_asked`` with the name of a map or
+    none. A calibration belongs to one design, and goes with it; the scan goes with its body.
     """
 
     compared = Signal()
+    map_asked = Signal(str)
 
-    def __init__(self, window: MainWindow, panel: ResultPanel) -> None:
-        super().__init__(window)
-        self._window, self._panel = window, panel
-        self.page = WornPage()
-        self.door = Door(tr("Compare with a worn scan"))
-        panel.doors.addWidget(self.door)
+    def __init__(self, context: AppContext) -> None:
+        super().__init__(context.session)
+        self._context, self._mapped = context, False
+        self.page = ScanComparisonPage()
+        self.door = NavigationRow(tr("Compare with a worn scan"))
         self.worn: FittingScan | None = None
         self._of: Body | None = None  # the body that a scan was chosen for
         self._path, self._unit, self._thickness = "", "", 0.0
@@ -62,14 +65,16 @@ class WornDesk(QObject):
     def _connect(self) -> None:
         said = tr("Predicted less real, from a scan of the same person with the garment on")
         begin = tr("Compare with a worn scan…")
-        self._window.actions_.add("file", begin, tip=said, do=self.begin, of_document=True)
+        self._context.actions.add("file", begin, tip=said, do=self.begin, of_document=True)
+        self._context.session.design_changed.connect(lambda _: self.follow())
+        self._context.session.opened.connect(lambda _: self.close())
         page = self.page
         self.door.clicked.connect(lambda _: self.show_page())
         page.asked.connect(self.choose)
-        page.left.connect(lambda: self._window.navigation.show_panel("result"))
+        page.closed.connect(self.close)
         page.told.connect(self._tell_unit)
         page.thickened.connect(self._thicken)
-        page.mapped.connect(lambda on: self._window.map_desk.choose(MAP if on else ""))
+        page.mapped.connect(lambda on: self.map_asked.emit(MAP if on else ""))
         page.calibrated.connect(self.calibrate)
         page.applied.connect(self.apply)
 
@@ -83,40 +88,45 @@ class WornDesk(QObject):
 
     def show_page(self) -> None:
         """Show the page in the place of the measures."""
-        self._window.navigation.show_step("result")
-        self._window.navigation.show_panel("worn")
-        self._window.navigation.focus_panel()
+        self._context.navigation.show_step("result")
+        self._context.navigation.show_panel(PANEL)
+        self._context.navigation.focus_panel()
         self.follow()
+
+    def close(self) -> None:
+        """Show the measures again, if the page is shown."""
+        if self._context.navigation.panel == PANEL:
+            self._context.navigation.show_panel("result")
 
     def choose(self) -> None:
         """Ask for the worn scan and read it."""
-        if path := ask_scan(self._window, tr("Open a worn scan")):
+        if path := ask_scan(self._context.window, tr("Open a worn scan")):
             self.read(path)
 
     def read(self, path: str) -> None:
         """Read a worn scan and lay it on the body shown; what was compared before stays until then."""
-        frame = self._window.session.frame
+        frame = self._context.session.frame
         if frame is None:
             return
-        self._window.jobs.cancel(self._reading)
+        self._context.jobs.cancel(self._reading)
         self._path, self._of = path, frame.stages.body
-        self._window.notifications.withdraw(_REFUSED)
+        self._context.notifications.withdraw(_REFUSED)
         source = ScanSource(path, unit=self._unit or None)
-        self._reading = self._window.jobs.run(
+        self._reading = self._context.jobs.run(
             tr("Reading the worn scan"),
             lambda progress: read_fitting_scan(frame.stages, source, progress),
             lambda worn: self._take(cast(FittingScan, worn)),
-            lambda error: self._window.notifications.error(error, _REFUSED),
+            lambda error: self._context.notifications.error(error, _REFUSED),
             waited=True,
         )
 
     def calibrate(self) -> None:
         """Find the numbers at which the prediction comes nearest, beside."""
-        frame, worn, thickness = self._window.session.frame, self.worn, self._thickness
-        if frame is None or worn is None or not self._window.session.is_converged:
+        frame, worn, thickness = self._context.session.frame, self.worn, self._thickness
+        if frame is None or worn is None or not self._context.session.is_converged:
             return
         design = frame.stages.design
-        job = self._window.jobs.run(
+        job = self._context.jobs.run(
             tr("Calibrating"),
             lambda progress: calibrate(frame.stages, worn, thickness=thickness, progress=progress),
             lambda found: self._take_found(design, cast(CalibrationResult, found)),
@@ -129,16 +139,16 @@ class WornDesk(QObject):
 
     def _fail_to_fit(self, error: Exception) -> None:
         self._fitting = None
-        self._window.notifications.error(error)
+        self._context.notifications.error(error)
         self.follow()
 
     def apply(self) -> None:
         """Give the design the numbers that were found, as one undo step."""
-        if self._found is None or self._found[0] is not self._window.session.design:
+        if self._found is None or self._found[0] is not self._context.session.design:
             return
         found, self._found = self._found[1], None
         said = tr("Calibrated on {file}").format(file=found.calibration.worn)
-        self._window.session.edit(lambda _: found.design, said)
+        self._context.session.edit(lambda _: found.design, said)
 
     def _tell_unit(self, unit: str) -> None:
         self._unit = unit
@@ -172,19 +182,19 @@ class WornDesk(QObject):
 
     def _rests(self, frame: Frame) -> bool:
         """Tell whether the shape shown has settled, though turns beside it may go on for seconds."""
-        session = self._window.session
+        session = self._context.session
         of_now = frame is session.frame and frame.stages.design is session.design and session.is_answered
         return of_now and (frame.verdict.motion == "settled" or not frame.is_running)
 
     def _compare(self, frame: Frame, worn: FittingScan) -> None:
         if self._comparing is not None:
-            self._window.jobs.cancel(self._comparing[0])
+            self._context.jobs.cancel(self._comparing[0])
         thickness = self._thickness
-        job = self._window.jobs.run(
+        job = self._context.jobs.run(
             tr("Comparing with the worn scan"),
             lambda progress: compare(frame.stages, frame.control_points, worn, thickness),
             lambda found: self._take_difference(frame, cast(Residuals, found)),
-            self._window.notifications.error,
+            self._context.notifications.error,
         )
         self._comparing = job, frame
 
@@ -197,7 +207,7 @@ class WornDesk(QObject):
         """Let go of all that was found, or is being looked for, with another scan or thickness."""
         for begun in (self._comparing, self._fitting):
             if begun is not None:
-                self._window.jobs.cancel(begun[0])
+                self._context.jobs.cancel(begun[0])
         self._comparing = self._fitting = self._difference = self._found = None
         self.compared.emit()
 
@@ -209,13 +219,18 @@ class WornDesk(QObject):
 
     def _take_found(self, design: Design, found: CalibrationResult) -> None:
         self._fitting = None
-        if design is self._window.session.design:
+        if design is self._context.session.design:
             self._found = design, found
+        self.follow()
+
+    def show_map(self, name: str) -> None:
+        """Show by the page whether its map lies on the body."""
+        self._mapped = name == MAP
         self.follow()
 
     def follow(self) -> None:
         """Bring page and door up to date with what is shown, and let go of what is of something else."""
-        frame, design = self._window.session.frame, self._window.session.design
+        frame, design = self._context.session.frame, self._context.session.design
         if frame is None or design is None:
             return
         self._let_go(frame, design)
@@ -225,26 +240,28 @@ class WornDesk(QObject):
         known = self._known(frame)
         shown = known or (self._difference[1] if self._difference else None)
         self.page.show_view(self._view(frame, design, shown, faint=known is None))
-        self.page.show_map(self._window.map_desk.name == MAP)
+        self.page.show_map(self._mapped)
 
     def _let_go(self, frame: Frame, design: Design) -> None:
         if self._of is not None and frame.stages.body is not self._of:
-            self._window.jobs.cancel(self._reading)
+            self._context.jobs.cancel(self._reading)
             self._reading = self.worn = self._of = None
             self._path = ""
-            if self._window.map_desk.name == MAP:
-                self._window.map_desk.choose("")  # of a body that is gone
+            if self._mapped:
+                self.map_asked.emit("")  # of a body that is gone
             self._begin_anew()
         if self._found is not None and self._found[0] is not design:
             self._found = None
         if self._fitting is not None and self._fitting[1] is not design:
-            self._window.jobs.cancel(self._fitting[0])
+            self._context.jobs.cancel(self._fitting[0])
             self._fitting = None
 
-    def _view(self, frame: Frame, design: Design, shown: Residuals | None, *, faint: bool) -> WornView:
+    def _view(
+        self, frame: Frame, design: Design, shown: Residuals | None, *, faint: bool
+    ) -> ScanComparisonView:
         worn, found = self.worn, self._found[1] if self._found else None
         at_work = self._fitting is not None and self._fitting[0].wanted
-        return WornView(
+        return ScanComparisonView(
             file=worn.name if worn else "",
             lies=words.aligned_words(worn) if worn else "",
             rows=words.residual_rows(shown) if shown else (),
@@ -255,7 +272,7 @@ class WornDesk(QObject):
             better=words.improvement_text(found, design) if found else "",
             record=words.record_words(design.calibration),
             faint=faint,
-            ready=bool(worn) and self._window.session.is_converged and not at_work and not faint,
+            ready=bool(worn) and self._context.session.is_converged and not at_work and not faint,
             helped=found is not None and found.is_improved,
             doubtful=found is not None and found.is_poorly_determined,
         )

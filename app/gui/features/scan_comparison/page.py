@@ -12,7 +12,7 @@ from app.gui.theme.stylesheet import font, label, set_tag
 from app.gui.widgets.basic import ElidedLabel, Segment, button, hairline, sentence
 from app.gui.widgets.navigation_row import page_head
 from app.gui.widgets.tooltip import set_tip
-from app.gui.widgets.value_edit import FigureField
+from app.gui.widgets.value_edit import ValueEdit
 from app.i18n.catalog import tr
 from app.i18n.lengths import length_unit
 from app.presenters.scan_comparison import ParameterRow, ResidualRow
@@ -20,7 +20,7 @@ from core.analysis.calibration.api import THICKEST
 
 
 @dataclass(frozen=True)
-class WornView:
+class ScanComparisonView:
     """All that the page says; empty where there is nothing.
 
     ``faint``: the comparison is of a former shape. ``ready``: the numbers can be sought. ``helped``: those
@@ -43,19 +43,19 @@ class WornView:
     doubtful: bool = False
 
 
-class WornPage(QWidget):
-    """``left`` goes back, ``asked`` wants a file, ``calibrated`` the numbers, ``applied`` takes them.
+class ScanComparisonPage(QWidget):
+    """``closed`` goes back, ``asked`` wants a file, ``calibrated`` the numbers, ``applied`` takes them.
 
     ``told`` carries the unit of the scan, empty for that which is guessed; ``thickened`` the cloth [mm],
     ``mapped`` whether the map is to lie on the body.
     """
 
-    left, asked, calibrated, applied = Signal(), Signal(), Signal(), Signal()
+    closed, asked, calibrated, applied = Signal(), Signal(), Signal(), Signal()
     told, thickened, mapped = Signal(str), Signal(float), Signal(bool)
 
     def __init__(self) -> None:
         super().__init__()
-        self.view = WornView()
+        self.view = ScanComparisonView()
         self._mapped = False
         self.file, self.lies = ElidedLabel(), sentence("", "secondary")
         self.file.setFont(font("name"))
@@ -72,7 +72,7 @@ class WornPage(QWidget):
             wide=True,
         )
         self.unit.set_choice("")
-        self.thickness = FigureField("mm", tr("Thickness of the cloth"), widest="20.0")
+        self.thickness = ValueEdit("mm", tr("Thickness of the cloth"), widest="20.0")
         self.thickness.show_value(0.0)
         self.look = button(tr("Show on the body"))
         self.calibrate, self.apply = button(tr("Calibrate")), button(tr("Apply"), "primary")
@@ -125,7 +125,7 @@ class WornPage(QWidget):
         outer = QVBoxLayout(self)
         outer.setContentsMargins(0, 0, 0, 0)
         outer.setSpacing(0)
-        outer.addLayout(page_head(tr("Worn scan"), tr("Back to the measures"), self.left))
+        outer.addLayout(page_head(tr("Worn scan"), tr("Back to the measures"), self.closed))
         outer.addWidget(area, 1)
 
     def _lay_compared(self, column: QVBoxLayout) -> None:
@@ -162,7 +162,7 @@ class WornPage(QWidget):
             grid.setVerticalSpacing(2)
             grid.setColumnStretch(0, 1)
 
-    def show_view(self, view: WornView) -> None:
+    def show_view(self, view: ScanComparisonView) -> None:
         """Show what there is to say."""
         self.view = view
         texts = (self.file, view.file), (self.lies, view.lies), (self.bust, view.bust)

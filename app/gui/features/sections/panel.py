@@ -16,7 +16,7 @@ from app.gui.theme.stylesheet import font, label, tokens_of
 from app.gui.widgets.accessibility import speak_value
 from app.gui.widgets.basic import FloatingPanel, ToolButton
 from app.gui.widgets.tooltip import set_tip
-from app.gui.widgets.value_edit import FigureField
+from app.gui.widgets.value_edit import ValueEdit
 from app.i18n.catalog import tr
 from app.i18n.lengths import arrow_step, length, length_unit
 from app.presenters.plots import Quantity
@@ -129,7 +129,7 @@ class ProfilePanel(FloatingPanel):
         self.slider.setPageStep(10 * STEPS)
         self.slider.valueChanged.connect(lambda value: self.moved.emit(value * _place()))
         self._axis = label("", "caption")
-        self.place = FigureField("mm", tr("Place of the section plane"), widest="−888.8")
+        self.place = ValueEdit("mm", tr("Place of the section plane"), widest="−888.8")
         self.place.entered.connect(self.moved)
         row.addWidget(self.slider, 1)
         row.addWidget(self._axis)

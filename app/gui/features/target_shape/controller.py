@@ -117,8 +117,7 @@ class AskDesk(QObject):
             return
         if self.is_open:
             self.leave()
-        self._window.line_drawing.leave()
-        self._window.line_routing.leave()
+        self._window.navigation.start_tool()
         self._window.navigation.show_step("lines")
         limit = math.inf if math.isinf(self.all_wishes.most_kpa) else limit
         self.all_wishes, self.answer, self._apply_due = replace(Wishes.of(goals), limit=limit), None, False

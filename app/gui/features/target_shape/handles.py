@@ -9,7 +9,7 @@ import numpy as np
 from PySide6.QtCore import QObject
 
 from app.gui.features.target_shape.profile_card import AskProfile
-from app.gui.viewport.target_handle import BustHandle
+from app.gui.viewport.target_handle import TargetHandle
 from app.i18n.catalog import tr
 from app.presenters.bust_shift import bust_shift
 from core.analysis.inverse_design.profile_curve import ProfileCurve
@@ -41,7 +41,7 @@ class AskHandles(QObject):
         super().__init__(desk)
         self._window, self._desk = window, desk
         self.kind = "bust"
-        self.by_side: dict[str, BustHandle] = {}
+        self.by_side: dict[str, TargetHandle] = {}
         self.profile = AskProfile(window.view.viewport, self)
         self._before: tuple[dict[str, float | None], dict[str, ProfileCurve]] | None = None
         self._pulled: dict[str, float] = {}  # how far the hand has gone each way since it closed [mm]
@@ -97,7 +97,7 @@ class AskHandles(QObject):
 
     def _make(self) -> None:
         for side in SIDES:
-            handle = BustHandle(self._window.view.viewport, side, _NAMES[side]())
+            handle = TargetHandle(self._window.view.viewport, side, _NAMES[side]())
             handle.taken.connect(self._take)
             handle.pulled.connect(partial(self._pull, side))
             handle.dropped.connect(self._drop)

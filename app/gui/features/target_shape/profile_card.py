@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
-from app.gui.viewport.target_curve import WishCurve
-from app.gui.viewport.target_handle import BustHandle
+from app.gui.viewport.target_curve import TargetCurve
+from app.gui.viewport.target_handle import TargetHandle
 from app.i18n.catalog import tr
 from core.analysis.inverse_design.profile_curve import ProfileCurve, profile_points, section_to_space
 from core.pipeline.frame import Frame
@@ -31,8 +31,8 @@ class AskProfile(QObject):
     def __init__(self, viewport: Viewport, parent: QObject) -> None:
         super().__init__(parent)
         self._viewport = viewport
-        self._curves: dict[str, WishCurve] = {}
-        self.handles: dict[str, list[BustHandle]] = {}
+        self._curves: dict[str, TargetCurve] = {}
+        self.handles: dict[str, list[TargetHandle]] = {}
 
     def put_away(self) -> None:
         """Show none any longer."""
@@ -41,7 +41,7 @@ class AskProfile(QObject):
         for handle in self.all():
             handle.put_away()
 
-    def all(self) -> list[BustHandle]:
+    def all(self) -> list[TargetHandle]:
         """Return all handles, from below."""
         return [handle for each in self.handles.values() for handle in each]
 
@@ -69,11 +69,11 @@ class AskProfile(QObject):
 
     def _make(self, section: str, profile: ProfileCurve) -> None:
         side = profile.section
-        self._curves[section] = WishCurve(self._viewport, side)
+        self._curves[section] = TargetCurve(self._viewport, side)
         self.handles[section] = []
         for number in range(len(profile.handles)):
             name = tr("Handle {number} of the profile, from below").format(number=number + 1)
-            handle = BustHandle(self._viewport, side, name, small=True)
+            handle = TargetHandle(self._viewport, side, name, small=True)
             handle.taken.connect(partial(self.taken.emit, section))
             handle.pulled.connect(partial(self.pulled.emit, section, number))
             handle.dropped.connect(self.dropped)

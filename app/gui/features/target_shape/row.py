@@ -12,9 +12,9 @@ from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 from app.gui.theme.stylesheet import font, label, set_tag
 from app.gui.widgets.basic import Segment, ToolButton, sentence
 from app.gui.widgets.menu import Menu, pull_down
-from app.gui.widgets.option_field import PullDown
+from app.gui.widgets.option_field import OptionCombo
 from app.gui.widgets.tooltip import set_tip
-from app.gui.widgets.value_edit import FigureField
+from app.gui.widgets.value_edit import ValueEdit
 from app.i18n.catalog import tr
 from app.i18n.lengths import shown_unit
 
@@ -47,7 +47,7 @@ class WishView:
     tone: str = ""
 
 
-class _WishField(FigureField):
+class _WishField(ValueEdit):
     """A field that leaves Esc to the card unless something was typed; ``typed`` when that begins or ends.
 
     Without a value it is empty but for words in grey. What is selected as a whole stays so when its value
@@ -158,7 +158,7 @@ class WishRow(QWidget):
         self.title = sentence(view.title, "body")
         self.title.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
         head.addWidget(self.title, 1)
-        self.priority, self._titles = PullDown(), priority_titles()
+        self.priority, self._titles = OptionCombo(), priority_titles()
         self.priority.setFont(font("caption"))
         self.priority.setProperty("kind", "choice")
         set_tip(self.priority, tr("Set the priority of this target where not all can be met"))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Qt
 from PySide6.QtWidgets import QAbstractButton, QWidget
 
-from app.gui.viewport.target_handle import BustHandle
+from app.gui.viewport.target_handle import TargetHandle
 from app.rendering.camera import View
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ class AskBack(QObject):
             if (view := replace(there, parallel=parallel)) != here:
                 viewport.glide_to(view)
         has, before = self._window.focusWidget(), self._keyboard
-        if has is None or self._desk.card.isAncestorOf(has) or isinstance(has, BustHandle):
+        if has is None or self._desk.card.isAncestorOf(has) or isinstance(has, TargetHandle):
             # A button would be pressed by the next Enter, or a space that is meant to flip the body.
             gone = before is None or isinstance(before, QAbstractButton) or not before.isVisible()
             (viewport if gone or before is None else before).setFocus(Qt.FocusReason.OtherFocusReason)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ from app.gui.widgets.basic import Segment, ToolButton
 from app.gui.widgets.menu import Menu
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
+from app.presenters.assessment import AssessmentView
 from app.presenters.variants import variant_titles
 from core.document.design import Design
 from core.document.document import VARIANTS
@@ -18,24 +20,24 @@ from core.pipeline.converged import converged_frame
 from core.pipeline.frame import Frame
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
     from app.gui.session.jobs import Job
 
 _MOST_KEPT = 12
 
 
-class VariantDesk(QObject):
-    """Owns the segment A B C of the top bar, and the settled frames of variants that are not worked on.
+class VariantsController(QObject):
+    """Own the ``segment`` A B C and the ``button`` of the title bar, and solve variants that are not shown.
 
-    ``solved`` tells that there is one more of these.
+    ``solved`` is emitted when one more of these is. ``assess`` returns the overall verdict of a frame.
     """
 
     solved = Signal()
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window = window
-        self._session = window.session
+    def __init__(self, context: AppContext, assess: Callable[[Frame], AssessmentView]) -> None:
+        super().__init__(context.session)
+        self._context, self._assess = context, assess
+        self._session = context.session
         self._solved: dict[Design, Frame] = {}
         self._unsolvable: set[Design] = set()
         self._job: Job | None = None
@@ -46,10 +48,9 @@ class VariantDesk(QObject):
         for name in VARIANTS:
             self._set_up(name)
         self._fill_menu()
-        window.top.place(self.segment)
-        self._button = ToolButton("columns", action=self.beside)
-        window.top.place(self._button)
-        window.view.compared.connect(self._show_way)
+        self.button = ToolButton("columns", action=self.beside)
+        context.session.design_changed.connect(lambda _: self.show_variants())
+        context.view.compared.connect(self._show_way)
         self.show_variants()
 
     def choose(self, name: str) -> None:
@@ -68,7 +69,7 @@ class VariantDesk(QObject):
         there = document.variants if document is not None else {}
         shown = document.shown if document is not None else ""
         self.segment.setEnabled(document is not None)
-        self._button.setVisible(len(there) > 1 and not self.segment.isHidden())
+        self.button.setVisible(len(there) > 1 and not self.segment.isHidden())
         self.segment.set_choice(shown)
         for name in VARIANTS:
             button = self.segment.button(name)
@@ -78,7 +79,7 @@ class VariantDesk(QObject):
             set_tip(button, text.format(name=name, shown=shown))
             button.setAccessibleName(button.toolTip())
             button.setText(name if name in there else f"+{name}")
-        if self._window.view.beside.way == "variants" and self._beside != self._others():
+        if self._context.view.beside.way == "variants" and self._beside != self._others():
             self.show_side_by_side()
 
     def show_side_by_side(self) -> None:
@@ -89,14 +90,14 @@ class VariantDesk(QObject):
         others = self._others()
         if not others:
             self._beside = None
-            if self._window.view.beside.way == "variants":
-                self._window.view.compare_by("after")
+            if self._context.view.beside.way == "variants":
+                self._context.view.compare_by("after")
             else:
                 said = (
                     tr("There is one variant so far."),
                     tr("Choose B or C at the top: it begins as a copy."),
                 )
-                self._window.notifications.info(*said)
+                self._context.notifications.info(*said)
             return
         missing = [each for each in others.items() if each[1] not in self._solved]
         self._asked = bool(missing)
@@ -108,15 +109,15 @@ class VariantDesk(QObject):
             (name, None) if name == document.shown else (name, self._solved[design])
             for name, design in document.designs
         ]
-        titles = variant_titles(self.frames(), self._window.verdict_desk.of)
-        self._window.view.show_variants(
+        titles = variant_titles(self.frames(), self._assess)
+        self._context.view.show_variants(
             [(title, each) for title, (_, each) in zip(titles, shown, strict=True)]
         )
 
     def flip_side_by_side(self) -> None:
         """Show all variants side by side, or the one that is worked on alone again."""
-        if self._window.view.beside.way == "variants":
-            self._window.view.compare_by("after")
+        if self._context.view.beside.way == "variants":
+            self._context.view.compare_by("after")
         else:
             self.show_side_by_side()
         self._show_way()
@@ -142,18 +143,18 @@ class VariantDesk(QObject):
 
     def close_side_by_side(self) -> None:
         """Forget what belongs to another body, and what is being solved for it."""
-        self._window.jobs.cancel(self._job)
+        self._context.jobs.cancel(self._job)
         self._job, self._asked = None, False
         self._solved.clear()
         self._unsolvable.clear()
         self._beside = None
-        if self._window.view.beside.way == "variants":
-            self._window.view.compare_by("after")
+        if self._context.view.beside.way == "variants":
+            self._context.view.compare_by("after")
         self.show_variants()
 
     def _show_way(self) -> None:
         """Light what puts variants side by side as long as they are."""
-        self.beside.setChecked(self._window.view.beside.way == "variants")
+        self.beside.setChecked(self._context.view.beside.way == "variants")
 
     def _others(self) -> dict[str, Design]:
         document = self._session.document
@@ -163,9 +164,9 @@ class VariantDesk(QObject):
 
     def _solve(self, name: str, design: Design) -> None:
         near = self._session.frame
-        if near is None or self._job in self._window.jobs.at_work():
+        if near is None or self._job in self._context.jobs.at_work():
             return
-        self._job = self._window.jobs.run(
+        self._job = self._context.jobs.run(
             tr("Solving variant {name}").format(name=name),
             partial(converged_frame, design, near.stages),
             partial(self._take, design),
@@ -176,7 +177,7 @@ class VariantDesk(QObject):
     def _give_up(self, design: Design, error: Exception) -> None:
         self._job, self._asked = None, False
         self._unsolvable.add(design)
-        self._window.notifications.error(error)
+        self._context.notifications.error(error)
 
     def _take(self, design: Design, frame: object) -> None:
         if isinstance(frame, Frame):
@@ -207,7 +208,7 @@ class VariantDesk(QObject):
         return menu
 
     def _fill_menu(self) -> None:
-        actions = self._window.actions_
+        actions = self._context.actions
         actions.submenu("edit", "variants", tr("Variants"))
         for place, name in enumerate(VARIANTS, start=1):
             text = tr("Variant {name}").format(name=name)

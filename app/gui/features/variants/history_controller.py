@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -11,8 +12,9 @@ from PySide6.QtCore import QObject, Qt, QTimer
 from PySide6.QtGui import QImage
 
 from app.gui.features.variants.history_panel import HistoryPanel
-from app.gui.widgets.thumbnail_list import PictureRow
+from app.gui.widgets.thumbnail_list import ThumbnailRow
 from app.i18n.catalog import colon, number, tr
+from app.presenters.assessment import AssessmentView
 from app.presenters.bust_shift import bust_sentence, bust_shift
 from app.presenters.status import TONES, is_result
 from core.document.design import Design
@@ -22,7 +24,7 @@ from core.pipeline.frame import Frame
 from core.pipeline.warnings import controlled_volume
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 MOST = 30
 """Results that are kept, the oldest go first."""
@@ -37,7 +39,7 @@ _PICTURE = 160
 class _Snapshot:
     variant: str
     design: Design
-    row: PictureRow
+    row: ThumbnailRow
 
     def within(self, document: Document) -> Document:
         """Return the document gone back to this; beside other variants the body stays, it is theirs too."""
@@ -48,17 +50,23 @@ class _Snapshot:
         return there.with_design(replace(self.design, scan=body.scan, placed=body.placed))
 
 
-class HistoryDesk(QObject):
-    """Fills the history panel, and goes back to what is clicked there as one step of undo."""
+class HistoryController(QObject):
+    """Fill the history panel, and go back to what is clicked there as one step of undo."""
 
-    def __init__(self, window: MainWindow, panel: HistoryPanel) -> None:
-        super().__init__(window)
-        self._window = window
-        self._session = window.session
-        self._panel = panel
+    def __init__(
+        self, context: AppContext, panel: HistoryPanel, assess: Callable[[Frame], AssessmentView]
+    ) -> None:
+        super().__init__(context.session)
+        self._context = context
+        self._session = context.session
+        self._panel, self._assess = panel, assess
         self._snapshots: deque[_Snapshot] = deque(maxlen=MOST)
         self._clock = QTimer(self, interval=_CALM, singleShot=True)
         self._clock.timeout.connect(self._take)
+        self._session.undo_stack.indexChanged.connect(self.show_edits)
+        self._session.design_changed.connect(lambda _: self.show_snapshots())
+        panel.jumped.connect(self.jump)
+        panel.restored.connect(self.restore)
 
     def show_edits(self) -> None:
         """Show the names of all edits, and which of them stand."""
@@ -77,7 +85,11 @@ class HistoryDesk(QObject):
 
     def note(self) -> None:
         """Hear of a frame: what came of an edit is kept once the window is calm."""
-        if self._window.session.is_converged and self._session.undo_stack.index() > 0 and not self._is_kept():
+        if (
+            self._context.session.is_converged
+            and self._session.undo_stack.index() > 0
+            and not self._is_kept()
+        ):
             self._clock.start()
 
     def show_snapshots(self) -> None:
@@ -115,20 +127,20 @@ class HistoryDesk(QObject):
         if (
             frame is None
             or document is None
-            or not self._window.session.is_converged
+            or not self._context.session.is_converged
             or self._is_kept()
             or stack.index() == 0
         ):
             return
-        if not self._window.view.isVisible():
+        if not self._context.view.isVisible():
             # The sheet lies over the body: its picture is taken once that is seen again.
             self._clock.start()
             return
-        overall = self._window.verdict_desk.of(frame)
+        overall = self._assess(frame)
         if overall.level == PENDING:
             self._clock.start()
             return
-        row = PictureRow(
+        row = ThumbnailRow(
             stack.text(stack.index() - 1),
             time.strftime("%H:%M:%S"),
             _figures(frame, overall.headline),
@@ -139,7 +151,7 @@ class HistoryDesk(QObject):
         self.show_snapshots()
 
     def _picture(self) -> QImage:
-        picture = self._window.view.viewport.picture(fine=False)
+        picture = self._context.view.viewport.picture(fine=False)
         return picture.scaledToHeight(_PICTURE, Qt.TransformationMode.SmoothTransformation)
 
 

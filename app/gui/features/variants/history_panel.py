@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QListWidgetItem, QSplitter, QVBoxLayout, QWidget
 
 from app.gui.theme.stylesheet import label, tokens_of
 from app.gui.widgets.basic import sentence
-from app.gui.widgets.thumbnail_list import VIEW, PaintedList, PictureRow, PictureRowPainter, RowPainter
+from app.gui.widgets.thumbnail_list import VIEW, RowPainter, ThumbnailList, ThumbnailRow, ThumbnailRowPainter
 from app.i18n.catalog import tr
 
 
@@ -22,7 +22,7 @@ class HistoryPanel(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        self.edits, self.snapshots = PaintedList(_EditRow(self)), PaintedList(PictureRowPainter(self))
+        self.edits, self.snapshots = ThumbnailList(_EditRow(self)), ThumbnailList(ThumbnailRowPainter(self))
         self.edits.setAccessibleName(tr("History"))
         self.snapshots.setAccessibleName(tr("Results"))
         self._hint = sentence(tr("What comes of each edit is kept here until Busk closes."))
@@ -54,7 +54,7 @@ class HistoryPanel(QWidget):
             self.edits.mark(item, place == present)
         self.edits.scrollToItem(self.edits.item(present))
 
-    def set_snapshots(self, views: Sequence[PictureRow]) -> None:
+    def set_snapshots(self, views: Sequence[ThumbnailRow]) -> None:
         """Show snapshots, the newest first."""
         if views and self._hint.isVisibleTo(self):
             half = self._parts.height() // 2
@@ -73,7 +73,7 @@ def _part(title: str, inside: Sequence[QWidget]) -> QWidget:
     heading.setContentsMargins(4, 10, 0, 2)
     column.addWidget(heading)
     for each in inside:
-        column.addWidget(each, 1 if isinstance(each, PaintedList) else 0)
+        column.addWidget(each, 1 if isinstance(each, ThumbnailList) else 0)
     column.addStretch(0)
     return part
 

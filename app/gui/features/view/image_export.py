@@ -2,33 +2,33 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QRect, QSize, Qt
 from PySide6.QtGui import QGuiApplication, QImage, QPageLayout, QPainter
 from PySide6.QtPrintSupport import QPrintDialog, QPrinter
 
+from app.gui.file_export import write_file, write_whole
 from app.gui.session.project_thumbnail import png_of
 from app.gui.widgets.file_dialogs import ask_save
 from app.i18n.catalog import tr
-from core.errors import ProjectError, UserError
-from core.files.atomic_write import atomic_path
+from core.errors import ProjectError
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 FINER = 2.0
 """Pixels of a picture for each one of the screen, in both directions."""
 
 
-class PictureDesk(QObject):
-    """Adds to the menu of files what is done with a picture of what the view shows."""
+class ImageExportController(QObject):
+    """Add to the menu of files what is done with a picture of what the view shows."""
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window = window
-        do = window.actions_
+    def __init__(self, context: AppContext) -> None:
+        super().__init__(context.session)
+        self._context = context
+        context.view.tools.picture_asked.connect(self.save)
+        do = context.actions
         do.rule("file")
         said = tr("Put what the view shows on the clipboard, finer than the screen")
         do.add("file", tr("Copy the picture"), "Ctrl+Shift+C", said, do=self.copy, of_document=True)
@@ -37,45 +37,35 @@ class PictureDesk(QObject):
 
     def save(self) -> None:
         """Ask for a place and write what the view shows."""
-        window = self._window
-        name = f"{window.session.name}.png"
-        path = ask_save(window, tr("Save a picture"), name, "PNG (*.png)", ".png")
-        if not path:
-            return
-        try:
-            with atomic_path(Path(path).absolute()) as partial:
-                partial.write_bytes(png_of(self._picture()))
-        except UserError as problem:
-            window.notifications.error(problem, "picture")
-        else:
-            window.notifications.file_written(
-                "picture", tr("{name} written.").format(name=Path(path).name), path
-            )
+        name = f"{self._context.session.name}.png"
+        path = ask_save(self._context.window, tr("Save a picture"), name, "PNG (*.png)", ".png")
+        if path:
+            write_file(self._context.notifications, "picture", path, write_whole(png_of(self._picture())))
 
     def copy(self) -> None:
         """Put what the view shows on the clipboard."""
         QGuiApplication.clipboard().setImage(self._picture())
-        self._window.notifications.done(tr("The picture is copied."))
+        self._context.notifications.done(tr("The picture is copied."))
 
     def print_out(self) -> None:
         """Ask for a printer and print what the view shows."""
         printer = QPrinter(QPrinter.PrinterMode.HighResolution)
-        printer.setDocName(self._window.session.name)
+        printer.setDocName(self._context.session.name)
         printer.setPageOrientation(QPageLayout.Orientation.Landscape)
-        if not QPrintDialog(printer, self._window).exec():
+        if not QPrintDialog(printer, self._context.window).exec():
             return
         picture, page = self._picture(), printer.pageLayout().paintRectPixels(printer.resolution())
         painter = QPainter()
         if not painter.begin(printer):
             said = tr("The picture could not be printed."), tr("Choose another printer.")
-            self._window.notifications.error(ProjectError(*said), "print")
+            self._context.notifications.error(ProjectError(*said), "print")
             return
         painter.drawImage(fitted(picture.size(), page.size()), picture)
         painter.end()
-        self._window.notifications.withdraw("print")
+        self._context.notifications.withdraw("print")
 
     def _picture(self) -> QImage:
-        picture = self._window.view.picture(FINER)
+        picture = self._context.view.picture(FINER)
         # Other programs take its pixels for pixels.
         picture.setDevicePixelRatio(1.0)
         return picture

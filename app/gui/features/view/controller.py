@@ -1,31 +1,38 @@
-"""What the window does about the view itself: the body's material, what is framed, the space bar."""
+"""The view itself: the body's material, what is framed, the space bar."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Signal
 
 from app.gui.context import RESHAPED
 from app.gui.session.settings import wish, wish_for
-from app.gui.viewport.compare_key import FlipKey
+from app.gui.viewport.compare_key import CompareKey
 from app.i18n.catalog import tr
 from app.presenters.maps import map_kinds
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 
-class ViewDesk(QObject):
-    """Adds to the menu of the view what has no button on it."""
+class ViewController(QObject):
+    """Show the body that a step is about, and add to the menu of the view what has no button on it.
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window = window
-        self._view, self._maps = window.view, window.map_desk
-        do = window.actions_
-        FlipKey(window, do.flip, window.view, window.variant_desk.show_side_by_side)
+    ``map_chosen`` carries the map that is chosen in the menu; ``material_shown`` is emitted when the body is
+    of another material.
+    """
+
+    map_chosen = Signal(str)
+    material_shown = Signal()
+
+    def __init__(self, context: AppContext, show_variants: Callable[[], object]) -> None:
+        super().__init__(context.session)
+        self._context, self._view = context, context.view
+        do = context.actions
+        CompareKey(context.window, do.flip, context.view, show_variants)
         said = tr("Come close to the selected line or landmark")
         self.fit = do.add("view", tr("Fit the selection"), "F", said, do=self._view.frame_selection)
         self._add_maps()
@@ -37,21 +44,21 @@ class ViewDesk(QObject):
         for name, action in self.materials.items():
             action.triggered.connect(lambda _=False, name=name: self.choose_material(name))
         self._show_material(wish("material"))
-        window.navigation.step_shown.connect(self._show_step)
+        context.navigation.step_shown.connect(self._show_step)
 
     def _add_maps(self) -> None:
         """List the maps: each can be asked for by its name."""
-        do = self._window.actions_
+        do = self._context.actions
         do.submenu("view", "maps", tr("Maps"))
         titles = {"": tr("No map")} | {kind.name: kind.title for kind in map_kinds()}
         self.maps = do.group("maps", titles)
         for name, action in self.maps.items():
-            action.triggered.connect(lambda _=False, name=name: self._maps.choose(name))
-        self._maps.changed.connect(self._show_map)
-        self._show_map()
+            action.triggered.connect(lambda _=False, name=name: self.map_chosen.emit(name))
+        self.show_map("")
 
-    def _show_map(self) -> None:
-        self.maps[self._maps.name].setChecked(True)
+    def show_map(self, name: str) -> None:
+        """Show in the menu which map lies on the body."""
+        self.maps[name].setChecked(True)
 
     def _show_step(self, step: str) -> None:
         """Show the body that a step is about, with its layers."""
@@ -63,8 +70,8 @@ class ViewDesk(QObject):
         self._view.set_layer("colours", not reshaped)
 
     def _open_tab(self, name: str) -> None:
-        self._window.navigation.show_step("lines")
-        self._window.navigation.show_panel(name)
+        self._context.navigation.show_step("lines")
+        self._context.navigation.show_panel(name)
 
     def choose_material(self, name: str) -> None:
         """Show the body in another material, now and in later sessions."""
@@ -75,4 +82,4 @@ class ViewDesk(QObject):
         name = name if name in self.materials else "clay"
         self.materials[name].setChecked(True)
         self._view.set_material(name)
-        self._maps.refresh()
+        self.material_shown.emit()

@@ -1,0 +1,66 @@
+"""Files and tables that leave the window: written where the user wants them, or copied."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtGui import QGuiApplication
+
+from app.gui.widgets.file_dialogs import ask_save
+from app.i18n.catalog import tr
+from core.errors import UserError
+from core.export.csv_cells import ENCODING, cell
+from core.files.atomic_write import atomic_path
+
+if TYPE_CHECKING:
+    from app.gui.context import AppContext
+    from app.gui.session.notifications import Notifications
+
+Table = Sequence[Sequence[str]]
+"""Cells row by row, a heading first."""
+
+
+def write_file(
+    notifications: Notifications, topic: str, path: str, write: Callable[[Path], object], sentence: str = ""
+) -> None:
+    """Write a file, and show that it was written, in a ``sentence`` with its {name}, or why it was not."""
+    try:
+        write(Path(path).absolute())
+    except UserError as error:
+        notifications.error(error, topic)
+    else:
+        sentence = sentence or tr("{name} written.")
+        notifications.file_written(topic, sentence.format(name=Path(path).name), path)
+
+
+def write_whole(data: bytes) -> Callable[[Path], object]:
+    """Return what writes ``data`` to a file, all of it or nothing."""
+
+    def write(path: Path) -> None:
+        with atomic_path(path) as partial:
+            partial.write_bytes(data)
+
+    return write
+
+
+def copy_table(context: AppContext, table: Table) -> None:
+    """Put a table on the clipboard, its cells apart by tabs as spreadsheets take them."""
+    lines = ("\t".join(str(cell(each)) for each in row) for row in table)
+    QGuiApplication.clipboard().setText("".join(f"{line}\n" for line in lines))
+    context.notifications.done(tr("The table is copied."))
+
+
+def save_table(context: AppContext, table: Table, title: str, ending: str) -> None:
+    """Ask for a place under a ``title``, and write a table there; its name ends as told."""
+    name = f"{context.session.name}-{ending}.csv"
+    path = ask_save(context.window, title, name, "CSV (*.csv)", ".csv")
+    if path:
+        write_file(context.notifications, f"table of {ending}", path, lambda to: _write_table(to, table))
+
+
+def _write_table(path: Path, table: Table) -> None:
+    with atomic_path(path) as partial, open(partial, "w", newline="", encoding=ENCODING) as file:
+        csv.writer(file).writerows([cell(each) for each in row] for row in table)
