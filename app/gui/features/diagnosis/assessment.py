@@ -62,8 +62,8 @@ class AssessmentController(QObject):
         """Return the overall verdict of a frame, as far as it is known; pressures are computed in a job."""
         design = frame.stages.design
         moves = frame is self._session.frame and not self._session.is_at_rest
-        running, failed, cuts, pressed = frame.at_work or moves, False, None, None
-        if not running and frame.verdict.sound and design.worn():
+        running, failed, cuts, pressed = frame.is_running or moves, False, None, None
+        if not running and frame.verdict.is_valid and design.active_lines():
             cuts = self._cuts.get(frame)
             if cuts is None:
                 cuts = self._cuts[frame] = cut_list(frame.stages, frame.control_points)
@@ -94,7 +94,7 @@ class AssessmentController(QObject):
 
     def _strip_verdict(self, frame: Frame, view: AssessmentView) -> ConvergenceView:
         """Return what the convergence panel shows; girth and pressure only once the body has converged."""
-        if not frame.verdict.sound or frame.at_work or not self._session.is_at_rest:
+        if not frame.verdict.is_valid or frame.is_running or not self._session.is_at_rest:
             return convergence_view(frame, view)
-        pressed = self._pressures.of(frame) if frame.stages.design.worn() else None
+        pressed = self._pressures.of(frame) if frame.stages.design.active_lines() else None
         return convergence_view(frame, view, self._girths.request(frame), pressed)

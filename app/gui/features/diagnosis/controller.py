@@ -98,7 +98,7 @@ class DiagnosisController(QObject):
         if design is self._about:
             return
         self._forget()
-        if frame.at_work or design is not self._context.session.design:
+        if frame.is_running or design is not self._context.session.design:
             return
         state = display_state(frame)
         if state == "settling" and design is self._cured:

@@ -60,7 +60,7 @@ class PressureController(QObject):
 
     def of_active(self, frame: Frame) -> PressureList | None:
         """Return the pressures of a frame that is a result and has active lines."""
-        return self.of(frame) if frame.stages.design.worn() and not invalid_reason(frame) else None
+        return self.of(frame) if frame.stages.design.active_lines() and not invalid_reason(frame) else None
 
     def has_failed(self, frame: Frame) -> bool:
         """Return whether the pressures of a frame were not computed, and will not be."""

@@ -199,9 +199,9 @@ class ReportController(QObject):
 
     def _take(self, handout: ReportDocument) -> None:
         """Show a sheet under its present heading; its sizes are those that it was made with."""
-        made = handout.sheet.heading
+        made = handout.report.heading
         heading = replace(self._heading(), system=made.system, allowance_mm=made.allowance_mm)
-        sheet = replace(self._with_uncertainties(handout.sheet, self._frame, self._whole), heading=heading)
+        sheet = replace(self._with_uncertainties(handout.report, self._frame, self._whole), heading=heading)
         self.handout = replace(handout, report=sheet)
         self._show()
 
