@@ -35,9 +35,9 @@ def gate(monkeypatch: pytest.MonkeyPatch) -> threading.Event:
 
     for module, name in (
         (measures_desk, "before_after"),
-        (own_measures_desk, "own_before_after"),
-        (pressure_desk, "press_list"),
-        (report_desk, "sheet_of"),
+        (own_measures_desk, "custom_before_after"),
+        (pressure_desk, "pressure_list"),
+        (report_desk, "make_report"),
     ):
         monkeypatch.setattr(module, name, behind(getattr(module, name)))
     return opened
