@@ -80,7 +80,7 @@ def test_the_sheet_follows_and_a_former_one_is_not_given_away() -> None:
         assert not any(press.isEnabled() for press in window.report_controller.page.does.values())
         assert window.report_controller.page.state.text() == "The sheet is made as soon as the run rests."
         yield made(window)
-        sheet = window.report_controller.handout.sheet
+        sheet = window.report_controller.handout.report
         assert [row.line for row in sheet.cuts.rows] == ["mid-bust"]
         assert sheet.lift is not None
         frame = window.session.frame
@@ -91,14 +91,14 @@ def test_the_sheet_follows_and_a_former_one_is_not_given_away() -> None:
         yield settled(window)
         window.session.commit_line("mid-bust", "Mid-bust", 0.96)
         yield lambda: settled(window)() and made(window)()
-        again = window.report_controller.handout.sheet
+        again = window.report_controller.handout.report
         assert again.turns == sheet.turns, "a garment is plotted from rest, not from the edit before"
         assert (again.lift, again.volume) == (sheet.lift, sheet.volume)
         for _ in range(2):
             window.actions_.undo.trigger()
         window.actions_.undo.trigger()
         yield made(window)
-        assert window.report_controller.handout.sheet.cuts.rows == ()
+        assert window.report_controller.handout.report.cuts.rows == ()
 
     assert run_main(["resources/samples/mannequin.ply"], script) == 0
 

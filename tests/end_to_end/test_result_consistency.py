@@ -185,7 +185,7 @@ def test_the_same_key_puts_variants_side_by_side_and_back() -> None:
         yield settled(window)
         window.activateWindow()
         yield window.isActiveWindow
-        flip, button = window.variants_controller.beside, window.variants_controller._button
+        flip, button = window.variants_controller.beside, window.variants_controller.button
         assert not button.isVisible(), "there is one variant"
         window.variants_controller.choose("B")
         yield settled(window)
