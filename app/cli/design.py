@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from app.cli.options import NUMBERS, SWITCHES, WORDS
+from app.cli.options import NUMBERS, SWITCHES, WORDS, shown_words, stored_word
 from core.control_mesh.template import read_template
 from core.document.design import Design, ScanSource
 from core.document.document import Document
@@ -107,9 +107,11 @@ def settings_of(pairs: Sequence[str]) -> dict[str, Any]:
 
 
 def _word(key: str, value: str) -> str:
-    plain = value.replace("_", "-").replace(" ", "-")
+    plain = stored_word(value.replace("_", "-").replace(" ", "-"))
     if plain not in WORDS[key]:
-        raise UserError(f"'{value}' is not a value of {key}.", f"Choose one of: {', '.join(WORDS[key])}.")
+        raise UserError(
+            f"'{value}' is not a value of {key}.", f"Choose one of: {', '.join(shown_words(key))}."
+        )
     return plain
 
 

@@ -24,6 +24,10 @@ NUMBERS = (*RANGES, "gain", "line_height", "tissue_stiffness")
 SWITCHES = ("scaled_normals", "dense_volume")
 """Settings that are on or off."""
 
+STORED = {"bonded": "glued", "elastic": "spring", "fixed": "held", "integral": "accumulating"}
+"""Values that project files store by another word; both words are accepted."""
+
+_SHOWN = {stored: shown for shown, stored in STORED.items()}
 LINE_LENGTH_HELP = (
     "length as 97%% of the original length, -20mm (change) or 400mm (absolute); front length, side to side"
 )
@@ -68,7 +72,8 @@ def add_lines(parser: ArgumentParser) -> None:
 def add_volume(parser: ArgumentParser) -> None:
     """Add the choice of the volume control."""
     volume = "volume control (default: as in the project, or adaptive)"
-    parser.add_argument("--volume", choices=CONTROLS, help=volume)
+    shown = f"{{{','.join(_SHOWN.get(control, control) for control in CONTROLS)}}}"
+    parser.add_argument("--volume", type=stored_word, choices=CONTROLS, metavar=shown, help=volume)
 
 
 def add_forms(parser: ArgumentParser, *, table: bool = False) -> None:
@@ -96,6 +101,11 @@ def form_of(options: argparse.Namespace) -> str:
     return "csv" if options.csv else "json" if options.json else ""
 
 
+def stored_word(word: str) -> str:
+    """Return the word that project files store for a value."""
+    return STORED.get(word, word)
+
+
 def picture_size(text: str) -> tuple[int, int]:
     """Read a size in pixels, such as 1600x1000. Raises ArgumentTypeError."""
     match = re.fullmatch(r"([1-9]\d{1,3})x([1-9]\d{1,3})", text)
@@ -104,8 +114,13 @@ def picture_size(text: str) -> tuple[int, int]:
     return int(match[1]), int(match[2])
 
 
+def shown_words(key: str) -> list[str]:
+    """Return the values of a setting as they are shown."""
+    return [_SHOWN.get(word, word) for word in WORDS[key]]
+
+
 def settings_help() -> str:
     """Return the keys of ``--settings`` with the values that each takes."""
     numbers = f"{', '.join(NUMBERS)} (a number; firm_chest also on, off; gain also auto)"
-    words = [f"{key} ({', '.join(choices)})" for key, choices in WORDS.items()]
+    words = [f"{key} ({', '.join(shown_words(key))})" for key in WORDS]
     return ", ".join([numbers, *words, *(f"{key} (yes, no)" for key in SWITCHES)])

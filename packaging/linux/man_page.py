@@ -18,26 +18,26 @@ busk \- see how a foundation garment reshapes a body
 .B busk
 \fICOMMAND\fR [\fIOPTION\fR]...
 .SH DESCRIPTION
-Busk is a program for designers of tailor-made bras, bodysuits and girdles. It opens a body scan, finds the
-bust landmarks, lays a control mesh on the body and builds a tensegric model on it. Where the length of a line
-of the garment is changed, the body is reshaped, true to its volume. Without a command Busk opens its window;
-with one it does its work without a display.
+Busk is a program for designers of tailor-made bras, bodysuits and girdles. It opens a body scan, detects the
+bust landmarks, fits a control mesh to the body and builds a tensegric model on it. If the length of a line of the
+garment changes, the body is reshaped at constant volume. Without a command Busk opens its window; commands
+need no display.
 """
 
 TAIL = r"""
 .SH EXIT STATUS
 .TP
 0
-The run settled, or the work is done.
+The solver has converged, or the work is done.
 .TP
 1
-A part of the self-test failed, or whoever read the answer closed the pipe.
+A part of the self-test failed, or the reader closed the pipe.
 .TP
 2
 The input cannot be used; one sentence on the standard error says why.
 .TP
 3
-The run has not settled, or the body is folded.
+The solver has not converged, the body is folded, or targets were not reached.
 .SH FILES
 .TP
 .I *.busk
@@ -50,7 +50,7 @@ Settings of the window.
 Backups of projects, presets, elastics and tables of sizes of your own.
 .TP
 .I ~/.local/state/Busk/
-Unsaved work, and the log. The log holds faults, never a scan or its measures.
+Unsaved work, and the log. The log holds faults, never a scan or its measurements.
 .TP
 .I ~/.cache/Busk/
 Compiled loops; made again when they are missing.
@@ -60,10 +60,11 @@ Compiled loops; made again when they are missing.
 Open a scan in the window.
 .TP
 .B busk solve person.ply \-\-line mid\-bust=97% \-\-out result
-Set one line to 97 % of its rest length, and write the body, the control mesh, every turn and a report.
+Set one line to 97 % of its original length, and write the body, the control mesh, all
+iterations and a report.
 .TP
 .B busk measure design.busk \-\-csv
-Print the measures before and after.
+Print the measurements before and after.
 .SH SEE ALSO
 The user guide: F1 in the window.
 """

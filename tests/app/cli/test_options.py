@@ -17,6 +17,7 @@ from core.document.design import Design, ScanSource
         (["member-law=co_rotated", "prestress=0.7"], {"member_law": "co-rotated", "prestress": 0.7}),
         (["Member_Law=Prestressed"], {"member_law": "prestressed"}),
         (["line-force=explicit", "line-stiffness=0,2"], {"line_force": "explicit", "line_stiffness": 0.2}),
+        (["line-contact=bonded", "line-hold=fixed"], {"line_contact": "glued", "line_hold": "held"}),
         (["line-contact=sliding", "line-hold=held"], {"line_contact": "sliding", "line_hold": "held"}),
         (["firm-chest=on"], {"firm_chest": 0.1}),
         (["firm-chest=free"], {"firm_chest": 0.0}),
