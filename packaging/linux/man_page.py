@@ -20,8 +20,8 @@ busk \- see how a foundation garment reshapes a body
 .SH DESCRIPTION
 Busk is a program for designers of tailor-made bras, bodysuits and girdles. It opens a body scan, detects the
 bust landmarks, fits a control mesh to the body and builds a tensegric model on it. If the length of a
-line of the garment changes, the body is reshaped at constant volume. Without a command Busk opens its window; commands
-need no display.
+line of the garment changes, the body is reshaped at constant volume. Without a command Busk opens its
+window; commands need no display.
 """
 
 TAIL = r"""
