@@ -1,4 +1,4 @@
-"""How Sphinx makes the user guide of these pages: ``make docs``; with the tag ``ja``, its Japanese part."""
+"""Sphinx configuration of the user guide (``make docs``); with the tag ``ja``, of its Japanese part."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from generated import with_generated_parts  # noqa: E402
 from app.rendering.palette import DARK, LIGHT, Tokens  # noqa: E402
 from core import __version__  # noqa: E402
 
-japanese = tags.has("ja")  # noqa: F821 - Sphinx puts it here
+japanese = tags.has("ja")  # noqa: F821 - defined by Sphinx
 
 project = "Busk"
 version = release = __version__
@@ -25,7 +25,7 @@ html_title = f"Busk {__version__} ユーザーガイド" if japanese else f"Busk
 language = "ja" if japanese else "en"
 exclude_patterns = [] if japanese else ["ja"]
 extensions = ["myst_parser", "sphinx.ext.autodoc"]
-myst_heading_anchors = 4  # a link to a heading reads as on a code host: page.md#words-of-the-heading
+myst_heading_anchors = 4  # as on a code host: page.md#words-of-the-heading
 myst_url_schemes = {"http": None, "https": None, "page": "{{path}}", "heading": "{{path}}#{{fragment}}"}
 nitpicky = True
 nitpick_ignore_regex = [("py:.*", ".*")]  # types in signatures have no pages
@@ -38,7 +38,7 @@ highlight_language = "text"
 
 html_theme = "furo"
 templates_path = [str(DOCS / "_templates")]
-# The Japanese part lies in the folder ja of the guide, and shares what is beside it.
+# The Japanese part is the folder ja of the guide and shares the static files of the English one.
 shared = "../../_static/" if japanese else ""
 html_static_path = (
     []
@@ -53,16 +53,16 @@ html_static_path = (
 )
 html_css_files = [f"{shared}guide.css"]
 html_show_copyright = html_show_sphinx = html_copy_source = html_show_sourcelink = html_use_index = False
-html_show_search_summary = False  # it would be fetched, which no browser allows for a file on the disk
+html_show_search_summary = False  # browsers do not fetch it from a local file
 html_permalinks_icon = "#"
 SEARCH = DOCS / "search.js"
 html_search_scorer = str(SEARCH)
 TRADE_WORDS = dict(re.findall(r'^  "([\w/-]+)": "(.*)",$', SEARCH.read_text("utf-8"), re.MULTILINE))
-"""Pages with the words of the trade that they answer."""
+"""Search terms of the trade by page."""
 
 
 def colours(tokens: Tokens) -> dict[str, str]:
-    """Return the colours of the window under the names of the theme."""
+    """Return the colours of the window by the names of the theme."""
     return {
         "color-foreground-primary": tokens.text,
         "color-foreground-secondary": tokens.text_quiet,
@@ -88,7 +88,7 @@ def colours(tokens: Tokens) -> dict[str, str]:
 html_theme_options = {
     "light_css_variables": colours(LIGHT),
     "dark_css_variables": colours(DARK),
-    "top_of_page_buttons": ["view"],  # its template leads to the other language
+    "top_of_page_buttons": ["view"],  # its template links the other language
 }
 
 OUTSIDE = {"README": "index", "CHANGELOG": "changes", "THIRD_PARTY": "licences"}
@@ -99,7 +99,7 @@ JAPANESE = {"index": "index", "tutorial/quick-start": "quick-start", "reference/
 
 
 def listed_pages(text: str) -> str:
-    """Return a table of contents for what a page lists under its headings: the list is written once."""
+    """Return tables of contents for the pages that are listed under the headings of a page."""
     chapters = re.findall(r"^## (.*)\n((?:(?!## ).*\n)*)", text, re.MULTILINE)
     trees = []
     for title, lines in chapters:
@@ -135,21 +135,21 @@ def as_guide(app: Sphinx, page: str, source: list[str]) -> None:
 
 
 def add_trade_words(app: Sphinx, page: nodes.document) -> None:
-    """Let a page be found by the words of the trade that it answers, though they may not stand in it."""
+    """Add search terms of the trade to a page as keywords."""
     words = "" if japanese else TRADE_WORDS.get(app.env.docname, "")
     if words:
         page.insert(0, nodes.meta(name="keywords", content=words))
 
 
 WIDE = "[\u3000-\u30ff\u3400-\u9fff\uff00-\uffef]"
-"""A letter or a mark of Japanese, which no blank parts from the next."""
+"""A Japanese letter or punctuation mark."""
 
 NO_BLANK = re.compile(f"{WIDE}\n{WIDE}|[。、：）」] {WIDE}")
-"""A break of a line in the source; a blank that ends bold words after a mark. A browser shows both."""
+"""A line break of the source, or a space that ends emphasis after punctuation; browsers show both."""
 
 
 def join_japanese(app: Sphinx, page: nodes.document) -> None:
-    """Drop what would part Japanese letters that belong together."""
+    """Remove line breaks and spaces between Japanese letters."""
     for paragraph in page.findall(nodes.paragraph):
         whole, at = paragraph.astext(), 0
         for text in list(paragraph.findall(nodes.Text)):
@@ -162,13 +162,13 @@ def join_japanese(app: Sphinx, page: nodes.document) -> None:
 
 
 def caption_pictures(app: Sphinx, page: nodes.document) -> None:
-    """Let what a picture that stands by itself shows be read under it too, and a click show its full size."""
+    """Give pictures in paragraphs of their own a caption, and link them to their full size."""
     for number, picture in enumerate(list(page.findall(nodes.image)), start=1):
         around = picture.parent
         alone = isinstance(around, nodes.paragraph) and len(around) == 1
         if alone and picture.get("alt") and not isinstance(around.parent, nodes.entry):
             caption = nodes.caption("", picture["alt"])
-            picture["scale"] = 100  # Sphinx leads what has a scale to the picture itself
+            picture["scale"] = 100  # Sphinx links scaled pictures to their file
             around.replace_self(nodes.figure("", picture, caption, ids=[f"picture-{number}"]))
 
 

@@ -1,5 +1,4 @@
-"""Builds the user guide, English and Japanese, into ``site/``: ``make docs``. It neither fetches nor loads
-anything from the network."""
+"""Build the user guide, English and Japanese, into ``site/`` (``make docs``), without the network."""
 
 from __future__ import annotations
 
@@ -16,7 +15,7 @@ DOCS = ROOT / "docs"
 SITE = ROOT / "site"
 
 PARTS = ("sphinx", "snowballstemmer", "furo", "sphinx-basic-ng", "pygments", "accessible-pygments")
-"""What parts of the guide's look and search are: their licences go with it."""
+"""Packages whose files are part of the built guide; their licences are included."""
 
 _LOADED = re.compile(
     r"""<(?:script|img|iframe|source|embed|object|video|audio|use)\b[^>]*?\b(?:src|srcset|data|href)=["']([^"']+)
@@ -28,9 +27,9 @@ _LOADED = re.compile(
 
 
 def build(site: Path = SITE, work: Path = ROOT / "build" / "guide") -> None:
-    """Build the guide beside ``site`` and put it in its place once it is whole; warnings are errors.
+    """Build the guide and replace ``site`` when it is complete; warnings are errors.
 
-    Raises SystemExit if Sphinx has something to say, or a page would load what does not lie in the guide.
+    Raises SystemExit on a warning of Sphinx, or if a page would load a file that is not in the guide.
     """
     shutil.rmtree(work, ignore_errors=True)
     made = work / "site"
@@ -39,7 +38,7 @@ def build(site: Path = SITE, work: Path = ROOT / "build" / "guide") -> None:
     _tidy(made)
     remote = loaded_from_elsewhere(made)
     if remote:
-        raise SystemExit("The guide would load what it does not hold:\n" + "\n".join(remote))
+        raise SystemExit("The guide would load files that it does not contain:\n" + "\n".join(remote))
     site.parent.mkdir(parents=True, exist_ok=True)
     shutil.rmtree(site, ignore_errors=True)
     shutil.move(made, site)
@@ -47,9 +46,9 @@ def build(site: Path = SITE, work: Path = ROOT / "build" / "guide") -> None:
 
 
 def loaded_from_elsewhere(site: Path) -> list[str]:
-    """Return what pages and style sheets load from the network, or miss: ``page: address`` each.
+    """Return remote or missing files that pages and style sheets load, as ``page: address``.
 
-    Links that a reader may follow are not loaded.
+    Links are not loaded.
     """
     found = []
     for page in sorted((*site.rglob("*.html"), *site.rglob("*.css"))):
@@ -66,18 +65,18 @@ def loaded_from_elsewhere(site: Path) -> list[str]:
 def _sphinx(source: Path, target: Path, doctrees: Path, *more: str) -> None:
     strictly = ("-q", "-W", "--keep-going")
     command = (sys.executable, "-m", "sphinx", "-b", "html", *strictly, "-c", DOCS, "-d", doctrees, *more)
-    # The day it is built must not show: the same pages are the same guide.
+    # Reproducible: the date of the build must not be in the pages.
     made = subprocess.run(
         [*command, source, target],
         env={**os.environ, "SOURCE_DATE_EPOCH": "0"},
         check=False,
     )
     if made.returncode:
-        raise SystemExit(f"Sphinx could not make the guide of {source.name}; what it says stands above.")
+        raise SystemExit(f"Sphinx could not build the guide of {source.name}; see the messages above.")
 
 
 def _tidy(made: Path) -> None:
-    """Drop what no reader needs, and put the licences of what is left beside it."""
+    """Remove files that no reader needs, and add the licences."""
     for name in (".buildinfo", "objects.inv", "*.map", ".doctrees"):
         for path in made.rglob(name):
             path.unlink()
