@@ -7,7 +7,7 @@ export PYTHON
 python := .venv/bin/python
 # What the user guide is built of: where something is newer than site/, make run builds the guide again.
 GUIDE := $(shell find docs -type f) CHANGELOG.md THIRD_PARTY.md core/__init__.py app/rendering/palette.py packaging/guide.py \
-	app/cli/parser.py app/cli/parser_analysis.py core/measurements/definitions.py $(shell find resources/sizes -type f)
+	$(shell find app/cli resources/sizes -type f -not -name "*.pyc") core/measurements/definitions.py
 uv = $(or $(wildcard .venv/bin/uv),$(shell command -v uv))
 
 help:  ## list these targets
