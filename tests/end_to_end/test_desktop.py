@@ -12,7 +12,7 @@ from PySide6.QtCore import QByteArray, QPoint, QSettings, Qt, QTimer
 from PySide6.QtGui import QDesktopServices, QGuiApplication
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
-from window_tools import Script, drag, run_main, settled, undrawn
+from window_tools import Script, drag, run_main, run_undrawn, settled, undrawn
 
 from app.gui.application import log_folder
 from app.gui.features.help.about import AboutDialog, DiagnosticsDialog
@@ -89,7 +89,7 @@ def test_help_finds_keys_commands_versions_and_licences() -> None:
         ] * 3
         about.accept()
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def the_folders_are_named_and_opened(window: MainWindow, sheet: DiagnosticsDialog, said: str) -> None:
@@ -195,11 +195,11 @@ def test_the_layout_is_shared_out_by_hand_and_kept(mannequin: Path) -> None:
         yield settled(window)
         assert window.screen().geometry().intersects(window.frameGeometry())
 
-    run_main([], first)
-    run_main([str(mannequin)], second)
+    run_undrawn([], first)
+    run_undrawn([str(mannequin)], second)
     QSettings().setValue("window/geometry", QByteArray(b"no geometry"))
     QSettings().setValue("window/inspector", "-7")
-    run_main([str(mannequin)], third)
+    run_undrawn([str(mannequin)], third)
 
 
 def test_a_fault_is_told_once_and_the_work_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -235,4 +235,4 @@ def test_a_fault_is_told_once_and_the_work_goes_on(monkeypatch: pytest.MonkeyPat
         assert design is not None
         assert design.ratio("mid-bust") < 0.95
 
-    run_main([], script)
+    run_undrawn([], script)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
-from window_tools import Script, run_main, settled
+from window_tools import Script, run_undrawn, settled
 
 import app.gui.features.project.controller as project_files
 from app.gui.features.landmarks.panel import LandmarksPanel
@@ -70,7 +70,7 @@ def test_the_model_follows_a_pin_before_it_is_let_go_and_escape_brings_all_back(
         pins = {pin.name: pin.position for pin in window.view.viewport.overlay.pins}
         assert pins["bust_point_left"] == pytest.approx(found, abs=0.01)
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_linked_sides_are_placed_as_in_a_mirror_in_one_step_and_keys_move_a_pin(
@@ -121,7 +121,7 @@ def test_linked_sides_are_placed_as_in_a_mirror_in_one_step_and_keys_move_a_pin(
         assert 3.0 < fold[2] - mark(window, "fold_left")[2] < 8.0
         a_pin_in_the_hand_is_saved_and_asked_about(window)
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def a_pin_in_the_hand_is_saved_and_asked_about(window: MainWindow) -> None:

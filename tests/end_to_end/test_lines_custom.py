@@ -11,7 +11,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
-from window_tools import Script, drag, points, run_main, run_undrawn, settled
+from window_tools import Script, drag, points, run_undrawn, settled
 
 from app.gui.features.lines import add_lines as line_maker
 from app.gui.features.lines.path_dialog import LineDialog
@@ -64,7 +64,7 @@ def test_slings_are_listed_drawn_shortened_and_removed() -> None:
         QTest.keyClick(window.lines.rows["sling left"].slider, Qt.Key.Key_Delete)
         yield lambda: "sling left" not in window.lines.rows
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_a_line_goes_through_the_points_that_are_named(

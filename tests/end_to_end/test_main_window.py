@@ -9,7 +9,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QColor, QImage
 from PySide6.QtTest import QTest
-from window_tools import Script, drag, points, run_main, settled
+from window_tools import Script, drag, points, run_main, run_undrawn, settled
 
 from app.gui.main_window import MainWindow
 from app.rendering.camera import VIEWS
@@ -60,7 +60,7 @@ def test_dragging_a_slider_moves_the_body_and_is_one_undo_step() -> None:
         yield settled(window)
         assert np.abs(points(window) - dragged).max() < 0.2
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_escape_takes_a_drag_back() -> None:
@@ -75,7 +75,7 @@ def test_escape_takes_a_drag_back() -> None:
         assert window.session.undo_stack.count() == 0
         assert np.abs(points(window) - at_start).max() < 0.2
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_the_view_shows_what_its_keys_and_tools_ask_for() -> None:
@@ -147,7 +147,7 @@ def test_an_edit_that_cannot_be_carried_out_is_taken_back() -> None:
         yield settled(window)
         assert window.notices.notice().sentence == "Not written.", "the refusal alone is of the past"
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_the_conventional_force_vibrates_when_the_line_is_too_short() -> None:
@@ -163,7 +163,7 @@ def test_the_conventional_force_vibrates_when_the_line_is_too_short() -> None:
         yield lambda: window.strip.chip.state() == "bad"
         assert window.strip._turns.text().startswith("Vibrating · ")
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_the_whole_window_looks_as_it_should() -> None:

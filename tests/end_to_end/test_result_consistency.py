@@ -9,7 +9,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_main, run_undrawn, settled, undrawn
 
 import app.gui.file_export
 from app.gui.main_window import MainWindow
@@ -124,7 +124,7 @@ def test_a_settled_body_that_is_strained_says_so_in_one_voice() -> None:
         yield lambda: window.strip._turns.text().startswith("Settled · ")
         assert row.view.leeway.at(ratio).tone == "green"
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_a_run_that_never_rests_is_no_result_and_has_a_way_out() -> None:
