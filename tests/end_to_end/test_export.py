@@ -212,23 +212,25 @@ def test_a_name_with_another_ending_is_that_format_with_the_unit_chosen_for_it(
     assert (tmp_path / "anna.OBJ").read_text().count("\nf ") == 168
 
 
-@pytest.mark.parametrize(("what", "typed"), [("body", "anna.txt"), ("picture", "anna.jpg"), ("turns", "a.b")])
 def test_an_ending_that_nothing_has_is_put_behind_the_name(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, what: str, typed: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    typed_name = str(tmp_path / typed)
-    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *how: (typed_name, how[3].split(";;")[0]))
+    typed = {"body": "anna.txt", "picture": "anna.jpg", "turns": "a.b"}
+    names = iter(str(tmp_path / name) for name in typed.values())
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *how: (next(names), how[3].split(";;")[0]))
 
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        opened(window, what).save.click()
-        yield written(window)
-        assert window.notices.notice().tone == "ok"
+        for what in typed:
+            opened(window, what).save.click()
+            yield written(window)
+            assert window.notices.notice().tone == "ok"
+            window.notices.clear()
 
     run_main([], script)
-    ending = {"body": "glb", "picture": "png", "turns": "csv"}[what]
-    assert [path.name for path in tmp_path.iterdir()] == [f"{typed}.{ending}"]
+    written_files = {path.name for path in tmp_path.iterdir()}
+    assert written_files == {"anna.txt.glb", "anna.jpg.png", "a.b.csv"}
 
 
 def test_it_speaks_japanese_and_no_word_is_cut(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -116,9 +116,8 @@ def test_a_picture_shows_what_the_view_shows_on_no_ground(
     assert 0.005 < changed < 0.2, "the bands are left out, and nothing else"
 
 
-@pytest.mark.parametrize("what", ["body", "lines", "flat", "measures", "turns", "control"])
 def test_a_full_disk_leaves_what_stood_there_and_is_told(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, what: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(*_: Any) -> None:
         raise OSError(28, "No space left on device")
@@ -126,19 +125,22 @@ def test_a_full_disk_leaves_what_stood_there_and_is_told(
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        sheet = opened(window, what)
-        yield told(sheet)
-        path = tmp_path / f"a.{window.export_controller._choices.kind(what)}"
-        path.write_text("what stood there")
-        saved_as(monkeypatch, path)
-        monkeypatch.setattr(os, "fsync", full)
-        sheet.save.click()
-        yield written(window)
-        notice = window.notices.notice()
-        assert (notice.tone, notice.hint) == ("bad", "Choose another folder or make room.")
-        assert [(each.name, each.read_text()) for each in tmp_path.iterdir()] == [
-            (path.name, "what stood there")
-        ]
+        for what in ("body", "lines", "flat", "measures", "turns", "control"):
+            sheet = opened(window, what)
+            yield told(sheet)
+            path = tmp_path / what / f"a.{window.export_controller._choices.kind(what)}"
+            path.parent.mkdir()
+            path.write_text("what stood there")
+            saved_as(monkeypatch, path)
+            with monkeypatch.context() as patch:
+                patch.setattr(os, "fsync", full)
+                sheet.save.click()
+                yield written(window)
+            notice = window.notices.notice()
+            assert (notice.tone, notice.hint) == ("bad", "Choose another folder or make room."), what
+            stands = [(each.name, each.read_text()) for each in path.parent.iterdir()]
+            assert stands == [(path.name, "what stood there")]
+            window.notices.clear()
 
     run_main([], script)
 

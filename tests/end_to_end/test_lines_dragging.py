@@ -8,7 +8,7 @@ from hand_tools import LEFT, PLAIN, SHIFT, move, press, release
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
-from window_tools import Script, points, run_main, run_undrawn, settled, undrawn
+from window_tools import Script, points, run_main, settled, undrawn
 
 from app.gui.features.lines.band_drag import STEP
 from app.gui.features.lines.slider_groove import RESISTANCE
@@ -61,7 +61,7 @@ def test_the_selected_band_is_pulled_shorter_and_longer() -> None:
         another_button_leaves_the_band_in_the_hand(window)
         yield settled(window)
 
-    run_undrawn([], script)
+    run_main([], script)
 
 
 def ratio_of(window: MainWindow, name: str = "mid-bust") -> float:

@@ -58,12 +58,15 @@ def test_the_legend_goes_from_where_it_covers_what_it_explains() -> None:
     run_main([], script)
 
 
-@pytest.mark.parametrize(("width", "height"), [(1280, 800), (1180, 700)])
-def test_the_legend_lies_on_no_other_panel_and_in_the_view(width: int, height: int) -> None:
+def test_the_legend_lies_on_no_other_panel_and_in_the_view() -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
-        window.resize(width, height)
         yield settled(window)
+        for size in ((1280, 800), (1180, 700)):
+            window.resize(*size)
+            yield from in_view(window)
+
+    def in_view(window: MainWindow) -> Script:
         maps, section, view = window.map_desk, window.section_desk, window.view
         others = [section.panel, view.compare, view.tools]
 
