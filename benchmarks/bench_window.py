@@ -146,7 +146,7 @@ class Drag:
             self.waits.append(now - self._moved_at.pop(revision))
 
     def _at(self, ratio: float) -> QPoint:
-        return QPoint(round(self._slider._x_of(ratio)), self._slider.height() // 2)
+        return QPoint(round(self._slider.x_of(ratio)), self._slider.height() // 2)
 
 
 def sized(window: MainWindow, width: int, height: int) -> None:

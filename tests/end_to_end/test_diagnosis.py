@@ -56,7 +56,7 @@ def test_a_vibration_is_told_at_once_and_ended_by_one_button() -> None:
         assert "Lower the gain to " in notice.details
         assert "that this shape bears" in notice.details
         steps = window.session.undo_stack.count()
-        window.notices._buttons[0].click()
+        window.notices.buttons[0].click()
         yield settled(window)
         frame = window.session.frame
         assert frame is not None
@@ -96,7 +96,7 @@ def test_strain_is_told_calmly_once_and_never_again() -> None:
         assert not window.diagnosis_controller._later.isActive()
         window.diagnosis_controller.ask()
         yield lambda: told(window)
-        window.notices._buttons[0].click()
+        window.notices.buttons[0].click()
         yield settled(window)
         frame = window.session.frame
         assert frame is not None
@@ -118,7 +118,7 @@ def test_a_length_that_was_refused_gets_the_nearest_that_is_not() -> None:
         assert notice.sentence == "Mid-bust cannot be held at 50.0 % of its rest length."
         assert "pull against each other" in notice.hint
         assert words(window)[0].startswith("Set Mid-bust to ")
-        window.notices._buttons[0].click()
+        window.notices.buttons[0].click()
         yield settled(window)
         design = window.session.design
         assert design is not None
@@ -221,7 +221,7 @@ def test_a_run_that_comes_back_slowly_is_let_go_on() -> None:
             window.lines_desk.commit_length(name, 0.6)
         yield settled(window)
         yield lambda: told(window)
-        window.notices._buttons[0].click()
+        window.notices.buttons[0].click()
         yield settled(window)
         yield lambda: window.session.frame.verdict.motion == "settled"  # type: ignore[union-attr]
 
@@ -255,7 +255,7 @@ def test_the_pill_opens_what_the_button_ends_and_what_will_still_be_strained() -
         said = words(window)[1]
         assert "the second high pressure, strained skin" in notice_of(window).hint, "it is told before"
         assert said.startswith("Lengthen Mid-bust by ")
-        window.notices._buttons[1].click()
+        window.notices.buttons[1].click()
         yield settled(window)
         assert window.session.undo_stack.undoText() == said
         yield lambda: chip.state() in ("caution", "bad")

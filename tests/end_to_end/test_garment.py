@@ -155,7 +155,7 @@ def test_a_band_on_the_rib_cage_is_cut_as_far_stretched_as_the_designer_says() -
         yield made_of(window, "under-bust")
         row = window.garment.rows["under-bust"]
         assert row.set_stretch.isVisible()
-        told = window.lines.rows["under-bust"]._note.text()
+        told = window.lines.rows["under-bust"].note.text()
         assert told.startswith("Made of Bra band, plush back 18 mm. It moves nothing")
         frame = window.session.frame
         assert frame is not None

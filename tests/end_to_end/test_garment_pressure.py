@@ -116,7 +116,7 @@ def while_the_body_moves_it_is_that_of_the_former_shape(window: MainWindow, aske
     yield lambda: pressed(window).stale
     assert pressed(window).values["mid-bust"] == pytest.approx(former)
     assert maps.flags.flags == ()
-    assert maps.legend._note.text().startswith("Of the former shape")
+    assert maps.legend.note.text().startswith("Of the former shape")
     assert len(asked) == 2
     slider = window.lines.rows["mid-bust"].slider
     QTest.mouseRelease(slider, Qt.MouseButton.LeftButton)

@@ -75,7 +75,7 @@ def test_what_is_stopped_says_so_and_is_worked_out_when_it_is_looked_at_again(ga
         stop(window, "Working out the pressure")
         assert window.notices.notice().sentence == "Stopped: Working out the pressure"
         yield lambda: window.strip.chip.state() != "pending"  # nothing is computed any more
-        assert "pressure was not computed" in window.strip._hint.text()
+        assert "pressure was not computed" in window.strip.hint.text()
         assert "was not computed" in window.pressure_controller.card.says.text()
         window.navigation.show_step("result")
         stop(window, "Measuring the body")
@@ -125,7 +125,7 @@ def test_what_fails_is_told_and_waits_no_longer(monkeypatch: pytest.MonkeyPatch)
         window.navigation.show_step("result")
         yield lambda: window.result._waiting.text() == "The body could not be measured."
         assert "inside Busk" in window.notices.notice().sentence
-        yield lambda: "pressure was not computed" in window.strip._hint.text()
+        yield lambda: "pressure was not computed" in window.strip.hint.text()
         window.report_controller.open()
         yield lambda: window.report_controller.page.state.text() == "The sheet could not be made."
 

@@ -26,7 +26,7 @@ def hold(window: MainWindow, name: str, by: QPoint) -> Callable[[], None]:
     """Drag a landmark's pin by so many pixels and keep it in the hand; returns how to let it go."""
     overlay = window.view.viewport.overlay
     pin = next(pin for pin in overlay.pins if pin.name == name)
-    x, y, _ = overlay._spots([pin.position])[0]
+    x, y, _ = overlay.spots([pin.position])[0]
     canvas, start = overlay.parentWidget(), QPoint(round(x), round(y))
     QTest.mousePress(canvas, Qt.MouseButton.LeftButton, pos=start)
     QTest.mouseMove(canvas, start + by / 2)

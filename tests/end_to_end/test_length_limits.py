@@ -175,7 +175,7 @@ def slider(qtbot: QtBot) -> LengthSlider:
 
 
 def hovered(slider: LengthSlider, ratio: float) -> str:
-    at = QPoint(round(slider._x_of(ratio)), 10)
+    at = QPoint(round(slider.x_of(ratio)), 10)
     QApplication.sendEvent(slider, QHelpEvent(QEvent.Type.ToolTip, at, slider.mapToGlobal(at)))
     return plain(shown_tip(slider))
 

@@ -197,8 +197,8 @@ def preset(window: MainWindow) -> Script:
     row = window.lines.rows["mid-bust"]
     window.lines_desk.leeways = lambda _: {"mid-bust": (FOLDS_BELOW_93, False)}
     window.lines_desk.show_rows()
-    wall = row.slider._x_of(0.93)
-    drag(window, "mid-bust", round(wall - 10 - row.slider._x_of(0.97)), release=False)
+    wall = row.slider.x_of(0.93)
+    drag(window, "mid-bust", round(wall - 10 - row.slider.x_of(0.97)), release=False)
     assert row.slider.ratio() == pytest.approx(0.93, abs=1e-9 + 0.001), "the red resists"
     QTest.keyClick(row.slider, Qt.Key.Key_Escape)
     window.actions_.undo.trigger()

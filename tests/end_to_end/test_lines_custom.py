@@ -81,7 +81,7 @@ def test_a_line_goes_through_the_points_that_are_named(
         window.actions_.own_line.trigger()
         yield lambda: "edge" in window.lines.rows
         assert not window.lines.rows["edge"].view.constrained
-        assert window.lines.rows["edge"]._note.text() == "On points that do not move: measured only."
+        assert window.lines.rows["edge"].note.text() == "On points that do not move: measured only."
         window.actions_.own_line.trigger()
         assert window.session.undo_stack.count() == 2
         assert window.session.save(str(tmp_path / "v.busk"), None)

@@ -9,7 +9,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
-from window_tools import Script, run_main, run_undrawn, settled, undrawn
+from window_tools import Script, run_main, settled, undrawn
 
 import app.gui.file_export
 from app.gui.main_window import MainWindow
@@ -109,7 +109,7 @@ def test_a_settled_body_that_is_strained_says_so_in_one_voice() -> None:
         overall = window.assessment_controller.of(frame_of(window))
         said = [message for message, _ in overall.reasons]
         assert any(each.startswith("Skin is compressed or stretched by over 20 %") for each in said)
-        assert window.strip._hint.text() == overall.first, "the worst reason stands in the strip"
+        assert window.strip.hint.text() == overall.first, "the worst reason stands in the strip"
         assert "Settled, strained" in window.strip._turns.text(), "the run has its own word"
         looks = {"caution": "look", "bad": "bad"}[overall.level]
         assert {window.rail.items[step].state() for step in ("lines", "result")} == {looks}
@@ -124,7 +124,7 @@ def test_a_settled_body_that_is_strained_says_so_in_one_voice() -> None:
         yield lambda: window.strip._turns.text().startswith("Settled · ")
         assert row.view.leeway.at(ratio).tone == "green"
 
-    run_undrawn([], script)
+    run_main([], script)
 
 
 def test_a_run_that_never_rests_is_no_result_and_has_a_way_out() -> None:
@@ -158,7 +158,7 @@ def test_a_run_that_never_rests_is_no_result_and_has_a_way_out() -> None:
         assert kept(window).words == ("Do not use", "No result to sew for")
         assert kept(window).mark == ("bad", "warning-octagon")
 
-        offered = [button.text() for button in window.notices._buttons]
+        offered = [button.text() for button in window.notices.buttons]
         assert "Use Adaptive" not in offered, "it would lead to a fold"
         window.session.choose_control("adaptive")
         yield settled(window)

@@ -55,7 +55,7 @@ def pull(window: MainWindow, name: str, by: QPoint) -> None:
     """Drag a landmark's pin by so many pixels, as a hand does."""
     overlay = window.view.viewport.overlay
     pin = next(pin for pin in overlay.pins if pin.name == name)
-    x, y, _ = overlay._spots([pin.position])[0]
+    x, y, _ = overlay.spots([pin.position])[0]
     canvas, start = overlay.parentWidget(), QPoint(round(x), round(y))
     QTest.mousePress(canvas, Qt.MouseButton.LeftButton, pos=start)
     for part in (0.4, 0.7, 1.0):

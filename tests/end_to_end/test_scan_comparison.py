@@ -59,7 +59,7 @@ def test_a_worn_scan_is_compared_and_learnt_from(pair: tuple[str, str, str]) -> 
         yield settled(window)
         desk, page = window.scan_comparison_controller, window.scan_comparison_controller.page
         window.map_desk.choose("worn")
-        assert "worn scan first" in window.map_desk.legend._note.text()
+        assert "worn scan first" in window.map_desk.legend.note.text()
         window.map_desk.choose("")
         window.navigation.show_step("result")
         assert desk.door.isVisible(), "it is met under the measures"
@@ -165,7 +165,7 @@ def test_a_shape_that_has_settled_is_compared_while_turns_beside_it_go_on(pair: 
         frame = window.session.frame
         assert frame is not None
         assert frame.is_running, "the conventional force is still on its way"
-        assert "out than real" in window.map_desk.legend._note.text()
+        assert "out than real" in window.map_desk.legend.note.text()
         window.session.set_pace(None)
         window.session.undo_stack.setClean()
 

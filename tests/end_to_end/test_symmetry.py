@@ -102,10 +102,10 @@ def shows_the_map(window: MainWindow) -> None:
     assert card.look.text() == "Hide the map"
     skin = told(window).after.skin
     assert skin is not None
-    assert f"left {skin.left_more:.0f} ml, right {skin.right_more:.0f} ml" in maps.legend._note.text()
+    assert f"left {skin.left_more:.0f} ml, right {skin.right_more:.0f} ml" in maps.legend.note.text()
     maps.choose("displacement")
     assert card.look.text() == "Show on the body"
-    assert "ml" not in maps.legend._note.text()
+    assert "ml" not in maps.legend.note.text()
     maps.choose("sides")
     card.look.click()
     assert maps.name == ""

@@ -100,7 +100,7 @@ def tells_what_keeps_a_wish_from_being_met(window: MainWindow) -> Script:
     desk.begin()
     assert not card.apply.isVisible()
     assert card.help_.isVisible()
-    assert "choose a preset" in card._hint.text()
+    assert "choose a preset" in card.hint.text()
     yield wear(window)
     yield answered(window)
     assert card.apply.isVisible()
@@ -120,7 +120,7 @@ def tells_what_keeps_a_wish_from_being_met(window: MainWindow) -> Script:
     assert card.note.text() == "Locked, so kept: Mid-bust."
     assert desk.answer.reply.design.ratio("mid-bust") == 0.97
     window.session.edit(lambda d: lock(d, "full-bust"), "Lock it too")
-    assert "All worn lines are locked" in card._hint.text()
+    assert "All worn lines are locked" in card.hint.text()
     assert card.help_.text() == "Unlock them", "other lines are not what is missing"
     card.help_.click()
     yield answered(window)

@@ -45,7 +45,7 @@ def draws_a_profile(window: MainWindow) -> Script:
     assert min(abs(a.y() - b.y()) for a, b in pairwise(spots)) >= 20
     assert desk.goals() == (), "nothing is asked for before it is drawn"
     assert not desk.card.apply.isEnabled()
-    assert "Drag the curve" in desk.card._hint.text()
+    assert "Drag the curve" in desk.card.hint.text()
 
 
 def wishes_what_is_dragged(window: MainWindow) -> Script:

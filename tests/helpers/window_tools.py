@@ -64,7 +64,7 @@ def undrawn(window: MainWindow) -> None:
 def drag(window: MainWindow, name: str, pixels: int, release: bool = True) -> None:
     """Drag the handle of a line's slider, as a hand does."""
     slider = window.lines.rows[name].slider
-    start = QPoint(round(slider._x_of(slider.ratio())), slider.height() // 2)
+    start = QPoint(round(slider.x_of(slider.ratio())), slider.height() // 2)
     QTest.mousePress(slider, Qt.MouseButton.LeftButton, pos=start)
     for step in range(1, 6):
         QTest.mouseMove(slider, start + QPoint(pixels * step // 5, 0))

@@ -173,7 +173,7 @@ class ConvergencePanel(QWidget):
             for each, text in zip((name, value), pair, strict=True):
                 each.setText(text)
                 each.setVisible(bool(text))
-        self._hint.setText(verdict.hint)
+        self.hint.setText(verdict.hint)
         said = (f"{name} {value}" for name, value in pairs[:2])
         self._said.show_parts((verdict.hint, *said, verdict.pace))  # what to do stands first
 
@@ -265,10 +265,10 @@ class ConvergencePanel(QWidget):
             grid.addWidget(value, place, 1)
             self._pairs.append((name, value))
         column.addLayout(grid)
-        self._hint = sentence("", "secondary")
-        self._hint.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self.hint = sentence("", "secondary")
+        self.hint.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         column.addSpacing(2)
-        column.addWidget(self._hint)
+        column.addWidget(self.hint)
         column.addSpacing(4)
         column.addStretch(1)
         self._segment = control_segment()

@@ -123,7 +123,7 @@ class Overlay(QWidget):
         pins = [pin for pin in self._pins if pin.name == self._selected or pin.name not in self._hidden]
         if not pins:
             return ""
-        spots = self._spots([pin.position for pin in pins])
+        spots = self.spots([pin.position for pin in pins])
         away = np.hypot(spots[:, 0] - place.x(), spots[:, 1] - place.y())
         nearest = int(np.argmin(away))
         return pins[nearest].name if away[nearest] <= GRIP else ""
@@ -146,12 +146,13 @@ class Overlay(QWidget):
 
     # -- where things are
 
-    def _spots(self, points: Sequence[Floats] | Points) -> Points:
+    def spots(self, points: Sequence[Floats] | Points) -> Points:
+        """Return where points, shape (n, 3) [mm], are in the picture: x, y [px] and depth."""
         return self._view.to_picture(np.asarray(points), self.width(), self.height())
 
     def pills(self) -> list[QRectF]:
         """Return the label of each pin: two columns left and right, sorted by height."""
-        spots = self._spots([pin.position for pin in self._pins])
+        spots = self.spots([pin.position for pin in self._pins])
         middle = 0.5 * (spots[:, 0].min() + spots[:, 0].max())
         pills = [QRectF()] * len(self._pins)
         for left in (True, False):
@@ -178,7 +179,7 @@ class Overlay(QWidget):
     # -- painting
 
     def _paint_pins(self, painter: QPainter) -> None:
-        spots = self._spots([pin.position for pin in self._pins])
+        spots = self.spots([pin.position for pin in self._pins])
         pills = self.pills()
         for pin, spot, pill in zip(self._pins, spots, pills, strict=True):
             at = QPointF(spot[0], spot[1])
@@ -194,8 +195,8 @@ class Overlay(QWidget):
 
     def _band_pill(self, band: BandLabel) -> tuple[QRectF, bool]:
         """Return where the label of a band is, and whether it is beside the body."""
-        x, y, _ = self._spots([band.anchor])[0]
-        reach = float(self._spots(band.spine)[:, 0].max())
+        x, y, _ = self.spots([band.anchor])[0]
+        reach = float(self.spots(band.spine)[:, 0].max())
         width = _width(band.text, band.detail)
         beside = max(reach + 18.0, x + 60.0)
         left = min(beside, self.width() - MARGIN - width)
@@ -206,7 +207,7 @@ class Overlay(QWidget):
         return pill, left == beside
 
     def _paint_band(self, painter: QPainter, band: BandLabel) -> None:
-        x, y, _ = self._spots([band.anchor])[0]
+        x, y, _ = self.spots([band.anchor])[0]
         pill, beside = self._band_pill(band)
         at = QPointF(x, y)
         foot = QPointF(min(max(x, pill.left() + 12.0), pill.right() - 12.0), pill.top())

@@ -186,7 +186,7 @@ class NotificationBar(FloatingPanel):
         row.addSpacing(2)
         row.addWidget(self._words, 1)
         row.addWidget(self.more)
-        self._buttons: list[QPushButton] = []
+        self.buttons: list[QPushButton] = []
         self._row, self._below = row, QHBoxLayout()
         self._below.setContentsMargins(29, 0, 0, 0)  # under the words
         self._below.addStretch(1)
@@ -242,27 +242,27 @@ class NotificationBar(FloatingPanel):
         self._timer.stop()
 
     def _set_buttons(self, actions: tuple[Action, ...]) -> None:
-        for old in self._buttons:
+        for old in self.buttons:
             for row in (self._row, self._below):
                 row.removeWidget(old)
             old.deleteLater()
-        self._buttons = []
+        self.buttons = []
         for (text, act), kind in zip(actions, _BUTTON_KINDS, strict=False):
             each = button(text, kind)
             each.clicked.connect(lambda _=False, chosen=act: self._act(chosen))
-            self._buttons.append(each)
+            self.buttons.append(each)
         self._place_buttons()
 
     def _place_buttons(self) -> None:
         """Put the buttons beside the words, or under them where those would be squeezed into a column."""
         others = (each for each in (self.more, self.unfold) if not each.isHidden())
-        taken = sum(each.sizeHint().width() + 8 for each in (*self._buttons, *others))
+        taken = sum(each.sizeHint().width() + 8 for each in (*self.buttons, *others))
         wide = self.width() - taken < _LEAST_WORDS
         row, other = (self._below, self._row) if wide else (self._row, self._below)
-        first = 0 if wide else self._row.count() - 2 - sum(self._row.indexOf(b) >= 0 for b in self._buttons)
+        first = 0 if wide else self._row.count() - 2 - sum(self._row.indexOf(b) >= 0 for b in self.buttons)
         aside = self.row.contentsMargins(), self._below.contentsMargins()
         room = self.width() - sum(each.left() + each.right() for each in aside)
-        for place, each in enumerate(self._buttons):
+        for place, each in enumerate(self.buttons):
             other.removeWidget(each)
             row.removeWidget(each)
             row.insertWidget(first + place, each)

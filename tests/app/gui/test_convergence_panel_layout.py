@@ -33,7 +33,7 @@ def test_a_hint_of_three_lines_keeps_off_the_controls(qtbot: QtBot, qapp: QAppli
     qtbot.addWidget(strip)
     strip.resize(1180 - NARROW - StepNavigation().width(), LOW + TALLER.get(code, 0))
     strip.show()
-    numbers, hint = NUMBERS[code], strip._hint
+    numbers, hint = NUMBERS[code], strip.hint
     strip.set_verdict(
         ConvergenceView("bad", "Do not use", "settled", numbers, HINTS[code], "0.2 s", "", False)
     )

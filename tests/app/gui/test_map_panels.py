@@ -48,14 +48,14 @@ def test_figures_are_read_with_sign_unit_and_full_width_digits() -> None:
 
 def test_where_there_is_little_room_the_legend_still_says_what_the_sign_means(legend: Legend) -> None:
     legend.set_size("small")
-    assert not legend._note.isHidden()
-    assert legend._note.text() == "+ outward  − inward"
+    assert not legend.note.isHidden()
+    assert legend.note.text() == "+ outward  − inward"
     legend.show_map("strain")
-    assert legend._note.isHidden()
+    assert legend.note.isHidden()
     assert "of the control mesh" in legend.title.toolTip()
     legend.set_size("folded")
     legend.show_map("sides")
-    assert (legend._note.isHidden(), legend.bar.isHidden()) == (True, True)
+    assert (legend.note.isHidden(), legend.bar.isHidden()) == (True, True)
     assert legend.title.toolTip().endswith("+ stands out more than the other side")
 
 

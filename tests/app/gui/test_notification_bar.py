@@ -73,7 +73,7 @@ def test_a_wide_button_stands_under_the_words_and_a_short_one_beside_them(qtbot:
         bar.show_notice("warn", "It swings.", actions=[(words, print)], details="Figures")
         bar.resize(width, 90)
         QApplication.processEvents()
-        (one,) = bar._buttons
+        (one,) = bar.buttons
         assert (one.y() > bar.unfold.y() + 10) == below
         assert one.width() >= one.sizeHint().width()
         bar.resize(4 * width, 90)
@@ -90,6 +90,6 @@ def test_no_button_is_cut_off(qtbot: QtBot) -> None:
     for width, seen in ((420, 1), (680, 2), (420, 1)):
         bar.set_room(width, 600)
         QApplication.processEvents()
-        shown = [each for each in bar._buttons if not each.isHidden()]
+        shown = [each for each in bar.buttons if not each.isHidden()]
         assert len(shown) == seen
         assert all(each.width() >= each.sizeHint().width() for each in shown)

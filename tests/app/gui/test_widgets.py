@@ -157,9 +157,7 @@ def test_a_length_beyond_the_slider_can_be_typed(lines: LinesPanel, qtbot: QtBot
     lines.set_lines([replace(WAIST, ratio=0.6), RIBS])
     slider = row.slider
     assert (row.percent.text(), slider.ratio()) == ("60.0", 0.6)
-    assert slider._x_of(0.6) > slider._x_of(slider._ends[0]), (
-        "it does not stand at the end as if that were it"
-    )
+    assert slider.x_of(0.6) > slider.x_of(slider._ends[0]), "it does not stand at the end as if that were it"
     lines.set_lines([replace(WAIST, ratio=0.95), RIBS])
     assert (slider.ratio(), slider._ends) == (0.95, (SHORTEST, LONGEST))
 
@@ -189,11 +187,11 @@ def test_rows_stay_while_values_change(lines: LinesPanel) -> None:
 
 def test_the_numbers_of_a_dragged_line_stay_with_the_hand(lines: LinesPanel) -> None:
     row = lines.rows["waist"]
-    hold(row.slider, QEvent.Type.MouseButtonPress, row.slider._x_of(1.0))
-    hold(row.slider, QEvent.Type.MouseMove, row.slider._x_of(0.95))
+    hold(row.slider, QEvent.Type.MouseButtonPress, row.slider.x_of(1.0))
+    hold(row.slider, QEvent.Type.MouseMove, row.slider.x_of(0.95))
     lines.set_lines([replace(WAIST, ratio=0.97), RIBS])
     assert row.percent.text() == "95.0"
-    hold(row.slider, QEvent.Type.MouseButtonRelease, row.slider._x_of(0.95))
+    hold(row.slider, QEvent.Type.MouseButtonRelease, row.slider.x_of(0.95))
     lines.set_lines([replace(WAIST, ratio=0.97), RIBS])
     assert row.percent.text() == "97.0"
 

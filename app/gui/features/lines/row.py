@@ -81,8 +81,8 @@ class LineRow(QFrame):
             self.slider.setFocus(Qt.FocusReason.OtherFocusReason)
         self._measure.setVisible(not view.constrained)
         self._measure.setText(length(view.reached_mm or view.rest_mm))
-        self._note.setText(_still_words(view))
-        self._note.setVisible(not view.constrained)
+        self.note.setText(_still_words(view))
+        self.note.setVisible(not view.constrained)
         if self._open:  # while the row is closed nobody sees them
             self.details.show_view(view)
         self._eye.show_icon("eye" if view.visible else "eye-slash")
@@ -184,11 +184,11 @@ class LineRow(QFrame):
         head.addStretch(1)
         for part in (self.percent, self.millimetres, self._measure):
             head.addWidget(part)
-        self._note = sentence("", "caption")
-        self._note.setContentsMargins(20, 0, 0, 2)
+        self.note = sentence("", "caption")
+        self.note.setContentsMargins(20, 0, 0, 2)
         self._tips: dict[QWidget, str] = {each: each.toolTip() for each in (self.percent, self.millimetres)}
         column.addLayout(head)
-        for below in (self.slider, self._note, self.details):
+        for below in (self.slider, self.note, self.details):
             column.addWidget(below)
 
     def _connect(self) -> None:

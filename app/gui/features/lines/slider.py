@@ -131,7 +131,7 @@ class LengthSlider(QAbstractSlider):
             event.ignore()
             return
         self._before_drag, self._previewed = self.value(), False
-        self._grip = event.position().x() - self._x_of(self.ratio())
+        self._grip = event.position().x() - self.x_of(self.ratio())
         self._wall = wall_of(None if self._stale else self._leeway, self.ratio())
         self.setSliderDown(True)
         if abs(self._grip) > _HANDLE_RADIUS + 3:
@@ -175,14 +175,14 @@ class LengthSlider(QAbstractSlider):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(Qt.PenStyle.NoPen)
         strong = self._strong or self.underMouse() or self.isSliderDown()
-        groove = tokens_of(self), self._x_of, self._ends, self._leeway
+        groove = tokens_of(self), self.x_of, self._ends, self._leeway
         paint_groove(painter, *groove, strong=strong, stale=self._stale)
         if self._leeway is None:
             self._paint_way(painter)
         if self._reached is not None and abs(self._reached - self.ratio()) > _SMALLEST_WEDGE:
             short, long = self._ends
-            self._paint_wedge(painter, self._x_of(min(max(self._reached, short), long)))
-        self._paint_handle(painter, QPointF(self._x_of(self.ratio()), GROOVE_Y))
+            self._paint_wedge(painter, self.x_of(min(max(self._reached, short), long)))
+        self._paint_handle(painter, QPointF(self.x_of(self.ratio()), GROOVE_Y))
 
     def _drag_to(self, x: float) -> None:
         more = self._ratio_at(x + RESISTANCE) - self._ratio_at(x)
@@ -212,7 +212,8 @@ class LengthSlider(QAbstractSlider):
         if self.value() != before:
             self.committed.emit(self.ratio())
 
-    def _x_of(self, ratio: float) -> float:
+    def x_of(self, ratio: float) -> float:
+        """Return where a ratio is on the groove [px]."""
         share = (ratio - self._ends[0]) / (self._ends[1] - self._ends[0])
         return _END_ROOM + share * (self.width() - 2 * _END_ROOM)
 
@@ -222,13 +223,13 @@ class LengthSlider(QAbstractSlider):
 
     def _ratio_under(self, x: float) -> float:
         """Return the length that is told about at a place: on the handle the set one [1]."""
-        if abs(x - self._x_of(self.ratio())) <= _HANDLE_RADIUS:
+        if abs(x - self.x_of(self.ratio())) <= _HANDLE_RADIUS:
             return self.ratio()
         return min(max(self._ratio_at(x), self._ends[0]), self._ends[1])
 
     def _paint_way(self, painter: QPainter) -> None:
         """Darken the groove between the length at rest and the set one."""
-        rest, here = self._x_of(1.0), self._x_of(self.ratio())
+        rest, here = self.x_of(1.0), self.x_of(self.ratio())
         color = QColor(tokens_of(self).text_caption)
         color.setAlpha(90)
         painter.setBrush(color)

@@ -66,12 +66,12 @@ class Legend(FloatingPanel):
         self.high.entered.connect(lambda value: self._set_end(True, value))
         self.low.entered.connect(lambda value: self._set_end(False, value))
         column.addWidget(self.bar)
-        self._note = label("", "caption")
-        self._note.setWordWrap(True)
-        self._note.setContentsMargins(0, 4, 0, 0)  # else it nearly touches the number at the lower end
-        column.addWidget(self._note)
+        self.note = label("", "caption")
+        self.note.setWordWrap(True)
+        self.note.setContentsMargins(0, 4, 0, 0)  # else it nearly touches the number at the lower end
+        column.addWidget(self.note)
         self.row.addLayout(column)
-        self._note.setFixedWidth(WIDTH)
+        self.note.setFixedWidth(WIDTH)
         self.bar.setFixedWidth(WIDTH)
 
     def show_map(self, name: str) -> None:
@@ -83,11 +83,11 @@ class Legend(FloatingPanel):
 
     def show_note(self, note: str) -> None:
         """Say under the bar what the values are."""
-        self._note.setText(note)
+        self.note.setText(note)
         self.bar.say(note)
         # What the sign means can be guessed from no colour.
         shown = self._size == "full" or (self._size == "small" and self._kind.both_ways)
-        self._note.setVisible(shown)
+        self.note.setVisible(shown)
         set_tip(self.title, "\n".join(filter(None, (self._kind.tip, "" if shown else note))))
 
     def size_taken(self) -> str:
@@ -99,7 +99,7 @@ class Legend(FloatingPanel):
         self.bar.set_small(size != "full")
         self.bar.setVisible(size != "folded")
         self._size = size
-        self.show_note(self._note.text())
+        self.show_note(self.note.text())
         inner = self.layout()
         assert inner is not None
         inner.activate()  # so that its size is that of now, and not of before, to who asks at once

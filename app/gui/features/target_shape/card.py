@@ -122,10 +122,10 @@ class AskCard(QWidget):
     def _said(self) -> QVBoxLayout:
         said = QVBoxLayout()
         said.setSpacing(6)
-        self._hint = sentence("")
+        self.hint = sentence("")
         self.answer, self.price = sentence("", "name"), sentence("")
         self.changes, self.note = sentence(""), sentence("", "caption")
-        for part in (self._hint, self.answer, self.price, self.changes, self.note):
+        for part in (self.hint, self.answer, self.price, self.changes, self.note):
             said.addWidget(part)
             part.hide()
         return said
@@ -157,8 +157,8 @@ class AskCard(QWidget):
             row.show_view(wish)
             self._target.setFixedWidth(row.field.width())
         self._heading.setVisible(bool(wishes))
-        self._hint.setText(hint)
-        self._hint.setVisible(bool(hint))
+        self.hint.setText(hint)
+        self.hint.setVisible(bool(hint))
 
     def show_answer(
         self,
