@@ -25,8 +25,8 @@ import numpy as np
 from bench_ask import bodies
 from pages import put, table
 
-from core.analysis.symmetry.balance import BalanceResult, make_even
-from core.analysis.symmetry.compare import Evenness, compare_sides
+from core.analysis.symmetry.balance import BalanceResult, balance_sides
+from core.analysis.symmetry.compare import SideDifference, compare_sides
 from core.analysis.symmetry.split_sides import ENOUGH
 from core.control_mesh.template import read_template
 from core.deformation.incremental_normals import volume_change
@@ -59,8 +59,8 @@ class Altered:
     higher: float
     out: float
     volume: float
-    told: Evenness
-    was: Evenness
+    told: SideDifference
+    was: SideDifference
     breasts: float
     breasts_were: float
 
@@ -74,7 +74,7 @@ class Altered:
         )
 
 
-def _ml(told: Evenness) -> float:
+def _ml(told: SideDifference) -> float:
     assert told.skin is not None
     return told.skin.total
 
@@ -85,7 +85,7 @@ def _breasts(stages: Stages) -> float:
     return np.nan if found is None else found
 
 
-def at_rest(stages: Stages) -> Evenness:
+def at_rest(stages: Stages) -> SideDifference:
     """Return how left and right of a body differ at rest."""
     return compare_sides(stages, stages.control.mesh.vertices).before
 
@@ -174,7 +174,7 @@ def even_again(rng: np.random.Generator, on: list[Stages], cases: int) -> list[t
 
 def _timed(stages: Stages) -> tuple[BalanceResult, float]:
     begun = time.process_time()
-    made = make_even(stages)
+    made = balance_sides(stages)
     seconds = time.process_time() - begun
     words = f"({made.before.higher:+.2f}, {made.before.further_out:+.2f}) mm"
     after = f"({made.after.higher:+.2f}, {made.after.further_out:+.2f}) mm"

@@ -40,7 +40,7 @@ from core.measurements.uncertain_value import (
     OUT,
     ROOT,
     TENSION,
-    Spread,
+    OutputUncertainties,
 )
 from core.pipeline.build import Stages, build
 
@@ -112,7 +112,7 @@ def _kind(key: str) -> str:
     return key.partition(":")[0].partition(" ")[0]
 
 
-def _within(spread: Spread, found: Samples, key: str, base: float) -> float:
+def _within(spread: OutputUncertainties, found: Samples, key: str, base: float) -> float:
     """Return what part of the draws lies where the figure is told to lie; roots are not sampled."""
     values, kind = found.values(key), _kind(key)
     if kind in FORCES:
@@ -124,7 +124,7 @@ def _within(spread: Spread, found: Samples, key: str, base: float) -> float:
     return float(((values >= low) & (values <= high)).mean())
 
 
-def _ratios(spread: Spread, sds: dict[str, float]) -> Iterator[tuple[str, float]]:
+def _ratios(spread: OutputUncertainties, sds: dict[str, float]) -> Iterator[tuple[str, float]]:
     """Yield propagated over sampled of each figure that is off by more than a hair; roots are not sampled."""
     for key, sd in sds.items():
         doubt = spread.by_output.get(key)

@@ -8,7 +8,7 @@ from app.i18n.catalog import listed, tr
 from app.i18n.lengths import length_number, length_unit
 from app.presenters.measurements import length_uncertainty
 from core.geometry.mesh import Floats
-from core.measurements.uncertain_value import LIFT, OUT, Spread
+from core.measurements.uncertain_value import LIFT, OUT, OutputUncertainties
 from core.mechanics.iteration import Observables
 from core.pipeline.frame import Frame
 from core.pipeline.observables import Tapes
@@ -84,7 +84,7 @@ Offs = tuple[float | None, float | None]
 UNKNOWN: Offs = (None, None)
 
 
-def uncertainties_of(spread: Spread | None, side: str = "") -> Offs:
+def uncertainties_of(spread: OutputUncertainties | None, side: str = "") -> Offs:
     """Return how far the move of the bust point of a ``side`` may be off, or the mean of both."""
     if spread is None:
         return UNKNOWN

@@ -27,7 +27,7 @@ from core.garment.pressure_limits import pressure_limits
 from core.garment.pressure_list import PressureList
 from core.geometry.mesh import Floats, Indices, Mesh, Points
 from core.geometry.mirror_plane import SideComparison, mirror_plane
-from core.measurements.uncertain_value import Spread
+from core.measurements.uncertain_value import OutputUncertainties
 from core.pipeline.build import Stages, line_targets
 from core.pipeline.live_solver import Frame
 from core.pipeline.surface_fields import StrainOnBody, line_forces, normal_displacement
@@ -167,7 +167,7 @@ def rounded_up(value: float) -> float:
     return next(unit * power for unit in _ROUND if unit * power >= value * (1.0 - 1e-9))
 
 
-def section_words(axis: str, side: str, move: BustShift, spread: Spread | None = None) -> str:
+def section_words(axis: str, side: str, move: BustShift, spread: OutputUncertainties | None = None) -> str:
     """Return how far the bust points went, in words; a plane across x has that of its ``side`` alone."""
     if axis != "x":
         return bust_sentence(move, uncertainties_of(spread))

@@ -11,11 +11,11 @@ from app.i18n.lengths import length
 from core.measurements.letter_sizes import letter_sizes
 from core.measurements.sizes import GIRTHS_OF_SIZES, Neighbour, SizeAnswer, neighbours_of, sizes
 from core.measurements.table import Measures
-from core.measurements.uncertain_value import BEFORE, Spread
+from core.measurements.uncertain_value import BEFORE, OutputUncertainties
 
 
 def size_views(
-    measured: Measures, allowance_mm: float, spread: Spread | None = None
+    measured: Measures, allowance_mm: float, spread: OutputUncertainties | None = None
 ) -> tuple[list[SizeView], str]:
     """Return the sizes of a body in every system, or none and why; ``spread`` tells others within the ±."""
     underbust, bust = (measured[key] for key in GIRTHS_OF_SIZES)
@@ -29,7 +29,7 @@ def size_views(
     ], ""
 
 
-def within_words(answer: SizeAnswer, spread: Spread | None) -> str:
+def within_words(answer: SizeAnswer, spread: OutputUncertainties | None) -> str:
     """Return which other sizes lie within what both girths may be off, once all of that is known."""
     offs = [spread.plus_minus(f"{BEFORE}:{key}") for key in GIRTHS_OF_SIZES] if spread else [None]
     known = [off for off in offs if off is not None]

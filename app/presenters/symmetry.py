@@ -12,12 +12,12 @@ from app.presenters.lines import row_title
 from app.presenters.measurements import length_uncertainty, plus_minus
 from app.presenters.target_shape import is_met, is_signed, reasons_words, target_title
 from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER, LIFT, OUT, Goal, section_of
-from core.analysis.symmetry.compare import BeforeAfter, Evenness, SymmetryRow, symmetry_rows
+from core.analysis.symmetry.compare import BeforeAfter, SideDifference, SymmetryRow, symmetry_rows
 from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, splittable_lines
 from core.control_mesh.template import read_template
 from core.document.design import Design
 from core.landmarks.warnings import edit_warnings
-from core.measurements.uncertain_value import AFTER, Spread
+from core.measurements.uncertain_value import AFTER, OutputUncertainties
 from core.pipeline.build import Stages
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ _SURE = {"higher": "asymmetry_height", "further_out": "asymmetry_forward"}
 
 
 def symmetry_view(
-    told: BeforeAfter, stages: Stages, doubt: str = "", spread: Spread | None = None
+    told: BeforeAfter, stages: Stages, doubt: str = "", spread: OutputUncertainties | None = None
 ) -> SymmetryView:
     """Return what the card says of a body; with a ``doubt`` there is nothing to be told after.
 
@@ -63,12 +63,12 @@ def map_note(told: BeforeAfter | None, after: bool) -> str:
     return words.format(left=number(skin.left_more, 0), right=number(skin.right_more, 0))
 
 
-def _offs(spread: Spread | None) -> dict[str, float]:
+def _offs(spread: OutputUncertainties | None) -> dict[str, float]:
     known = {key: spread.plus_minus(f"{AFTER}:{of}") if spread else None for key, of in _SURE.items()}
     return {key: off for key, off in known.items() if off is not None}
 
 
-def _sentence(now: Evenness, offs: Mapping[str, float], words: str = "") -> str:
+def _sentence(now: SideDifference, offs: Mapping[str, float], words: str = "") -> str:
     if now.largest_difference < ENOUGH:
         return tr("Both bust points lie alike within {length}.").format(length=length(ENOUGH))
     parts, within = [], True
@@ -146,7 +146,7 @@ def _rests_on() -> tuple[str, ...]:
     )
 
 
-def _hint(stages: Stages, now: Evenness) -> tuple[str, bool]:
+def _hint(stages: Stages, now: SideDifference) -> tuple[str, bool]:
     """Return what is done before lengths are looked for, or why they are not; and whether they can be."""
     if now.largest_difference < ENOUGH:
         return "", False

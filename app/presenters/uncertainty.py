@@ -11,7 +11,7 @@ from app.presenters.measurements import MeasureView, length_uncertainty, plus_mi
 from core.analysis.uncertainty.input_uncertainty import origins
 from core.export.report_data import NOT_MODELLED
 from core.garment.pressure import LEFT_OUT
-from core.measurements.uncertain_value import AFTER, BEFORE, CHANGE, LIFT, OUT, Spread
+from core.measurements.uncertain_value import AFTER, BEFORE, CHANGE, LIFT, OUT, OutputUncertainties
 
 LEAST = 0.01
 """A source with a smaller share of the variance is not named [1]."""
@@ -40,14 +40,16 @@ def limitation_sentences() -> tuple[str, ...]:
     return tuple(say(each) for each in (*NOT_MODELLED, *LEFT_OUT))
 
 
-def with_uncertainty(views: Iterable[MeasureView], spread: Spread | None, faint: bool) -> list[MeasureView]:
+def with_uncertainty(
+    views: Iterable[MeasureView], spread: OutputUncertainties | None, faint: bool
+) -> list[MeasureView]:
     """Return measures with their ±; ``faint`` are those of a former shape."""
     if spread is None:
         return list(views)
     return [_with_off(view, spread, faint) for view in views]
 
 
-def _with_off(view: MeasureView, spread: Spread, faint: bool) -> MeasureView:
+def _with_off(view: MeasureView, spread: OutputUncertainties, faint: bool) -> MeasureView:
     keys = _keys(view)
     offs = tuple(None if key is None else spread.plus_minus(key) for key in keys)
     told = tuple(
@@ -72,7 +74,7 @@ def _without_off() -> str:
 
 
 def _shares(
-    keys: Iterable[str | None], offs: Iterable[float | None], spread: Spread, unit: str
+    keys: Iterable[str | None], offs: Iterable[float | None], spread: OutputUncertainties, unit: str
 ) -> tuple[str, ...]:
     heads = (tr("Before"), tr("After"), tr("Change"))
     lines = []
@@ -91,7 +93,7 @@ def _shares(
     return tuple(lines)
 
 
-def uncertainty_view(spread: Spread | None, waiting: str, faint: bool) -> UncertaintyView:
+def uncertainty_view(spread: OutputUncertainties | None, waiting: str, faint: bool) -> UncertaintyView:
     """Return what stands below the measures; ``waiting`` says why there is no ± yet."""
     if spread is None:
         return UncertaintyView(waiting, short=tr("± is not there yet: why") if waiting else "")
@@ -102,7 +104,7 @@ def uncertainty_view(spread: Spread | None, waiting: str, faint: bool) -> Uncert
     )
 
 
-def _contact(spread: Spread) -> str:
+def _contact(spread: OutputUncertainties) -> str:
     if LIFT not in spread.other:
         return ""
     up, out = (length(spread.other[key], signed=True) for key in (LIFT, OUT))

@@ -81,9 +81,9 @@ def fit_control_mesh(
     outline, holes = project_border(ground, landmarks)
     creases, lacking, holed = find_creases(ground, outline, landmarks)
     lost = [*lacking, *holed]
-    tries: list[_Try] = []
+    tries: list[_Candidate] = []
     while True:
-        tries += _tries(ground, outline, creases, holed, line_height, lost)
+        tries += _candidates(ground, outline, creases, holed, line_height, lost)
         best = min(tries, key=lambda one: one.weight)
         faulty = template.faces[tries[-1].faults.any | tries[-1].half_way.any]
         blamed = set(template.column[faulty].ravel().tolist()) & set(creases)
@@ -106,7 +106,7 @@ def fit_control_mesh(
 
 
 @dataclass(frozen=True, eq=False)
-class _Try:
+class _Candidate:
     """One way to lay the template, where it has no skin, and in which columns it ``lost`` the fold.
 
     ``faults`` are its own, ``half_way`` those that it has when the line row runs half way: they choose among
@@ -130,14 +130,14 @@ class _Try:
         return not (self.faults.folded.any() or self.half_way.any.any())
 
 
-def _tries(
+def _candidates(
     ground: FittingFrame,
     outline: Points,
     creases: Mapping[int, Crease],
     holed: list[int],
     line_height: float,
     lost: list[int],
-) -> list[_Try]:
+) -> list[_Candidate]:
     """Lay all points, eased where triangles are pointed; where that brings faults, eased less and less.
 
     All but the line row is eased as if that ran half way, so that it alone moves with ``line_height``.
@@ -153,7 +153,7 @@ def _tries(
         way = smoothest if share == 1.0 else laid + share * (smoothest - laid)
         off = (way != laid).any(axis=2) & (share < 1.0)
         way[off] = ground.skin.project(way[off]) if off.any() else way[off]
-        mesh, half_way = _judged(ground, way)
+        mesh, half_way = _evaluate(ground, way)
         faults = half_way
         if line_height != 0.5:
             points = way.copy()
@@ -164,15 +164,15 @@ def _tries(
             points[line, slid] = ground.skin.project(points[line, slid] + along[slid])
             only = (np.arange(len(points)) == line)[:, None]
             smooth = relax(points, template.faces, ground.skin, level & only, upright & only)
-            judged = [_judged(ground, smooth), _judged(ground, points)]
+            judged = [_evaluate(ground, smooth), _evaluate(ground, points)]
             mesh, faults = min(judged, key=lambda one: one[1].weight)
-        found.append(_Try(mesh, faults, half_way, holes, lost))
+        found.append(_Candidate(mesh, faults, half_way, holes, lost))
         if found[-1].sound:
             break
     return found
 
 
-def _judged(ground: FittingFrame, points: Points) -> tuple[Mesh, Faults]:
+def _evaluate(ground: FittingFrame, points: Points) -> tuple[Mesh, Faults]:
     """Return the control mesh at ``points``, shape (rows, columns, 3) [mm], and what is at fault with it."""
     template = ground.template
     mesh = Mesh(points.reshape(-1, 3), template.faces)

@@ -22,7 +22,7 @@ from core.landmarks.warnings import collect_warnings
 from core.measurements.definitions import DEFINITIONS
 from core.measurements.sizes import GIRTHS_OF_SIZES, sizes, sizes_text, with_neighbours
 from core.measurements.table import Measures, before_after, measure_rows
-from core.measurements.uncertain_value import BEFORE, SOURCES, Spread
+from core.measurements.uncertain_value import BEFORE, SOURCES, OutputUncertainties
 from core.mechanics.convergence import SOUND
 from core.mechanics.iteration import Observables, Record
 from core.pipeline.build import Stages
@@ -211,7 +211,9 @@ def make_report(
     )
 
 
-def with_uncertainty(sheet: Report, stages: Stages, control_points: Points, spread: Spread) -> Report:
+def with_uncertainty(
+    sheet: Report, stages: Stages, control_points: Points, spread: OutputUncertainties
+) -> Report:
     """Return a sheet of ``control_points``, shape (n, 3) [mm], with how far its figures may be off."""
     rest, places = stages.body.mesh, deform(stages.binding, control_points)
     sections = []

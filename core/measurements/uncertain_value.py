@@ -54,7 +54,7 @@ class Uncertainty:
 
 
 @dataclass(frozen=True, eq=False)
-class Spread:
+class OutputUncertainties:
     """How far the figures of one solved design may be off.
 
     ``by_output`` by the keys of figures; a figure that is not known has none. ``skin`` (n,) [mm] is the

@@ -71,14 +71,14 @@ def newton(
             return
     slides, spared = _slides(model), _STRIDE_STEPS if _slides(model) else 0
     done, most = last.steps, limit - last.steps - spared
-    for last in _walk(model, ratios, excess, max(most, 1), keeps=slides):
+    for last in _continuation(model, ratios, excess, max(most, 1), keeps=slides):
         yield replace(last, steps=done + last.steps)
     if last.is_converged or not slides:
         return
     done += last.steps
     turned = _turned(model, ratios, excess) if turns and most >= 0 else None
     if turned is None or not turned.is_converged:
-        for last in _walk(model, ratios, excess, max(most, 1), keeps=False):
+        for last in _continuation(model, ratios, excess, max(most, 1), keeps=False):
             yield replace(last, steps=done + last.steps)
         done += last.steps
     # Where turns run away, what the walk came to stays the answer.
@@ -99,7 +99,7 @@ def _steps(potential: Potential, start: Equilibrium, limit: int) -> Iterator[Equ
     return steps(potential, start, limit)
 
 
-def _walk(
+def _continuation(
     model: ConstrainedModel, ratios: tuple[float, ...], excess: Floats | None, limit: int, keeps: bool
 ) -> Iterator[Equilibrium]:
     """Yield the iterates of a walk from rest to ``ratios`` in strides, the last one where it breaks off.
@@ -117,7 +117,7 @@ def _walk(
         between = tuple(1.0 + share * (ratio - 1.0) for ratio in ratios)
         potential = Potential(model, between, None if excess is None else share * excess)
         found, ways = last, _steps(potential, last, min(_STRIDE_STEPS, limit - steps))
-        for found in _as_led(last, ways) if kept else ways:
+        for found in _follow_branch(last, ways) if kept else ways:
             if found.steps or found.is_converged:
                 yield replace(found, steps=steps + found.steps)
         steps += found.steps
@@ -131,7 +131,7 @@ def _walk(
         yield replace(last, steps=steps, residual=np.inf)
 
 
-def _as_led(start: Equilibrium, steps: Iterator[Equilibrium]) -> Iterator[Equilibrium]:
+def _follow_branch(start: Equilibrium, steps: Iterator[Equilibrium]) -> Iterator[Equilibrium]:
     """Yield ``steps`` as long as they keep to where the first of them leads from ``start``."""
     towards, allowed = start.state.moved, np.inf
     for step in steps:
@@ -161,11 +161,11 @@ def _turned(model: ConstrainedModel, ratios: tuple[float, ...], excess: Floats |
     start = equilibrium_at(potential, moved, np.inf, multipliers)
     best = min(_steps(potential, start, _STRIDE_STEPS), key=lambda balance: balance.residual)
     if best.is_converged and len(Potential(model, ratios).sides) == 2:
-        best = _shared_out(model, ratios, np.zeros(2) if excess is None else excess, best)
+        best = _balance_sides(model, ratios, np.zeros(2) if excess is None else excess, best)
     return best if best.is_converged or measured.step < _AWAY else None
 
 
-def _shared_out(
+def _balance_sides(
     model: ConstrainedModel, ratios: tuple[float, ...], excess: Floats, both: Equilibrium
 ) -> Equilibrium:
     """Return the balance in which each breast has its volume, from one in which the sum is right."""

@@ -116,7 +116,7 @@ class IncompleteBuildError(UserError):
     ``seconds`` and ``memo`` are those of the stages that were made, as in ``Stages``.
     """
 
-    def __init__(self, problem: UserError, body: Body, design: Design, stage: _Stager) -> None:
+    def __init__(self, problem: UserError, body: Body, design: Design, stage: _StageCache) -> None:
         super().__init__(problem.message, problem.hint)
         self.body = body
         self.design = design
@@ -131,7 +131,7 @@ class IncompleteBuildError(UserError):
             self.kind = "refused"
 
 
-class _Stager:
+class _StageCache:
     """Makes stages in order, taking each from the previous build if its inputs are the same."""
 
     def __init__(self, previous: Stages | IncompleteBuildError | None, progress: Progress) -> None:
@@ -182,7 +182,7 @@ def build(
     ``previous`` is the last result, whole or incomplete; stages with equal inputs are reused. Raises the
     UserError of the stage that fails, or Cancelled; ``previous`` then remains valid.
     """
-    stage = _Stager(previous, progress)
+    stage = _StageCache(previous, progress)
     try:
         source = replace(design.scan, edits=UNEDITED)
         scan, body = stage("read scan", partial(_read_upright, progress=stage.inside), source)
@@ -198,7 +198,7 @@ def build(
     raise stuck
 
 
-def _stages(stage: _Stager, design: Design, scan: ScanFile, body: Body) -> Stages:
+def _stages(stage: _StageCache, design: Design, scan: ScanFile, body: Body) -> Stages:
     landmarks = stage(FINDING, partial(detect_landmarks, progress=stage.inside), body, design.placed)
     template = stage("read template", read_template, design.template)
     control = stage("fit control mesh", fit_control_mesh, template, body, landmarks, design.line_height)

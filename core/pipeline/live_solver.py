@@ -176,7 +176,7 @@ class LiveSolver:
     def _serve(self) -> None:
         """Wait until there is something to do, then build what was requested, iterate, publish a frame."""
         with self._wake:
-            while (patience := self._patience()) != 0.0:
+            while (patience := self._wait_time()) != 0.0:
                 self._wake.wait(patience)
             request, self._request = self._request, None
         if request is not None and not self._stopping:
@@ -201,7 +201,7 @@ class LiveSolver:
                 warmer.start()
                 self._warmer = warmer
 
-    def _patience(self) -> float | None:
+    def _wait_time(self) -> float | None:
         """Return in how many seconds there is something to do; None while nobody asks for anything."""
         now = time.perf_counter()
         rests_at = self._asked_at + _HAND_RESTS

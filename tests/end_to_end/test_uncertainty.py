@@ -12,7 +12,7 @@ import core.analysis.uncertainty.estimate
 from app.gui.main_window import MainWindow
 from app.presenters.uncertainty import limitation_sentences
 from core.errors import UserError
-from core.measurements.uncertain_value import Spread
+from core.measurements.uncertain_value import OutputUncertainties
 from core.progress import Progress
 
 pytestmark = pytest.mark.usefixtures("landmarks_known")
@@ -75,7 +75,9 @@ def test_nothing_is_shown_before_all_sources_are_in(monkeypatch: pytest.MonkeyPa
         core.analysis.uncertainty.estimate.UncertaintyEstimator.estimate,
     )
 
-    def waiting(self: core.analysis.uncertainty.estimate.UncertaintyEstimator, progress: Progress) -> Spread:
+    def waiting(
+        self: core.analysis.uncertainty.estimate.UncertaintyEstimator, progress: Progress
+    ) -> OutputUncertainties:
         self.estimate_partial(progress)
         reached.set()
         go.wait(60.0)

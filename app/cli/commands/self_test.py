@@ -10,7 +10,7 @@ from pathlib import Path
 from app.cli.options import add_folder_output
 from app.cli.output import DONE, make_folder
 from app.cli.self_test import checks, window
-from app.cli.self_test.parts import Bench, Part, isolated, try_parts
+from app.cli.self_test.parts import Part, SelfTestFixture, isolated, try_parts
 
 FAILED = 1
 """The exit code if a part has failed."""
@@ -20,7 +20,7 @@ LINES = "self-test.txt"
 
 _SAMPLE = ("landmarks", "solver")
 
-PARTS: tuple[Part[Bench], ...] = (
+PARTS: tuple[Part[SelfTestFixture], ...] = (
     Part("versions", checks.versions),
     Part("shipped files", checks.shipped_files),
     Part("landmarks", checks.landmarks),
@@ -56,7 +56,7 @@ def run(options: Namespace) -> int:
                 print(text, end="", file=lines, flush=True)
                 print(text, end="", flush=True)
 
-            bench = Bench(folder)
+            bench = SelfTestFixture(folder)
             with bench.held:
                 failed = try_parts(PARTS, bench, write)
             result = f"failed: {', '.join(failed)}" if failed else "all checks passed"

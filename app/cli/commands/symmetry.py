@@ -17,8 +17,8 @@ from app.presenters.symmetry import balance_result_texts, not_balanced_reason, s
 from app.presenters.target_shape import change_words, reasons
 from core import __version__
 from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER
-from core.analysis.symmetry.balance import EVEN, BalanceResult, make_even
-from core.analysis.symmetry.compare import BeforeAfter, Evenness, compare_sides, symmetry_rows
+from core.analysis.symmetry.balance import EVEN, BalanceResult, balance_sides
+from core.analysis.symmetry.compare import BeforeAfter, SideDifference, compare_sides, symmetry_rows
 from core.analysis.symmetry.split_sides import ENOUGH, split_sides
 from core.control_mesh.template import read_template
 from core.document.design import Design
@@ -57,7 +57,7 @@ class Symmetry:
     warnings: list[str]
     assessment: Assessment
     made: BalanceResult | None = None
-    as_set: Evenness | None = None
+    as_set: SideDifference | None = None
     out: str = ""
 
     @property
@@ -102,7 +102,7 @@ def compare(stages: Stages, *, balance: bool) -> Symmetry:
     found = Symmetry(stages, compared, is_converged(solution), warnings, assess(solution))
     if not balance or found.balanced:
         return found
-    made = make_even(stages)
+    made = balance_sides(stages)
     # Adaptive control keeps both volumes together and the exact solution each: they are not comparable.
     found = replace(found, compared=replace(compared, after=made.before), made=made)
     again = solve(build(found.design, stages))
@@ -159,7 +159,7 @@ def _because(made: BalanceResult) -> list[str]:
     return ["a further gain would reduce lift or protrusion"]
 
 
-def _after(after: Evenness) -> dict[str, float | None]:
+def _after(after: SideDifference) -> dict[str, float | None]:
     return {row.key: row.after for row in symmetry_rows(after, after)}
 
 

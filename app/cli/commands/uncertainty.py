@@ -29,7 +29,7 @@ from core.measurements.uncertain_value import (
     ROOT,
     SCAN,
     SOURCES,
-    Spread,
+    OutputUncertainties,
     format_range,
     format_uncertainty,
 )
@@ -60,7 +60,7 @@ class Value:
 class Uncertainties:
     """The ``spread`` of all ``values`` of a solved design."""
 
-    spread: Spread
+    spread: OutputUncertainties
     values: list[Value]
     solved: SolvedDesign
 
@@ -136,7 +136,7 @@ def _line_rows(found: Uncertainties) -> Iterator[Sequence[str]]:
             yield (value.title, _cell(spread, value), beside, value.unit)
 
 
-def _cell(spread: Spread, result: Value) -> str:
+def _cell(spread: OutputUncertainties, result: Value) -> str:
     if result.value is None:
         return "-"
     sign = "+" if result.key.startswith((CHANGE, "lift", "out")) else ""
@@ -189,7 +189,7 @@ def _json(found: Uncertainties) -> str:
     return json.dumps(whole, indent=1, ensure_ascii=False)
 
 
-def _ends(spread: Spread, result: Value) -> tuple[float | None, float | None]:
+def _ends(spread: OutputUncertainties, result: Value) -> tuple[float | None, float | None]:
     """Return the range of a result, or None of one that is not known."""
     return (None if result.value is None else spread.between(result.key, result.value)) or (None, None)
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from app.cli.output import DONE
 from app.cli.parser import command_options, runner_of
-from app.cli.self_test.parts import LINE, Bench, PartError, check
+from app.cli.self_test.parts import LINE, PartError, SelfTestFixture, check
 from core import __version__
 from core.document.storage.project_file import open_project, read_scan_file
 from core.geometry import kernels
@@ -42,7 +42,7 @@ def _home() -> Path:
     return Path(str(resources.files("resources"))).parent
 
 
-def versions(bench: Bench) -> str:
+def versions(bench: SelfTestFixture) -> str:
     """Return the versions of program and libraries, and the place of the program."""
     libraries = ", ".join(f"{name} {metadata.version(name)}" for name in LIBRARIES)
     kind = "packaged" if is_frozen() else "from source"
@@ -50,7 +50,7 @@ def versions(bench: Bench) -> str:
     return f"{made_of}; {kind}, {platform.platform()}, in {_home()}"
 
 
-def shipped_files(bench: Bench) -> str:
+def shipped_files(bench: SelfTestFixture) -> str:
     """Read all tables, words, icons, samples and licences, and find the user guide."""
     from app.i18n.catalog import read_words  # noqa: PLC0415 (this part reports what cannot be imported)
     from app.i18n.licences import licences  # noqa: PLC0415
@@ -89,7 +89,7 @@ def _count(name: str, read: Callable[[], Sized], least: int) -> int:
     return count
 
 
-def landmarks(bench: Bench) -> str:
+def landmarks(bench: SelfTestFixture) -> str:
     """Detect the landmarks of the sample, and compare them with their known positions."""
     found, farthest = bench.stages.landmarks.points, 0.0
     for name, place in (("bust_point", BUST_POINT), ("fold", FOLD)):
@@ -100,7 +100,7 @@ def landmarks(bench: Bench) -> str:
     return f"bust points and inframammary folds within {farthest:.1f} mm of their known positions"
 
 
-def solver(bench: Bench) -> str:
+def solver(bench: SelfTestFixture) -> str:
     """Solve the sample by iterations and exactly, and compare both."""
     solution = bench.solution
     check(solution.verdict.motion == "settled", f"the iterations end with status {solution.verdict.words}")
@@ -115,7 +115,7 @@ def solver(bench: Bench) -> str:
     return f"{converged}, {apart:.2f} mm from the exact solution"
 
 
-def compiled_loops(bench: Bench) -> str:
+def compiled_loops(bench: SelfTestFixture) -> str:
     """Compile the loops over the dense body, and compare their results with the definitions."""
     mesh = bench.stages.body.mesh
     given = mesh.vertices, np.ascontiguousarray(mesh.faces.T), np.zeros_like(mesh.vertices)
@@ -128,7 +128,7 @@ def compiled_loops(bench: Bench) -> str:
     return kernels.state()
 
 
-def projects(bench: Bench) -> str:
+def projects(bench: SelfTestFixture) -> str:
     """Save a project, open it and solve it again: the same values."""
     design = open_project(bench.project).design
     check(design.ratio(LINE) == bench.stages.design.ratio(LINE), "the reloaded line differs")
@@ -146,7 +146,7 @@ def run_command(*words: str) -> None:
     check(code == DONE, f"busk {words[0]} ends with {code}")
 
 
-def exports(bench: Bench) -> str:
+def exports(bench: SelfTestFixture) -> str:
     """Write bodies, drawings, measurements and a turntable for other programs, and read them."""
     import ezdxf  # noqa: PLC0415
     from PIL import Image, ImageSequence  # noqa: PLC0415
@@ -173,7 +173,7 @@ def exports(bench: Bench) -> str:
     return f"{', '.join(FORMATS)} of {len(mesh.faces):,} triangles, DXF, SVG, SMIS, GIF of {_FRAMES} frames"
 
 
-def drawing(bench: Bench) -> str:
+def drawing(bench: SelfTestFixture) -> str:
     """Render the reshaped body off-screen: the picture shows a shaded body."""
     from PIL import Image  # noqa: PLC0415
 

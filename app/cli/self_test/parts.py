@@ -87,7 +87,7 @@ def _described(fault: Exception) -> str:
     return f"{type(fault).__name__}: {text} ({Path(frame.filename).name}, line {frame.lineno})"
 
 
-class Bench:
+class SelfTestFixture:
     """The data that parts share: a folder, the solved sample, the window while it is open, and faults."""
 
     def __init__(self, folder: Path) -> None:

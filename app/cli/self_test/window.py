@@ -9,7 +9,7 @@ from importlib import resources
 from pathlib import Path
 
 from app.cli.self_test.checks import run_command
-from app.cli.self_test.parts import LINE, Bench, captured_faults, check
+from app.cli.self_test.parts import LINE, SelfTestFixture, captured_faults, check
 from app.rendering.display import off_screen
 
 _NO_GLYPH = "\U0010fffd"
@@ -18,7 +18,7 @@ _PAGE = re.compile(rb"/Type\s*/Page\b")
 _FONT = re.compile(rb"/FontName\s*/(?:[A-Z]{6}\+)?([\w-]+)")
 
 
-def toolkit(bench: Bench) -> str:
+def toolkit(bench: SelfTestFixture) -> str:
     """Start Qt: on the display, or off-screen where there is none."""
     off_screen()
     from PySide6.QtGui import QGuiApplication  # noqa: PLC0415 (this part reports a missing Qt)
@@ -30,7 +30,7 @@ def toolkit(bench: Bench) -> str:
     return f"{QGuiApplication.platformName()}, device pixel ratio {app.devicePixelRatio():g}"
 
 
-def fonts(bench: Bench) -> str:
+def fonts(bench: SelfTestFixture) -> str:
     """Check that the bundled fonts have the letters of both languages, and that they are rendered."""
     from PySide6.QtGui import QRawFont  # noqa: PLC0415 (brings Qt along)
 
@@ -72,7 +72,7 @@ def _rendered(letter: str) -> bytes:
     return bytes(image.constBits())
 
 
-def report(bench: Bench) -> str:
+def report(bench: SelfTestFixture) -> str:
     """Write the report in both languages, and check its pages, fonts and pictures."""
     sizes = []
     for language, family in (("en", b"Inter"), ("ja", b"NotoSansJP")):
@@ -88,7 +88,7 @@ def report(bench: Bench) -> str:
     return ", ".join(sizes)
 
 
-def window(bench: Bench) -> str:
+def window(bench: SelfTestFixture) -> str:
     """Open a project in the window, and check the 3D view."""
     from app.cli.commands.picture import save_window, settled_window  # noqa: PLC0415
 
@@ -103,7 +103,7 @@ def window(bench: Bench) -> str:
     return f"{opened.windowTitle()}, {colours} colours in the 3D view"
 
 
-def slider(bench: Bench) -> str:
+def slider(bench: SelfTestFixture) -> str:
     """Shorten a line with the keyboard, and wait until the body has followed."""
     from PySide6.QtCore import QEvent, Qt  # noqa: PLC0415
     from PySide6.QtGui import QKeyEvent  # noqa: PLC0415
@@ -130,7 +130,7 @@ def slider(bench: Bench) -> str:
     return f"{LINE} from {100 * start:.1f} to {100 * handle.ratio():.1f} % moved the body by {moved:.1f} mm"
 
 
-def closing(bench: Bench) -> str:
+def closing(bench: SelfTestFixture) -> str:
     """Close the window: its threads end, and no temporary file remains."""
     from PySide6.QtWidgets import QApplication  # noqa: PLC0415
 

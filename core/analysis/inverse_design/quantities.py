@@ -356,7 +356,7 @@ def tolerance(name: str) -> float:
     return next((family.tolerance for family in FAMILIES if family.has(name)), 1.0)
 
 
-class Figures:
+class QuantityReaders:
     """The figures of one body, whatever its lines are; what was made for one question is kept."""
 
     def __init__(self, stages: Stages) -> None:
@@ -364,7 +364,7 @@ class Figures:
         self._single: dict[str, Read] = {}
         self._heights: dict[tuple[str, ...], ReadMany] = {}
 
-    def of(self, names: Sequence[str]) -> ReadMany:
+    def reader(self, names: Sequence[str]) -> ReadMany:
         """Return what reads these figures together: all heights of a section at once. Raises UserError."""
         sections: dict[str, list[int]] = {}
         for at, name in enumerate(names):

@@ -18,7 +18,7 @@ from scipy.optimize import minimize
 from core.analysis.inverse_design.candidate import Candidate
 from core.analysis.inverse_design.objective import Objective, Slopes, goal_weights, total_tension
 from core.analysis.inverse_design.quadratic_model import next_trust_radius, updated_curvature
-from core.analysis.inverse_design.quantities import Figures, Goal, ReadMany
+from core.analysis.inverse_design.quantities import Goal, QuantityReaders, ReadMany
 from core.analysis.inverse_design.sensitivities import PERCENT, LinearizedSolution, LinearizedSolutions
 from core.document.design import Design
 from core.errors import UserError
@@ -84,7 +84,7 @@ class Search:
             raise UserError(
                 "No line that moves the body may change.", "Wear one that is not locked, and name a figure."
             )
-        read = Figures(stages).of([goal.name for goal in goals]) if read is None else read
+        read = QuantityReaders(stages).reader([goal.name for goal in goals]) if read is None else read
         self._answers = LinearizedSolutions(stages, self._groups, read)
         self.nearer: Callable[[Candidate], object] = lambda found: None
         low = [

@@ -17,7 +17,7 @@ from core.analysis.inverse_design.candidate import Candidate
 from core.analysis.inverse_design.conflicts import Conflict, conflicts_of
 from core.analysis.inverse_design.objective import NEAR, goal_weights
 from core.analysis.inverse_design.pressure_limit import PressureLimit, largest_pressures
-from core.analysis.inverse_design.quantities import Figures, Goal
+from core.analysis.inverse_design.quantities import Goal, QuantityReaders
 from core.analysis.inverse_design.search import LOOSEST, Bounds, Search
 from core.analysis.inverse_design.sensitivities import exact_points
 from core.document.design import Design
@@ -112,7 +112,7 @@ class InverseSolver:
             shortest[name] = max(shortest.get(name, 0.0), 1.0 / (1.0 + elastic.max_elongation))
         self._bounds = replace(bounds, shortest=shortest)
         self._newtons = newtons_per_unit(stages.model, design.tissue_stiffness)
-        self._figures = Figures(stages)  # they hang on the body, not on its lines
+        self._figures = QuantityReaders(stages)  # they hang on the body, not on its lines
         self._goals: Sequence[Goal] = ()
         self._progress: Progress = quiet
         self.nearer: Callable[[Design], object] = lambda design: None
@@ -156,7 +156,7 @@ class InverseSolver:
 
     def values_at(self, names: Collection[str], points: Points) -> dict[str, float]:
         """Return what the figures ``names`` are where the control points are at ``points`` (n, 3) [mm]."""
-        values, _ = self._figures.of(tuple(names))(points)
+        values, _ = self._figures.reader(tuple(names))(points)
         return dict(zip(names, values.tolist(), strict=True))
 
     def _told(
@@ -243,7 +243,7 @@ class InverseSolver:
     # -- its parts
 
     def _begun(self, stages: Stages) -> Search:
-        read = self._figures.of([goal.name for goal in self._goals])
+        read = self._figures.reader([goal.name for goal in self._goals])
         search = Search(stages, self._goals, self._bounds, self._progress, read)
         search.set_tension_limits(self._limit.hardest)
         search.nearer = lambda found: self.nearer(found.design)

@@ -8,7 +8,7 @@ from math import hypot
 
 from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER, LIFT, OUT, Goal, reading
 from core.analysis.inverse_design.solve import InverseResult, solve_targets
-from core.analysis.symmetry.compare import NO_BREAST, Evenness, compare_sides
+from core.analysis.symmetry.compare import NO_BREAST, SideDifference, compare_sides
 from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, split_sides, splittable_lines
 from core.control_mesh.template import read_template
 from core.errors import UserError
@@ -39,9 +39,9 @@ class BalanceResult:
 
     result: InverseResult
     goals: tuple[Goal, ...]
-    rest: Evenness
-    before: Evenness
-    after: Evenness
+    rest: SideDifference
+    before: SideDifference
+    after: SideDifference
     kept: Mapping[str, tuple[float, float]]
     split: tuple[str, ...]
 
@@ -79,7 +79,7 @@ def _kept(stages: Stages, control_points: Points) -> dict[str, float]:
     return {name: reading(stages, name)(control_points).value for name in KEPT}
 
 
-def make_even(
+def balance_sides(
     stages: Stages,
     shortest: Mapping[str, float] | None = None,
     kept: Collection[str] = (),

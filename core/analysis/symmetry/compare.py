@@ -24,7 +24,7 @@ NO_BREAST = "On one side no breast stands out: its bust point only mirrors the o
 
 
 @dataclass(frozen=True)
-class Evenness:
+class SideDifference:
     """How left and right differ in one shape of a body.
 
     ``higher`` and ``further_out`` are how much higher and further to the front the left bust point is than
@@ -52,8 +52,8 @@ class Evenness:
 class BeforeAfter:
     """How left and right differ ``before``, at rest, and ``after``; ``notes`` say what is not known."""
 
-    before: Evenness
-    after: Evenness
+    before: SideDifference
+    after: SideDifference
     notes: tuple[str, ...]
 
 
@@ -67,13 +67,13 @@ def compare_sides(stages: Stages, control_points: Points) -> BeforeAfter:
     return BeforeAfter(before, after, () if shown else (NO_BREAST,))
 
 
-def _of(stages: Stages, control_points: Points) -> Evenness:
+def _of(stages: Stages, control_points: Points) -> SideDifference:
     mirrored = _mirrored(stages.body, stages.control, stages.patch)
     left, right = stages.watch.bust_points(control_points)
     aside = (left[0] - mirrored.middle) - (mirrored.middle - right[0])
     calm = stages.body.smoothed.vertices
     moves = deform(stages.binding, control_points) - stages.body.mesh.vertices
-    return Evenness(
+    return SideDifference(
         float(left[2] - right[2]),
         float(right[1] - left[1]),
         float(aside),
@@ -107,7 +107,7 @@ class SymmetryRow:
     sided: bool = True
 
 
-def symmetry_rows(before: Evenness, after: Evenness) -> list[SymmetryRow]:
+def symmetry_rows(before: SideDifference, after: SideDifference) -> list[SymmetryRow]:
     """Return how left and right differ as a table, two shapes side by side."""
     first, last = _values(before), _values(after)
     units = {key: "ml" if key in ("in_all", "left_more", "right_more") else "mm" for key in first}
@@ -115,7 +115,7 @@ def symmetry_rows(before: Evenness, after: Evenness) -> list[SymmetryRow]:
     return [SymmetryRow(key, units[key], first[key], last[key], sided[key]) for key in first]
 
 
-def _values(told: Evenness) -> dict[str, float | None]:
+def _values(told: SideDifference) -> dict[str, float | None]:
     skin = told.skin
     return {
         "higher": told.higher,

@@ -33,7 +33,7 @@ from core.measurements.uncertain_value import (
     ROOT,
     SCAN,
     SOURCES,
-    Spread,
+    OutputUncertainties,
     Uncertainty,
 )
 from core.mechanics.options import CONTACTS
@@ -66,11 +66,11 @@ class UncertaintyEstimator:
         self._failed = 0
         self._propagation: Propagation | None = None
 
-    def estimate_partial(self, progress: Progress = quiet) -> Spread:
+    def estimate_partial(self, progress: Progress = quiet) -> OutputUncertainties:
         """Return the spread by all sources but the landmarks, which are slow."""
         return self._by([knob for knob in self._knobs if knob.source != LANDMARKS], progress)
 
-    def estimate(self, progress: Progress = quiet) -> Spread:
+    def estimate(self, progress: Progress = quiet) -> OutputUncertainties:
         """Return the spread by all sources, and the figures with the other skin contact."""
         if self._propagation is None:
             self.estimate_partial(progress)
@@ -87,7 +87,7 @@ class UncertaintyEstimator:
     def _knobs(self) -> tuple[UncertainParameter, ...]:
         return uncertain_parameters(self.trials.base, self.sizes)
 
-    def _by(self, turning: Sequence[UncertainParameter], progress: Progress) -> Spread:
+    def _by(self, turning: Sequence[UncertainParameter], progress: Progress) -> OutputUncertainties:
         # Two BLAS threads make these small products many times slower.
         with threadpool_limits(1):
             progress("propagating", 0.0)
@@ -101,7 +101,7 @@ class UncertaintyEstimator:
 
 def estimate_uncertainty(
     stages: Stages, sizes: InputUncertainty | None = None, progress: Progress = quiet
-) -> Spread:
+) -> OutputUncertainties:
     """Return how far the figures of a design may be off; see ``UncertaintyEstimator``."""
     return UncertaintyEstimator(PerturbedSolutions(stages), sizes).estimate(progress)
 
@@ -125,7 +125,9 @@ def _other_contact(trials: PerturbedSolutions) -> tuple[str, Mapping[str, float]
     return other, MappingProxyType(tried.values)
 
 
-def _spread(propagation: Propagation, found: list[Effect], sizes: InputUncertainty, failed: int) -> Spread:
+def _spread(
+    propagation: Propagation, found: list[Effect], sizes: InputUncertainty, failed: int
+) -> OutputUncertainties:
     doubts: dict[str, dict[str, float]] = {}
     for effect in found:
         for key, step in effect.values.items():
@@ -148,7 +150,7 @@ def _spread(propagation: Propagation, found: list[Effect], sizes: InputUncertain
         key: Uncertainty({name: float(sd) for name, sd in parts.items()}) for key, parts in doubts.items()
     }
     rest = next((effect.parameter.sd for effect in found if effect.parameter.source == SCAN), 0.0)
-    return Spread(
+    return OutputUncertainties(
         by_output=MappingProxyType(told),
         skin=np.sqrt(skin),
         rest=rest,

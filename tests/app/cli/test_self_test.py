@@ -23,7 +23,15 @@ import core.document.presets
 from app.cli.commands import picture
 from app.cli.commands.self_test import LINES, PARTS
 from app.cli.self_test import checks, window
-from app.cli.self_test.parts import TEMPORARY, Bench, Part, PartError, captured_faults, isolated, try_parts
+from app.cli.self_test.parts import (
+    TEMPORARY,
+    Part,
+    PartError,
+    SelfTestFixture,
+    captured_faults,
+    isolated,
+    try_parts,
+)
 from app.gui.theme.stylesheet import load_fonts
 from core.errors import UserError
 from core.pipeline.build import Stages
@@ -32,8 +40,8 @@ ROOT = Path(__file__).parents[3]
 
 
 @pytest.fixture
-def bench(tmp_path: Path, built: Callable[[str], Stages]) -> Bench:
-    result = Bench(tmp_path)
+def bench(tmp_path: Path, built: Callable[[str], Stages]) -> SelfTestFixture:
+    result = SelfTestFixture(tmp_path)
     result.stages = built("mannequin")
     return result
 
@@ -82,7 +90,7 @@ def test_a_failed_part_hides_none_of_the_others() -> None:
     assert written[0].split() == ["first"], "a part is named before it runs: it may end the program"
 
 
-def test_faults_that_are_only_printed_are_captured(qapp: QApplication, bench: Bench) -> None:
+def test_faults_that_are_only_printed_are_captured(qapp: QApplication, bench: SelfTestFixture) -> None:
     def tear() -> None:
         raise ValueError("torn")
 
@@ -133,7 +141,7 @@ def test_without_isolation_the_self_test_does_not_start(
         pytest.fail("it has started")
 
 
-def test_a_missing_file_is_named(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_file_is_named(bench: SelfTestFixture, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "3 presets" in checks.shipped_files(bench)
     with monkeypatch.context() as patch:
         patch.setattr(core.document.presets, "built_in", lambda: core.document.presets.preset_of("{"))
@@ -147,7 +155,7 @@ def test_a_missing_file_is_named(bench: Bench, monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_missing_glyphs_and_fonts_are_found(
-    qapp: QApplication, bench: Bench, monkeypatch: pytest.MonkeyPatch
+    qapp: QApplication, bench: SelfTestFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     load_fonts()
     assert "Noto Sans JP" in window.fonts(bench)
@@ -166,7 +174,7 @@ def test_missing_glyphs_and_fonts_are_found(
         window.fonts(bench)
 
 
-def test_a_spoilt_report_is_found(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_spoilt_report_is_found(bench: SelfTestFixture, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = b"%PDF- /Type /Page\n/Type /Page\n/FontName /Inter /FontName /NotoSansJP /Image %%EOF"
     for spoilt, problem in (
         (whole, ""),
@@ -203,7 +211,7 @@ def test_a_busy_machine_is_waited_for_but_not_for_ever(monkeypatch: pytest.Monke
             picture.wait_until(lambda: False, turn)
 
 
-def test_wrong_landmarks_and_loops_are_found(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_wrong_landmarks_and_loops_are_found(bench: SelfTestFixture, monkeypatch: pytest.MonkeyPatch) -> None:
     assert checks.solver(bench)
     away = checks.BUST_POINT[0] + 9.0, *checks.BUST_POINT[1:]
     monkeypatch.setattr(checks, "BUST_POINT", away)

@@ -16,7 +16,7 @@ from app.gui.widgets.inline_edit import read_figure
 from app.presenters.bust_shift import BustShift, BustStep
 from app.presenters.maps import MAPS, automatic_range, map_kinds, ramp_of, section_words, sides_words
 from app.rendering.appearance import rgb
-from core.measurements.uncertain_value import SOURCES, Spread, Uncertainty
+from core.measurements.uncertain_value import SOURCES, OutputUncertainties, Uncertainty
 
 
 @pytest.fixture
@@ -117,7 +117,7 @@ def test_a_section_tells_how_far_that_may_be_off() -> None:
     doubts = {
         key: Uncertainty({"scan": sd}) for key, sd in (("lift left", 0.6), ("out left", 0.02), ("lift", 6.0))
     }
-    spread = Spread(doubts, np.zeros(0), 0.2, 2.0, SOURCES, {}, "sliding")
+    spread = OutputUncertainties(doubts, np.zeros(0), 0.2, 2.0, SOURCES, {}, "sliding")
     said = section_words("x", "left", move, spread).replace("\N{NO-BREAK SPACE}", " ")
     assert said == "Bust point left 4.0 ± 1.2 mm up, 1.5 ± 0.1 mm back"
     assert section_words("x", "right", move, spread) == "Bust point right 4.4 mm up, 2.5 mm forward"

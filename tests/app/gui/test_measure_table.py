@@ -12,7 +12,7 @@ from app.gui.features.measurements.table import HEAD, TOP, MeasureTable
 from app.gui.features.measurements.table_row import ROW, cells
 from app.presenters.measurements import MeasureView, as_table
 from app.presenters.uncertainty import with_uncertainty
-from core.measurements.uncertain_value import SOURCES, Spread, Uncertainty
+from core.measurements.uncertain_value import SOURCES, OutputUncertainties, Uncertainty
 
 GIRTH = MeasureView("Bust", "mm", 900.0, 869.5, key="bust_girth", group="Girths", tip="By tape.")
 LINE = MeasureView("Mid-bust", "mm", 422.3, 410.9, "along the line, side to side", group="Followed")
@@ -65,7 +65,7 @@ def test_a_table_that_is_given_away_notes_that_it_is_no_result() -> None:
 
 def test_a_length_says_that_no_plus_minus_is_worked_out() -> None:
     doubts = {"after:bust_girth": Uncertainty({"scan": 1.0})}
-    known = Spread(doubts, np.zeros(1), 0.2, 2.0, SOURCES, {}, "sliding")
+    known = OutputUncertainties(doubts, np.zeros(1), 0.2, 2.0, SOURCES, {}, "sliding")
     girth, line = with_uncertainty([GIRTH, LINE], known, faint=False)
     assert line.off == ()
     assert "lengths of lines too, only the bust points have a ±" in line.told()

@@ -14,7 +14,7 @@ from app.gui.theme.stylesheet import load_fonts
 from app.i18n.catalog import speaking
 from app.presenters.samples import sample_design
 from app.presenters.symmetry import symmetry_view
-from core.analysis.symmetry.compare import BeforeAfter, Evenness
+from core.analysis.symmetry.compare import BeforeAfter, SideDifference
 from core.analysis.symmetry.mirrored_surface import SkinGap
 from core.pipeline.build import build
 
@@ -28,7 +28,7 @@ SKIN = SkinGap(3.6, 11.6, "left", 0, 54.0, 40.0, 1.0)
 def test_titles_and_units_are_whole_beside_what_figures_may_be_off(words: str, qapp: QApplication) -> None:
     load_fonts()
     stages = build(sample_design("person").with_line("mid-bust", 0.97))
-    now = Evenness(-11.8, -10.3, -0.1, SKIN)
+    now = SideDifference(-11.8, -10.3, -0.1, SKIN)
     with speaking(words):
         summary = symmetry_view(BeforeAfter(now, now, ()), stages)
         card = SymmetryCard()

@@ -18,13 +18,13 @@ from app.presenters.symmetry import (
 )
 from core.analysis.inverse_design.quantities import Goal
 from core.analysis.inverse_design.solve import InverseResult
-from core.analysis.symmetry.compare import BeforeAfter, Evenness, compare_sides
+from core.analysis.symmetry.compare import BeforeAfter, SideDifference, compare_sides
 from core.analysis.symmetry.mirrored_surface import SkinGap
 from core.control_mesh.template import read_template
 from core.document.line_notation import ready_made_lines
 from core.document.lines import LineSettings
 from core.document.split_lines import split
-from core.measurements.uncertain_value import SOURCES, Spread, Uncertainty
+from core.measurements.uncertain_value import SOURCES, OutputUncertainties, Uncertainty
 from core.pipeline.build import Stages, build
 
 TEMPLATE = read_template("168")
@@ -41,7 +41,7 @@ def told(person: Stages) -> BeforeAfter:
 
 
 def test_each_figure_names_the_side_that_is_more(person: Stages) -> None:
-    left = Evenness(2.04, 0.3, -0.04, SkinGap(1.0, 3.0, "left", 0, 41.0, 12.0, 1.0))
+    left = SideDifference(2.04, 0.3, -0.04, SkinGap(1.0, 3.0, "left", 0, 41.0, 12.0, 1.0))
     summary = symmetry_view(BeforeAfter(left, replace(left, higher=-1.2), ()), person)
     views = {view.title: view for view in summary.views}
     assert summary.says == "Bust points: right 1.2 mm higher."
@@ -59,12 +59,12 @@ def test_each_figure_names_the_side_that_is_more(person: Stages) -> None:
 
 
 def test_a_difference_within_the_error_is_said_to_be_none(person: Stages) -> None:
-    now = Evenness(-2.0, 3.0, 0.0, None)
+    now = SideDifference(-2.0, 3.0, 0.0, None)
     offs = {"after:asymmetry_height": 5.9, "after:asymmetry_forward": 1.2}
 
     def told(higher: float, out: float) -> SymmetryView:
         doubts = {key: Uncertainty({"scan": 0.5 * off}) for key, off in offs.items()}
-        spread = Spread(doubts, np.zeros(0), 0.2, 2.0, SOURCES, {}, "sliding")
+        spread = OutputUncertainties(doubts, np.zeros(0), 0.2, 2.0, SOURCES, {}, "sliding")
         there = replace(now, higher=higher, further_out=out)
         return symmetry_view(BeforeAfter(there, there, ()), person, spread=spread)
 

@@ -9,7 +9,7 @@ import pytest
 from slopes import doubled, slope
 
 from app.presenters.samples import sample_design
-from core.analysis.inverse_design.quantities import Figures
+from core.analysis.inverse_design.quantities import QuantityReaders
 from core.analysis.inverse_design.sensitivities import LinearizedSolutions
 from core.document.presets import built_in, with_preset
 from core.pipeline.active_lines import free_lines
@@ -37,7 +37,9 @@ def plain() -> Stages:
 @pytest.mark.parametrize("choice", CHOICES, ids=str)
 def test_slopes_are_those_of_differences(plain: Stages, choice: dict[str, str | bool]) -> None:
     stages = doubled(build(replace(plain.design, **choice), plain))
-    answers = LinearizedSolutions(stages, GROUPS, Figures(stages).of(("lift", "out left", "girth", *HEIGHTS)))
+    answers = LinearizedSolutions(
+        stages, GROUPS, QuantityReaders(stages).reader(("lift", "out left", "girth", *HEIGHTS))
+    )
     look = answers(HERE)
     for column, way in enumerate(np.eye(2)):
 
@@ -52,7 +54,7 @@ def test_slopes_are_those_of_differences(plain: Stages, choice: dict[str, str | 
 
 
 def test_answers_are_those_from_rest_and_worked_out_once(plain: Stages) -> None:
-    answers = LinearizedSolutions(plain, GROUPS, Figures(plain).of(["out"]))
+    answers = LinearizedSolutions(plain, GROUPS, QuantityReaders(plain).reader(["out"]))
     assert answers(HERE) is answers(HERE.copy())
     assert len(answers) == 1
     assert answers.is_reachable_from_original(HERE)

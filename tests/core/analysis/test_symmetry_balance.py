@@ -8,7 +8,7 @@ import pytest
 
 from app.presenters.samples import sample_design
 from core.analysis.inverse_design.quantities import reading
-from core.analysis.symmetry.balance import EVEN, balance_goals, make_even
+from core.analysis.symmetry.balance import EVEN, balance_goals, balance_sides
 from core.analysis.symmetry.compare import NO_BREAST, compare_sides
 from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, split_sides, splittable_lines
 from core.control_mesh.template import read_template
@@ -77,7 +77,7 @@ def test_lift_and_way_out_are_to_stay_however_few_lines_there_are(plain: Stages,
 def test_an_uneven_design_is_made_even_and_keeps_its_lift(uneven: Stages) -> None:
     here = solve(uneven).control_points
     assert compare_sides(uneven, here).after.largest_difference > 2.0 * ENOUGH
-    made = make_even(uneven)
+    made = balance_sides(uneven)
     assert made.split == ()
     assert made.is_balanced
     solved = solve(build(made.result.design, uneven)).control_points
@@ -100,7 +100,7 @@ def person() -> Stages:
 
 def test_what_brings_less_than_it_takes_away_is_not_worth_it(person: Stages) -> None:
     # At any price 0.5 mm of 11.4 could be had, with the line drawn from 94 to 88 % and the shape strained.
-    made = make_even(build(person.design.with_line("full-bust", 0.94), person))
+    made = balance_sides(build(person.design.with_line("full-bust", 0.94), person))
     assert not made.is_worthwhile
     assert not made.result.strained
     assert made.gain < made.loss < 1.0
@@ -111,7 +111,7 @@ def test_what_is_to_stay_is_let_go_of_for_what_is_even(person: Stages) -> None:
     design = person.design.with_line("mid-bust", 0.97).with_line("full-bust", 0.97)
     for line in ready_made_lines(TEMPLATE)["straps"]:
         design = design.with_custom_line(replace(line, over_shoulder=False)).with_line(line.name, 0.97)
-    made = make_even(build(design, person))
+    made = balance_sides(build(design, person))
     assert made.is_balanced
     assert made.goals == EVEN
     assert made.is_worthwhile
@@ -121,7 +121,7 @@ def test_what_is_to_stay_is_let_go_of_for_what_is_even(person: Stages) -> None:
 
 def test_what_hinders_is_parted_first_and_what_remains_is_told(person: Stages) -> None:
     whole = build(replace(person.design, line_contact="sliding").with_line("mid-bust", 0.93), person)
-    made = make_even(whole)
+    made = balance_sides(whole)
     assert made.is_worthwhile
     assert made.split == ("mid-bust",)
     assert made.result.design.active_lines() == {"mid-bust left", "mid-bust right"}
@@ -138,7 +138,7 @@ def test_without_a_line_for_one_side_it_is_refused(plain: Stages) -> None:
         plain.design.with_line("mid-bust", 0.95).with_line_settings(LineSettings("mid-bust", locked=True)),
     ):
         with pytest.raises(UserError, match="one side alone"):
-            make_even(build(design, plain))
+            balance_sides(build(design, plain))
 
 
 def test_a_breast_that_does_not_show_is_not_made_even(uneven: Stages) -> None:
@@ -146,5 +146,5 @@ def test_a_breast_that_does_not_show_is_not_made_even(uneven: Stages) -> None:
     across = replace(marks.points["bust_point_left"], rule=ACROSS)
     one = replace(marks, points={**marks.points, "bust_point_left": across})
     with pytest.raises(UserError) as refusal:
-        make_even(replace(uneven, landmarks=one))
+        balance_sides(replace(uneven, landmarks=one))
     assert refusal.value.message == NO_BREAST

@@ -36,7 +36,7 @@ from core.measurements.uncertain_value import (
     SOURCES,
     TAPE,
     TISSUE,
-    Spread,
+    OutputUncertainties,
     Uncertainty,
     round_uncertainty,
     uncertainty_digits,
@@ -62,7 +62,7 @@ def trials(plain: Stages) -> PerturbedSolutions:
 
 
 @pytest.fixture(scope="module")
-def told(trials: PerturbedSolutions) -> list[Spread]:
+def told(trials: PerturbedSolutions) -> list[OutputUncertainties]:
     finding = UncertaintyEstimator(trials, SURE)
     return [finding.estimate_partial(), finding.estimate()]
 
@@ -128,7 +128,7 @@ def test_a_bust_point_moves_the_distance_by_what_it_goes_aside() -> None:
     assert effect.values["before:waist_girth"] == pytest.approx(0.0, abs=1e-9)
 
 
-def test_the_scan_makes_a_girth_longer_all_round_and_no_change(told: list[Spread]) -> None:
+def test_the_scan_makes_a_girth_longer_all_round_and_no_change(told: list[OutputUncertainties]) -> None:
     waist = told[-1].by_output["before:waist_girth"]
     assert waist.sd == pytest.approx(tau * default_uncertainty().skin_mm, rel=0.02)
     assert told[-1].by_output["change:waist_girth"].sd < 1e-9
@@ -136,14 +136,16 @@ def test_the_scan_makes_a_girth_longer_all_round_and_no_change(told: list[Spread
     assert told[-1].plus_minus("before:hip_girth") is None  # the mannequin shows no hip
 
 
-def test_newtons_of_tissue_alone_go_with_its_stiffness(plain: Stages, told: list[Spread]) -> None:
+def test_newtons_of_tissue_alone_go_with_its_stiffness(
+    plain: Stages, told: list[OutputUncertainties]
+) -> None:
     newtons = line_tensions(plain, PerturbedSolutions(plain).points)["mid-bust"].mean
     by_tissue = told[-1].by_output["tension:mid-bust"].by_source[TISSUE]
     assert by_tissue == pytest.approx(default_uncertainty().tissue_ln * newtons, rel=1e-6)
     assert TISSUE not in told[-1].by_output["lift"].by_source  # such lines are as stiff as they are set
 
 
-def test_the_quick_part_comes_first_and_the_other_contact_last(told: list[Spread]) -> None:
+def test_the_quick_part_comes_first_and_the_other_contact_last(told: list[OutputUncertainties]) -> None:
     first, last = told
     assert not first.whole
     assert last.whole
@@ -155,13 +157,15 @@ def test_the_quick_part_comes_first_and_the_other_contact_last(told: list[Spread
     assert last.rest == SURE.skin_mm
 
 
-def test_what_a_root_may_be_off_is_in_the_volumes_and_not_in_their_change(told: list[Spread]) -> None:
+def test_what_a_root_may_be_off_is_in_the_volumes_and_not_in_their_change(
+    told: list[OutputUncertainties],
+) -> None:
     assert told[-1].by_output["after:breast_volume_left"].by_source["root"] > 5.0
     assert "root" not in told[-1].by_output["change:breast_volume_left"].by_source
 
 
 def test_another_length_of_the_line_takes_what_hangs_on_landmarks_along(
-    plain: Stages, trials: PerturbedSolutions, told: list[Spread]
+    plain: Stages, trials: PerturbedSolutions, told: list[OutputUncertainties]
 ) -> None:
     assert told[-1].whole
     after = PerturbedSolutions(build(plain.design.with_line("mid-bust", 0.96), plain), trials)
@@ -229,7 +233,7 @@ def test_a_source_that_is_none_turns_nothing(plain: Stages) -> None:
 
 
 def test_what_goes_with_stiffness_is_off_by_a_factor_and_never_below_nothing(
-    plain: Stages, trials: PerturbedSolutions, told: list[Spread]
+    plain: Stages, trials: PerturbedSolutions, told: list[OutputUncertainties]
 ) -> None:
     tissue = next(each for each in uncertain_parameters(trials.base, SURE) if each.source == TISSUE)
     alone = Uncertainty({TISSUE: told[-1].by_output["tension:mid-bust"].by_source[TISSUE]})
@@ -241,7 +245,9 @@ def test_what_goes_with_stiffness_is_off_by_a_factor_and_never_below_nothing(
     assert spread.between("lift", 1.0) == (-17.0, 19.0)
 
 
-def test_a_force_that_is_off_by_more_than_itself_is_told_from_nothing_on(told: list[Spread]) -> None:
+def test_a_force_that_is_off_by_more_than_itself_is_told_from_nothing_on(
+    told: list[OutputUncertainties],
+) -> None:
     key = "tension:mid-bust"
     slack = replace(told[-1], by_output={key: Uncertainty({"tape": 1.0, LINE: 0.1})}, values={key: 0.5})
     assert slack.factor(key) is None
@@ -255,7 +261,7 @@ def test_a_force_that_is_off_by_more_than_itself_is_told_from_nothing_on(told: l
 
 @pytest.mark.parametrize(("value", "ends"), [(-1.0, (0.0, 0.0)), (0.5, (0.0, 1.3)), (2.0, (1.2, 2.8))])
 def test_the_range_of_a_tension_ends_where_a_band_would_have_to_push(
-    told: list[Spread], value: float, ends: tuple[float, float]
+    told: list[OutputUncertainties], value: float, ends: tuple[float, float]
 ) -> None:
     key = "tension:mid-bust"
     doubtful = replace(told[-1], by_output={key: Uncertainty({"tape": 0.4})}, values={key: value})
@@ -279,7 +285,7 @@ def test_what_hangs_on_landmarks_of_which_nobody_knows_how_sure_they_are_has_no_
 
 
 def test_what_placing_a_landmark_where_it_is_changes_is_in_the_spread(
-    plain: Stages, trials: PerturbedSolutions, told: list[Spread]
+    plain: Stages, trials: PerturbedSolutions, told: list[OutputUncertainties]
 ) -> None:
     there, key = trials(perturb(plain, {PLACING: 0.0})).values, "before:root_length_left"
     jump = there[key] - trials.original.before["root_length_left"].value
@@ -310,7 +316,7 @@ def test_a_bare_body_is_neither_fitted_nor_solved(plain: Stages, monkeypatch: py
     assert under == same
 
 
-def test_where_the_spread_says_too_little_it_says_so(plain: Stages, told: list[Spread]) -> None:
+def test_where_the_spread_says_too_little_it_says_so(plain: Stages, told: list[OutputUncertainties]) -> None:
     assert "before:waist_girth" in told[-1].by_output
     assert told[-1].cautions == (WAIST,), "the narrowest place is not the anatomical waist"
     sliding = replace(plain.design, line_contact="sliding", volume="conventional")

@@ -36,7 +36,7 @@ from core.measurements.uncertain_value import (
     OUT,
     SOURCES,
     TENSION,
-    Spread,
+    OutputUncertainties,
     Uncertainty,
 )
 from core.pipeline.build import Stages, build
@@ -57,11 +57,11 @@ def plain(solved: Solution) -> Report:
     return make_report(shown, solved.records, Heading("anna", "2026-01-31"))
 
 
-def spread(stages: Stages) -> Spread:
+def spread(stages: Stages) -> OutputUncertainties:
     """What is off by what, without the work of finding it."""
     doubts = {key: Uncertainty({"scan": sd}) for key, sd in OFFS.items()}
     heights = stages.body.mesh.vertices[:, 2] / 1000.0
-    return Spread(doubts, heights, 0.2, 2.0, SOURCES, {}, "sliding")
+    return OutputUncertainties(doubts, heights, 0.2, 2.0, SOURCES, {}, "sliding")
 
 
 def test_a_sheet_without_it_has_nothing_of_it(plain: Report) -> None:
@@ -88,7 +88,7 @@ def test_figures_and_curves_get_what_they_may_be_off_by(solved: Solution, plain:
     assert float(rows["up"]["off_difference"]) == 0.2
 
 
-def everywhere(stages: Stages, sheet: Report) -> Spread:
+def everywhere(stages: Stages, sheet: Report) -> OutputUncertainties:
     """What is off by as much as on a usual body, at every figure."""
     keys = [f"{kind}:{row['key']}" for row in sheet.measures for kind in (BEFORE, AFTER, CHANGE)]
     doubts = {key: Uncertainty({"scan": 4.0}) for key in (*keys, LIFT, OUT)}
@@ -97,7 +97,7 @@ def everywhere(stages: Stages, sheet: Report) -> Spread:
     figures |= {f"{MAX_KPA}:{row.line}": row.max_kpa for row in sheet.pressures if row.max_kpa}
     doubts |= {key: Uncertainty({"tissue": 0.5 * value}) for key, value in figures.items()}
     skin = np.full(len(stages.body.mesh.vertices), 1.0)
-    return Spread(doubts, skin, 0.2, 2.0, SOURCES, {}, "sliding", values=figures)
+    return OutputUncertainties(doubts, skin, 0.2, 2.0, SOURCES, {}, "sliding", values=figures)
 
 
 @pytest.mark.parametrize("body", ["mannequin", "person"])

@@ -20,7 +20,7 @@ from app.presenters.uncertainty import with_uncertainty
 from core.geometry.mesh import Points
 from core.measurements.definitions import Measure
 from core.measurements.table import Measures, before_after
-from core.measurements.uncertain_value import Spread
+from core.measurements.uncertain_value import OutputUncertainties
 from core.pipeline.live_solver import Frame
 from core.scan.body import Body
 
@@ -38,7 +38,7 @@ class MeasurementsController(QObject):
         self,
         context: AppContext,
         panel: ResultPanel,
-        uncertainties: Callable[[], tuple[Spread | None, bool]],
+        uncertainties: Callable[[], tuple[OutputUncertainties | None, bool]],
     ) -> None:
         super().__init__(context.session)
         self._context, self._panel, self._uncertainties = context, panel, uncertainties
@@ -48,7 +48,7 @@ class MeasurementsController(QObject):
         self._job: Job | None = None
         self._rest: Measures | None = None
         self._worn: Measures | None = None
-        self._sized: Spread | None = None  # what the sizes shown were told with
+        self._sized: OutputUncertainties | None = None  # what the sizes shown were told with
         self._tried: tuple[Measure, Measure] | None = None
         self._views: list[MeasureView] = []  # what was measured, without what it may be off by
         panel.marked.connect(self._show_mark)
@@ -188,7 +188,7 @@ class MeasurementsController(QObject):
         self._panel.sizes.set_sizes(views, wish("size_system"), allowance, why)
 
     @property
-    def _sure(self) -> Spread | None:
+    def _sure(self) -> OutputUncertainties | None:
         """How far the girths of the shown body may be off, once all of it is known."""
         spread, faint = self._uncertainties()
         return None if faint else spread

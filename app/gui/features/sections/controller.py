@@ -24,7 +24,7 @@ from core.errors import UserError
 from core.export.mesh import write_profile
 from core.geometry.mesh import Floats
 from core.geometry.planar_curves import AXES, Curve, Plane, Slicer, mirrored, nearest, protrusion
-from core.measurements.uncertain_value import Spread
+from core.measurements.uncertain_value import OutputUncertainties
 from core.pipeline.live_solver import Frame
 
 if TYPE_CHECKING:
@@ -256,7 +256,7 @@ class SectionDesk(QObject):
         self._again = False
         self._point(self._place)
 
-    def _words(self, spread: Spread | None) -> str:
+    def _words(self, spread: OutputUncertainties | None) -> str:
         assert self._now is not None
         assert self._slicer is not None
         frame, side = self._now.frame, side_of(self._now, self._slicer.plane)

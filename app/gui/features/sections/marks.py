@@ -12,7 +12,7 @@ from app.presenters.maps import BodyState
 from app.presenters.measurements import length_uncertainty
 from core.geometry.mesh import Floats
 from core.geometry.planar_curves import Curve, Plane, Slicer, apexes
-from core.measurements.uncertain_value import Spread
+from core.measurements.uncertain_value import OutputUncertainties
 
 AROUND = 12.0
 """What is seen beside the part that can move [mm]."""
@@ -57,7 +57,7 @@ def apex_pairs(
 
 
 def bands(
-    now: BodyState, slicer: Slicer, curves: Mapping[str, Sequence[Curve]], spread: Spread | None
+    now: BodyState, slicer: Slicer, curves: Mapping[str, Sequence[Curve]], spread: OutputUncertainties | None
 ) -> dict[str, list[Floats]]:
     """Return outlines of where the skin may lie, before and after, each (k, 2) [mm]; none if not known."""
     if spread is None:
@@ -71,7 +71,7 @@ def bands(
 
 
 def most_off(
-    now: BodyState, slicer: Slicer, curves: Sequence[Curve], spread: Spread | None
+    now: BodyState, slicer: Slicer, curves: Sequence[Curve], spread: OutputUncertainties | None
 ) -> tuple[Floats, Floats, str] | None:
     """Return where the skin may be off the most in the box that is seen first: place, way out, and the ±."""
     if spread is None:

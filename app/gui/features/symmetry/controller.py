@@ -19,7 +19,7 @@ from core.analysis.symmetry.compare import BeforeAfter, compare_sides
 from core.analysis.symmetry.split_sides import split_sides
 from core.control_mesh.template import read_template
 from core.document.design import Design
-from core.measurements.uncertain_value import Spread
+from core.measurements.uncertain_value import OutputUncertainties
 from core.pipeline.build import Stages
 from core.pipeline.live_solver import Frame
 from core.progress import Progress
@@ -45,7 +45,10 @@ class SymmetryController(QObject):
     targets_proposed = Signal(object, object, str, object)
 
     def __init__(
-        self, context: AppContext, host: QWidget, uncertainty_of: Callable[[Frame], Spread | None]
+        self,
+        context: AppContext,
+        host: QWidget,
+        uncertainty_of: Callable[[Frame], OutputUncertainties | None],
     ) -> None:
         super().__init__(context.session)
         self._context, self._session = context, context.session
@@ -150,6 +153,6 @@ class SymmetryController(QObject):
 
 def _balance(stages: Stages, progress: Progress) -> BalanceResult:
     """Return what makes a design even; the search is imported when it is asked for, not at the start."""
-    from core.analysis.symmetry.balance import make_even  # noqa: PLC0415
+    from core.analysis.symmetry.balance import balance_sides  # noqa: PLC0415
 
-    return make_even(stages, progress=progress)
+    return balance_sides(stages, progress=progress)

@@ -18,7 +18,7 @@ from core.analysis.uncertainty.estimate import UncertaintyEstimator
 from core.analysis.uncertainty.perturbed_solutions import PerturbedSolutions
 from core.errors import UserError
 from core.export.report_data import Report, with_uncertainty
-from core.measurements.uncertain_value import Spread
+from core.measurements.uncertain_value import OutputUncertainties
 from core.pipeline.live_solver import Frame
 from core.progress import Progress
 
@@ -43,7 +43,7 @@ class UncertaintyController(QObject):
         super().__init__(context.session)
         self._session, self._host, self._is_needed = context.session, host, is_needed
         self.card = UncertaintyCard(source_sentences(), limitation_sentences())
-        self._last: Spread | None = None
+        self._last: OutputUncertainties | None = None
         self._trials: PerturbedSolutions | None = None
         self._body: object = None
         self._cache = FrameCache(
@@ -61,7 +61,7 @@ class UncertaintyController(QObject):
         context.session.failed.connect(lambda _: self.follow())
 
     @property
-    def shown(self) -> tuple[Spread | None, bool]:
+    def shown(self) -> tuple[OutputUncertainties | None, bool]:
         """Those of the design that is shown, else of the last one, and whether they are out of date."""
         frame = self._session.frame
         known = None if frame is None else self.of(frame)
@@ -76,7 +76,7 @@ class UncertaintyController(QObject):
         frame = self._session.frame
         return frame is not None and self._cache.is_running(frame)
 
-    def of(self, frame: Frame) -> Spread | None:
+    def of(self, frame: Frame) -> OutputUncertainties | None:
         """Return the uncertainties of a frame, if they are known and it is a result."""
         return None if frame.is_running or invalid_reason(frame) else self._cache.get(frame)
 
@@ -102,7 +102,7 @@ class UncertaintyController(QObject):
             self._cache.hold()
         self.changed.emit()
 
-    def _compute(self, frame: Frame, progress: Progress) -> Spread:
+    def _compute(self, frame: Frame, progress: Progress) -> OutputUncertainties:
         """Compute by all sources: without the landmarks, which are slow, it would be too small."""
         trials = PerturbedSolutions(frame.stages, self._trials)
         spread = UncertaintyEstimator(trials).estimate(progress)
