@@ -114,7 +114,7 @@ def _text(found: Symmetry) -> Iterator[str]:
     yield from (*assessment_lines(found.assessment, found.design), "")
     summary, made = symmetry_view(found.compared, found.stages), found.made
     rows = [[view.title, view.before, view.after] for view in summary.views]
-    heading = ["", "before", "after"]
+    heading = ["L: left, R: right", "before", "after"]
     if made is not None:
         balanced = symmetry_view(BeforeAfter(made.rest, made.after, ()), found.stages)
         rows = [[*row, view.after] for row, view in zip(rows, balanced.views, strict=True)]
