@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -20,6 +20,7 @@ from core.garment.pressure import LinePressure, pressures
 from core.pipeline.build import Stages, build, line_targets
 from core.pipeline.solve import Solution, solve
 from core.pipeline.surface_fields import line_forces
+from tests.app.rendering.conftest import MakeScene
 
 RAMP = Ramp(("#EDD8C9", "#8A3408"), 0.0, 5.0, "#EDD8C9")
 
@@ -33,14 +34,12 @@ def solution(built: Callable[[str], Stages]) -> Solution:
 
 
 @pytest.fixture
-def scene(solution: Solution) -> Iterator[Scene]:
-    plotter = pv.Plotter(off_screen=True, window_size=(300, 300), lighting="none")
-    scene, stages = Scene(plotter), solution.stages
+def scene(make_scene: MakeScene, solution: Solution) -> Scene:
+    scene, stages = make_scene(), solution.stages
     scene.show_body(stages.body.mesh)
     scene.show_bands(bands(stages, ()))
     scene.move_body(stages.moving.vertices, *stages.shape(solution.control_points))
-    yield scene
-    plotter.close()
+    return scene
 
 
 @pytest.fixture(scope="module")

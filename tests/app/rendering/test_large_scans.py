@@ -18,7 +18,6 @@ from app.rendering import render_mesh as skin_module
 from app.rendering.body_actor import BodyPartActor
 from app.rendering.prepare import prepare_scene
 from app.rendering.render_mesh import render_mesh
-from app.rendering.scene import Scene
 from core.document.design import Design, ScanSource
 from core.geometry.mesh import Mesh
 from core.pipeline import build as pipeline
@@ -33,13 +32,6 @@ BALL = pv.Sphere(radius=100.0, theta_resolution=60, phi_resolution=60)
 @pytest.fixture
 def ball() -> Mesh:
     return Mesh(BALL.points, BALL.regular_faces)
-
-
-@pytest.fixture
-def scene():
-    plotter = pv.Plotter(off_screen=True)
-    yield Scene(plotter)
-    plotter.close()
 
 
 def test_what_a_scene_looks_up_was_worked_out_where_the_skin_was_prepared(ball, scene, monkeypatch):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -15,23 +15,21 @@ from app.rendering.band import Band
 from app.rendering.layer_cache import StaticLayerCache
 from app.rendering.scene import Scene
 from core.geometry.mesh import Mesh
+from tests.app.rendering.conftest import MakeScene
 
 WIDTH, HEIGHT = 240, 180
 
 
 @pytest.fixture
-def scene() -> Iterator[Scene]:
-    plotter = pv.Plotter(off_screen=True, window_size=[WIDTH, HEIGHT], lighting="none")
-    plotter.ren_win.SetMultiSamples(0)
-    scene, ball = Scene(plotter), pv.Icosphere(radius=100.0, nsub=4)
+def scene(make_scene: MakeScene) -> Scene:
+    scene, ball = make_scene(WIDTH, HEIGHT), pv.Icosphere(radius=100.0, nsub=4)
     scene.show_body(Mesh(ball.points, ball.regular_faces))
     angles = np.linspace(-1.2, 1.2, 30)
     round_it = np.stack([98.0 * np.sin(angles), -98.0 * np.cos(angles), np.full(30, 20.0)], axis=1)
     scene.show_bands([Band("mid-bust", round_it, "#E5536B")])
     scene.set_view("three-quarter")
     scene.frame_all()
-    yield scene
-    plotter.close()
+    return scene
 
 
 def press(scene: Scene, by: float) -> None:

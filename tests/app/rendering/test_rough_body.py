@@ -20,7 +20,6 @@ from app.rendering import ribbon_mesh as ribbon_module
 from app.rendering.band import Band
 from app.rendering.prepare import prepare_scene
 from app.rendering.render_mesh import CELL, mesh_parts, render_mesh
-from app.rendering.scene import Scene
 from core.document.design import Design, ScanSource
 from core.geometry.mesh import Mesh
 from core.pipeline.build import build
@@ -33,13 +32,6 @@ def ball(monkeypatch) -> Mesh:
     monkeypatch.setattr(piece_module, "LARGE", 1000)
     fine = pv.Icosphere(radius=RADIUS, nsub=6)
     return Mesh(fine.points, fine.regular_faces)
-
-
-@pytest.fixture
-def scene():
-    plotter = pv.Plotter(off_screen=True)
-    yield Scene(plotter)
-    plotter.close()
 
 
 def upper(ball: Mesh) -> np.ndarray:

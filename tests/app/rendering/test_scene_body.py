@@ -24,21 +24,6 @@ FOLDS_AND_BREASTS = (
 )
 
 
-def load(name: str) -> Mesh:
-    shape = pv.read(SAMPLES / f"{name}.ply")
-    return Mesh(shape.points, shape.regular_faces)
-
-
-@pytest.fixture(scope="module")
-def mannequin() -> Mesh:
-    return load("mannequin")
-
-
-@pytest.fixture(scope="module")
-def person() -> Mesh:
-    return load("person")
-
-
 # -- plates
 
 
@@ -48,27 +33,29 @@ def test_all_sides_of_a_box_are_plates() -> None:
     assert plate_faces(mesh).all()
 
 
-def test_a_curved_skin_has_no_plates(person: Mesh) -> None:
-    assert not plate_faces(person).any()
-    assert len(split_plates(person).source) == len(person.vertices)
+def test_a_curved_skin_has_no_plates(person_mesh: Mesh) -> None:
+    assert not plate_faces(person_mesh).any()
+    assert len(split_plates(person_mesh).source) == len(person_mesh.vertices)
 
 
-def test_the_mannequin_is_cut_at_neck_arms_and_hips(mannequin: Mesh) -> None:
-    flat = plate_faces(mannequin)
-    normals = mannequin.face_normals[flat]
-    low = mannequin.vertices[mannequin.faces[flat]].reshape(-1, 3)[:, 2].min()
+def test_the_mannequin_is_cut_at_neck_arms_and_hips(mannequin_mesh: Mesh) -> None:
+    flat = plate_faces(mannequin_mesh)
+    normals = mannequin_mesh.face_normals[flat]
+    low = mannequin_mesh.vertices[mannequin_mesh.faces[flat]].reshape(-1, 3)[:, 2].min()
     assert normals[:, 2].max() > 0.9  # neck
     assert normals[:, 2].min() < -0.9  # hips
     assert normals[:, 0].max() > 0.7  # the two arms
     assert normals[:, 0].min() < -0.7
-    assert low == pytest.approx(mannequin.vertices[:, 2].min(), abs=1.0)
+    assert low == pytest.approx(mannequin_mesh.vertices[:, 2].min(), abs=1.0)
 
 
-def test_splitting_keeps_every_triangle_where_it_is(mannequin: Mesh) -> None:
-    skin = split_plates(mannequin)
-    assert np.array_equal(skin.mesh.vertices[skin.mesh.faces], mannequin.vertices[mannequin.faces])
-    assert np.array_equal(skin.source[: len(mannequin.vertices)], np.arange(len(mannequin.vertices)))
-    flat = plate_faces(mannequin)
+def test_splitting_keeps_every_triangle_where_it_is(mannequin_mesh: Mesh) -> None:
+    skin = split_plates(mannequin_mesh)
+    assert np.array_equal(skin.mesh.vertices[skin.mesh.faces], mannequin_mesh.vertices[mannequin_mesh.faces])
+    assert np.array_equal(
+        skin.source[: len(mannequin_mesh.vertices)], np.arange(len(mannequin_mesh.vertices))
+    )
+    flat = plate_faces(mannequin_mesh)
     assert skin.plate[skin.mesh.faces[flat]].all()
     assert not skin.plate[skin.mesh.faces[~flat]].any()
 
@@ -102,11 +89,11 @@ def test_nothing_shades_a_ball() -> None:
     assert np.ptp(sky) < 0.15
 
 
-def test_the_fold_is_darker_than_the_breast(person: Mesh) -> None:
-    sky = bake_occlusion(person)
+def test_the_fold_is_darker_than_the_breast(person_mesh: Mesh) -> None:
+    sky = bake_occlusion(person_mesh)
 
     def at(*place: float) -> float:
-        return float(sky[np.argmin(np.linalg.norm(person.vertices - place, axis=1))])
+        return float(sky[np.argmin(np.linalg.norm(person_mesh.vertices - place, axis=1))])
 
     for fold, breast in FOLDS_AND_BREASTS:
         assert at(*fold) < at(*breast) - 0.25

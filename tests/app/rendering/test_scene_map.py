@@ -2,32 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 import pytest
-import pyvista as pv
 
 from app.rendering.appearance import APPEARANCES, rgb
 from app.rendering.scene import Scene
 from app.rendering.vertex_colors import FOLDS, Ramp
 from app.research.sphere import sphere
 from core.geometry.planar_curves import Plane, Slicer
+from tests.app.rendering.conftest import MakeScene
 
 BALL = sphere(rings=61, spokes=120)  # of radius 100 mm
 RAMP = Ramp(("#0000FF", "#EDD8C9", "#FF0000"), -10.0, 10.0, "#EDD8C9")
 
 
 @pytest.fixture
-def scene() -> Iterator[Scene]:
-    plotter = pv.Plotter(off_screen=True, window_size=(300, 300), lighting="none")
-    plotter.ren_win.SetMultiSamples(0)
-    scene = Scene(plotter)
+def scene(make_scene: MakeScene) -> Scene:
+    scene = make_scene()
     scene.show_body(BALL)
     scene.set_view("front")
     scene.frame_all()
-    yield scene
-    plotter.close()
+    return scene
 
 
 def drawn(scene: Scene) -> np.ndarray:

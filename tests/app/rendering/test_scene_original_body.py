@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 import pytest
 import pyvista as pv
@@ -11,20 +9,18 @@ import pyvista as pv
 from app.rendering.appearance import APPEARANCES, rgb
 from app.rendering.scene import Scene
 from core.geometry.mesh import Mesh
+from tests.app.rendering.conftest import MakeScene
 
 WIDTH, HEIGHT, RADIUS = 300, 240, 150.0
 
 
 @pytest.fixture
-def scene() -> Iterator[Scene]:
-    plotter = pv.Plotter(off_screen=True, window_size=(WIDTH, HEIGHT), lighting="none")
-    plotter.ren_win.SetMultiSamples(0)
-    scene = Scene(plotter)
+def scene(make_scene: MakeScene) -> Scene:
+    scene = make_scene(WIDTH, HEIGHT)
     ball = pv.Icosphere(radius=RADIUS, nsub=5)
     scene.show_body(Mesh(ball.points, ball.regular_faces))
     scene.frame_all()
-    yield scene
-    plotter.close()
+    return scene
 
 
 def ghostly(scene: Scene) -> np.ndarray:

@@ -71,8 +71,10 @@ def cured(found: Diagnosis) -> Design:
     return found.best_fix.change.design
 
 
-@pytest.mark.parametrize("volume", ["exact", "adaptive", "conventional", "none"])
-@pytest.mark.parametrize("hold", ["spring", "held"])
+@pytest.mark.parametrize(
+    ("hold", "volume"),
+    [("spring", "exact"), ("spring", "conventional"), ("spring", "none"), ("held", "adaptive")],
+)
 def test_where_a_run_rests_all_forces_add_up_to_nothing(hold: str, volume: str) -> None:
     stages = made({"mid-bust": 0.93, "full-bust": 0.95}, line_hold=hold, volume=volume)
     fight = analyse(stages)

@@ -106,7 +106,7 @@ def test_line_height_out_of_range_is_refused(template, part):
         fit_control_mesh(template, body, landmarks_at(places), part)
 
 
-@pytest.mark.parametrize("sag", [1.3, 1.5, 1.7, 2.0])
+@pytest.mark.parametrize("sag", [1.3, 2.0])
 def test_breast_that_hangs_too_low_is_never_folded_over(template, sag):
     body, landmarks = hanging(sag)
     control = fit_control_mesh(template, body, landmarks)
