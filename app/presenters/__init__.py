@@ -1,1 +1,1 @@
-"""What window, command line and report show, one module a feature. Without Qt."""
+"""Plain values and texts for window, command line and report, one module a feature. Without Qt."""

@@ -1,4 +1,4 @@
-"""The overall verdict in words: the one headline of window, sheet and command line, with its reasons."""
+"""Format the overall verdict: its headline and reasons, the same in window, report and command line."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far the bust points went from where they are on the body before: the one answer of the whole window."""
+"""Compute and format the movement of the bust points from the original body."""
 
 from __future__ import annotations
 

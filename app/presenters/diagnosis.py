@@ -1,4 +1,4 @@
-"""What the window says of a diagnosis: one sentence, the word on the button, and all figures behind it."""
+"""Format a diagnosis: one sentence, the words of the buttons, and all values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What can be exported, checked and made ready: what will be in a file, and how to write it."""
+"""Prepare exports: check names and options, describe the content, write the files."""
 
 from __future__ import annotations
 

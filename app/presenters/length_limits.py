@@ -1,4 +1,4 @@
-"""What is said of the leeway of a line: the zone of a length, its number and its reason."""
+"""Format the length limits of a line: zones, their lengths and reasons."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the window says of maps and sections: kinds, colours, ranges and figures, as plain values."""
+"""Describe maps and sections: kinds, colours, ranges and values; keep the whole body of a frame."""
 
 from __future__ import annotations
 

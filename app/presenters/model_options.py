@@ -1,4 +1,4 @@
-"""What can be chosen about the model, in plain words: what each choice does, and which is the paper's."""
+"""Describe the model options: titles, effects, and which are those of the paper."""
 
 from __future__ import annotations
 

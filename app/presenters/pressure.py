@@ -1,4 +1,4 @@
-"""What the window says of contact pressure: lights and limits, figures and places, as plain values."""
+"""Format contact pressure: ratings and limits, values and places."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The two sample bodies that Busk ships, and the design that each of them opens with."""
+"""List the sample bodies, and the design that each of them opens with."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the window says of a worn scan: how it lies, predicted less real, the numbers that were found."""
+"""Format the comparison with a fitting scan: registration, residuals, fitted parameters."""
 
 from __future__ import annotations
 

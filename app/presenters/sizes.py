@@ -1,4 +1,4 @@
-"""What is said of band and cup: the size in every system, the rule, what lies near it, the doubts."""
+"""Format band and cup sizes: the size in every system, its rule, neighbouring sizes, caveats."""
 
 from __future__ import annotations
 

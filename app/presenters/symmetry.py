@@ -1,4 +1,4 @@
-"""What the window says of left and right: figures with their sides, and what making them even begins with."""
+"""Format the comparison of left and right: values with their sides, and the steps that balance them."""
 
 from __future__ import annotations
 

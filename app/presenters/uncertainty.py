@@ -1,4 +1,4 @@
-"""What is said of how far figures may be off: beside measures, below them, and where it comes from."""
+"""Format uncertainties: ± of measurements, its meaning and sources."""
 
 from __future__ import annotations
 

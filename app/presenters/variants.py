@@ -1,4 +1,4 @@
-"""What the window says of the variants of a design beside each other: figures, and how far they are apart."""
+"""Compare the variants of a design: values side by side, and their distances."""
 
 from __future__ import annotations
 

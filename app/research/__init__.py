@@ -1,1 +1,1 @@
-"""The paper's figures and claims, studies, accuracy on known bodies."""
+"""Figures and claims of the paper, studies, accuracy on known bodies. Nothing imports this package."""

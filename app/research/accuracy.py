@@ -1,4 +1,4 @@
-"""How well bodies are understood: what is found in files whose answers are known, and how far off it is."""
+"""Measure the accuracy on files with known values: detected landmarks and girths, and their errors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The contact sheet of an accuracy run: every body from the front and from its left, with its landmarks."""
+"""Draw the contact sheet of an accuracy run: every body from the front and the left, with landmarks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The cases behind the figures: the two sample bodies, built and solved as often as needed and no oftener."""
+"""Build and solve the cases of the figures: the two sample bodies, each case once."""
 
 from __future__ import annotations
 

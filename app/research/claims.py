@@ -1,4 +1,4 @@
-"""What the paper says, statement by statement, beside what this model does: every number is measured here."""
+"""Compare the statements of the paper with this model: every number is measured here."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Trials: a model under every volume control at many lengths, and what comes of each (paper section 5)."""
+"""Solve a model with every volume control at many lengths (paper section 5)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bodies and control meshes drawn off-screen for the figures: on white, in parallel projection."""
+"""Render bodies and control meshes off-screen for the figures: on white, in parallel projection."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What all figures share: a figure with its table and caption, its files, and one quiet style for print."""
+"""Define the parts of all figures: table, caption, files, and one style for print."""
 
 from __future__ import annotations
 

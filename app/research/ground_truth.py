@@ -1,4 +1,4 @@
-"""Known answers for a folder of bodies: truth.json, where landmarks lie and what a tape measures there."""
+"""Read the known values of a folder of bodies: truth.json with landmarks and tape measurements."""
 
 from __future__ import annotations
 

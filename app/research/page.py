@@ -1,4 +1,4 @@
-"""The page REPRODUCTION.md: the figures, and what the paper says beside what was found."""
+"""Write the page REPRODUCTION.md: the figures, and the statements of the paper with measured values."""
 
 from __future__ import annotations
 

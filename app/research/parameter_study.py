@@ -1,4 +1,4 @@
-"""A search for the model in which two statements of the paper hold that the default one does not show (ours).
+"""Search for models in which two statements of the paper hold that the default model does not show (ours).
 
 Section 6 says that the nipples end higher under the adaptive force than under the conventional one, and that
 an asymmetric body has the larger error at first. The paper prints neither its line nor its law, so all lines,

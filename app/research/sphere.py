@@ -1,4 +1,4 @@
-"""The sphere of the paper's Fig. 2: a closed control mesh in a round body, with lines all round it."""
+"""Build the sphere of the paper's Fig. 2: a closed control mesh in a round body, with lines round it."""
 
 from __future__ import annotations
 
