@@ -14,7 +14,7 @@ from core.pipeline.frame import Frame
 from core.pipeline.observables import Tapes
 
 APART = 1.0
-"""From so much on the moves of left and right are told apart [mm]."""
+"""Difference above which left and right are given separately [mm]."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class BustShift:
 
     @property
     def mean(self) -> BustStep:
-        """The mean of both: what is told, and what the plot ends at."""
+        """The mean of both, which is shown and plotted."""
         return BustStep(0.5 * (self.left.up + self.right.up), 0.5 * (self.left.forward + self.right.forward))
 
     @property

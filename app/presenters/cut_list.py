@@ -36,7 +36,7 @@ def cut_list_view(frame: Frame, cuts: CutList) -> CutListView:
 
 
 def told(sentence: str, design: Design, unit: str = "") -> str:
-    """Return what the core says of lines and elastics in the words of the window; ``unit`` as in ``say``."""
+    """Return a sentence of the core with the titles of lines and elastics; ``unit`` as in ``say``."""
     for name in sorted((each.name for each in design.elastics), key=len, reverse=True):
         sentence = sentence.replace(name, say(name, unit))
     return say(titled(sentence, design), unit)
@@ -69,7 +69,7 @@ def as_table(stages: Stages, cuts: CutList, pressed: PressureList | None) -> lis
 
 
 def _off(name: str, design: Design, color: str) -> CutView:
-    """Return what is said of a band that could be cut though no line pulls there."""
+    """Return the row of a band that can be cut although its line does not constrain the model."""
     notes = (tr("On the rib cage: it moves nothing, but it can be cut."),)
     elastic = say(design.line_settings(name).elastic)
     return CutView(name, line_title(name, design), color, band_width(name, design), elastic, notes=notes)

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from app.rendering.turntable import Turntable
 
 USUAL_UNIT = "cm"
-"""The unit of measures in a file, if none is told."""
+"""The default unit of measurements in a file."""
 
 Write = Callable[[Path, Any, Progress], list[Path] | None]
 

@@ -145,7 +145,7 @@ class LandmarkView:
         return f"{self.confidence * 100:.0f} %"
 
     def words(self) -> str:
-        """Return the rule that it was found by, what it was read from, and what its colour says."""
+        """Return the rule of its detection, its evidence, and the meaning of its colour."""
         read = tr("The curve that it was read from is drawn on the body.")
         grey = tr("Not certain, and grey: the model does not hang on it.")
         sure = tr("Certain: from {least} % on it needs no second look.")

@@ -48,7 +48,7 @@ def _in_key(leeway: LengthLimits, tone: str) -> list[str]:
 
 
 def hint(leeway: LengthLimits, ratio: float) -> str:
-    """Return what is told where the pointer rests: the zone of a length [1], and why it is one.
+    """Return the tooltip of a length [1]: its zone, and the reasons of the zone.
 
     Where a reason holds for just the lengths of the zone, these are told once.
     """

@@ -94,7 +94,7 @@ def told_title(name: str, design: Design) -> str:
 
 
 def titled(said: str, design: Design | None) -> str:
-    """Return what the core says with the titles that the designer gave in place of names.
+    """Return a sentence with the titles of lines in place of their names.
 
     A line of the template that a sentence begins with is called as in the list, too.
     """

@@ -129,7 +129,7 @@ def _pressure_tip() -> str:
 
 
 def pressure_note(listed: PressureList | None, stale: bool) -> str:
-    """Return what is to be said under the legend of pressure before all; ``stale`` is of a former shape."""
+    """Return the first note below the legend of pressure; ``stale`` values belong to a former shape."""
     if listed is None:
         return tr("Worked out as soon as the run rests.")
     if stale:
@@ -140,7 +140,7 @@ def pressure_note(listed: PressureList | None, stale: bool) -> str:
 
 
 def bridge_words(off: float) -> str:
-    """Return what is said of a place at which a band goes straight over a hollow, ``off`` the skin [mm]."""
+    """Return the note on a place where a band bridges a hollow, ``off`` the skin [mm]."""
     return tr("bridges, {length} off").format(length=length(off, 0))
 
 

@@ -22,7 +22,7 @@ from core.pipeline.live_solver import Frame
 
 
 def measure_views(frame: Frame) -> list[MeasureView]:
-    """Return what the model says of itself with every frame, the bust points first."""
+    """Return the values that the model gives with every frame, the bust points first."""
     group = tr("Followed while it solves")
     rows = (*_bust_rows(frame), *_volume_rows(frame), *_line_rows(frame))
     return [replace(row, group=group) for row in rows]
@@ -206,7 +206,7 @@ class MeasureView:
 
     @property
     def details(self) -> tuple[str, ...]:
-        """What is told where there is room: how it is taken, its name in the standard, how sure it is."""
+        """The details: its definition, its name in the standard, its confidence."""
         if not self.key:
             return self.off_told
         named = tr("ISO 8559-1: {name}").format(name=self.iso) if self.iso else tr("Not in ISO 8559-1")
@@ -237,7 +237,7 @@ class MeasureView:
         return shown_digits(digits_of(self.unit), self.unit)
 
     def told(self) -> str:
-        """Return all that is told of it under the pointer."""
+        """Return the tooltip."""
         return "\n".join((self.label, *self.details))
 
     def spoken(self) -> str:
@@ -333,7 +333,7 @@ def suggested_name(draft: Draft, titles: Mapping[str, str]) -> str:
 
 
 def value_texts(before: Measure, after: Measure) -> tuple[str, str, str]:
-    """Return what a measure is now, what is said of it, and what is doubtful in it or why it is missing."""
+    """Return the values of a measurement, their change, and doubts or why it is missing."""
     if before.value is None or after.value is None:
         return "", "", say(before.note or after.note)
     values = f"{length_number(before.value)} → {length(after.value)}"

@@ -243,5 +243,5 @@ def round_ticks(low: float, high: float, count: int = 4) -> list[float]:
 
 
 def digits_of(levels: list[float]) -> int:
-    """Return with how many digits these levels are told apart."""
+    """Return the number of digits that distinguishes these levels."""
     return next((d for d in (0, 1, 2) if all(abs(v - round(v, d)) < 1e-9 for v in levels)), 3)

@@ -116,7 +116,7 @@ def unknown_pressure() -> str:
 
 
 def pressure_summary(listed: PressureList | None, design: Design, doubt: str = "") -> PressureSummary:
-    """Return what all bands press with together; None is not known yet, or no result as ``doubt`` says."""
+    """Return the pressures of all bands; None is not known yet, or not a result for the reason ``doubt``."""
     if listed is None:
         return _nothing(doubt or tr("Worked out as soon as the run rests."))
     most = listed.highest
@@ -177,7 +177,7 @@ class RatingLimits:
 
 @dataclass(frozen=True)
 class PressureSummary:
-    """What all bands press with: the ``largest`` pressure, its ``light`` with a ``word``, what that ``says``.
+    """The pressures of all bands: the ``largest``, its ``light`` with a ``word``, and what that means.
 
     ``place`` is where it is, short, ``place_tip`` longer; ``force`` all of the force.
 

@@ -75,7 +75,7 @@ def _copy_notes(body: Body) -> tuple[str, ...]:
 
 
 def work_words(what: str) -> str:
-    """Return what is said of the work in hand; nothing for what takes no time."""
+    """Return the name of a step of the work; empty for one that takes no time."""
     words = {
         "read scan": tr("Reading the scan"),
         "reading": tr("Reading the scan"),
@@ -94,7 +94,7 @@ def work_words(what: str) -> str:
 
 
 def work_steps() -> list[str]:
-    """Return what is said of a scan's way into the window, in order."""
+    """Return the names of the steps in which a scan is opened, in order."""
     names = (
         "reading",
         "repairing",

@@ -88,7 +88,7 @@ def _way(mm: float, more: str, less: str, sure: float = 0.0) -> str:
 
 
 def summary_text(difference: Residuals) -> str:
-    """Return what is said under the figures: the bust points, and how much is compared at all."""
+    """Return the text below the residuals: the bust points, and the compared share of the skin."""
     return joined([bust_words(difference), shown_words(difference)])
 
 
@@ -115,7 +115,7 @@ def parameter_rows(found: CalibrationResult, design: Design) -> tuple[ParameterR
 
 
 def determination_text(found: CalibrationResult, design: Design) -> str:
-    """Return which of the numbers that were found are told well, and which are not."""
+    """Return which fitted parameters are well determined, and which are not."""
     sought = [each for each in found.calibration.numbers if not each.kept]
     well, weak = (
         listed([parameter_title(each.name, design) for each in sought if each.is_well_determined is told])
@@ -196,7 +196,7 @@ def navigation_text(record: Calibration | None, worn: FittingScan | None) -> str
 
 
 def notes_of(worn: FittingScan | None, pending: bool) -> Iterator[str]:
-    """Yield what the legend of the map says instead of its own line."""
+    """Yield notes of the legend of the map, in place of its own line."""
     if worn is None:
         yield tr("Compare with a worn scan first: File menu.")
     elif pending:
@@ -215,7 +215,7 @@ class ResidualRow:
 
 @dataclass(frozen=True)
 class ParameterRow:
-    """A number that was found, as it is written: before, after, its ±; and whether it is ``told`` well."""
+    """A fitted parameter as text: before, after, its ±; and whether it is well determined."""
 
     title: str
     before: str

@@ -17,7 +17,7 @@ from core.measurements.uncertain_value import BEFORE, OutputUncertainties
 def size_views(
     measured: Measures, allowance_mm: float, spread: OutputUncertainties | None = None
 ) -> tuple[list[SizeView], str]:
-    """Return the sizes of a body in every system, or none and why; ``spread`` tells others within the ±."""
+    """Return the sizes of a body in every system, or none and why; ``spread`` adds others within the ±."""
     underbust, bust = (measured[key] for key in GIRTHS_OF_SIZES)
     if underbust.value is None or bust.value is None:
         return [], say(underbust.note or bust.note)
@@ -68,7 +68,7 @@ def _view(key: str, answer: SizeAnswer, letters: tuple[str, ...], within: str) -
 
 
 def _unlike(sentences: list[str]) -> tuple[str, ...]:
-    """Return what is said, each once: what another one says and goes on is left out."""
+    """Return sentences without those that are contained in another one."""
     return tuple(one for one in sentences if not any(one != each and one in each for each in sentences))
 
 
@@ -115,10 +115,10 @@ class SizeView:
 
     @property
     def title(self) -> str:
-        """System and size, as one says them."""
+        """The name of the system with the size."""
         return f"{self.short} {self.size}"
 
     @property
     def tip(self) -> str:
-        """What is told under the pointer, wrapped as it is rich."""
+        """The tooltip, as rich text."""
         return "".join(f"<p>{escape(each)}</p>" for each in (self.system, *self.doubts))

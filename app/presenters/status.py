@@ -84,7 +84,7 @@ class ConvergenceView:
 
 
 def display_state(frame: Frame) -> str:
-    """Return the word for a frame: its verdict's, but skin that strains beyond what is calm is told too."""
+    """Return the state of a frame: that of its verdict, or strained skin."""
     return frame.verdict.display_state
 
 

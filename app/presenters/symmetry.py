@@ -36,7 +36,7 @@ _SURE = {"higher": "asymmetry_height", "further_out": "asymmetry_forward"}
 def symmetry_view(
     told: BeforeAfter, stages: Stages, doubt: str = "", spread: OutputUncertainties | None = None
 ) -> SymmetryView:
-    """Return what the card says of a body; with a ``doubt`` there is nothing to be told after.
+    """Return the summary of a body; with a ``doubt`` there are no values after.
 
     ``spread`` tells how far figures may be off, if all of that is known.
     """
@@ -55,7 +55,7 @@ def symmetry_view(
 
 
 def map_note(told: BeforeAfter | None, after: bool) -> str:
-    """Return what the legend of the map says in ml; empty where it is not known."""
+    """Return the note of the legend of the map, in ml; empty where it is not known."""
     skin = None if told is None else (told.after if after else told.before).skin
     if skin is None:
         return ""
@@ -225,7 +225,7 @@ def _why(reply: InverseResult) -> str:
 
 
 def _way(name: str, before: float, after: float, said: str) -> str:
-    """Return how a figure goes, as ``said``: of one that has a side with that side, and no sign."""
+    """Return the change of a value, in the form ``said``: with its side in place of a sign, if it has one."""
     titles = {
         HIGHER: (tr("Left higher"), tr("Right higher")),
         FURTHER_OUT: (tr("Left further forward"), tr("Right further forward")),
@@ -246,7 +246,7 @@ def _way(name: str, before: float, after: float, said: str) -> str:
 
 @dataclass(frozen=True)
 class SymmetryRowView:
-    """One figure: its title, the ``before`` and ``after`` as they are written, and what is told of it.
+    """One figure: its title, the ``before`` and ``after`` as they are written, and its tooltip.
 
     ``shares`` say how far the bar goes before and after, -1 to 1: positive towards the left; None where
     there is no side or it is not known. ``off`` is how far it may be off, as it is written; a difference
@@ -264,7 +264,7 @@ class SymmetryRowView:
 
 @dataclass(frozen=True)
 class SymmetryView:
-    """What the card says: a sentence, figures, ``notes`` on them, and what making it even begins with.
+    """The summary: a sentence, values, ``notes`` on them, and the first step of balancing.
 
     ``hint`` says what is done first, or why nothing can be; ``possible`` whether anything can.
     """

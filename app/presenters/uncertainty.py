@@ -36,7 +36,7 @@ def source_sentences() -> tuple[str, ...]:
 
 
 def limitation_sentences() -> tuple[str, ...]:
-    """Return what no figure takes into account; the sheet says the same."""
+    """Return what no value includes, in the words of the report."""
     return tuple(say(each) for each in (*NOT_MODELLED, *LEFT_OUT))
 
 
@@ -94,7 +94,7 @@ def _shares(
 
 
 def uncertainty_view(spread: OutputUncertainties | None, waiting: str, faint: bool) -> UncertaintyView:
-    """Return what stands below the measures; ``waiting`` says why there is no ± yet."""
+    """Return the text below the measurements; ``waiting`` is the reason why there is no ± yet."""
     if spread is None:
         return UncertaintyView(waiting, short=tr("± is not there yet: why") if waiting else "")
     meaning = tr("± is twice the standard deviation: 95 % of all cases, if errors are normal.")

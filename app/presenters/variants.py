@@ -252,7 +252,7 @@ class VariantTexts:
 
 @dataclass(frozen=True)
 class VariantRow:
-    """What the figures are of: the first of them counts, a second says it in another unit."""
+    """A row of values: the first counts, a second gives it in another unit."""
 
     label: str
     figures: tuple[VariantValues | VariantTexts, ...]

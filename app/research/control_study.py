@@ -135,7 +135,7 @@ def _trial(
 def _outcome(
     model: ConstrainedModel, targets: LineTargets, exact: Equilibrium
 ) -> tuple[list[Record], Points, int | None, Convergence]:
-    """Return the records of a control, where it ends, when nothing moves any more, and what is said of it.
+    """Return the records of a control, its last points, the iteration after which it rests, its verdict.
 
     The exact answer has no records: its steps are Newton's.
     """

@@ -39,7 +39,7 @@ GIRTHS = ("bust", "underbust", "underbust_stable")
 """The girths that are judged."""
 
 SIZED = ("unit", "canonical_to_file", "landmarks", "landmarks_canonical_mm")
-"""An entry with one of these tells the size of its body."""
+"""An entry with one of these defines the size of its body."""
 
 APEXES = tuple(f"bust_apex_{side}" for side in SIDES)
 """The foremost points of the breasts: they are not looked for, but the bust point may lie near them."""
@@ -135,7 +135,7 @@ def _read_json(folder: Path) -> Table:
 
 
 def _truth(name: str, entry: Table, degraded: bool) -> tuple[Truth, set[str]]:
-    """Return what an entry of truth.json tells, and the names in it that mean nothing. Raises ValueError."""
+    """Return the values of an entry of truth.json, and its unknown names. Raises ValueError."""
     file = entry.get("file")
     if not isinstance(file, str) or file != Path(file).name:
         raise ValueError("'file' must be the plain name of a file in the folder")

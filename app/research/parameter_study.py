@@ -238,7 +238,7 @@ def pairs_of(found: Sequence[Finding], template: str = "") -> list[Pair]:
 
 
 def search_words(found: Sequence[Finding], study: Study) -> dict[str, str]:
-    """Return what the page says of the search, by the names of its blanks."""
+    """Return the text on the search, by the names of the blanks of the page."""
     pairs = pairs_of(found)
     return {
         "cases": str(len(found)),

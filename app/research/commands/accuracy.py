@@ -172,7 +172,7 @@ def _glance(groups: Mapping[str, Sequence[Case]]) -> Iterator[str]:
 
 
 def _figures(cases: Sequence[Case]) -> Iterator[tuple[str, str]]:
-    """Yield what is told of a group of files, in words and numbers."""
+    """Yield the results of a group of files, in words and numbers."""
     right = [case for case in cases if case.right]
     asked = sum(not case.sure for case in right)
     yield "correct orientation", f"{len(right)}{f'; {asked} of these asked about' if asked else ''}"
