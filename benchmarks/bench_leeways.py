@@ -56,7 +56,7 @@ def edits(window: MainWindow, way: str) -> Script:
     seconds: list[tuple[float, float, float, float]] = []
     for edit in range(EDITS):
         clock, spent = time.perf_counter(), time.process_time()
-        window.lines_desk.commit_length("full-bust", 0.90 + 0.002 * edit)
+        window.lines_controller.commit_length("full-bust", 0.90 + 0.002 * edit)
         times = []
         for names in (("mid-bust",), ("mid-bust", "full-bust")):
             yield partial(fresh, window, names)

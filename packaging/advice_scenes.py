@@ -22,16 +22,21 @@ def wishing(window: MainWindow) -> None:
     """Ask for bust points higher up, and wait for the answer on the body."""
     wait_for(window.is_settled)
     window.view.viewport.set_view("left")
-    window.ask_desk.begin([Goal("lift", 9.0)])
-    wait_for(lambda: window.ask_desk.answer is not None and not window.ask_desk.work.at_work)
-    wanted = window.ask_desk.answer.reply.design
+    window.target_shape_controller.begin([Goal("lift", 9.0)])
+    wait_for(
+        lambda: (
+            window.target_shape_controller.answer is not None
+            and not window.target_shape_controller.work.at_work
+        )
+    )
+    wanted = window.target_shape_controller.answer.reply.design
     wait_for(lambda: window.session.frame.stages.design == wanted)
 
 
 def drawing_a_profile(window: MainWindow) -> None:
     """Ask for a profile, drawn on the body as other lengths would make it, and wait for the answer."""
     wait_for(window.is_settled)
-    desk = window.ask_desk
+    desk = window.target_shape_controller
     desk.begin()
     wait_for(lambda: desk.answer is not None and not desk.work.at_work)
     desk.drawing.begin("left")
@@ -55,7 +60,7 @@ def drawing_a_profile(window: MainWindow) -> None:
 def sure(window: MainWindow) -> None:
     """Show how far measures and the curve of a section may be off."""
     window.navigation.show_step("result")
-    window.section_desk.set_on(True)
+    window.sections_controller.set_on(True)
     window.result.select("bust_girth")
     wait_for(lambda: window.uncertainty_controller.shown[0] is not None and not window.jobs.at_work())
 
@@ -74,7 +79,7 @@ def compared(window: MainWindow) -> None:
     window.scan_comparison_controller.show_page()
     window.scan_comparison_controller.read(worn_scan(stages))
     wait_for(lambda: window.scan_comparison_controller.worn is not None and not window.jobs.at_work())
-    window.map_desk.choose("worn")
+    window.maps_controller.choose("worn")
     window.scan_comparison_controller.calibrate()
     wait_for(lambda: not window.jobs.at_work())
 

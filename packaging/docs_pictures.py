@@ -44,7 +44,7 @@ def draw(shot: guide_pictures.Shot) -> None:
     with settled_window(shot.design(), **options) as window:
         part = shot.scene(window)
         # What is asked for is seen, and not taken.
-        scenes.wait_for(lambda: window.is_settled() or window.ask_desk.is_open)
+        scenes.wait_for(lambda: window.is_settled() or window.target_shape_controller.is_open)
         save_window(window, path)
         if part is not None:
             part.grab().save(str(path))

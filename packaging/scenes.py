@@ -142,8 +142,8 @@ def wiped(window: MainWindow) -> None:
 def mapped(window: MainWindow) -> None:
     """Show a map with the section plane."""
     window.navigation.show_step("result")
-    window.map_desk.choose("displacement")
-    window.section_desk.set_on(True)
+    window.maps_controller.choose("displacement")
+    window.sections_controller.set_on(True)
 
 
 def pressed(window: MainWindow) -> None:
@@ -173,7 +173,7 @@ def pin_selected(window: MainWindow) -> None:
 def variants(window: MainWindow) -> None:
     """Put two variants side by side."""
     window.variants_controller.choose("B")
-    window.lines_desk.commit_length("mid-bust", 0.9)
+    window.lines_controller.commit_length("mid-bust", 0.9)
     wait_for(window.is_settled)
     window.variants_controller.show_side_by_side()
     window.navigation.show_panel("variants")
@@ -184,7 +184,7 @@ def start_page(window: MainWindow) -> None:
     for path in recent_files():
         forget_file(path)
     for name, ratio in (("Customer 0398", 0.97), ("Customer 0412", 0.92)):
-        window.lines_desk.commit_length("mid-bust", ratio)
+        window.lines_controller.commit_length("mid-bust", ratio)
         wait_for(window.is_settled)
         window.session.save(str(Path(HOUSE.name) / f"{name}.busk"), window.project_controller._preview())
         window.session.finish_saving()
@@ -193,9 +193,9 @@ def start_page(window: MainWindow) -> None:
 
 def drawing(window: MainWindow) -> None:
     """Lead a strap through other control points."""
-    window.line_maker.add("straps")
+    window.add_lines_controller.add("straps")
     wait_for(window.is_settled)
-    window.line_routing.begin("strap left")
+    window.path_tool.begin("strap left")
 
 
 def model_page(window: MainWindow) -> None:
@@ -206,7 +206,7 @@ def model_page(window: MainWindow) -> None:
 def asking(window: MainWindow) -> None:
     """Ask which way the front is."""
     window.navigation.show_step("scan")
-    window.scan_desk.ask()
+    window.scan_controller.ask()
     wait_for(window.view.question.isVisible)
 
 

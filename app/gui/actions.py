@@ -1,4 +1,4 @@
-"""All that can be asked of the window by menu or key; a desk adds what is its own with ``add``."""
+"""All that can be asked of the window by menu or key; a controller adds its own with ``add``."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _KEYS = QKeySequence.StandardKey
 
 
 class Actions(Menus):
-    """The actions that the window itself knows, by name; ``app.gui.wiring`` connects them."""
+    """The actions that the window itself knows, by name."""
 
     def __init__(self, parent: QWidget, undo: QUndoGroup, view: Mapping[str, QAction]) -> None:
         super().__init__(parent)

@@ -1,6 +1,8 @@
-"""The main window: it makes the parts and puts them in their places."""
+"""The main window, the composition root: it makes all parts, and connects features with each other."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QKeyEvent, QUndoGroup
@@ -27,17 +29,17 @@ from app.gui.features.garment.pressure_controller import PressureController
 from app.gui.features.help.controller import HelpController
 from app.gui.features.help.crash_handler import CrashHandler
 from app.gui.features.help.safe_mode import SafeMode
-from app.gui.features.landmarks.controller import LandmarkDesk
+from app.gui.features.landmarks.controller import LandmarksController
 from app.gui.features.landmarks.panel import LandmarksPanel
-from app.gui.features.lines.add_lines import LineMaker
-from app.gui.features.lines.band_drag import BandPull
-from app.gui.features.lines.controller import LinesDesk
-from app.gui.features.lines.draw_tool import LineDrawing
-from app.gui.features.lines.limits_controller import LimitsDesk
+from app.gui.features.lines.add_lines import AddLinesController
+from app.gui.features.lines.band_drag import BandDragController
+from app.gui.features.lines.controller import LinesController, LineSources
+from app.gui.features.lines.draw_tool import LineDrawTool
+from app.gui.features.lines.limits_controller import LimitsController
 from app.gui.features.lines.panel import LinesPanel
-from app.gui.features.lines.path_tool import LineRouting
-from app.gui.features.lines.presets import PresetDesk
-from app.gui.features.maps.controller import MapDesk
+from app.gui.features.lines.path_tool import LinePathTool
+from app.gui.features.lines.presets import PresetsController
+from app.gui.features.maps.controller import MapsController
 from app.gui.features.measurements.controller import MeasurementsController
 from app.gui.features.measurements.custom_measures import CustomMeasuresController
 from app.gui.features.measurements.panel import ResultPanel
@@ -49,12 +51,12 @@ from app.gui.features.project.controller import ProjectController
 from app.gui.features.project.recovery import RecoveryController
 from app.gui.features.project.start_controller import StartController
 from app.gui.features.report.controller import ReportController
-from app.gui.features.scan.controller import ScanDesk
+from app.gui.features.scan.controller import ScanController
 from app.gui.features.scan.panel import ScanPanel
 from app.gui.features.scan_comparison.controller import ScanComparisonController
-from app.gui.features.sections.controller import SectionDesk
+from app.gui.features.sections.controller import SectionsController
 from app.gui.features.symmetry.controller import SymmetryController
-from app.gui.features.target_shape.controller import AskDesk
+from app.gui.features.target_shape.controller import TargetShapeController
 from app.gui.features.uncertainty.controller import UncertaintyController
 from app.gui.features.variants.controller import VariantsController
 from app.gui.features.variants.history_controller import HistoryController
@@ -81,17 +83,20 @@ from app.gui.viewport.view_area import ViewArea
 from app.gui.widgets.basic import OverlayCard
 from app.gui.widgets.coach_mark import CoachMark
 from app.gui.widgets.first_paint import lay_out
+from app.gui.widgets.inline_edit import forget_refused
 from app.gui.widgets.navigation_row import NavigationRow
 from app.gui.widgets.notification_bar import NotificationBar
-from app.gui.wiring import connect
 from app.i18n.catalog import tr
 from app.presenters.status import facts
+from core.document.design import Design
+from core.geometry.mesh import Floats
+from core.geometry.planar_curves import Plane
 from core.pipeline.live_solver import Frame
 from core.pipeline.warnings import controlled_volume
 
 
 class MainWindow(QMainWindow):
-    """The window of one session. It shows what the session says, and asks the session."""
+    """The window of one session."""
 
     def __init__(self, session: Session) -> None:
         super().__init__()
@@ -131,33 +136,72 @@ class MainWindow(QMainWindow):
         )
         self.layout_ = Layout(self)
         self.pages = self.layout_.pages
-        self._make_desks()
+        self._make_controllers()
         self._dispatch()
-        connect(self)
+        self._connect_window()
+        self._connect_view()
+        self._connect_features()
         do.strip.setChecked(True)
         do.inspector.setChecked(True)
         self.navigation.show_step("lines")
         self.project_controller.show_title()
 
-    def _make_desks(self) -> None:
-        self.job_desk, self.limits_desk = (
-            ProgressController(self.context, self.notices, self.status),
-            LimitsDesk(self),
-        )
-        self.landmark_desk, self.scan_desk = LandmarkDesk(self), ScanDesk(self)
+    def _make_controllers(self) -> None:
+        """Make the controllers; menus hold their actions in this order."""
+        self._make_document()
+        self._make_variants()
+        self._make_result()
+        self._make_view()
+        self._make_outputs()
+        self._make_lines()
+        self._make_garment()
+        self._make_target_shape()
+        self._make_help()
+        self.preferences_controller = PreferencesController(self.context, self.project_controller.may_leave)
+        self.rail.add_tool("gear-six", self.preferences_controller.open)
+        self.crash_handler = CrashHandler(self.context, self.rescue)
+        self.view_controller = ViewController(self.context, self.variants_controller.show_side_by_side)
+        self.garbage_collection = GarbageCollection(self)
+
+    def _make_document(self) -> None:
+        """Make what opens, judges and saves a document."""
         context = self.context
+        self.progress_controller = ProgressController(context, self.notices, self.status)
+        self.limits_controller = LimitsController(context, self.lines)
+        self.landmarks_controller = LandmarksController(context, self.landmarks)
         self.pressure_controller = PressureController(context, self.garment)
         self.assessment_controller = AssessmentController(context, self.pressure_controller)
         self.diagnosis_controller = DiagnosisController(context, self.assessment_controller.of)
-        self.project_controller = ProjectController(context, self.assessment_controller.level_of)
-        self.model_controller = ModelController(self.context, self.model, self.door)
-        project = self.project_controller
+        project = self.project_controller = ProjectController(context, self.assessment_controller.level_of)
+        self.scan_controller = ScanController(context, self.scan, project.may_leave)
+        self.model_controller = ModelController(context, self.model, self.door)
         self.autosave_controller = AutosaveController(context, project)
         self.recovery_controller = RecoveryController(context, project, self.autosave_controller)
-        self._make_variants()
-        self._make_result()
-        self.map_desk, self.section_desk = MapDesk(self), SectionDesk(self)
-        self.start_controller = StartController(context, project, Tour(self), self._is_incomplete)
+
+    def _make_view(self) -> None:
+        """Make maps, sections and the start page, which are seen in the view or in its place."""
+        context = self.context
+        self.maps_controller = MapsController(
+            context, self.pressure_controller, self.symmetry_controller, self.scan_comparison_controller
+        )
+        self.sections_controller = SectionsController(
+            context,
+            self.uncertainty_controller.of,
+            self._target_profiles,
+        )
+        self.start_controller = StartController(
+            context, self.project_controller, Tour(self), lambda: self.session.stuck is not None
+        )
+
+    def _target_profiles(self, plane: Plane) -> dict[str, Sequence[Floats]]:
+        return self.target_shape_controller.drawing.in_plane(plane)
+
+    def _is_on_trial(self, names: tuple[str, ...], design: Design) -> bool:
+        return self.target_shape_controller.around.is_tried_on(names, design)
+
+    def _make_outputs(self) -> None:
+        """Make plots, pictures, exports and the report."""
+        context = self.context
         self.convergence_controller = ConvergenceController(context, self.strip)
         self.image_export_controller = ImageExportController(context)
         self.export_controller = ExportController(context, self.assessment_controller.of)
@@ -165,39 +209,59 @@ class MainWindow(QMainWindow):
         self.top.add_primary(self.report_controller.action)
         for page in (self.start_controller.page, self.report_controller.page):
             self.pages.addWidget(page)
-        self.lines_desk, self.line_maker = LinesDesk(self), LineMaker(self)
-        self.line_drawing, self.line_routing = LineDrawing(self), LineRouting(self)
-        self.preset_desk, self.band_pull = PresetDesk(self), BandPull(self)
+        self.project_controller.pending += [
+            self.landmarks_controller.put_down,
+            self.report_controller.page.tell_name,
+        ]
+
+    def _make_lines(self) -> None:
+        """Make the list of lines, and the tools that edit them."""
+        context, panel = self.context, self.lines
+        sources = LineSources(
+            self.limits_controller.leeways,
+            self.pressure_controller.of_active,
+            self._is_on_trial,
+        )
+        self.lines_controller = LinesController(context, panel, sources)
+        self.add_lines_controller = AddLinesController(context, panel)
+        self.draw_tool = LineDrawTool(context, panel, self.add_lines_controller)
+        self.path_tool = LinePathTool(context, panel, self.draw_tool.begin_again)
+        self.presets_controller = PresetsController(context, panel)
+        self.band_drag_controller = BandDragController(
+            context,
+            panel,
+            self.lines_controller.commit_length,
+            lambda: self.draw_tool.at_work or self.path_tool.at_work,
+        )
+
+    def _make_garment(self) -> None:
+        """Make the cut list, and the elastics of lines."""
+        context = self.context
         self.garment_controller = GarmentController(
             context, self.garment, lambda: self.pressure_controller.shown
         )
         self.elastic_assignment_controller = ElasticAssignmentController(context, self.garment)
         self.elastics_controller = ElasticsController(context, self.garment)
-        self.ask_desk = AskDesk(self)
-        self.job_desk.carriers += [
-            self.landmark_desk,
-            self.band_pull,
-            self.section_desk,
-            self.ask_desk.handles,
-        ]
-        self._make_help()
-        self.preferences_controller = PreferencesController(context, project.may_leave)
-        self.rail.add_tool("gear-six", self.preferences_controller.open)
-        self.crash_handler = CrashHandler(context, self.rescue)
-        self.view_controller = ViewController(context, self.variants_controller.show_side_by_side)
-        project.pending += [self.landmark_desk.put_down, self.report_controller.page.tell_name]
-        self.housekeeping = GarbageCollection(self)
 
-    def _is_incomplete(self) -> bool:
-        """Return whether a scan is shown that cannot go on."""
-        return self.scan_desk.stuck is not None
+    def _make_target_shape(self) -> None:
+        """Make the targets; while something is dragged, nothing is waited for."""
+        self.target_shape_controller = TargetShapeController(self.context, self.lines_page, self.undo_group)
+        carriers = (
+            self.landmarks_controller,
+            self.band_drag_controller,
+            self.sections_controller,
+            self.target_shape_controller.handles,
+        )
+        self.progress_controller.carriers += carriers
+        for carrier in carriers:
+            carrier.carrying_changed.connect(self.progress_controller.show)
 
     def _make_help(self) -> None:
         """Make the help, with its buttons below the steps."""
         parts = {
             "steps": self.rail,
             "view": self.view,
-            "section": self.section_desk.panel,
+            "section": self.sections_controller.panel,
             "report": self.report_controller.page,
             "convergence": self.strip,
             "notifications": self.notices,
@@ -229,7 +293,7 @@ class MainWindow(QMainWindow):
         """Make what is shown at the step Result, in the panel of measures and in its place."""
         context, panel = self.context, self.result
         self.uncertainty_controller = UncertaintyController(
-            context, panel, lambda: self.section_desk.is_on or self.report_controller.is_open
+            context, panel, lambda: self.sections_controller.is_on or self.report_controller.is_open
         )
         self.measurements_controller = MeasurementsController(
             context, panel, lambda: self.uncertainty_controller.shown
@@ -247,7 +311,7 @@ class MainWindow(QMainWindow):
         self.throttled = ThrottledDispatch(
             [
                 self.model_controller.show_frame,
-                self.lines_desk.show_frame,
+                self.lines_controller.show_frame,
                 self._show_status,
                 self.assessment_controller.show_frame,
                 self.convergence_controller.show_frame,
@@ -257,11 +321,11 @@ class MainWindow(QMainWindow):
         )
         self.frames = FrameDispatch(
             [
-                self.limits_desk.follow,
+                self.limits_controller.follow,
                 self.diagnosis_controller.follow,
-                self.landmark_desk.follow,
+                self.landmarks_controller.follow,
                 self.notifications.show_frame,
-                self.scan_desk.show_frame,
+                self.scan_controller.show_frame,
                 self.view.show_frame,
                 self.throttled.show_frame,
                 lambda _: self.pressure_controller.follow(),
@@ -276,15 +340,15 @@ class MainWindow(QMainWindow):
                 lambda _: self.project_controller.follow_opening(),
                 self.convergence_controller.mark_edit,
                 # What the view shows of a frame is there before it is coloured and cut.
-                lambda _: self.map_desk.follow(),
-                lambda _: self.section_desk.follow(),
+                lambda _: self.maps_controller.follow(),
+                lambda _: self.sections_controller.follow(),
             ],
             self,
         )
         self.opened = FrameDispatch(
             [
                 self.project_controller.show_opened,
-                self.scan_desk.show_opened,
+                self.scan_controller.show_opened,
                 lambda _: self.report_controller.forget(),
                 lambda _: self.garment_controller.forget(),
                 lambda _: self.autosave_controller.show_opened(),
@@ -299,11 +363,96 @@ class MainWindow(QMainWindow):
         self.session.opened.connect(self.opened.show_frame)
         self.layout_.closers = (
             self.report_controller.close,
-            self.ask_desk.leave,
+            self.target_shape_controller.leave,
             self._close_panel,
             self.view.close_comparison,
             self.result.unmark,
         )
+
+    def _connect_window(self) -> None:
+        """Connect the parts of the window with each other."""
+        do, layout, session = self.actions_, self.layout_, self.session
+        session.failed.connect(lambda _: self.throttled.repeat() if session.failure is not None else None)
+        session.undo_stack.indexChanged.connect(lambda _: forget_refused())
+        self.navigation.page_shown.connect(self._show_page)
+        do.quit.triggered.connect(self.close)
+        do.inspector.triggered.connect(layout.show_inspector)
+        do.alone.triggered.connect(layout.show_alone)
+        do.full_screen.triggered.connect(layout.show_full_screen)
+        do.next_pane.triggered.connect(layout.next_pane)
+        do.reset_layout.triggered.connect(layout.reset)
+        for step, action in do.steps.items():
+            action.triggered.connect(lambda _=False, step=step: layout.go_on_in(step))
+        self.model.left.connect(lambda: layout.go_on_in("lines"))
+        project = self.project_controller
+        project.titled.connect(self.show_title)
+        project.save_state.connect(self.status.set_saved)
+
+    def _connect_view(self) -> None:
+        """Connect the view with its tools, and with what is selected."""
+        view, selection = self.view, self.selection
+        view.tools.view_chosen.connect(view.viewport.set_view)
+        view.tools.fit_asked.connect(view.viewport.frame_all)
+        view.tools.toggled.connect(view.set_layer)
+        view.compare.way_chosen.connect(view.compare_by)
+        view.compare.toggled.connect(view.set_layer)
+        view.viewport.band_clicked.connect(selection.select_line)
+        selection.line_selected.connect(self.garment.select)
+        selection.line_selected.connect(view.select_line)
+        maps, sections = self.maps_controller, self.sections_controller
+        for changed in (sections, self.symmetry_controller, self.scan_comparison_controller):
+            maps.chosen.connect(changed.show_map)
+        maps.chosen.connect(self.view_controller.show_map)
+        for source in (self.symmetry_controller, self.scan_comparison_controller, self.view_controller):
+            source.map_asked.connect(maps.choose)
+        self.view_controller.material_shown.connect(maps.refresh)
+        self.preferences_controller.material_chosen.connect(self.view_controller.choose_material)
+        self.symmetry_controller.changed.connect(maps.refresh)
+        self.pressure_controller.changed.connect(maps.refresh)
+        self.pressure_controller.place_asked.connect(maps.look_at_most)
+        self.scan_comparison_controller.compared.connect(maps.refresh)
+        self.landmarks.landmark_selected.connect(sections.follow_landmark)
+        for follow in (maps.follow, sections.follow):
+            self.lines.visibility_changed.connect(lambda *_, follow=follow: follow())
+
+    def _connect_features(self) -> None:
+        """Connect features with each other: none of them knows another."""
+        scan, landmarks = self.scan_controller, self.landmarks_controller
+        scan.found.connect(landmarks.show_found)
+        scan.checked.connect(landmarks.show_unclear)
+        scan.incomplete_shown.connect(landmarks.show_stuck)
+        landmarks.upright_asked.connect(scan.stand_upright)
+        self.scan.open_asked.connect(self.project_controller.open)
+        self.project_controller.opening.connect(self.lines.show_opening)
+        uncertainty, symmetry, result = self.uncertainty_controller, self.symmetry_controller, self.result
+        self.sections_controller.switched.connect(uncertainty.follow)
+        uncertainty.changed.connect(self.measurements_controller.show_spread)
+        uncertainty.changed.connect(self.sections_controller.show_spread)
+        uncertainty.changed.connect(self.report_controller.follow)
+        uncertainty.changed.connect(symmetry.follow)
+        uncertainty.summarized.connect(result.show_summary)
+        result.summary_clicked.connect(lambda: result.bring(uncertainty.card))
+        result.opened.connect(uncertainty.follow)
+        result.opened.connect(symmetry.open)
+        self.report_controller.action.triggered.connect(uncertainty.follow)
+        self.custom_measures_controller.tried.connect(self.measurements_controller.try_out)
+        for follow in (
+            self.assessment_controller.refresh,
+            self.variant_table_controller.follow,
+            self.lines_controller.show_rows,
+        ):
+            self.pressure_controller.changed.connect(follow)
+        self.assessment_controller.assessed.connect(self.strip.set_verdict)
+        self.strip.why_asked.connect(self.diagnosis_controller.ask)
+        self.limits_controller.changed.connect(self.lines_controller.show_rows)
+        self.lines.elastic_asked.connect(self.elastic_assignment_controller.show)
+        target_shape = self.target_shape_controller
+        symmetry.targets_proposed.connect(target_shape.begin)
+        self.ask_door.clicked.connect(lambda _: target_shape.begin())
+        target_shape.closed.connect(self.lines_controller.show_rows)
+        target_shape.presets_asked.connect(self.presets_controller.show_menu)
+        self.lines_page.currentChanged.connect(lambda at: self.recovery_controller.set_aside(at > 0))
+        self.start_controller.page.guide_asked.connect(self.help_controller.show_first_steps)
 
     def _show_status(self, frame: Frame) -> None:
         self.status.set_volume(*controlled_volume(frame))
@@ -421,6 +570,6 @@ class MainWindow(QMainWindow):
         self.session.close()
         self.autosave_controller.close()
         self.view.close_view()
-        self.housekeeping.close()
+        self.garbage_collection.close()
         self.crash_handler.close()
         event.accept()

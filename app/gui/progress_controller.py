@@ -61,7 +61,7 @@ class ProgressController(QObject):
     def show(self) -> None:
         """Show the work that the user waits for, with a card, else a job beside it in the status bar."""
         # While a hand carries something the model follows all the time: that is no work to wait for.
-        carried = any(desk.carries for desk in self.carriers)
+        carried = any(each.carries for each in self.carriers)
         words, share = ("", 1.0) if carried else self._built
         job = None if words else self._shown_job()
         waited = bool(words) or (job is not None and job.waited)
@@ -77,7 +77,7 @@ class ProgressController(QObject):
 
     def cancel(self) -> None:
         """Let go of what a hand carries, else of the work that is shown; all is as it was before."""
-        if any(desk.let_go() for desk in self.carriers):
+        if any(each.let_go() for each in self.carriers):
             return
         if self._built[0]:
             self._session.cancel()

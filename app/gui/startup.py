@@ -76,7 +76,7 @@ def _go_on(window: MainWindow, what: str | Design | None) -> None:
     """Do what takes long, now that the window is there: read the body, load the 3D libraries."""
     _open(window, what)
     hand_files_to(window.project_controller.open_file)
-    window.view.prepare(window.housekeeping.spare, window.crash_handler.note)
+    window.view.prepare(window.garbage_collection.spare, window.crash_handler.note)
 
 
 def open_window(what: str | Design | None) -> MainWindow:

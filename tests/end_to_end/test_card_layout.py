@@ -21,8 +21,8 @@ def test_a_card_is_whole_when_it_is_first_painted() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
         cards: tuple[tuple[Callable[[], object], QWidget], ...] = (
-            (window.ask_door.click, window.ask_desk.card),
-            (window.line_drawing.begin, window.line_drawing._sketching.card),
+            (window.ask_door.click, window.target_shape_controller.card),
+            (window.draw_tool.begin, window.draw_tool._sketching.card),
         )
         for show, card in cards:
             show()

@@ -79,7 +79,7 @@ def test_strain_is_told_calmly_once_and_never_again() -> None:
         window.session.preview_line("mid-bust", 0.9)
         yield lambda: window.session.frame is not None and not window.session.frame.is_running
         assert not window.diagnosis_controller._later.isActive(), "while a hand drags nothing is said"
-        window.lines_desk.commit_length("mid-bust", 0.9)
+        window.lines_controller.commit_length("mid-bust", 0.9)
         yield settled(window)
         assert window.notices.notice() is None
         assert window.diagnosis_controller._later.isActive(), "who is still at work hears nothing"
@@ -89,7 +89,7 @@ def test_strain_is_told_calmly_once_and_never_again() -> None:
         assert not notice_of(window).lasting
         assert words(window)[0].startswith("Lengthen Mid-bust by ")
         window.notices.close_notice()
-        window.lines_desk.commit_length("mid-bust", 0.95)
+        window.lines_controller.commit_length("mid-bust", 0.95)
         yield settled(window)
         window.actions_.undo.trigger()
         yield settled(window)
@@ -111,7 +111,7 @@ def test_a_length_that_was_refused_gets_the_nearest_that_is_not() -> None:
         yield settled(window)
         window.session.change({"line_hold": "held", "volume": "exact"}, "held")
         yield settled(window)
-        window.lines_desk.commit_length("mid-bust", 0.5)
+        window.lines_controller.commit_length("mid-bust", 0.5)
         yield lambda: told(window)
         notice = notice_of(window)
         assert (notice.tone, notice.about) == ("bad", REFUSED)
@@ -139,7 +139,7 @@ def test_asked_of_a_calm_design_he_says_that_nothing_is_wrong() -> None:
         assert notice_of(window).tone == tone(overall.level)
         for message, _ in overall.reasons:
             assert message in notice_of(window).sentence, "it contradicts the verdict nowhere"
-        window.lines_desk.commit_length("mid-bust", 0.97)
+        window.lines_controller.commit_length("mid-bust", 0.97)
         yield lambda: window.notices.notice() is None
         assert not [each for each in window.notices._waiting if each.about == ABOUT]
 
@@ -156,7 +156,7 @@ def test_asked_before_the_verdict_is_known_he_says_what_presses(monkeypatch: pyt
     def script(window: MainWindow) -> Script:
         yield settled(window)
         monkeypatch.setattr(app.gui.features.garment.pressure_controller, "pressure_list", slow)
-        window.lines_desk.commit_length("mid-bust", 0.93)
+        window.lines_controller.commit_length("mid-bust", 0.93)
         yield settled(window)
         frame = window.session.frame
         assert window.assessment_controller.of(frame).level == "pending"
@@ -178,7 +178,7 @@ def test_asked_before_the_verdict_is_known_he_says_what_presses(monkeypatch: pyt
 def test_what_is_asked_before_the_first_frame_is_answered_with_it() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.lines_desk.commit_length("mid-bust", 0.97)
+        window.lines_controller.commit_length("mid-bust", 0.97)
         assert not window.session.is_answered
         window.diagnosis_controller.ask()
         yield settled(window)
@@ -193,11 +193,11 @@ def test_what_was_closed_stays_away_until_something_else_is_wrong() -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.lines_desk.commit_length("mid-bust", 0.7)
+        window.lines_controller.commit_length("mid-bust", 0.7)
         yield lambda: told(window)
         state = window.session.frame.verdict.display_state  # type: ignore[union-attr]
         window.notices.close_notice()
-        window.lines_desk.commit_length("mid-bust", 0.705)
+        window.lines_controller.commit_length("mid-bust", 0.705)
         yield settled(window)
         assert window.session.frame.verdict.display_state == state  # type: ignore[union-attr]
         yield lambda: window.diagnosis_controller._job is None
@@ -205,9 +205,9 @@ def test_what_was_closed_stays_away_until_something_else_is_wrong() -> None:
         window.diagnosis_controller.ask()
         yield lambda: told(window)
         window.notices.close_notice()
-        window.lines_desk.commit_length("mid-bust", 0.97)
+        window.lines_controller.commit_length("mid-bust", 0.97)
         yield settled(window)
-        window.lines_desk.commit_length("mid-bust", 0.7)
+        window.lines_controller.commit_length("mid-bust", 0.7)
         yield lambda: told(window)
 
     run_main([], script)
@@ -218,7 +218,7 @@ def test_a_run_that_comes_back_slowly_is_let_go_on() -> None:
         undrawn(window)
         yield settled(window)
         for name in ("mid-bust", "full-bust"):
-            window.lines_desk.commit_length(name, 0.6)
+            window.lines_controller.commit_length(name, 0.6)
         yield settled(window)
         yield lambda: told(window)
         window.notices.buttons[0].click()
@@ -232,11 +232,11 @@ def test_what_was_edited_meanwhile_is_not_told_of() -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.lines_desk.commit_length("mid-bust", 0.6)
+        window.lines_controller.commit_length("mid-bust", 0.6)
         yield lambda: window.diagnosis_controller._job is not None
         job = window.diagnosis_controller._job
         assert notice_of(window).sentence.startswith("The skin folds over")
-        window.lines_desk.commit_length("mid-bust", 0.96)
+        window.lines_controller.commit_length("mid-bust", 0.96)
         yield settled(window)
         assert job is not None
         assert not job.wanted
@@ -250,7 +250,7 @@ def test_the_pill_opens_what_the_button_ends_and_what_will_still_be_strained() -
         undrawn(window)
         yield settled(window)
         chip = window.strip.chip
-        window.lines_desk.commit_length("mid-bust", 0.848)
+        window.lines_controller.commit_length("mid-bust", 0.848)
         yield lambda: told(window)
         said = words(window)[1]
         assert "the second high pressure, strained skin" in notice_of(window).hint, "it is told before"

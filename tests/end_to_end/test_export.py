@@ -173,7 +173,7 @@ def test_a_folded_body_is_told_before_it_is_written(tmp_path: Path, monkeypatch:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        window.lines_desk.commit_length("mid-bust", 0.5)
+        window.lines_controller.commit_length("mid-bust", 0.5)
         yield settled(window)
         sheet = opened(window, "body")
         yield told(sheet)

@@ -54,7 +54,7 @@ def test_a_turntable_is_drawn_between_events_and_can_be_left(
         yield lambda: window.status._job_name.text() == "Drawing anna.gif"
         shares: list[float] = []
         for _ in range(4):  # the window answers between the pieces
-            job = window.job_desk._shown_job()
+            job = window.progress_controller._shown_job()
             shares.append(job.share or 0.0)
             yield lambda seen=shares[-1], job=job: (job.share or 0.0) > seen
         assert len(made) == 1

@@ -78,8 +78,8 @@ def the_selected_line_is_not_marked(window: MainWindow, picture: np.ndarray) -> 
 
 
 def a_map_takes_its_legend_along(window: MainWindow) -> None:
-    window.map_desk.choose("displacement")
-    legend = window.map_desk.legend
+    window.maps_controller.choose("displacement")
+    legend = window.maps_controller.legend
     place = legend.geometry().adjusted(12, 12, -12, -14)
     rows, columns = slice(2 * place.top(), 2 * place.bottom()), slice(2 * place.left(), 2 * place.right())
     with_legend = pixels(window.view.picture())[rows, columns]

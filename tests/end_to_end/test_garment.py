@@ -29,7 +29,7 @@ SAME = 0.2
 def test_an_elastic_is_chosen_and_the_length_to_cut_is_that_of_the_core() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.lines_desk.commit_length("full-bust", 0.985)
+        window.lines_controller.commit_length("full-bust", 0.985)
         window.navigation.show_panel("garment")
         yield at_rest(window)
         garment, before = window.garment, cut_rows(window)
@@ -68,7 +68,7 @@ def test_an_elastic_is_chosen_and_the_length_to_cut_is_that_of_the_core() -> Non
 def test_one_elastic_is_chosen_for_all_and_taken_off_again_without_moving_the_body() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.lines_desk.commit_length("full-bust", 0.985)
+        window.lines_controller.commit_length("full-bust", 0.985)
         window.navigation.show_panel("garment")
         yield at_rest(window)
         before = cut_rows(window)
@@ -103,8 +103,8 @@ def test_one_elastic_is_chosen_for_all_and_taken_off_again_without_moving_the_bo
 def test_a_lift_that_goes_with_the_elastic_is_told() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.line_maker.add("straps")
-        window.lines_desk.commit_length("strap left", 0.986)
+        window.add_lines_controller.add("straps")
+        window.lines_controller.commit_length("strap left", 0.986)
         window.navigation.show_panel("garment")
         yield at_rest(window)
         assert window.session.frame is not None
@@ -146,7 +146,7 @@ def test_the_other_meaning_keeps_the_length_to_cut_and_moves_the_body() -> None:
 def test_a_band_on_the_rib_cage_is_cut_as_far_stretched_as_the_designer_says() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.lines_desk.commit_length("mid-bust", 1.0)
+        window.lines_controller.commit_length("mid-bust", 1.0)
         window.navigation.show_panel("garment")
         yield at_rest(window)
         assert list(window.garment.rows) == ["under-bust"]
@@ -194,7 +194,7 @@ def test_a_locked_line_stays_what_it_is() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
         window.navigation.show_panel("garment")
-        window.lines_desk.decide("mid-bust", "locked", True)
+        window.lines_controller.decide("mid-bust", "locked", True)
         yield at_rest(window)
         before = window.session.design
         window.garment.rows["mid-bust"].elastic.click()
@@ -216,7 +216,7 @@ def test_newtons_go_with_the_stiffness_of_tissue_and_the_list_leaves_as_a_table(
         yield at_rest(window)
         before = cut_rows(window)["mid-bust"].tension_n or 0.0
         field = window.garment.tissue.field
-        window.lines_desk.decide("mid-bust", "title", "Middle")
+        window.lines_controller.decide("mid-bust", "title", "Middle")
         yield at_rest(window)
         window.activateWindow()
         yield window.isActiveWindow

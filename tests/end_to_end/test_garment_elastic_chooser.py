@@ -67,8 +67,8 @@ def test_an_elastic_that_cannot_be_used_is_grey_and_the_nearest_that_can_is_one_
 def test_the_loss_of_lift_is_shown_before_it_is_chosen() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.line_maker.add("straps")
-        window.lines_desk.commit_length("strap left", 0.93)
+        window.add_lines_controller.add("straps")
+        window.lines_controller.commit_length("strap left", 0.93)
         window.navigation.show_panel("garment")
         yield at_rest(window)
         window.garment.rows["strap left"].elastic.click()
@@ -108,7 +108,7 @@ def test_effects_that_come_late_are_dropped_with_the_chooser(monkeypatch: pytest
         former = chooser_of(window)
         assert not former.use.isEnabled()
         former.reject()
-        window.lines_desk.commit_length("mid-bust", 1.05)
+        window.lines_controller.commit_length("mid-bust", 1.05)
         yield at_rest(window)
         window.garment.rows["mid-bust"].elastic.click()
         gate.set()
@@ -129,7 +129,7 @@ def test_what_was_edited_while_the_chooser_was_open_is_kept() -> None:
         window.garment.rows["mid-bust"].elastic.click()
         yield from mark(window, "Power-net band 80 mm")
         chooser = chooser_of(window)
-        window.lines_desk.commit_length("under-bust", 0.97)  # as what is found late in a job may do
+        window.lines_controller.commit_length("under-bust", 0.97)  # as what is found late in a job may do
         chooser.use.click()
         yield made_of(window, "mid-bust")
         assert window.session.design is not None

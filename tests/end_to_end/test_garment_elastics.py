@@ -147,7 +147,7 @@ def test_an_elastic_beyond_its_table_is_told_in_a_drag_and_anew_at_the_next_edit
         window.session.cancel_preview()
         yield at_rest(window)
         window.notices.clear()
-        window.lines_desk.commit_length("mid-bust", 0.52)
+        window.lines_controller.commit_length("mid-bust", 0.52)
         yield lambda: window.notices.notice() is not None
         notice = window.notices.notice()
         assert notice is not None
@@ -161,8 +161,8 @@ def test_an_elastic_beyond_its_table_is_told_in_a_drag_and_anew_at_the_next_edit
 def test_a_linked_pair_is_made_of_the_same_in_one_step() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.line_maker.add("straps")
-        window.lines_desk.commit_length("strap left", 0.9915)
+        window.add_lines_controller.add("straps")
+        window.lines_controller.commit_length("strap left", 0.9915)
         window.navigation.show_panel("garment")
         yield at_rest(window)
         steps, before = window.session.undo_stack.count(), cut_rows(window)

@@ -67,8 +67,8 @@ def test_an_elastic_goes_with_the_next_edit_and_leaves_with_an_undo_and_with_its
 ) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.line_maker.add("straps")
-        window.lines_desk.commit_length("strap left", 0.97)
+        window.add_lines_controller.add("straps")
+        window.lines_controller.commit_length("strap left", 0.97)
         window.navigation.show_panel("garment")
         yield at_rest(window)
         take(window, "mid-bust")
@@ -84,14 +84,14 @@ def test_an_elastic_goes_with_the_next_edit_and_leaves_with_an_undo_and_with_its
         take(window, "strap left")
         for name in ("strap left", "strap right"):
             if name in window.lines.rows:
-                window.lines_desk.remove(name)
+                window.lines_controller.remove(name)
         gate.set()
         yield at_rest(window)
         design = window.session.design
         assert not {"strap left", "strap right"} & {each.name for each in design.traits}
         gate.clear()
         take(window, "mid-bust")
-        window.lines_desk.commit_length("mid-bust", 0.96)
+        window.lines_controller.commit_length("mid-bust", 0.96)
         gate.set()
         yield made_of(window, "mid-bust")
 

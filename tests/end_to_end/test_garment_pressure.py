@@ -51,7 +51,7 @@ def known(window: MainWindow) -> PressureList:
 
 
 def pressed(window: MainWindow) -> BandValues:
-    return window.map_desk._on_bands[window.view.beside.bodies[0]]
+    return window.maps_controller._on_bands[window.view.beside.bodies[0]]
 
 
 def colours(window: MainWindow) -> np.ndarray:
@@ -69,7 +69,7 @@ def test_the_map_of_pressure_is_worked_out_at_rest_and_where_it_is_seen(asked: l
         yield settled(window)
         yield lambda: not window.jobs.at_work()
         assert asked == [0.95, 0.8], "once for each shape that came to rest: the verdict needs it"
-        maps, own = window.map_desk, colours(window)
+        maps, own = window.maps_controller, colours(window)
         maps.choose("pressure")
         yield lambda: bool(pressed(window).values)
         assert len(asked) == 2, "it is known by then"
@@ -91,7 +91,7 @@ def test_the_map_of_pressure_is_worked_out_at_rest_and_where_it_is_seen(asked: l
 
 
 def a_click_tells_the_value_there(window: MainWindow, listed: PressureList) -> None:
-    maps, bands, band = window.map_desk, window.view.viewport.scene.bands, listed.worn["mid-bust"]
+    maps, bands, band = window.maps_controller, window.view.viewport.scene.bands, listed.worn["mid-bust"]
     spine, _ = bands.spine("mid-bust")
     maps.pin(spine[band.peak], "mid-bust")
     (flag,) = maps.flags.flags
@@ -111,7 +111,7 @@ def a_click_tells_the_value_there(window: MainWindow, listed: PressureList) -> N
 
 
 def while_the_body_moves_it_is_that_of_the_former_shape(window: MainWindow, asked: list[float]) -> Script:
-    maps, former = window.map_desk, pressed(window).values["mid-bust"]
+    maps, former = window.maps_controller, pressed(window).values["mid-bust"]
     drag(window, "mid-bust", 20, release=False)
     yield lambda: pressed(window).stale
     assert pressed(window).values["mid-bust"] == pytest.approx(former)
@@ -138,9 +138,9 @@ def test_variants_side_by_side_are_pressed_in_one_range(asked: list[float]) -> N
         yield settled(window)
         window.variants_controller.show_side_by_side()
         yield lambda: len(window.view.beside.bodies) == 2
-        window.map_desk.choose("pressure")
-        yield lambda: all(window.map_desk._on_bands[view].values for view in window.view.beside.bodies)
-        shown = window.map_desk._on_bands
+        window.maps_controller.choose("pressure")
+        yield lambda: all(window.maps_controller._on_bands[view].values for view in window.view.beside.bodies)
+        shown = window.maps_controller._on_bands
         here, there = (shown[view].values["mid-bust"].max() for view in window.view.beside.bodies)
         assert here > 1.2 * there, "B is shorter"
         assert sorted(set(asked)) == [0.7, 0.8, 0.95]
@@ -252,9 +252,9 @@ def a_click_turns_to_the_place(window: MainWindow, listed: PressureList) -> Scri
     view.set_view("back")
     place = np.array(row.place)
     QTest.mouseClick(window.pressure_controller.card.place, Qt.MouseButton.LeftButton)
-    yield lambda: bool(window.map_desk.flags.flags)
-    assert window.map_desk.name == "pressure"
-    (flag,) = window.map_desk.flags.flags
+    yield lambda: bool(window.maps_controller.flags.flags)
+    assert window.maps_controller.name == "pressure"
+    (flag,) = window.maps_controller.flags.flags
     assert flag.text == f"{row.max_kpa:.1f} kPa"
     assert np.linalg.norm(flag.place - place) < 4.5
     assert not view.scene.hidden(flag.place), "the camera has come round"
@@ -262,8 +262,8 @@ def a_click_turns_to_the_place(window: MainWindow, listed: PressureList) -> Scri
     assert 0 < x < view.width()
     assert 0 < y < view.height()
     QTest.mouseClick(window.pressure_controller.card.place, Qt.MouseButton.LeftButton)
-    assert len(window.map_desk.flags.flags) == 1, "it is pinned already"
-    window.map_desk.choose("")
+    assert len(window.maps_controller.flags.flags) == 1, "it is pinned already"
+    window.maps_controller.choose("")
 
 
 def test_pressures_that_cannot_be_computed_are_no_reason_to_wait(monkeypatch: pytest.MonkeyPatch) -> None:

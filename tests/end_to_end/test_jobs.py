@@ -224,11 +224,11 @@ def test_pictures_that_cannot_be_painted_leave_no_question(
         yield lambda: "Scan step" in getattr(window.notices.notice(), "hint", "")
         assert not window.view.question.isVisible()
         monkeypatch.setattr(app.gui.features.scan.controller, "option_thumbnails", endless([]))
-        window.scan_desk.ask()
+        window.scan_controller.ask()
         assert "picture below" in window.notices.notice().hint
-        yield lambda: window.job_desk._shown_job() is window.scan_desk._painting
-        window.job_desk.cancel()
+        yield lambda: window.progress_controller._shown_job() is window.scan_controller._painting
+        window.progress_controller.cancel()
         assert "Scan step" in window.notices.notice().hint, "there is no picture to choose below"
-        assert not window.scan_desk.painting
+        assert not window.scan_controller.painting
 
     run_main([str(mannequin)], script)

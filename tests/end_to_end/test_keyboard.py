@@ -139,8 +139,8 @@ def test_steps_and_tabs_are_heard_as_choices_and_sliders_as_what_they_mean() -> 
         yield from begun(window)
         for each in (window.rail.items["scan"], window.inspector.tabs.button("lines")):
             assert QAccessible.queryAccessibleInterface(each).role() == QAccessible.Role.RadioButton
-        window.section_desk.set_on(True)
-        panel = window.section_desk.panel
+        window.sections_controller.set_on(True)
+        panel = window.sections_controller.panel
         assert panel.slider.accessibleDescription() == f"x = {panel.place.text()} mm"
         window.view.compare_by("wipe")
         assert window.view.panes.handle.accessibleDescription() == "50 %"

@@ -57,10 +57,10 @@ def test_the_model_follows_a_pin_before_it_is_let_go_and_escape_brings_all_back(
         assert np.abs(session.frame.stages.control.mesh.vertices - control).max() > 1.0
         assert stack.count() == 0
         assert session.design is design
-        assert window.landmark_desk.carries
+        assert window.landmarks_controller.carries
         assert not window.status.stop.isVisible(), "nobody waits for what goes along"
         QTest.keyClick(window, Qt.Key.Key_Escape)
-        assert not window.landmark_desk.carries
+        assert not window.landmarks_controller.carries
         let_go()
         yield settled(window)
         assert stack.count() == 0
@@ -114,7 +114,7 @@ def test_linked_sides_are_placed_as_in_a_mirror_in_one_step_and_keys_move_a_pin(
         assert window.view.viewport.hasFocus()
         QTest.keyClick(window.view.viewport, Qt.Key.Key_Down, Qt.KeyboardModifier.ShiftModifier)
         QTest.keyClick(window.view.viewport, Qt.Key.Key_Down)
-        assert window.landmark_desk.carries
+        assert window.landmarks_controller.carries
         QTest.keyClick(window.view.viewport, Qt.Key.Key_Return)
         yield settled(window)
         assert stack.count() == 1, "both presses are one step"

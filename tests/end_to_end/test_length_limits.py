@@ -61,7 +61,7 @@ def test_a_line_that_is_folded_is_told_so_and_its_slider_says_how_far_it_reaches
         yield lambda: row.view.leeway is not None and not row.view.stale
         assert "folds" not in plain(legend_entries(row.view.leeway)["red"]), "its slider does not reach there"
         assert row.slider.toolTip().startswith("Length of the front part, 80 to 112 % of its rest.")
-        window.lines_desk.commit_length("mid-bust", 0.55)
+        window.lines_controller.commit_length("mid-bust", 0.55)
         yield settled(window)
         yield lambda: row.view.leeway is not None and not row.view.stale
         frame, leeway = window.session.frame, row.view.leeway

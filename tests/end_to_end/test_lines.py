@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
@@ -185,18 +187,19 @@ def locked(window: MainWindow) -> Script:
 def preset(window: MainWindow) -> Script:
     """A preset from the menu is one undo step."""
     before, count = window.session.design, window.session.undo_stack.count()
-    window.preset_desk._menu.aboutToShow.emit()
-    titles = [action.text() for action in window.preset_desk._menu.actions()]
+    window.presets_controller._menu.aboutToShow.emit()
+    titles = [action.text() for action in window.presets_controller._menu.actions()]
     assert titles[:3] == [each.title for each in built_in()]
-    window.preset_desk._menu.actions()[0].trigger()
+    window.presets_controller._menu.actions()[0].trigger()
     assert window.session.undo_stack.count() == count + 1
     assert last(window) == "Preset Bra"
     assert window.session.design.active_lines() == {"mid-bust", "strap left", "strap right"}
     yield settled(window)
     a_preset_that_leads_lines_otherwise_says_so_and_can_be_taken_back(window)
     row = window.lines.rows["mid-bust"]
-    window.lines_desk.leeways = lambda _: {"mid-bust": (FOLDS_BELOW_93, False)}
-    window.lines_desk.show_rows()
+    lines = window.lines_controller
+    lines.sources = replace(lines.sources, limits=lambda _: {"mid-bust": (FOLDS_BELOW_93, False)})
+    window.lines_controller.show_rows()
     wall = row.slider.x_of(0.93)
     drag(window, "mid-bust", round(wall - 10 - row.slider.x_of(0.97)), release=False)
     assert row.slider.ratio() == pytest.approx(0.93, abs=1e-9 + 0.001), "the red resists"
@@ -213,13 +216,13 @@ def a_preset_that_leads_lines_otherwise_says_so_and_can_be_taken_back(window: Ma
     session.edit(lambda design: design.with_custom_line(by_hand).with_line("full-bust", 0.98), "led by hand")
     led = session.design
     window.notices.clear()
-    window.preset_desk.wear(built_in()[0])
+    window.presets_controller.wear(built_in()[0])
     assert window.notices.notice() is None, "nothing was led anew"
     assert window.lines.head.presets.text() == "Bra"
     assert session.design.own_lines == led.own_lines, "ready-made lines stay as they were led"
     worn = session.design
     window.notices.clear()
-    window.preset_desk.wear(ours)
+    window.presets_controller.wear(ours)
     assert left in session.design.own_lines
     assert _notice(window).sentence == "Led as in the preset Ours: Lift tape"
     (word, undo), *_ = _notice(window).actions

@@ -177,7 +177,7 @@ def test_a_handle_in_the_hand_stays_while_lines_come_and_its_preview_goes_with_i
         window.throttled.flush()
         slider = window.lines.rows["strap left"].slider
         assert slider.accessibleName() == "Length of Straps"
-        window.lines_desk.decide("strap left", "linked", False)
+        window.lines_controller.decide("strap left", "linked", False)
         yield settled(window)
         assert slider.accessibleName() == "Length of Strap left"
         session.undo_stack.undo()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hand_tools import LEFT, PLAIN, SHIFT, move, press, release
@@ -52,7 +54,7 @@ def hover(window: MainWindow, at: QPoint) -> Qt.CursorShape:
 def test_the_selected_band_is_pulled_shorter_and_longer() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.frames.order.remove(window.limits_desk.follow)
+        window.frames.order.remove(window.limits_controller.follow)
         window.view.viewport.set_view("front")
         yield from a_pull_is_live_and_one_undo_step(window)
         yield from escape_brings_the_band_back(window)
@@ -132,11 +134,11 @@ def a_press_selects_and_drags_beside_or_across_turn(window: MainWindow) -> None:
     assert hover(window, on_band(window, "mid-bust")) == Qt.CursorShape.PointingHandCursor
     window.view.set_after(True)
     assert window.session.design is design
-    window.line_drawing.begin()
+    window.draw_tool.begin()
     pull(window, at, QPoint(0, -40))
     release(canvas_of(window), at + QPoint(0, -40))
     assert view.scene.view != first, "who draws a line turns the body by a drag anywhere"
-    window.line_drawing.leave()
+    window.draw_tool.leave()
     view.look_from(first)
     assert window.session.design is design
 
@@ -159,7 +161,7 @@ def another_button_leaves_the_band_in_the_hand(window: MainWindow) -> None:
     QTest.mouseRelease(canvas_of(window), other, PLAIN, start)
     move(canvas_of(window), start + QPoint(0, -30))
     release(canvas_of(window), start + QPoint(0, -30))
-    assert not window.band_pull.carries
+    assert not window.band_drag_controller.carries
     assert ratio_of(window) == pytest.approx(ratio - 30 * STEP, abs=STEP)  # in whole tenths of a percent
     assert window.view.viewport.scene.view == seen
 
@@ -171,9 +173,9 @@ def test_a_pulled_band_minds_links_locks_and_limits() -> None:
         window.view.viewport.set_view("front")
         the_red_resists_as_in_the_slider(window)
         yield settled(window)
-        window.lines_desk.decide("mid-bust", "locked", True)
+        window.lines_controller.decide("mid-bust", "locked", True)
         yield from a_locked_band_says_so_and_stays(window)
-        window.line_maker.add("straps")
+        window.add_lines_controller.add("straps")
         yield settled(window)
         window.throttled.flush()
         linked_bands_go_together(window)
@@ -189,10 +191,11 @@ def the_red_resists_as_in_the_slider(window: MainWindow) -> None:
     wall = ratio - 0.01
     red = Zone("red", 0.5, wall, (Reason("folded", 0.5, wall),))
     leeway = LengthLimits("mid-bust", (red, Zone("green", wall, 1.3)))
-    window.lines_desk.leeways = lambda _: {"mid-bust": (leeway, False)}
-    window.lines_desk.show_rows()
+    lines = window.lines_controller
+    lines.sources = replace(lines.sources, limits=lambda _: {"mid-bust": (leeway, False)})
+    window.lines_controller.show_rows()
     pull(window, start, QPoint(0, -10 - round(RESISTANCE) + 2))
-    assert window.band_pull._ratio == pytest.approx(ratio - 0.01)
+    assert window.band_drag_controller._ratio == pytest.approx(ratio - 0.01)
     assert f"folds below {100 * (ratio - 0.01):.1f} %" in shown_tip(window)
     move(canvas_of(window), start + QPoint(0, -10 - round(RESISTANCE) - 5))
     release(canvas_of(window), start)

@@ -12,7 +12,7 @@ from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
 from app.gui.features.lines.draw_card import DrawCard
-from app.gui.features.lines.draw_tool import LineDrawing
+from app.gui.features.lines.draw_tool import LineDrawTool
 from app.gui.main_window import MainWindow
 from core.control_mesh.path_snapping import Snapped
 from core.control_mesh.template import read_template
@@ -56,7 +56,7 @@ def test_a_line_is_drawn_by_clicks_and_snaps_to_the_control_mesh_on_both_sides()
         undrawn(window)
         yield settled(window)
         window.view.viewport.set_view("front")
-        drawing, card = window.line_drawing, window.line_drawing._sketching.card
+        drawing, card = window.draw_tool, window.draw_tool._sketching.card
         window.actions_.draw_line.trigger()
         assert card.isVisible()
         click(window, path[0])  # before the skin is ready the first points are joined straight
@@ -92,14 +92,14 @@ def test_a_line_is_drawn_by_clicks_and_snaps_to_the_control_mesh_on_both_sides()
     run_main([], script)
 
 
-def drawing_begun(window: MainWindow) -> Generator[Callable[[], bool], None, tuple[LineDrawing, DrawCard]]:
+def drawing_begun(window: MainWindow) -> Generator[Callable[[], bool], None, tuple[LineDrawTool, DrawCard]]:
     """Begin to draw a line on the front, and return what draws it and its card once the skin is ready."""
     undrawn(window)
     yield settled(window)
     window.view.viewport.set_view("front")
     window.actions_.draw_line.trigger()
-    yield lambda: window.line_drawing._ways is not None
-    return window.line_drawing, window.line_drawing._sketching.card
+    yield lambda: window.draw_tool._ways is not None
+    return window.draw_tool, window.draw_tool._sketching.card
 
 
 def test_a_line_on_the_rib_cage_is_said_to_measure_only_and_can_move_to_where_it_pulls() -> None:
@@ -181,9 +181,9 @@ def led_elsewhere(window: MainWindow, path: tuple[int, ...]) -> Script:
     QTest.mouseRelease(canvas, Qt.MouseButton.LeftButton, pos=there)
     click(window, path[-1])
     led = (path[0], path[1], at(4, 3), path[3])
-    assert window.line_routing._steps[-1] == led
+    assert window.path_tool._steps[-1] == led
     click(window, path[-1])
-    assert window.line_routing._steps[-1] == (*led, path[-1])
+    assert window.path_tool._steps[-1] == (*led, path[-1])
     press(window, Qt.Key.Key_Backspace)
     press(window, Qt.Key.Key_Return)
     own = {line.name: line.points for line in window.session.design.own_lines}
@@ -196,7 +196,7 @@ def led_elsewhere(window: MainWindow, path: tuple[int, ...]) -> Script:
 
 def let_go_of(window: MainWindow) -> Script:
     """What is drawn ends with its control mesh or its line, and never takes the place of another line."""
-    session, drawing, routing = window.session, window.line_drawing, window.line_routing
+    session, drawing, routing = window.session, window.draw_tool, window.path_tool
     session.edit(lambda design: design.without_custom_line("line 1 left"), "one side away")
     drawing._keep(Snapped((at(2, 2), at(3, 2)), closed=False, deviation=0.0, is_movable=True))
     assert [line.name for line in session.design.own_lines] == ["line 1 right", "line 2 left", "line 2 right"]
@@ -229,7 +229,7 @@ def let_go_of(window: MainWindow) -> Script:
 
 def a_ring(window: MainWindow) -> Script:
     """A click on the first point closes a line; Esc leaves without one."""
-    drawing = window.line_drawing
+    drawing = window.draw_tool
     ring = [at(2, 3), at(3, 4), at(4, 3), at(3, 2)]
     window.activateWindow()
     yield window.isActiveWindow

@@ -33,9 +33,9 @@ def test_the_worn_preset_stands_over_the_list_with_what_it_leaves_out() -> None:
         assert head.presets.text() == bodysuit.text()
         assert head.note.isVisible()
         assert "hip" in head.note.text()
-        window.lines_desk.commit_length("mid-bust", 0.93)
+        window.lines_controller.commit_length("mid-bust", 0.93)
         assert head.presets.text() == bodysuit.text(), "another length, the same set"
-        window.lines_desk.commit_length("mid-bust", 1.0)
+        window.lines_controller.commit_length("mid-bust", 1.0)
         assert head.presets.text() == "Presets"
         assert head.note.isHidden()
 
@@ -53,17 +53,17 @@ def test_a_preset_is_replaced_only_by_one_who_says_so(monkeypatch: pytest.Monkey
         yield settled(window)
         undrawn(window)
         names[:] = ["Longline"]
-        window.preset_desk.ask()
+        window.presets_controller.ask()
         first = user_file("Longline").read_bytes()
         assert not asked, "there is none of that name"
-        window.lines_desk.commit_length("mid-bust", 0.9)
+        window.lines_controller.commit_length("mid-bust", 0.9)
         names[:], answers[:] = ["Longline", ""], [""]
-        window.preset_desk.ask()
+        window.presets_controller.ask()
         assert asked == ["Replace the preset Longline?"]
         assert user_file("Longline").read_bytes() == first
         assert not names, "the name was asked for again"
         names[:], answers[:] = ["Longline"], ["replace"]
-        window.preset_desk.ask()
+        window.presets_controller.ask()
         assert user_file("Longline").read_bytes() != first
 
     run_main([], script)
@@ -73,7 +73,7 @@ def test_the_button_that_adds_offers_only_what_adds_and_is_lit_no_longer() -> No
     def script(window: MainWindow) -> Script:
         yield settled(window)
         undrawn(window)
-        add, menu = window.lines.head.add, window.line_maker.menu
+        add, menu = window.lines.head.add, window.add_lines_controller.menu
         lit(add)
         add.click()
         yield menu.isVisible

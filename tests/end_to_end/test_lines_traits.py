@@ -54,7 +54,7 @@ def test_the_plots_stay_when_a_line_is_renamed_locked_or_undone() -> None:
         assert frame is not None
         turns = {control: len(records) for control, records in frame.tracks.items()}
         for trait, value in (("title", "Mine"), ("colour", "#e5536b"), ("locked", True)):
-            window.lines_desk.decide("mid-bust", trait, value)
+            window.lines_controller.decide("mid-bust", trait, value)
             yield at_rest(window)
         window.actions_.undo.trigger()
         yield at_rest(window)

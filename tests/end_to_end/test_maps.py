@@ -33,7 +33,7 @@ def test_maps_show_the_right_values_with_a_range_by_hand_and_values_pinned() -> 
     def script(window: MainWindow) -> Script:
         yield settled(window)
         yield lambda: window.view.is_shaded
-        clay, maps, legend = colours(window), window.map_desk, window.map_desk.legend
+        clay, maps, legend = colours(window), window.maps_controller, window.maps_controller.legend
         window.view.set_layer("bands", False)
         yield from the_key_goes_through_all_maps_and_back(window, clay)
         maps.choose("displacement")
@@ -82,7 +82,7 @@ def test_maps_show_the_right_values_with_a_range_by_hand_and_values_pinned() -> 
 
 
 def what_is_pinned_stays_when_the_map_changes(window: MainWindow) -> None:
-    maps = window.map_desk
+    maps = window.maps_controller
     (flag,) = maps.flags.flags
     maps.choose("strain")
     (other,) = maps.flags.flags
@@ -96,13 +96,13 @@ def what_is_pinned_stays_when_the_map_changes(window: MainWindow) -> None:
 
 def the_zero_of_a_map_is_the_material(window: MainWindow) -> None:
     window.view_controller.choose_material("graphite")
-    stops = window.map_desk.legend.bar._stops
+    stops = window.maps_controller.legend.bar._stops
     assert stops[len(stops) // 2] == appearance_of(window.view.viewport.scene.dark, "graphite").clay
     window.view_controller.choose_material("clay")
 
 
 def the_sides_at_rest_are_worked_out_once(window: MainWindow) -> None:
-    maps = window.map_desk
+    maps = window.maps_controller
     maps.choose("sides")
     now, asked = maps.now, []
     assert now is not None
@@ -122,8 +122,8 @@ def the_key_goes_through_all_maps_and_back(window: MainWindow, clay: np.ndarray)
     shift, none = Qt.KeyboardModifier.ShiftModifier, Qt.KeyboardModifier.NoModifier
     for held in (none, shift, shift, none, none, shift, shift, shift, none):
         QTest.keyClick(window, Qt.Key.Key_C, held)
-        seen.append(window.map_desk.name)
-        assert window.map_desk.legend.isVisible() == bool(seen[-1])
+        seen.append(window.maps_controller.name)
+        assert window.maps_controller.legend.isVisible() == bool(seen[-1])
         assert window.view.tools.actions_by_name["map"].isChecked() == bool(seen[-1])
         assert np.array_equal(colours(window), clay) == (seen[-1] in ("", "pull", "pressure"))
     assert seen[:5] == ["displacement", "strain", "sides", "", "sides"], "off in one, and back to the same"
@@ -133,12 +133,12 @@ def the_key_goes_through_all_maps_and_back(window: MainWindow, clay: np.ndarray)
 
 
 def a_dragged_slider_carries_map_and_flag(window: MainWindow, at: int) -> Script:
-    flag = window.map_desk.flags.flags[0]
+    flag = window.maps_controller.flags.flags[0]
     drag(window, "mid-bust", -30)
     yield settled(window)
     frame = window.session.frame
     assert frame is not None
-    (now,) = window.map_desk.flags.flags
+    (now,) = window.maps_controller.flags.flags
     row = np.flatnonzero(frame.stages.moving.vertices == at)[0]
     assert now.place == pytest.approx(frame.points[row])
     normal = frame.stages.body.mesh.vertex_normals[at]
@@ -162,7 +162,11 @@ def away_from(curves: tuple[Curve, ...], place: np.ndarray) -> float:
 def test_the_section_plane_cuts_before_and_after(answered: Path) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        section, panel, scene = window.section_desk, window.section_desk.panel, window.view.viewport.scene
+        section, panel, scene = (
+            window.sections_controller,
+            window.sections_controller.panel,
+            window.view.viewport.scene,
+        )
         window.activateWindow()
         yield window.isActiveWindow
         QTest.keyClick(window, Qt.Key.Key_P)
@@ -198,7 +202,7 @@ def test_the_section_plane_cuts_before_and_after(answered: Path) -> None:
         panel.axis_chosen.emit("z")
         panel.slider.setValue(round(2 * (right[2] - 30.0)))
         assert scene.section.curve[:, 2] == pytest.approx(right[2] - 30.0, abs=0.3)
-        window.map_desk.choose("sides")
+        window.maps_controller.choose("sides")
         assert set(section.curves) == {"before", "after", "other"}
         panel.export.trigger()
         with open(answered, newline="", encoding="utf-8") as file:

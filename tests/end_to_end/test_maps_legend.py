@@ -30,7 +30,7 @@ class Wall(QWidget):
 
 def covers(window: MainWindow, room: QRect) -> int:
     """Return over how many labels and places of bands the legend would lie."""
-    place, field = window.map_desk._place, QRectF(room)
+    place, field = window.maps_controller._place, QRectF(room)
     words = sum(field.intersects(each) for each in place._words())
     return words + sum(field.contains(x, y) for x, y in place._places().tolist())
 
@@ -39,7 +39,7 @@ def test_the_legend_goes_from_where_it_covers_what_it_explains() -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        maps, floating, legend = window.map_desk, window.view.floating, window.map_desk.legend
+        maps, floating, legend = window.maps_controller, window.view.floating, window.maps_controller.legend
         maps.choose("pull")
         maps._place.choose()
         assert not covers(window, floating.seen(legend))
@@ -67,7 +67,7 @@ def test_the_legend_lies_on_no_other_panel_and_in_the_view() -> None:
             yield from in_view(window)
 
     def in_view(window: MainWindow) -> Script:
-        maps, section, view = window.map_desk, window.section_desk, window.view
+        maps, section, view = window.maps_controller, window.sections_controller, window.view
         others = [section.panel, view.compare, view.tools]
 
         def clear() -> None:
@@ -79,7 +79,7 @@ def test_the_legend_lies_on_no_other_panel_and_in_the_view() -> None:
                 assert not room.intersects(view.floating.seen(other)), (type(one), type(other))
 
         def asked(on: bool) -> None:
-            window.ask_desk.begin() if on else window.ask_desk.leave()
+            window.target_shape_controller.begin() if on else window.target_shape_controller.leave()
 
         opened = (lambda on: maps.choose("sides" if on else "")), section.set_on, asked
         for one, other, third in ((0, 1, 2), (1, 0, 2), (2, 0, 1), (2, 1, 0)):
@@ -102,7 +102,7 @@ def test_a_legend_that_finds_no_room_folds_and_comes_back() -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        maps, view = window.map_desk, window.view
+        maps, view = window.maps_controller, window.view
         maps.choose("displacement")
         walls = [Wall(view.width() // 2 - 40, view.height() // 2 - 90) for _ in range(4)]
         for wall, (edge, side) in zip(walls, product(("top", "bottom"), ("left", "right")), strict=True):
@@ -122,7 +122,7 @@ def test_a_legend_that_covers_nothing_stays_where_it_is() -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        maps, view = window.map_desk, window.view
+        maps, view = window.maps_controller, window.view
         legend, floating = maps.legend, view.floating
 
         def at() -> tuple[str, str]:

@@ -18,9 +18,9 @@ def test_variants_side_by_side_are_all_coloured_in_one_range() -> None:
         yield settled(window)
         window.variants_controller.choose("B")
         yield settled(window)
-        window.lines_desk.commit_length("mid-bust", 0.9)
+        window.lines_controller.commit_length("mid-bust", 0.9)
         yield settled(window)
-        view, maps = window.view, window.map_desk
+        view, maps = window.view, window.maps_controller
         window.variants_controller.show_side_by_side()
         yield lambda: len(view.beside.bodies) == 2
         clay = [colours(body.viewport.scene) for body in view.beside.bodies]
@@ -43,7 +43,7 @@ def test_bands_let_a_map_on_the_skin_through_but_not_that_of_their_own_pull() ->
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        scene, maps = window.view.viewport.scene, window.map_desk
+        scene, maps = window.view.viewport.scene, window.maps_controller
         assert opacity(scene) == 1.0
         for name, seen in (("strain", 0.3), ("pull", 1.0), ("displacement", 0.3), ("", 1.0)):
             maps.choose(name)

@@ -97,9 +97,9 @@ def test_what_is_not_restored_stays_until_it_is_discarded(monkeypatch: pytest.Mo
     def discard(window: MainWindow) -> Script:
         yield window.recovery_controller.card.isVisible
         yield settled(window)
-        window.ask_desk.begin()
+        window.target_shape_controller.begin()
         assert not window.recovery_controller.card.isVisible(), "it would lie on the handles"
-        window.ask_desk.leave()
+        window.target_shape_controller.leave()
         assert window.recovery_controller.card.isVisible(), "the offer stands again when the asking is over"
         window.recovery_controller.card.drop.click()
         assert not window.recovery_controller.card.isVisible()

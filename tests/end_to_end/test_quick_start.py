@@ -111,7 +111,7 @@ def banded(window: MainWindow) -> Script:
     assert window.session.frame is not None
     lift = bust_shift(window.session.frame).mean.up
     assert lift > 0.2
-    window.lines_desk.commit_length("mid-bust", 0.68)
+    window.lines_controller.commit_length("mid-bust", 0.68)
     yield settled(window)
     assert bust_shift(window.session.frame).mean.up > lift + 1.0
     # The word stands a while before another takes its place.
@@ -138,7 +138,7 @@ def pressed(window: MainWindow) -> Script:
     before = most(window)
     assert before < pressure_limits().red_kpa
     lift = bust_shift(window.session.frame).mean.up
-    window.lines_desk.commit_length("mid-bust", 0.6)
+    window.lines_controller.commit_length("mid-bust", 0.6)
     yield lambda: at_rest(window)() and before < most(window) < pressure_limits().red_kpa
     assert bust_shift(window.session.frame).mean.up > lift + 1.0
 

@@ -47,7 +47,7 @@ def test_the_whole_window_tells_one_lift_that_of_the_bust_points() -> None:
         undrawn(window)
         yield settled(window)
         window.variants_controller.choose("B")
-        window.lines_desk.commit_length("mid-bust", 0.9)
+        window.lines_controller.commit_length("mid-bust", 0.9)
         yield settled(window)
         now, rest = frame_of(window).marks, frame_of(window).stages.rest_marks
         up = 0.5 * (
@@ -80,8 +80,8 @@ def test_the_whole_window_tells_one_lift_that_of_the_bust_points() -> None:
             f"Bust point {said}",
             "Mid-bust 90.0 %",
         ]
-        window.section_desk.set_on(True)
-        assert window.section_desk.panel.readout.text().startswith("Bust point left ")
+        window.sections_controller.set_on(True)
+        assert window.sections_controller.panel.readout.text().startswith("Bust point left ")
 
     run_main([], script)
 
@@ -99,7 +99,7 @@ def test_a_settled_body_that_is_strained_says_so_in_one_voice() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
         window.throttled.flush()
-        window.lines_desk.commit_length("mid-bust", 0.9)
+        window.lines_controller.commit_length("mid-bust", 0.9)
         yield settled(window)
         window.throttled.flush()
         condition = frame_of(window).verdict.condition
@@ -119,7 +119,7 @@ def test_a_settled_body_that_is_strained_says_so_in_one_voice() -> None:
         assert row.view.leeway.at(0.9).tone == "amber"
         assert row.details._figures[0][3].property("tone") == "warn", "the gap is told as the groove is"
         ratio = row.view.leeway.at(0.9).long + 0.005
-        window.lines_desk.commit_length("mid-bust", ratio)
+        window.lines_controller.commit_length("mid-bust", ratio)
         yield settled(window)
         yield lambda: window.strip._turns.text().startswith("Settled · ")
         assert row.view.leeway.at(ratio).tone == "green"
@@ -133,7 +133,7 @@ def test_a_run_that_never_rests_is_no_result_and_has_a_way_out() -> None:
         yield settled(window)
         window.variants_controller.choose("B")
         window.session.choose_control("conventional")
-        window.lines_desk.commit_length("mid-bust", 0.6)
+        window.lines_controller.commit_length("mid-bust", 0.6)
         yield settled(window)
         assert frame_of(window).verdict.state == "vibrating"
         notice = window.notices.notice()

@@ -168,7 +168,7 @@ def test_a_cancelled_edit_of_the_scan_leaves_no_trace(monkeypatch: pytest.Monkey
         window.scan.told.emit("front", "+y")
         yield window.view.busy.isVisible
         assert window.session.undo_stack.count() == 1
-        window.job_desk.cancel()
+        window.progress_controller.cancel()
         assert window.session.design == design
         assert not window.session.undo_stack.canUndo()
         yield settled(window)

@@ -34,11 +34,11 @@ def test_the_colours_of_a_scan_are_shown_where_landmarks_are_placed(tmp_path: Pa
         window.navigation.show_step("lines")
         assert not action.isChecked()
         assert reddish(window) < 0.05
-        window.lines_desk.commit_length("mid-bust", 0.95)
+        window.lines_controller.commit_length("mid-bust", 0.95)
         yield settled(window)
         action.trigger()
         assert reddish(window) > 0.95  # they follow the skin
-        window.map_desk.choose("displacement")
+        window.maps_controller.choose("displacement")
         yield lambda: reddish(window) < 0.5
         window.view.compare_by("side")
         beside = window.view.beside.bodies[1].viewport.scene

@@ -58,9 +58,9 @@ def test_a_worn_scan_is_compared_and_learnt_from(pair: tuple[str, str, str]) -> 
         undrawn(window)
         yield settled(window)
         desk, page = window.scan_comparison_controller, window.scan_comparison_controller.page
-        window.map_desk.choose("worn")
-        assert "worn scan first" in window.map_desk.legend.note.text()
-        window.map_desk.choose("")
+        window.maps_controller.choose("worn")
+        assert "worn scan first" in window.maps_controller.legend.note.text()
+        window.maps_controller.choose("")
         window.navigation.show_step("result")
         assert desk.door.isVisible(), "it is met under the measures"
         desk.door.click()
@@ -81,7 +81,7 @@ def test_a_worn_scan_is_compared_and_learnt_from(pair: tuple[str, str, str]) -> 
         assert 0.8 < np.isfinite(values[: frame.stages.moving.count]).mean() < 1.0, "there is a hole"
         QTest.mouseClick(page.look, Qt.MouseButton.LeftButton)
         assert window.focusWidget() is not area, "no frame round all of the page"
-        assert window.map_desk.name == "worn"
+        assert window.maps_controller.name == "worn"
         before = window.session.design
         page.calibrate.click()
         assert not page.calibrate.isEnabled(), "it is at work"
@@ -149,7 +149,7 @@ def test_a_shape_that_has_settled_is_compared_while_turns_beside_it_go_on(pair: 
         undrawn(window)
         yield settled(window)
         window.scan_comparison_controller.read(scan)
-        window.map_desk.choose("worn")
+        window.maps_controller.choose("worn")
         window.session.choose_control("adaptive")
         yield lambda: settled(window)() and not window.jobs.at_work()
         window.session.reset_lines()
@@ -165,7 +165,7 @@ def test_a_shape_that_has_settled_is_compared_while_turns_beside_it_go_on(pair: 
         frame = window.session.frame
         assert frame is not None
         assert frame.is_running, "the conventional force is still on its way"
-        assert "out than real" in window.map_desk.legend.note.text()
+        assert "out than real" in window.maps_controller.legend.note.text()
         window.session.set_pace(None)
         window.session.undo_stack.setClean()
 

@@ -71,7 +71,7 @@ def test_a_scan_that_cannot_go_on_is_shown_and_a_placed_point_lets_it_in(
     monkeypatch.setattr(core.pipeline.build, "detect_landmarks", nothing_unless_placed)
 
     def script(window: MainWindow) -> Script:
-        yield lambda: window.scan_desk.stuck is not None and not window.view.busy.isVisible()
+        yield lambda: window.session.stuck is not None and not window.view.busy.isVisible()
         assert window.session.frame is None
         assert window.view.viewport.scene.body is not None
         notice, panel = window.notices.notice(), window.landmarks
@@ -87,7 +87,7 @@ def test_a_scan_that_cannot_go_on_is_shown_and_a_placed_point_lets_it_in(
         design = window.session.design
         assert design is not None
         assert [mark.name for mark in design.placed] == ["bust_point_left"]
-        assert window.scan_desk.stuck is None
+        assert window.session.stuck is None
         assert window.notices.notice() is None
 
     run_undrawn([str(mannequin)], script)
@@ -104,20 +104,20 @@ def test_a_scan_that_cannot_go_on_is_read_once_however_many_pins_it_takes(
     )
 
     def script(window: MainWindow) -> Script:
-        desk, panel = window.scan_desk, window.landmarks
-        yield lambda: desk.stuck is not None
-        first = desk.stuck
+        desk, panel = window.scan_controller, window.landmarks
+        yield lambda: window.session.stuck is not None
+        first = window.session.stuck
         place(window, "bust_point_left", QPoint(12, -8))
-        yield lambda: desk.stuck is not first
+        yield lambda: window.session.stuck is not first
         assert panel.rows["bust_point_left"].view.by_hand
         assert len(read) == 1
-        second = desk.stuck
+        second = window.session.stuck
         window.session.open(str(mannequin))
-        yield lambda: desk.stuck is not second
+        yield lambda: window.session.stuck is not second
         assert len(read) == 2, "the file may be another by now"
         place(window, "bust_point_left", QPoint(12, -8))
-        third = desk.stuck
-        yield lambda: desk.stuck is not third
+        third = window.session.stuck
+        yield lambda: window.session.stuck is not third
         place(window, "fold_left", QPoint(-9, 14))
         yield settled(window)
         assert len(read) == 2
@@ -176,16 +176,16 @@ def test_a_scan_whose_question_is_left_is_shown_and_can_be_told(
         assert notice.tone == "bad"
         assert window.scan.isVisible()
         assert window.view.viewport.scene.body is not None
-        first = window.scan_desk.stuck
+        first = window.session.stuck
         place(window, "bust_point_left", QPoint(12, -8))
-        yield lambda: window.scan_desk.stuck is not first
+        yield lambda: window.session.stuck is not first
         assert window.view.question.isHidden(), "it was left once"
-        second = window.scan_desk.stuck
+        second = window.session.stuck
         QTest.mouseClick(window.landmarks.reset, Qt.MouseButton.LeftButton)
-        yield lambda: window.scan_desk.stuck is not second
+        yield lambda: window.session.stuck is not second
         window.scan.told.emit("front", "-y")
         yield settled(window)
-        assert window.scan_desk.stuck is None
+        assert window.session.stuck is None
 
     run_undrawn([str(mannequin)], script)
 
@@ -197,9 +197,9 @@ def test_on_a_refused_scan_nothing_can_be_placed_and_what_was_stays_in_sight(
     box((340.0, 220.0, 700.0)).export(brick)
 
     def script(window: MainWindow) -> Script:
-        desk, panel = window.scan_desk, window.landmarks
-        yield lambda: desk.stuck is not None
-        refused = desk.stuck
+        desk, panel = window.scan_controller, window.landmarks
+        yield lambda: window.session.stuck is not None
+        refused = window.session.stuck
         assert refused is not None
         assert refused.kind == "refused"
         assert refused.__traceback__ is None, "it holds all that was read"
@@ -208,17 +208,17 @@ def test_on_a_refused_scan_nothing_can_be_placed_and_what_was_stays_in_sight(
         assert panel.isVisible()
         assert not panel.place.isVisible()
         window.session.open_design(refused.design.with_placed("fold_left", (60.0, -110.0, 30.0)))
-        yield lambda: desk.stuck is not refused
+        yield lambda: window.session.stuck is not refused
         assert panel.rows["fold_left"].view.by_hand
         window.navigation.show_step("landmarks")
         assert panel.reset.isVisible()
-        placed = desk.stuck
+        placed = window.session.stuck
         QTest.mouseClick(panel.reset, Qt.MouseButton.LeftButton)
-        yield lambda: desk.stuck is not placed
+        yield lambda: window.session.stuck is not placed
         assert panel.rows["fold_left"].view.absent
         window.session.open(str(mannequin))
         yield settled(window)
-        assert desk.stuck is None
+        assert window.session.stuck is None
 
     run_undrawn([str(brick)], script)
 
@@ -243,7 +243,7 @@ def test_a_refused_scan_is_shown_as_it_lies_and_can_be_told_how_it_stands(
     monkeypatch.setattr(core.scan.body, "estimate_pose", refuse)
 
     def script(window: MainWindow) -> Script:
-        yield lambda: window.scan_desk.stuck is not None and not window.view.busy.isVisible()
+        yield lambda: window.session.stuck is not None and not window.view.busy.isVisible()
         notice = window.notices.notice()
         assert notice is not None
         assert notice.sentence == "This is no body."
@@ -254,7 +254,7 @@ def test_a_refused_scan_is_shown_as_it_lies_and_can_be_told_how_it_stands(
         design = window.session.design
         assert design is not None
         assert design.scan.up == "+z"
-        assert window.scan_desk.stuck is None
+        assert window.session.stuck is None
 
     run_undrawn([str(mannequin)], script)
 

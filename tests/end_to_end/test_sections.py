@@ -17,7 +17,7 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 
 def place_of(window: MainWindow) -> float:
     """Return where the plane is on its axis [mm]."""
-    slicer = window.section_desk._slicer
+    slicer = window.sections_controller._slicer
     assert slicer is not None
     return slicer.plane.at
 
@@ -32,7 +32,7 @@ def test_the_section_plane_is_dragged_in_every_view() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
         undrawn(window)
-        section = window.section_desk
+        section = window.sections_controller
         section.set_on(True)
         for axis, view in (("x", "front"), ("z", "front"), ("y", "left"), ("x", "three-quarter")):
             window.view.viewport.set_view(view)
@@ -63,7 +63,7 @@ def drag_handle(handle: PlaneHandle, way: np.ndarray, held: Qt.KeyboardModifier 
 
 
 def the_handle_follows_the_hand_along_the_normal(window: MainWindow) -> None:
-    section, handle = window.section_desk, handle_of(window.view.viewport)
+    section, handle = window.sections_controller, handle_of(window.view.viewport)
     assert handle.isVisible()
     assert handle.cursor().shape() == Qt.CursorShape.OpenHandCursor
     before = {role: np.concatenate([c.places for c in curves]) for role, curves in section.curves.items()}
@@ -86,7 +86,7 @@ def the_handle_follows_the_hand_along_the_normal(window: MainWindow) -> None:
 
 
 def a_plane_that_faces_the_eye_is_dragged_up_and_down(window: MainWindow) -> None:
-    section, handle = window.section_desk, handle_of(window.view.viewport)
+    section, handle = window.sections_controller, handle_of(window.view.viewport)
     window.view.viewport.set_view("front")
     assert not handle.at_eye
     assert "away from you" not in handle.toolTip()
@@ -100,7 +100,7 @@ def a_plane_that_faces_the_eye_is_dragged_up_and_down(window: MainWindow) -> Non
 
 
 def shift_is_fine_and_escape_brings_it_back(window: MainWindow) -> None:
-    section, handle = window.section_desk, handle_of(window.view.viewport)
+    section, handle = window.sections_controller, handle_of(window.view.viewport)
     section.choose_axis("x")
     section.go_through("right")
     place = place_of(window)
@@ -125,7 +125,7 @@ def shift_is_fine_and_escape_brings_it_back(window: MainWindow) -> None:
 
 def the_handle_stays_where_it_is_seen(window: MainWindow) -> None:
     view, handle = window.view.viewport, handle_of(window.view.viewport)
-    window.section_desk.go_through("left")
+    window.sections_controller.go_through("left")
     for name in ("front", "left", "back", "three-quarter", "top"):
         for framed in (view.frame_all, view.frame_bust):
             view.set_view(name)
@@ -147,7 +147,7 @@ def test_a_panel_that_was_folded_is_folded_at_the_next_start() -> None:
     def fold(window: MainWindow) -> Script:
         yield settled(window)
         undrawn(window)
-        panel = window.section_desk.panel
+        panel = window.sections_controller.panel
         assert not panel.is_folded
         panel.fold.click()
         assert panel.is_folded
@@ -155,14 +155,14 @@ def test_a_panel_that_was_folded_is_folded_at_the_next_start() -> None:
     def unfold(window: MainWindow) -> Script:
         yield settled(window)
         undrawn(window)
-        panel = window.section_desk.panel
+        panel = window.sections_controller.panel
         assert panel.is_folded
         panel.fold.click()
 
     def look(window: MainWindow) -> Script:
         yield settled(window)
         undrawn(window)
-        assert not window.section_desk.panel.is_folded
+        assert not window.sections_controller.panel.is_folded
 
     for script in (fold, unfold, look):
         run_main(["resources/samples/mannequin.ply"], script)
@@ -195,7 +195,7 @@ def the_hand_on_one_side_cuts_both(window: MainWindow) -> None:
 
 
 def a_plane_that_is_taken_away_is_in_no_hand(window: MainWindow) -> None:
-    section, handle = window.section_desk, handle_of(window.view.viewport)
+    section, handle = window.sections_controller, handle_of(window.view.viewport)
     drag_handle(handle, np.array([20.0, 0.0]))
     assert section.carries
     section.set_on(False)
@@ -209,7 +209,7 @@ def test_the_section_panel_leaves_the_bust_free_in_the_smallest_window() -> None
         yield settled(window)
         undrawn(window)
         assert window.size() == QSize(1180, 700)
-        section, view = window.section_desk, window.view.viewport
+        section, view = window.sections_controller, window.view.viewport
         section.set_on(True)
         panel = section.panel
         yield lambda: panel.size() == panel.sizeHint()
@@ -226,7 +226,7 @@ def test_the_section_panel_leaves_the_bust_free_in_the_smallest_window() -> None
         yield lambda: panel.height() < 0.5 * height
         panel.fold.click()
         yield lambda: panel.height() == height
-        drawing = window.line_drawing
+        drawing = window.draw_tool
         drawing.begin()
         card, floating = drawing._sketching.card, window.view.floating
         yield lambda: panel.is_folded and not floating.clashes(card)

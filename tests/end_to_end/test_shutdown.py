@@ -54,8 +54,8 @@ def looked_at(window: MainWindow) -> Script:
     window.convergence_controller.slow.trigger()
     window.session.commit_line("mid-bust", "Mid-bust", 0.9)
     yield lambda: window.session.frame.stages.design is window.session.design
-    window.line_drawing.begin()
-    window.line_drawing._sketching.hand.clicked.emit(QPointF(300.0, 300.0))
+    window.draw_tool.begin()
+    window.draw_tool._sketching.hand.clicked.emit(QPointF(300.0, 300.0))
 
 
 def beside(window: MainWindow) -> Script:

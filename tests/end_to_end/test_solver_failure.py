@@ -69,7 +69,7 @@ def test_a_solver_that_fails_for_long_loses_nothing(
         assert open_project(path).design.lines == document.design.lines
         assert not session.unsaved
         window.navigation.show_step("result")
-        window.map_desk.choose("pressure")
+        window.maps_controller.choose("pressure")
         words = [
             each.text() for each in (window.result.summary, *window.findChildren(QLabel)) if each.isVisible()
         ]

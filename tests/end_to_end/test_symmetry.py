@@ -95,7 +95,7 @@ def tells_and_fades(window: MainWindow) -> Script:
 
 def shows_the_map(window: MainWindow) -> None:
     """The button lays the map on the body and takes it off; the legend tells ml."""
-    card, maps = window.symmetry_controller.card, window.map_desk
+    card, maps = window.symmetry_controller.card, window.maps_controller
     assert card.look.text() == "Show on the body"
     card.look.click()
     assert maps.name == "sides"
@@ -146,7 +146,11 @@ def leaves_what_is_not_worth_it(window: MainWindow) -> Script:
 
 def makes_even(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
     """Lines are parted in the one step that takes the answer; left, or changed meanwhile, nothing is."""
-    card, desk, before = window.symmetry_controller.card, window.ask_desk, window.session.design
+    card, desk, before = (
+        window.symmetry_controller.card,
+        window.target_shape_controller,
+        window.session.design,
+    )
     assert card.hint.text() == "Make even begins by setting left and right apart: Full bust, Mid-bust."
     count = window.session.undo_stack.count()
     for end in (desk.leave, desk.apply):
@@ -231,7 +235,7 @@ def splits(window: MainWindow) -> Script:
 def parted_elsewhere(window: MainWindow) -> Script:
     """Who looks at a line that something else splits goes on in its left half; the whole tells no gap."""
     window.selection.select_line("mid-bust")
-    window.lines_desk.commit_length("mid-bust", 0.95)
+    window.lines_controller.commit_length("mid-bust", 0.95)
     template = read_template("168")
     window.session.edit(lambda design: split(design, template, "mid-bust"), "Made even")
     yield lambda: "mid-bust left" in window.lines.rows and window.is_settled()

@@ -36,14 +36,14 @@ def is_typed_seen_taken_and_undone_or_left(window: MainWindow) -> Script:
     yield wear(window)
     before, at = window.session.design, points(window).copy()
     window.ask_door.click()
-    card = window.ask_desk.card
+    card = window.target_shape_controller.card
     assert card.isVisible()
     assert list(card.wishes) == ["lift", "out", "pressure"]
     yield answered(window)
     assert card.wishes["out"].field.placeholderText() == "free"
     assert not card.apply.isEnabled(), "nothing is wished yet"
     assert card.wishes["lift"].field.text() == "", "nothing is asked for yet"
-    now = window.ask_desk.answer.now["out"]
+    now = window.target_shape_controller.answer.now["out"]
     assert figure(card.wishes["out"].now.text()) == pytest.approx(now, abs=0.06)
     type_wish(window, "out", "-4")
     yield answered(window)
@@ -72,11 +72,11 @@ def is_typed_seen_taken_and_undone_or_left(window: MainWindow) -> Script:
     # Left, the body is as before.
     window.layout_.give_up()  # the tour of a first start
     for leave in (card.cancel.click, lambda: QTest.keyClick(window, Qt.Key.Key_Escape)):
-        window.ask_desk.begin([Goal("out", -5.0)])
+        window.target_shape_controller.begin([Goal("out", -5.0)])
         yield answered(window)
         assert np.abs(points(window) - at).max() > 0.5
         leave()
-        assert not window.ask_desk.is_open
+        assert not window.target_shape_controller.is_open
         yield settled(window)
         assert np.abs(points(window) - at).max() < 0.01
     assert window.session.undo_stack.count() == steps + 1
@@ -95,7 +95,7 @@ def made(design: Design) -> Design:
 
 def tells_what_keeps_a_wish_from_being_met(window: MainWindow) -> Script:
     yield settled(window)
-    desk, card = window.ask_desk, window.ask_desk.card
+    desk, card = window.target_shape_controller, window.target_shape_controller.card
     window.session.reset_lines()
     desk.begin()
     assert not card.apply.isVisible()
@@ -133,7 +133,7 @@ def tells_what_keeps_a_wish_from_being_met(window: MainWindow) -> Script:
 def loses_nothing_meanwhile(window: MainWindow, tmp_path: Path) -> Script:
     yield settled(window)
     yield wear(window)
-    desk = window.ask_desk
+    desk = window.target_shape_controller
     desk.begin([Goal("out", -4.0)])
     yield answered(window)
     first = ratios(desk.answer.reply.design)
@@ -175,7 +175,7 @@ def drags_the_bust_point(window: MainWindow) -> Script:
     yield settled(window)
     yield wear(window)
     window.layout_.give_up()
-    desk, viewport = window.ask_desk, window.view.viewport
+    desk, viewport = window.target_shape_controller, window.view.viewport
     viewport.set_view("left")
     desk.begin()
     yield answered(window)
@@ -206,7 +206,7 @@ def drags_the_bust_point(window: MainWindow) -> Script:
     drag(left, 0, -30, fine=True, drop=False)
     assert desk.wishes["lift"] - before["lift"] == pytest.approx(3.0 * scale, rel=0.15)
     assert window.actions_.cancel.isEnabled()
-    window.job_desk.cancel()
+    window.progress_controller.cancel()
     assert desk.wishes == before
     yield answered(window)
     # From the front it goes up and down, and nothing else; by keys a millimetre.
@@ -231,7 +231,7 @@ def drags_the_bust_point(window: MainWindow) -> Script:
 def sends_to_apply_or_cancel(window: MainWindow) -> Script:
     """Nothing waits for ever while it is open: measures are of what is seen, the sheet says what to do."""
     yield wear(window)
-    desk = window.ask_desk
+    desk = window.target_shape_controller
     desk.begin([Goal("out", -4.0)])
     yield answered(window)
     window.report_controller.open()

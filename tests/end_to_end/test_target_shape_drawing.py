@@ -14,7 +14,7 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 
 
 def handles(window: MainWindow) -> list:
-    return window.ask_desk.handles.profile.handles["profile left"]
+    return window.target_shape_controller.handles.profile.handles["profile left"]
 
 
 def landed(window: MainWindow) -> bool:
@@ -36,7 +36,7 @@ def over_the_tools(window: MainWindow) -> bool:
 
 
 def is_drawn_from_its_side(window: MainWindow) -> Script:
-    desk, viewport = window.ask_desk, window.view.viewport
+    desk, viewport = window.target_shape_controller, window.view.viewport
     viewport.motion = True
     viewport.set_view("three-quarter")
     yield lambda: landed(window)
@@ -61,7 +61,7 @@ def is_drawn_from_its_side(window: MainWindow) -> Script:
 
 
 def is_not_dragged_from_elsewhere(window: MainWindow) -> Script:
-    desk, viewport = window.ask_desk, window.view.viewport
+    desk, viewport = window.target_shape_controller, window.view.viewport
     desk.begin()
     yield answered(window)
     desk.drawing.begin("left")
@@ -84,7 +84,7 @@ def is_not_dragged_from_elsewhere(window: MainWindow) -> Script:
 
 
 def is_taken_back_step_by_step(window: MainWindow) -> Script:
-    desk, do, design = window.ask_desk, window.actions_, window.session.design
+    desk, do, design = window.target_shape_controller, window.actions_, window.session.design
     steps = window.session.undo_stack.index()
     desk.begin()
     yield answered(window)
@@ -126,7 +126,7 @@ def is_taken_back_step_by_step(window: MainWindow) -> Script:
 
 
 def is_the_skin_as_long_as_it_is_free(window: MainWindow) -> Script:
-    desk = window.ask_desk
+    desk = window.target_shape_controller
     desk.begin()
     yield answered(window)
     desk.drawing.begin("left")
@@ -140,7 +140,7 @@ def is_the_skin_as_long_as_it_is_free(window: MainWindow) -> Script:
     assert np.abs(curve._wished - curve._reached).max() < 0.01
     now = desk.drawn["profile left"].base
     assert np.abs(np.interp(was[:, 0], *now.T) - was[:, 1]).max() > 1.0, "the body has moved"
-    section = window.section_desk
+    section = window.sections_controller
     section.set_on(True)
     section.go_through("left")
     assert section.panel.keys._roles == ["before", "after"]

@@ -19,13 +19,13 @@ def places(window: MainWindow) -> dict[str, tuple[int, int, int]]:
     """Return where each row is in the window and how high, and the heading of the columns, once laid out."""
     for _ in range(3):  # a scroll bar that goes asks for another pass
         QCoreApplication.sendPostedEvents(None, QEvent.Type.LayoutRequest)
-    card = window.ask_desk.card
+    card = window.target_shape_controller.card
     parts = {**card.wishes, "heading": card._heading, "add": card.add, "apply": card.apply}
     return {name: (*part.mapTo(window, QPoint()).toTuple(), part.height()) for name, part in parts.items()}
 
 
 def keeps_its_rows_where_they_are(window: MainWindow) -> Script:
-    desk, card = window.ask_desk, window.ask_desk.card
+    desk, card = window.target_shape_controller, window.target_shape_controller.card
     desk.begin()
     desk.add("girth")
     yield answered(window)
@@ -43,7 +43,7 @@ def keeps_its_rows_where_they_are(window: MainWindow) -> Script:
 
 
 def leaves_the_bust_in_sight(window: MainWindow) -> Script:
-    desk, view = window.ask_desk, window.view
+    desk, view = window.target_shape_controller, window.view
     for width, height in ((1180, 700), (1600, 1000)):
         window.resize(width, height)
         desk.begin()
@@ -64,7 +64,11 @@ def leaves_the_bust_in_sight(window: MainWindow) -> Script:
 
 def keeps_to_the_limit_of_pressure(window: MainWindow) -> Script:
     """It holds from the beginning, what it costs is told, and off it stays off for this body."""
-    desk, card, red = window.ask_desk, window.ask_desk.card, pressure_limits().red_kpa
+    desk, card, red = (
+        window.target_shape_controller,
+        window.target_shape_controller.card,
+        pressure_limits().red_kpa,
+    )
     desk.all_wishes.limit = None
     desk.begin()
     yield answered(window)

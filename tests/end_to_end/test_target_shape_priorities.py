@@ -17,7 +17,7 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 def names_the_conflict_and_follows_priorities(window: MainWindow) -> Script:
     yield settled(window)
     yield wear(window)
-    desk, card = window.ask_desk, window.ask_desk.card
+    desk, card = window.target_shape_controller, window.target_shape_controller.card
     desk.begin([Goal("out", -6.0), Goal("girth", 874.0)])
     yield answered(window)
     first = dict(desk.answer.reply.reached)

@@ -20,13 +20,13 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 
 def choose(window: MainWindow, kind: str) -> None:
     """Click one of the three words that say what is dragged."""
-    window.ask_desk.card.hand._buttons[kind].click()
+    window.target_shape_controller.card.hand._buttons[kind].click()
 
 
 def draws_a_profile(window: MainWindow) -> Script:
     yield wear(window)
     window.layout_.give_up()
-    desk, viewport = window.ask_desk, window.view.viewport
+    desk, viewport = window.target_shape_controller, window.view.viewport
     desk.begin()
     yield answered(window)
     choose(window, "profile")
@@ -49,7 +49,7 @@ def draws_a_profile(window: MainWindow) -> Script:
 
 
 def wishes_what_is_dragged(window: MainWindow) -> Script:
-    desk, viewport = window.ask_desk, window.view.viewport
+    desk, viewport = window.target_shape_controller, window.view.viewport
     handles = desk.handles.profile.handles["profile left"]
     curve = viewport.overlay.parentWidget().findChild(TargetCurve)
     # Dragged, it is wished; the body follows, and how far it is off is told.
@@ -72,14 +72,14 @@ def wishes_what_is_dragged(window: MainWindow) -> Script:
     # Esc gives the curve back while it is in the hand.
     drag(handles[0], 30, 0, drop=False)
     assert desk.drawn["profile left"] is not drawn
-    window.job_desk.cancel()
+    window.progress_controller.cancel()
     yield answered(window)
     assert desk.drawn["profile left"].steps == pytest.approx(drawn.steps)
 
 
 def tells_lines_that_are_tried_on(window: MainWindow) -> Script:
     """They look so until they are taken."""
-    desk = window.ask_desk
+    desk = window.target_shape_controller
     row = window.lines.rows["full-bust"]
     assert row.view.tried == (abs(row.view.ratio - 0.98) >= 5e-4)
     tried = next(row for row in window.lines.rows.values() if row.view.tried)
@@ -93,7 +93,7 @@ def tells_lines_that_are_tried_on(window: MainWindow) -> Script:
 
 
 def takes_a_table(window: MainWindow, tmp_path: Path) -> Script:
-    desk = window.ask_desk
+    desk = window.target_shape_controller
     desk.begin()
     yield answered(window)
     desk.drawing.begin("right")
@@ -116,7 +116,7 @@ def takes_a_table(window: MainWindow, tmp_path: Path) -> Script:
 
 
 def drags_the_foremost_place(window: MainWindow) -> Script:
-    desk = window.ask_desk
+    desk = window.target_shape_controller
     window.view.viewport.set_view("left")
     desk.begin()
     yield answered(window)

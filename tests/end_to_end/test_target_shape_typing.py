@@ -17,7 +17,7 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 
 def half_typed(window: MainWindow, key: str, text: str) -> ValueEdit:
     """Type over a field and stay in it."""
-    field = window.ask_desk.card.wishes[key].field
+    field = window.target_shape_controller.card.wishes[key].field
     field.setFocus()
     field.selectAll()
     QTest.keyClicks(field, text)
@@ -30,7 +30,7 @@ def click(button: object) -> None:
 
 
 def is_applied_as_it_is_typed(window: MainWindow) -> Script:
-    desk, card = window.ask_desk, window.ask_desk.card
+    desk, card = window.target_shape_controller, window.target_shape_controller.card
     desk.begin()
     yield answered(window)
     half_typed(window, "out", "-5")
@@ -52,7 +52,11 @@ def is_applied_as_it_is_typed(window: MainWindow) -> Script:
 
 
 def is_not_applied_unseen_where_it_cannot_be_had(window: MainWindow) -> Script:
-    desk, card, before = window.ask_desk, window.ask_desk.card, window.session.design
+    desk, card, before = (
+        window.target_shape_controller,
+        window.target_shape_controller.card,
+        window.session.design,
+    )
     desk.begin()
     yield answered(window)
     half_typed(window, "out", "40")
@@ -72,12 +76,12 @@ def is_not_applied_unseen_where_it_cannot_be_had(window: MainWindow) -> Script:
 
 def rows(window: MainWindow) -> int:
     """Return how many rows of wishes are to be seen, whoever keeps them."""
-    fields = window.ask_desk.card.findChildren(ValueEdit)
+    fields = window.target_shape_controller.card.findChildren(ValueEdit)
     return sum(field.isVisible() for field in fields)
 
 
 def is_laid_once(window: MainWindow) -> Script:
-    desk, card = window.ask_desk, window.ask_desk.card
+    desk, card = window.target_shape_controller, window.target_shape_controller.card
     for _ in range(2):
         desk.begin()
         yield answered(window)
@@ -101,7 +105,7 @@ def is_laid_once(window: MainWindow) -> Script:
 
 
 def leaves_the_keyboard_where_it_was_pressed(window: MainWindow) -> Script:
-    desk, card = window.ask_desk, window.ask_desk.card
+    desk, card = window.target_shape_controller, window.target_shape_controller.card
     desk.begin()
     yield answered(window)
     assert card.wishes["lift"].field.hasFocus()
@@ -113,7 +117,7 @@ def leaves_the_keyboard_where_it_was_pressed(window: MainWindow) -> Script:
 
 
 def takes_no_letters(window: MainWindow) -> Script:
-    desk = window.ask_desk
+    desk = window.target_shape_controller
     desk.begin()
     yield answered(window)
     field = half_typed(window, "lift", "2.5a")

@@ -51,9 +51,9 @@ def test_it_is_told_where_it_is_looked_at_and_fades_while_a_line_moves() -> None
             any(sentence in words.text() for words in card.findChildren(type(card.meaning)))
             for sentence in limitation_sentences()
         )
-        window.section_desk.set_on(True)
-        yield lambda: bool(window.section_desk.panel.plot._drawn.bands)
-        drawn = window.section_desk.panel.plot._drawn
+        window.sections_controller.set_on(True)
+        yield lambda: bool(window.sections_controller.panel.plot._drawn.bands)
+        drawn = window.sections_controller.panel.plot._drawn
         assert len(drawn.bands["after"]) == len(drawn.curves["after"])
         outline, curve = drawn.bands["after"][0], drawn.curves["after"][0]
         gap = np.linalg.norm(outline[: len(curve)] - curve, axis=1)

@@ -155,14 +155,14 @@ def every_part(window: MainWindow) -> Iterator[str | Callable[[], bool]]:
         window.selection.select_landmark(name)
         yield name
     for name in ("displacement", "strain", "sides", "pull", "pressure"):
-        window.map_desk.choose(name)
-        window.map_desk.pin(points(window)[0], "")
+        window.maps_controller.choose(name)
+        window.maps_controller.pin(points(window)[0], "")
         yield name
-    window.section_desk.set_on(True)
+    window.sections_controller.set_on(True)
     for axis in "xyz":
-        window.section_desk.choose_axis(axis)
+        window.sections_controller.choose_axis(axis)
         yield f"section {axis}"
-    window.section_desk.set_on(False)
+    window.sections_controller.set_on(False)
     window.navigation.show_step("result")
     yield (
         lambda: (
@@ -175,7 +175,7 @@ def every_part(window: MainWindow) -> Iterator[str | Callable[[], bool]]:
     window.ask_door.click()
     yield answered(window)
     yield "targets"
-    window.ask_desk.card.cancel.click()
+    window.target_shape_controller.card.cancel.click()
     yield settled(window)
     window.garment.elastics_asked.emit()
     yield "elastics"

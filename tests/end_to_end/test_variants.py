@@ -70,7 +70,7 @@ def test_the_figures_of_all_variants_stand_beside_each_other(
         assert panel.view is None, "one variant has nothing to be compared with"
         first = window.session.frame
         window.variants_controller.choose("B")
-        window.lines_desk.commit_length("mid-bust", 0.92)
+        window.lines_controller.commit_length("mid-bust", 0.92)
         yield settled(window)
         yield lambda: panel.view is not None and not {"", "pending"} & set(panel.view.levels)
         assert (panel.view.names, panel.view.shown) == (("A", "B"), 1)
@@ -146,7 +146,7 @@ def what_cannot_be_solved_is_told_once(window: MainWindow, monkeypatch: pytest.M
     window.variants_controller.choose("A")
     yield lambda: bool(asked)
     yield settled(window)
-    window.lines_desk.commit_length("full-bust", 0.99)
+    window.lines_controller.commit_length("full-bust", 0.99)
     yield settled(window)
     assert window.variants.view.levels[1] == "", "it is said that this one is not solved"
     assert len(asked) == 1

@@ -172,7 +172,7 @@ def bodies_side_by_side_share_one_camera(window: MainWindow) -> Script:
     assert rest is not None
     assert shown is not None
     former = shown.shown_points.copy()
-    window.lines_desk.commit_length("mid-bust", 0.9)
+    window.lines_controller.commit_length("mid-bust", 0.9)
     yield lambda: bool(np.abs(shown.shown_points - former).max() > 1.0)
     assert np.array_equal(rest.shown_points, rest.rest.vertices)
     return weakref.ref(left.scene), weakref.ref(left.scene.plotter), weakref.ref(rest)

@@ -18,11 +18,11 @@ def test_the_menu_of_the_view_is_short_and_maps_and_tabs_are_asked_for_by_name()
         assert len(held) <= 13
         asked = {action.text(): action for _, action in window.actions_.all()}
         asked["Strain"].trigger()
-        assert window.map_desk.name == "strain"
-        window.map_desk.choose("displacement")
+        assert window.maps_controller.name == "strain"
+        window.maps_controller.choose("displacement")
         assert asked["Displacement"].isChecked()
         asked["No map"].trigger()
-        assert window.map_desk.name == ""
+        assert window.maps_controller.name == ""
         asked["History"].trigger()
         assert window.history.isVisible()
         ghost = window.view.compare.actions_by_name["ghost"]

@@ -21,13 +21,13 @@ def wear(window: MainWindow, mid: float = 0.97, full: float = 0.98) -> Callable[
     assert design is not None
     worn = replace(design, volume="exact").with_line("mid-bust", mid).with_line("full-bust", full)
     window.session.edit(lambda _: worn, "Wear them")
-    window.ask_desk.all_wishes.limit = math.inf
+    window.target_shape_controller.all_wishes.limit = math.inf
     return settled(window)
 
 
 def answered(window: MainWindow) -> Callable[[], bool]:
     """The newest question has its full answer, which is previewed and drawn."""
-    desk = window.ask_desk
+    desk = window.target_shape_controller
 
     def done() -> bool:
         frame, answer = window.session.frame, desk.answer
@@ -41,7 +41,7 @@ def answered(window: MainWindow) -> Callable[[], bool]:
 
 def type_wish(window: MainWindow, key: str, text: str) -> None:
     """Type over a field of the card, as a hand does."""
-    field = window.ask_desk.card.wishes[key].field
+    field = window.target_shape_controller.card.wishes[key].field
     field.setFocus()
     field.selectAll()
     QTest.keyClicks(field, text)

@@ -176,7 +176,7 @@ class LinesWalk(WindowWalk):
 
     def sketch(self) -> Script:
         """Draw a line over the skin, and keep it or leave it."""
-        before, drawing = self.design, self.window.line_drawing
+        before, drawing = self.design, self.window.draw_tool
         canvas = self.window.view.viewport.overlay.parentWidget()
         drawing.begin()
         for _ in range(3):

@@ -79,8 +79,8 @@ class Walker(LinesWalk):
                 off = np.array([self.chance.uniform(-6.0, 6.0) for _ in range(3)])
                 view.pin_moved.emit(name, nearest_skin(frame.stages.body.smoothed, place + off))
                 yield lambda: True
-        self.must(self.window.landmark_desk.carries, "the pin is carried")
-        carried = tuple(self.window.landmark_desk._carried)
+        self.must(self.window.landmarks_controller.carries, "the pin is carried")
+        carried = tuple(self.window.landmarks_controller._carried)
         end = self.chance.choice(("put down", "wait", "let go", "undo", "save", "variant"))
         self.say(end)
         if end == "let go":
@@ -91,9 +91,9 @@ class Walker(LinesWalk):
             getattr(self, end)()
             self.check()
         if end == "wait" and by_keys:
-            yield lambda: not self.window.landmark_desk.carries
+            yield lambda: not self.window.landmarks_controller.carries
         elif end == "save":
-            self.window.landmark_desk.put_down()
+            self.window.landmarks_controller.put_down()
         elif by_keys:
             QTest.keyClick(view, Qt.Key.Key_Return)
         else:

@@ -58,7 +58,7 @@ def undrawn(window: MainWindow) -> None:
     canvas = window.view.viewport.overlay.parentWidget()
     assert canvas is not None
     canvas.setUpdatesEnabled(False)
-    window.frames.order.remove(window.limits_desk.follow)
+    window.frames.order.remove(window.limits_controller.follow)
 
 
 def drag(window: MainWindow, name: str, pixels: int, release: bool = True) -> None:

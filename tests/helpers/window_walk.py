@@ -134,7 +134,7 @@ class WindowWalk:
         """Tell whether all is solved and shown, and what is not saved kept aside."""
         keeping, document = self.window.autosave_controller, self.session.document
         kept = keeping._kept is document or not self.session.unsaved
-        return self.window.is_settled() and not self.window.landmark_desk.carries and kept
+        return self.window.is_settled() and not self.window.landmarks_controller.carries and kept
 
     def rest(self) -> Script:
         """Let all come to rest, and compare what is seen with what the design alone leads to."""

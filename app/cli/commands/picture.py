@@ -90,8 +90,8 @@ def draw_window(
     _check_name(out)
     with settled_window(design, dark=dark, language=language, size=size) as window:
         save_window(window, out)
-        if window.scan_desk.stuck is not None:
-            raise window.scan_desk.stuck
+        if window.session.stuck is not None:
+            raise window.session.stuck
 
 
 @contextmanager
@@ -100,7 +100,7 @@ def settled_window(
 ) -> Iterator[MainWindow]:
     """Give a window on a file or a design, solved to the end and fully drawn; it is closed afterwards.
 
-    A scan that cannot go on is shown as far as it came, and stays in ``window.scan_desk.stuck``.
+    A scan that cannot go on is shown as far as it came, and stays in ``window.session.stuck``.
     """
     off_screen()
     from app.gui.application import application
@@ -116,8 +116,8 @@ def settled_window(
 
     def ready() -> bool:
         view = window.view
-        seen = window.scan_desk.stuck is not None or window.session.is_converged
-        return bool(failures) or (seen and view.is_shaded and not window.scan_desk.painting)
+        seen = window.session.stuck is not None or window.session.is_converged
+        return bool(failures) or (seen and view.is_shaded and not window.scan_controller.painting)
 
     try:
         wait_until(ready, app.processEvents)

@@ -50,7 +50,8 @@ class Session(DocumentEditor):
     that was opened and cannot go on before somebody says how it stands or places its landmarks; ``saving``
     says that a project is being written, or no longer, and ``not_saved`` why this has failed. ``failure`` is
     why the frame is not that of the present document, and stays so until something else is requested.
-    ``trial`` is a design that is previewed as a proposal, until it is applied or rejected.
+    ``trial`` is a design that is previewed as a proposal, until it is applied or rejected; ``stuck`` what
+    keeps a scan that is shown from being a document, never while a document is open.
     """
 
     opened = Signal(object)
@@ -68,6 +69,7 @@ class Session(DocumentEditor):
         self.path: Path | None = None
         self.stamp: Stamp | None = None
         self.trial: Design | None = None
+        self.stuck: IncompleteBuildError | None = None
         self._opening: _Opening | None = None
         self._saving = BackgroundSave(self)
         self._oldest = 0

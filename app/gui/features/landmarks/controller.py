@@ -1,4 +1,4 @@
-"""What the window does about landmarks: where they were found, where pins are put, how the model follows."""
+"""Landmarks: where they were found, where pins are put, how the model follows."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from functools import reduce
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, QObject, QSettings, Qt, QTimer
+from PySide6.QtCore import QEvent, QObject, QSettings, Qt, QTimer, Signal
 from PySide6.QtGui import QCursor, QKeyEvent
 
+from app.gui.features.landmarks.panel import LandmarksPanel
 from app.gui.widgets.tooltip import show_tip
 from app.i18n.catalog import joined, say, tr
 from app.i18n.lengths import arrow_step
@@ -22,7 +23,7 @@ from core.pipeline.live_solver import Frame
 from core.scan.body import Body
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 LINKED = "landmarks/linked"
 """The setting of the window that both sides are placed together."""
@@ -41,24 +42,47 @@ PAUSE = 800
 """Milliseconds without a key after which a pin that was moved by keys is put down."""
 
 
-class LandmarkDesk(QObject):
-    """Brings landmarks to the panel and the pins, and what is done to these to the session.
+class LandmarksController(QObject):
+    """Show landmarks in the panel and as pins, and make what is done to these edits of the design.
 
     A pin that is carried, by the pointer or by keys, is previewed: the model is fitted again with its newest
     place. Putting it down is one undo step, with its mirror image if both sides are linked.
+    ``upright_asked`` carries the direction of the file that is up; ``carrying_changed`` is emitted when a pin
+    is taken, put down or let go.
     """
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window = window
-        self._session = window.session
+    carrying_changed = Signal()
+    upright_asked = Signal(str)
+
+    def __init__(self, context: AppContext, panel: LandmarksPanel) -> None:
+        super().__init__(context.session)
+        self._context, self._panel = context, panel
+        self._session = context.session
         self._carried: dict[str, Points] = {}
         self._refused = False
         self._middle = 0.0
         self._pause = QTimer(self, interval=PAUSE, singleShot=True)
         self._pause.timeout.connect(self.put_down)
-        window.landmarks.link.setChecked(bool(QSettings().value(LINKED, False, bool)))
-        window.view.viewport.watch_keys(self)
+        panel.link.setChecked(bool(QSettings().value(LINKED, False, bool)))
+        context.view.viewport.watch_keys(self)
+        self._connect()
+
+    def _connect(self) -> None:
+        panel, viewport = self._panel, self._context.view.viewport
+        panel.landmark_selected.connect(self.take)
+        panel.reset_asked.connect(self.reset)
+        panel.confirmed.connect(self.confirm)
+        panel.place_asked.connect(self.put_pin)
+        panel.keys_asked.connect(self.move_by_keys)
+        panel.hovered.connect(self.hover)
+        panel.linked.connect(self.link)
+        viewport.pin_pressed.connect(self.take)
+        viewport.pin_moved.connect(self.carry)
+        viewport.pin_released.connect(self.put_down)
+        viewport.pin_hovered.connect(self.hover_pin)
+        selection = self._context.selection
+        selection.landmark_selected.connect(panel.select)
+        selection.landmark_selected.connect(self._context.view.pins.select)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
         """Move the selected pin by the arrow keys, while the view has them; Enter puts it down."""
@@ -75,18 +99,18 @@ class LandmarkDesk(QObject):
 
     def show_found(self, stages: Stages) -> None:
         """Show what was found on a body."""
-        window, said = self._window, landmark_warnings(stages.landmarks)
-        views = landmark_views(stages.landmarks.points, window.view.pins.accepted)
-        window.landmarks.set_landmarks(views, said)
+        context, said = self._context, landmark_warnings(stages.landmarks)
+        views = landmark_views(stages.landmarks.points, context.view.pins.accepted)
+        self._panel.set_landmarks(views, said)
         weak = sum(view.weak for view in views)
-        window.navigation.mark_step("landmarks", "look" if weak or said else "done", weak)
+        context.navigation.mark_step("landmarks", "look" if weak or said else "done", weak)
         if not (weak or said):
-            window.notifications.withdraw(_DOUBT)
+            context.notifications.withdraw(_DOUBT)
 
     def show_unclear(self, stages: Stages) -> None:
         """Say which of the landmarks that the control mesh hangs on could hardly be seen."""
         self._carried = {}
-        self._window.view.pins.drop_back()
+        self._context.view.pins.drop_back()
         marks = [mark for mark in stages.landmarks.points.values() if kind_of(mark.name) in ESSENTIAL]
         worst = min(marks, key=lambda mark: mark.confidence)
         if tone_of(worst.confidence) == "bad" or stages.landmarks.warnings:
@@ -94,10 +118,10 @@ class LandmarkDesk(QObject):
             spoken_of = first_warning(stages.landmarks)
             actions = [(tr("Look at it"), lambda: self._look_at(spoken_of))]
             if stages.landmarks.size_doubted:
-                actions.insert(0, (tr("Check unit"), lambda: self._window.navigation.show_step("scan")))
+                actions.insert(0, (tr("Check unit"), lambda: self._context.navigation.show_step("scan")))
             if up := stages.landmarks.upright:
                 actions.insert(0, (tr("Stand upright"), lambda: self._stand_upright(up)))
-            self._window.notifications.show(
+            self._context.notifications.show(
                 "warn", said, joined(map(say, more)), actions, lasting=True, topic=_DOUBT
             )
 
@@ -106,21 +130,21 @@ class LandmarkDesk(QObject):
         refused = stuck.kind == "refused"
         self._carried = {}
         views = landmark_views(stuck.landmarks)
-        self._window.landmarks.set_landmarks(views, [stuck.message], placing=not refused)
-        self._window.navigation.mark_step("landmarks", "missing" if refused else "look")
+        self._panel.set_landmarks(views, [stuck.message], placing=not refused)
+        self._context.navigation.mark_step("landmarks", "missing" if refused else "look")
 
     def follow(self, frame: Frame) -> None:
         """Let pins that were put down stand where the landmarks are, once these are found."""
         if not self._carried and frame.stages.design is self._session.design:
-            self._window.view.pins.drop_back()
+            self._context.view.pins.drop_back()
 
     def _stand_upright(self, up: str) -> None:
-        self._window.notifications.withdraw(_DOUBT)
-        self._window.scan_desk.stand_upright(up)
+        self._context.notifications.withdraw(_DOUBT)
+        self.upright_asked.emit(up)
 
     def _look_at(self, landmark: str) -> None:
-        self._window.navigation.show_step("landmarks")
-        self._window.selection.select_landmark(landmark)
+        self._context.navigation.show_step("landmarks")
+        self._context.selection.select_landmark(landmark)
 
     # -- a pin is carried
 
@@ -133,7 +157,7 @@ class LandmarkDesk(QObject):
         """Take hold of a pin."""
         self.put_down()
         self._refused = False
-        self._window.selection.select_landmark(name)
+        self._context.selection.select_landmark(name)
 
     def carry(self, name: str, place: Points) -> None:
         """Carry a pin to a place of the body at rest, shape (3,) [mm], and let the model follow."""
@@ -143,17 +167,17 @@ class LandmarkDesk(QObject):
         if not self._carried and frame is not None:
             self._middle = frame.stages.moving.middle
         self._carried = {name: place}
-        partner = other_side(name) if self._window.landmarks.link.isChecked() else ""
-        if partner and frame is not None and not self._window.scan_desk.stuck:
+        partner = other_side(name) if self._panel.link.isChecked() else ""
+        if partner and frame is not None and not self._session.stuck:
             self._carried[partner] = mirrored(frame.stages.body.smoothed, place, self._middle)
-        self._window.view.pins.carry(self._carried)
-        self._window.actions_.cancel.setEnabled(True)
-        if self._session.design is not None and not self._window.scan_desk.stuck:
+        self._context.view.pins.carry(self._carried)
+        self._context.actions.cancel.setEnabled(True)
+        if self._session.design is not None and not self._session.stuck:
             self._session.preview(self._placed(self._session.design))
 
     def nudge(self, right: float, up: float) -> bool:
         """Carry the selected pin over the skin by so much of the picture [mm]; tells whether there is one."""
-        pins, view = self._window.view.pins, self._window.view.viewport.scene.view
+        pins, view = self._context.view.pins, self._context.view.viewport.scene.view
         name, place = pins.chosen()
         body = self._body()
         if place is None or body is None:
@@ -168,7 +192,7 @@ class LandmarkDesk(QObject):
         self._pause.stop()
         if not self._carried:
             return
-        design, stuck = self._session.design, self._window.scan_desk.stuck
+        design, stuck = self._session.design, self._session.stuck
         first, *others = self._carried
         text = tr("{name} placed on both sides") if others else tr("{name} placed")
         text = text.format(name=landmark_title(kind_of(first) if others else first))
@@ -178,7 +202,7 @@ class LandmarkDesk(QObject):
         elif design is not None:
             after, self._carried = self._placed(design), {}
             self._session.edit(lambda _: after, text)
-        self._window.job_desk.show()
+        self.carrying_changed.emit()
 
     def let_go(self) -> bool:
         """Bring carried pins back to where they were; returns whether there were any."""
@@ -186,36 +210,36 @@ class LandmarkDesk(QObject):
             return False
         self._pause.stop()
         self._carried, self._refused = {}, True
-        self._window.view.pins.drop_back()
+        self._context.view.pins.drop_back()
         self._session.cancel_preview()
-        self._window.job_desk.show()
+        self.carrying_changed.emit()
         return True
 
     # -- the user asks
 
     def put_pin(self, name: str) -> None:
         """Give a landmark that was not found a pin to move."""
-        self._window.view.pins.put(name)
+        self._context.view.pins.put(name)
         self.move_by_keys()
 
     def move_by_keys(self) -> None:
         """Let the arrow keys move the selected pin."""
-        self._window.view.viewport.setFocus()
+        self._context.view.viewport.setFocus()
 
     def confirm(self, names: Sequence[str]) -> None:
         """Keep landmarks where they are: the designer has looked at them.
 
-        What a hand placed is kept already; that it contradicts its rule is not said again in this window.
+        What a hand placed is kept already; that it contradicts its rule is not said again in this context.
         """
         frame = self._session.frame
         if frame is None or self._session.design is None:
             return
         marks = frame.stages.landmarks.points
-        self._window.view.pins.accepted.update(spot_of(marks[name]) for name in names if marks[name].by_hand)
+        self._context.view.pins.accepted.update(spot_of(marks[name]) for name in names if marks[name].by_hand)
         names = [name for name in names if not marks[name].by_hand]
         if not names:
             self.show_found(frame.stages)
-            self._window.view.pins.set_landmarks(dict(marks))
+            self._context.view.pins.set_landmarks(dict(marks))
             return
         self._carried = {name: frame.stages.landmarks.position(name) for name in names}
         after, self._carried = self._placed(self._session.design), {}
@@ -224,7 +248,7 @@ class LandmarkDesk(QObject):
 
     def reset(self, names: Sequence[str]) -> None:
         """Let landmarks be found again."""
-        stuck = self._window.scan_desk.stuck
+        stuck = self._session.stuck
         if stuck:
             again = reduce(lambda design, name: design.with_placed(name, None), names, stuck.design)
             self._session.open_design(again)
@@ -238,19 +262,19 @@ class LandmarkDesk(QObject):
 
     def hover(self, name: str) -> None:
         """Draw what a landmark was read from; an empty name ends it."""
-        self._window.view.pins.hover(name)
+        self._context.view.pins.hover(name)
 
     def hover_pin(self, name: str) -> None:
         """Tell the rule of the landmark under the pointer, and draw what it was read from."""
         self.hover(name)
-        row = self._window.landmarks.rows.get(name)
+        row = self._panel.rows.get(name)
         words = "" if row is None or self._carried else f"{row.view.title}\n{row.view.words()}"
-        show_tip(QCursor.pos(), words, self._window.view.viewport)
+        show_tip(QCursor.pos(), words, self._context.view.viewport)
 
     # -- inside
 
     def _body(self) -> Body | None:
-        stuck, frame = self._window.scan_desk.stuck, self._session.frame
+        stuck, frame = self._session.stuck, self._session.frame
         return stuck.body if stuck else frame.stages.body if frame is not None else None
 
     def _placed(self, design: Design) -> Design:

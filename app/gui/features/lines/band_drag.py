@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, QObject, Qt
+from PySide6.QtCore import QEvent, QObject, Qt, Signal
 from PySide6.QtGui import QCursor, QHelpEvent
 
+from app.gui.features.lines.panel import LinesPanel
 from app.gui.features.lines.row import LineRow, locked_tip
 from app.gui.features.lines.slider_groove import LONGEST, RESISTANCE, SHORTEST, resisted, wall_of
 from app.gui.viewport.band_drag import BandHandle
@@ -16,22 +18,31 @@ from app.presenters.length_limits import resistance_reason
 from core.analysis.length_limits.zones import LengthLimits
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 STEP = 0.001
 """How much shorter a line becomes for each pixel that its band is pulled up, as a share of its rest [1]."""
 
 
-class BandPull(QObject):
-    """Previews the length while the band is pulled; the open hand commits it as one undo step.
+class BandDragController(QObject):
+    """Preview the length while a band is dragged; ``commit`` makes it one undo step at the end.
 
     Only the selected band of the reshaped body is pulled: a body that is grabbed anywhere else turns.
     """
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window, self._session = window, window.session
-        self._viewport = window.view.viewport
+    carrying_changed = Signal()
+
+    def __init__(
+        self,
+        context: AppContext,
+        panel: LinesPanel,
+        commit: Callable[[str, float], object],
+        is_drawing: Callable[[], bool],
+    ) -> None:
+        super().__init__(context.session)
+        self._context, self._session, self._panel = context, context.session, panel
+        self._commit, self._is_drawing = commit, is_drawing
+        self._viewport = context.view.viewport
         self._name = ""
         self._start = self._ratio = 1.0
         self._way = 0.0
@@ -44,7 +55,7 @@ class BandPull(QObject):
         grip.pulled.connect(self._pull)
         grip.dropped.connect(self._drop)
         # What is undone or opened meanwhile is another length than the hand has taken hold of.
-        window.session.design_changed.connect(lambda _: self._open_hand())
+        context.session.design_changed.connect(lambda _: self._open_hand())
         self._viewport.watch_keys(self)
 
     @property
@@ -72,16 +83,16 @@ class BandPull(QObject):
 
     def _cursor_of(self, name: str) -> Qt.CursorShape | None:
         """Return how the pointer looks over a band that can be pulled, or is locked; None over any other."""
-        window, row = self._window, self._row(name)
-        if row is None or not row.view.constrained or name != window.view.selected_line:
+        context, row = self._context, self._row(name)
+        if row is None or not row.view.constrained or name != context.view.selected_line:
             return None
-        if not window.view.after or window.line_drawing.at_work or window.line_routing.at_work:
+        if not context.view.after or self._is_drawing():
             return None
         return Qt.CursorShape.SizeVerCursor if row.view.settable else Qt.CursorShape.ForbiddenCursor
 
     def _row(self, name: str) -> LineRow | None:
         """Return the row of a line, or of the pair it is linked in."""
-        rows = self._window.lines.rows.values()
+        rows = self._panel.rows.values()
         return next((row for row in rows if name in row.view.names), None)
 
     def _take(self, name: str) -> None:
@@ -95,7 +106,7 @@ class BandPull(QObject):
         self._start = self._ratio = design.ratio(name)
         self._leeway = None if row.view.stale else row.view.leeway
         self._wall = wall_of(self._leeway, self._start)
-        self._window.job_desk.show()
+        self.carrying_changed.emit()
 
     def _pull(self, pixels: float, fine: bool) -> None:
         if not self._name:
@@ -118,12 +129,12 @@ class BandPull(QObject):
     def _drop(self) -> None:
         name = self._open_hand()
         if name:
-            self._window.lines_desk.commit_length(name, self._ratio)
+            self._commit(name, self._ratio)
 
     def _open_hand(self) -> str:
         """Hold nothing any longer; returns the line that was held."""
         name, self._name = self._name, ""
         if name:
             hide_tip(self._viewport)
-            self._window.job_desk.show()
+            self.carrying_changed.emit()
         return name

@@ -1,14 +1,15 @@
-"""The desk of the lines: what is decided in the list goes to the session, what comes of it to the list."""
+"""The lines: shown in a list, and edited there."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial, reduce
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Qt
 
+from app.gui.features.lines.panel import LinesPanel
 from app.i18n.catalog import number, tr
 from app.presenters.lines import Shown, kind_of, line_views, pair_title, row_title
 from app.presenters.pressure import line_pressure_view
@@ -16,23 +17,47 @@ from core.control_mesh.template import read_template
 from core.document.design import Design
 from core.document.lines import partner_of
 from core.document.split_lines import is_split, split
+from core.garment.pressure_list import PressureList
 from core.pipeline.live_solver import Frame
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 
-class LinesDesk(QObject):
-    """Shows the list of lines, and carries out what is asked there; a linked pair is asked as one."""
+@dataclass(frozen=True)
+class LineSources:
+    """Return what other features know of the lines of a frame.
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window = window
-        self._session = window.session
-        self.leeways: Callable[[Frame], Mapping[str, Shown]] = lambda _: {}
+    ``limits`` of their lengths, their ``pressures`` if there are any, and whether the lengths of lines in a
+    design are those of a proposal (``is_on_trial``).
+    """
+
+    limits: Callable[[Frame], Mapping[str, Shown]]
+    pressures: Callable[[Frame], PressureList | None]
+    is_on_trial: Callable[[tuple[str, ...], Design], bool]
+
+
+class LinesController(QObject):
+    """Show the list of lines, and carry out its commands; a linked pair is treated as one line."""
+
+    def __init__(self, context: AppContext, panel: LinesPanel, sources: LineSources) -> None:
+        super().__init__(context.session)
+        self._context, self._panel, self.sources = context, panel, sources
+        self._session = context.session
         self._frame: Frame | None = None
         self._parted: set[str] = set()
         self._add_actions()
+        panel.opened.connect(self.show_rows)
+        panel.length_previewed.connect(context.session.preview_line)
+        panel.length_committed.connect(self.commit_length)
+        panel.drag_cancelled.connect(lambda _: context.session.cancel_preview())
+        panel.selected.connect(context.selection.select_line)
+        panel.visibility_changed.connect(self.set_visible)
+        panel.decided.connect(self.decide)
+        panel.reset_all.connect(context.session.reset_lines)
+        panel.removed.connect(self.remove)
+        context.selection.line_selected.connect(panel.select)
+        context.actions.reset.triggered.connect(context.session.reset_lines)
 
     def show_frame(self, frame: Frame) -> None:
         """Show the lines of a frame."""
@@ -45,29 +70,28 @@ class LinesDesk(QObject):
 
         What is only tried on changes nothing.
         """
-        design, selected = frame.stages.design, self._window.view.selected_line
+        design, selected = frame.stages.design, self._context.view.selected_line
         if design is not self._session.design:
             return
         before, self._parted = self._parted, {name for name in frame.lengths if is_split(design, name)}
         whole = kind_of(selected)
         if selected in self._parted - before:
-            self._window.selection.select_line(f"{selected} left")
+            self._context.selection.select_line(f"{selected} left")
         elif selected not in frame.lengths and whole in frame.lengths:
-            self._window.selection.select_line(whole)
+            self._context.selection.select_line(whole)
 
     def show_rows(self) -> None:
         """Show the rows anew: something was hidden, or more is known of limits or pressures."""
         frame = self._frame
         if frame is not None:
-            hidden, design = self._window.view.hidden_lines, frame.stages.design
+            hidden, design = self._context.view.hidden_lines, frame.stages.design
             if self._session.failure is not None:
                 design = self._session.design or design  # what is set, though it could not be computed
-            views = line_views(design, frame, hidden, self.leeways(frame))
-            seen = self._window.lines.isVisible()
-            pressed = self._window.pressure_controller.of_active(frame) if seen else None
-            tried, design = self._window.ask_desk.around.is_tried_on, frame.stages.design
+            views = line_views(design, frame, hidden, self.sources.limits(frame))
+            pressed = self.sources.pressures(frame) if self._panel.isVisible() else None
+            tried, design = self.sources.is_on_trial, frame.stages.design
             views = [replace(view, tried=tried(view.names, design)) for view in views]
-            self._window.lines.set_lines([line_pressure_view(view, pressed) for view in views])
+            self._panel.set_lines([line_pressure_view(view, pressed) for view in views])
 
     def commit_length(self, name: str, ratio: float) -> None:
         """Set the length of a line and its linked partner."""
@@ -103,7 +127,7 @@ class LinesDesk(QObject):
         """Show or hide the bands of a line and its linked partner."""
         if self._session.design is not None:
             for each in self._session.design.linked_pair(name):
-                self._window.view.set_line_visible(each, visible)
+                self._context.view.set_line_visible(each, visible)
             self.show_rows()
 
     def remove(self, name: str) -> None:
@@ -116,7 +140,7 @@ class LinesDesk(QObject):
         self._session.edit(lambda before: reduce(Design.without_custom_line, names, before), text)
         left = self._session.design
         if left is not None and left is not design:
-            self._window.selection.select_line("mid-bust")
+            self._context.selection.select_line("mid-bust")
 
     def _lead_over_shoulder(self, name: str, design: Design, over: bool) -> None:
         """Let a line and its linked partner run on over the shoulder, or end on the upper chest."""
@@ -136,7 +160,7 @@ class LinesDesk(QObject):
         text = tr("{line} split into left and right").format(line=row_title(name, design))
         template = read_template(design.template)
         self._session.edit(lambda before: split(before, template, name), text)
-        self._window.selection.select_line(f"{name} left")
+        self._context.selection.select_line(f"{name} left")
 
     def _linked_text(self, design: Design, name: str, linked: bool) -> str:
         words = tr("{line} linked") if linked else tr("{line} set apart")
@@ -144,7 +168,7 @@ class LinesDesk(QObject):
 
     def _add_actions(self) -> None:
         """Offer what can be done with the selected line; the keys are those of the menu."""
-        do = self._window.actions_
+        do = self._context.actions
         do.rule("lines")
         for text, key, act in (
             (tr("Rename"), "F2", "rename"),
@@ -158,11 +182,11 @@ class LinesDesk(QObject):
         remove = do.add("lines", tr("Remove the line"), "Del", said, do=partial(self._row_asked, "remove"))
         # Elsewhere the key takes other things away.
         remove.setShortcutContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
-        self._window.lines.addAction(remove)
+        self._panel.addAction(remove)
 
     def _row_asked(self, what: str) -> None:
-        self._window.navigation.show_step("lines")
-        self._window.lines.do(what)
+        self._context.navigation.show_step("lines")
+        self._panel.do(what)
 
 
 def _with_trait(design: Design, name: str, trait: str, value: object) -> Design:

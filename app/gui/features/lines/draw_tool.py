@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import QObject, QPointF, QSignalBlocker
 
-from app.gui.features.lines.drawing_base import Sketching
+from app.gui.features.lines.add_lines import AddLinesController
+from app.gui.features.lines.drawing_base import DrawingBase
+from app.gui.features.lines.panel import LinesPanel
 from app.gui.features.lines.path_tool import led
 from app.gui.session.jobs import Job
 from app.i18n.catalog import tr
@@ -25,19 +27,21 @@ from core.geometry.mesh import Points
 from core.scan.body import Body
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 _REACH = 12.0  # how near to the first point a click closes the line [px]
 _WIDE = 25.0  # a line further off than this is told to lie outside the control mesh [mm]
 
 
-class LineDrawing(QObject):
-    """Draws own lines: ``begin``, clicks, Enter, and Enter again to keep the line that is proposed."""
+class LineDrawTool(QObject):
+    """Draw custom lines: ``begin``, clicks, Enter, and Enter again to keep the line that is proposed."""
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window = window
-        self._sketching = Sketching(window, self)
+    def __init__(self, context: AppContext, panel: LinesPanel, add: AddLinesController) -> None:
+        super().__init__(context.session)
+        self._context, self._add = context, add
+        self._sketching = DrawingBase(context, self)
+        panel.draw_asked.connect(self.begin)
+        context.actions.draw_line.triggered.connect(self.begin)
         self._ways: tuple[Body, SurfacePaths] | None = None
         self._job: Job | None = None
         self._job_body: Body | None = None
@@ -56,7 +60,7 @@ class LineDrawing(QObject):
         card.moved.connect(self._move)
         card.snap.toggled.connect(self._choose)
         self._sketching.lost.connect(self.leave)
-        window.navigation.tool_started.connect(self.leave)
+        context.navigation.tool_started.connect(self.leave)
 
     @property
     def at_work(self) -> bool:
@@ -75,7 +79,7 @@ class LineDrawing(QObject):
         frame = self._sketching.frame
         if frame is None:
             return
-        self._window.navigation.show_step("lines")
+        self._context.navigation.show_step("lines")
         self._places, self._curve, self._found, self._again = [], [], None, again
         self._prepare(frame.stages.body)
         self._sketching.begin(frame)
@@ -106,7 +110,7 @@ class LineDrawing(QObject):
         """Make the skin of a body ready, unless it is or a job is at it that nobody cancelled."""
         if self._ways is not None and self._ways[0] is not body:
             self._ways = None
-        jobs = self._window.jobs
+        jobs = self._context.jobs
         if self._ways is None and (self._job not in jobs.at_work() or self._job_body is not body):
             jobs.cancel(self._job)
             self._job_body = body
@@ -114,12 +118,12 @@ class LineDrawing(QObject):
                 tr("Preparing the skin for drawing"),
                 lambda _: SurfacePaths(body.mesh),
                 lambda ways: self._take_ways(body, ways),
-                self._window.session.failed.emit,
+                self._context.session.failed.emit,
             )
 
     def _take_ways(self, body: Body, ways: object) -> None:
         assert isinstance(ways, SurfacePaths)
-        frame = self._window.session.frame
+        frame = self._context.session.frame
         if frame is None or frame.stages.body is not body:
             return
         self._ways = body, ways
@@ -133,7 +137,7 @@ class LineDrawing(QObject):
         if self._closes(at):
             self._propose(closed=True)
             return
-        place = self._window.view.viewport.skin_at(at)
+        place = self._context.view.viewport.skin_at(at)
         if place is None:
             return
         if self._places:
@@ -145,7 +149,7 @@ class LineDrawing(QObject):
         """Show how the line would go on to the pointer."""
         if self._found is not None or not self._places:
             return
-        place = self._places[0] if self._closes(at) else self._window.view.viewport.skin_at(at)
+        place = self._places[0] if self._closes(at) else self._context.view.viewport.skin_at(at)
         if place is not None:
             self._draw([*self._curve, self._way(self._places[-1], place)])
 
@@ -158,7 +162,7 @@ class LineDrawing(QObject):
         try:
             return self._ways[1].path(start, end)
         except UserError as problem:
-            self._window.session.failed.emit(problem)
+            self._context.session.failed.emit(problem)
             return np.stack([start, end])
 
     def _propose(self, closed: bool) -> None:
@@ -176,7 +180,7 @@ class LineDrawing(QObject):
 
         ``pulling`` wants one through control points that can move.
         """
-        frame = self._window.session.frame
+        frame = self._context.session.frame
         if frame is None:
             return False
         control, (pieces, closed) = frame.stages.control, self._wanted
@@ -187,7 +191,7 @@ class LineDrawing(QObject):
             else:
                 self._found = free_curve(frame.stages.body.mesh, control, pieces, closed)
         except UserError as problem:
-            self._window.session.failed.emit(problem)
+            self._context.session.failed.emit(problem)
             return False
         return True
 
@@ -207,7 +211,7 @@ class LineDrawing(QObject):
 
     def _keep(self, found: Snapped | FreeCurve) -> None:
         """Add the line, and its mirror image if that is wished and another line; or give one its course."""
-        session, card, again = self._window.session, self._sketching.card, self._again
+        session, card, again = self._context.session, self._sketching.card, self._again
         design = session.design
         if design is None:
             return
@@ -230,12 +234,12 @@ class LineDrawing(QObject):
             sides = zip(("left", "right"), pair, strict=True)
             lines = tuple(replace(line, name=f"{name} {side}") for side, line in sides)
         self.leave()
-        self._window.line_maker.take(lines)
+        self._add.take(lines)
 
     # -- what is seen
 
     def _show(self) -> None:
-        card, found, design = self._sketching.card, self._found, self._window.session.design
+        card, found, design = self._sketching.card, self._found, self._context.session.design
         card.both.setVisible(found is not None and self._again is None)
         card.keep.setText(tr("Keep line") if found else tr("Done"))
         card.keep.setEnabled(found is not None or len(self._places) > 1)
@@ -260,14 +264,14 @@ class LineDrawing(QObject):
 
     def _colour(self) -> str:
         """Return the colour that the line has or will have."""
-        design = self._window.session.design
+        design = self._context.session.design
         names = [line.name for line in design.own_lines] if design is not None else []
         if self._again is not None:
             return line_colours(names, design)[self._again.name]
         return line_colours([*names, "new"])["new"]
 
     def _draw(self, curve: list[Points]) -> None:
-        frame, found = self._window.session.frame, self._found
+        frame, found = self._context.session.frame, self._found
         path = np.empty((0, 3))
         if isinstance(found, FreeCurve):
             path = found.shown

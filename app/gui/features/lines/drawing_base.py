@@ -17,13 +17,13 @@ from core.pipeline.live_solver import Frame
 from core.scan.body import Body
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
     from app.rendering.sketch_actor import SketchActor
 
 _PIECES = 8  # pieces that the path from one control point to the next is laid on the skin with
 
 
-class Sketching(QObject):
+class DrawingBase(QObject):
     """Takes places on the body at rest [mm], and draws them where they are on the shown one.
 
     ``lost`` tells that what was begun is on another body or control mesh than is shown, and is to end.
@@ -31,22 +31,22 @@ class Sketching(QObject):
 
     lost = Signal()
 
-    def __init__(self, window: MainWindow, owner: QObject) -> None:
+    def __init__(self, context: AppContext, owner: QObject) -> None:
         super().__init__(owner)
-        self._window = window
-        viewport = window.view.viewport
+        self._context = context
+        viewport = context.view.viewport
         canvas = viewport.overlay.parentWidget()
         assert canvas is not None
         self.hand = DrawingTool(viewport, canvas)
-        self.card = DrawCard(window.view)
-        window.view.place(self.card, "bottom-left")  # beside the body: lines go over its middle
+        self.card = DrawCard(context.view)
+        context.view.place(self.card, "bottom-left")  # beside the body: lines go over its middle
         self._sketch: SketchActor | None = None
         self._surface: tuple[Body, RibbonSurface] | None = None
         self._drawn: tuple[Points, Points, Points, str] | None = None
         self._control: ControlMesh | None = None
-        window.session.frame_ready.connect(self._follow)
+        context.session.frame_ready.connect(self._follow)
         viewport.view_changed.connect(self._look)
-        window.session.design_changed.connect(self._check)
+        context.session.design_changed.connect(self._check)
 
     @property
     def at_work(self) -> bool:
@@ -56,7 +56,7 @@ class Sketching(QObject):
     @property
     def frame(self) -> Frame | None:
         """What is shown, if it is of the present design's control mesh."""
-        frame, design = self._window.session.frame, self._window.session.design
+        frame, design = self._context.session.frame, self._context.session.design
         same = frame is not None and design is not None and frame.stages.design.template == design.template
         return frame if same else None
 
@@ -74,12 +74,12 @@ class Sketching(QObject):
             self._drawn = self._control = None
             if self._sketch is not None:
                 self._sketch.clear()
-            self._window.view.viewport.request_draw()
+            self._context.view.viewport.request_draw()
 
     def draw(self, curve: Points, path: Points, points: Points, colour: str) -> None:
         """Draw a curve (k, 3), a path (p, 3) in ``colour`` and points (n, 3) to hold; each may be empty."""
         self._drawn = curve, path, points, colour
-        scene = self._window.view.viewport.scene
+        scene = self._context.view.viewport.scene
         if self._sketch is None:
             from app.rendering.sketch_actor import SketchActor  # noqa: PLC0415 (brings VTK along)
 
@@ -87,11 +87,11 @@ class Sketching(QObject):
         there = [scene.carried_points(part) if len(part) else part for part in (curve, path, points)]
         self._sketch.show(there[0], there[1], there[2], colour)
         self._sketch.look_from(scene.view)
-        self._window.view.viewport.request_draw()
+        self._context.view.viewport.request_draw()
 
     def laid(self, corners: Points) -> Points:
         """Return the way through control points, shape (c, 3), on the skin at rest, shape (k, 3) [mm]."""
-        frame = self._window.session.frame
+        frame = self._context.session.frame
         if frame is None or len(corners) < 2:
             return corners
         body = frame.stages.body
@@ -106,7 +106,7 @@ class Sketching(QObject):
 
         Points behind the body are not seen.
         """
-        scene, overlay = self._window.view.viewport.scene, self._window.view.viewport.overlay
+        scene, overlay = self._context.view.viewport.scene, self._context.view.viewport.overlay
         shown = scene.carried_points(points)
         spots = scene.view.to_picture(shown, overlay.width(), overlay.height())
         away = np.hypot(spots[:, 0] - at.x(), spots[:, 1] - at.y())
@@ -119,7 +119,7 @@ class Sketching(QObject):
 
     def _look(self) -> None:
         if self.at_work and self._sketch is not None:
-            self._sketch.look_from(self._window.view.viewport.scene.view)
+            self._sketch.look_from(self._context.view.viewport.scene.view)
 
     def _check(self, _: object) -> None:
         """Let go once the control mesh is another: there its points have other numbers and places."""

@@ -1,4 +1,4 @@
-"""What the window does about limits: how far each line can go is worked out beside window and solver."""
+"""Length limits: computed for each line in the background, while the solver works."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
+from app.gui.features.lines.panel import LinesPanel
 from app.gui.features.lines.slider_groove import SHORTEST
 from app.gui.session.jobs import Job
 from app.i18n.catalog import tr
@@ -22,7 +23,7 @@ from core.pipeline.live_solver import Frame
 from core.progress import Cancelled, Progress
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 KEPT = 400
 """Leeways that are kept, so that undone steps and other variants show theirs at once."""
@@ -33,8 +34,8 @@ HAND_RESTS = 120
 Key = tuple[Design, str, bool]
 
 
-class LimitsDesk(QObject):
-    """Has the leeways of each design worked out as soon as it is built, and gives them to the lines.
+class LimitsController(QObject):
+    """Compute the length limits of lines as soon as their design is built; ``changed`` when more are known.
 
     The line in hand comes first. What a line's leeway hangs on is the rest of the design: moving the line
     itself leaves it as it is. One job does all lines; whatever is edited meanwhile ends it.
@@ -42,9 +43,11 @@ class LimitsDesk(QObject):
 
     _found = Signal(object, object, object)
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window = window
+    changed = Signal()
+
+    def __init__(self, context: AppContext, panel: LinesPanel) -> None:
+        super().__init__(context.session)
+        self._context, self._panel = context, panel
         self._known: dict[Key, LengthLimits | None] = {}
         self._last: dict[str, LengthLimits] = {}
         self._shown: tuple[Design | None, Mapping[str, Shown]] = None, {}
@@ -82,7 +85,7 @@ class LimitsDesk(QObject):
         if before is not None and before.stages.design is design:
             return
         self._let_go()
-        if design is self._window.session.design:
+        if design is self._context.session.design:
             self._begin()
         else:
             self._rests.start()
@@ -100,16 +103,14 @@ class LimitsDesk(QObject):
         ]
         keys = [key for key in (_key(design, name) for name in rows) if key not in self._known]
         if keys:
-            self._job = self._window.jobs.run(
+            self._job = self._context.jobs.run(
                 tr("Finding how far lines can go"), partial(self._work, stages, keys), self._done
             )
 
     def _in_order(self, stages: Stages) -> Sequence[Line]:
         """Return the lines, those first that are in hand or under the pointer."""
-        selected = self._window.view.selected_line
-        hovered = {
-            name for row in self._window.lines.rows.values() if row.underMouse() for name in row.view.names
-        }
+        selected = self._context.view.selected_line
+        hovered = {name for row in self._panel.rows.values() if row.underMouse() for name in row.view.names}
         lines = (line for line in stages.model.lines if line.constrains)
         return sorted(lines, key=lambda line: (line.name != selected, line.name not in hovered))
 
@@ -133,7 +134,7 @@ class LimitsDesk(QObject):
             del self._known[next(iter(self._known))]
         if self._frame is not None and stages.body is self._frame.stages.body:
             self._shown = None, {}
-            self._window.lines_desk.show_rows()
+            self.changed.emit()
 
     def _done(self, _: object) -> None:
         self._job = None
@@ -141,7 +142,7 @@ class LimitsDesk(QObject):
     def _let_go(self) -> None:
         """Let go of work on a design that is no longer shown."""
         self._rests.stop()
-        self._window.jobs.cancel(self._job)
+        self._context.jobs.cancel(self._job)
         self._job = None
 
 

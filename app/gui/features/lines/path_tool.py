@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QObject, QPointF
 
-from app.gui.features.lines.drawing_base import Sketching
+from app.gui.features.lines.drawing_base import DrawingBase
+from app.gui.features.lines.panel import LinesPanel
 from app.i18n.catalog import tr
 from app.presenters.lines import line_colours, row_title
 from core.control_mesh.template import read_template
@@ -19,7 +21,7 @@ from core.errors import UserError
 from core.geometry.mesh import Points
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 _REACH = 16.0  # how near to a control point a click means it [px]
 
@@ -34,13 +36,19 @@ def led(design: Design, line: CustomLine, after: CustomLine) -> Design:
     return changed
 
 
-class LineRouting(QObject):
-    """Edits the path of one own line; a linked partner that mirrors it is led likewise."""
+class LinePathTool(QObject):
+    """Edit the path of one custom line; a linked partner that mirrors it is led likewise.
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window = window
-        self._sketching = Sketching(window, self)
+    A free line, which has no control points, is drawn again by ``draw_again``.
+    """
+
+    def __init__(
+        self, context: AppContext, panel: LinesPanel, draw_again: Callable[[CustomLine], object]
+    ) -> None:
+        super().__init__(context.session)
+        self._context, self._draw_again = context, draw_again
+        self._sketching = DrawingBase(context, self)
+        panel.path_asked.connect(self.begin)
         self._line: CustomLine | None = None
         self._steps: list[tuple[int, ...]] = []
         self._held, self._mesh_shown = -1, False
@@ -54,8 +62,8 @@ class LineRouting(QObject):
         card.back.connect(self.back)
         card.left.connect(self.leave)
         self._sketching.lost.connect(self.leave)
-        window.navigation.tool_started.connect(self.leave)
-        window.session.design_changed.connect(self._check)
+        context.navigation.tool_started.connect(self.leave)
+        context.session.design_changed.connect(self._check)
 
     @property
     def at_work(self) -> bool:
@@ -64,18 +72,18 @@ class LineRouting(QObject):
 
     def begin(self, name: str) -> None:
         """Let the path of an own line be edited."""
-        design, frame = self._window.session.design, self._sketching.frame
+        design, frame = self._context.session.design, self._sketching.frame
         own = {line.name: line for line in design.own_lines} if design is not None else {}
         if name not in own or frame is None:
             return
         if own[name].free:  # it has no control points to be led through
-            self._window.line_drawing.begin_again(own[name])
+            self._draw_again(own[name])
             return
         self._line, self._steps = own[name], [own[name].points]
-        self._window.navigation.show_step("lines")
-        self._window.selection.select_line(name)
-        self._mesh_shown = self._window.view.tools.actions_by_name["control-mesh"].isChecked()
-        self._window.view.set_layer("control-mesh", True)
+        self._context.navigation.show_step("lines")
+        self._context.selection.select_line(name)
+        self._mesh_shown = self._context.view.tools.actions_by_name["control-mesh"].isChecked()
+        self._context.view.set_layer("control-mesh", True)
         self._sketching.card.both.hide()
         self._sketching.begin(frame)
         self._show()
@@ -89,12 +97,12 @@ class LineRouting(QObject):
     def leave(self) -> None:
         """Edit no longer; nothing is kept."""
         if self._sketching.at_work:
-            self._window.view.set_layer("control-mesh", self._mesh_shown)
+            self._context.view.set_layer("control-mesh", self._mesh_shown)
         self._sketching.end()
 
     def keep(self) -> None:
         """Let the line take the new path, as one undo step."""
-        session, line, path = self._window.session, self._line, self._steps[-1]
+        session, line, path = self._context.session, self._line, self._steps[-1]
         design = session.design
         if line is None or design is None:
             return
@@ -111,7 +119,7 @@ class LineRouting(QObject):
     # -- the hand
 
     def _points(self) -> Points:
-        frame = self._window.session.frame
+        frame = self._context.session.frame
         return np.empty((0, 3)) if frame is None else frame.stages.control.mesh.vertices
 
     def _grab(self, at: QPointF) -> bool:
@@ -156,7 +164,7 @@ class LineRouting(QObject):
         self._show(path)
 
     def _show(self, path: tuple[int, ...] = ()) -> None:
-        path, line, design = path or self._steps[-1], self._line, self._window.session.design
+        path, line, design = path or self._steps[-1], self._line, self._context.session.design
         if line is None or design is None:
             return
         card = self._sketching.card

@@ -1,4 +1,4 @@
-"""The desk of presets: named sets of lines are worn, and the lines of a design are kept as one."""
+"""Presets: named sets of lines are applied, and the lines of a design are saved as one."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 
+from app.gui.features.lines.panel import LinesPanel
 from app.gui.widgets.menu import pull_down
 from app.gui.widgets.message_box import ask, ask_name
 from app.gui.widgets.tooltip import set_tip
@@ -28,27 +29,28 @@ from core.document.presets import (
 from core.errors import UserError
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 
-class PresetDesk(QObject):
-    """Fills the menu of presets, each time anew: files may have come."""
+class PresetsController(QObject):
+    """Fill the menu of presets, each time anew: files may have come."""
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window = window
+    def __init__(self, context: AppContext, panel: LinesPanel) -> None:
+        super().__init__(context.session)
+        self._context, self._head = context, panel.head
+        panel.presets_asked.connect(self.show_menu)
         self._known: tuple[Preset, ...] = ()
-        self._menu = window.actions_.submenu("lines", "presets", tr("Presets"))
+        self._menu = context.actions.submenu("lines", "presets", tr("Presets"))
         self._menu.aboutToShow.connect(self.fill)
         # Not at the start: a designer's files are no reason to come up late, or not at all.
-        window.session.opened.connect(self._fill_and_show)
-        window.session.design_changed.connect(self.show_worn)
+        context.session.opened.connect(self._fill_and_show)
+        context.session.design_changed.connect(self.show_worn)
 
     def fill(self) -> None:
         """List our presets, one's own, those that cannot be read, and how to keep one."""
         menu = self._menu
         menu.clear()
-        opened = self._window.session.design is not None
+        opened = self._context.session.design is not None
         own, problems = user_presets()
         self._known = (*built_in(), *own)
         for group in (built_in(), own):
@@ -65,35 +67,35 @@ class PresetDesk(QObject):
 
     def show_menu(self) -> None:
         """Offer the presets over the list of lines."""
-        pull_down(self._menu, self._window.lines.head.presets)
+        pull_down(self._menu, self._head.presets)
 
     def _fill_and_show(self, _: object) -> None:
         self.fill()
-        if self._window.session.design is not None:
-            self.show_worn(self._window.session.design)
+        if self._context.session.design is not None:
+            self.show_worn(self._context.session.design)
 
     def show_worn(self, design: Design) -> None:
         """Say over the list which preset is worn, and what it leaves out."""
         worn = next((each for each in self._known if _goes(each, design) and is_active(design, each)), None)
         leaves_out = say(worn.leaves_out) if worn is not None and worn.leaves_out else ""
-        self._window.lines.head.show_preset(say(worn.title) if worn is not None else "", leaves_out)
+        self._head.show_preset(say(worn.title) if worn is not None else "", leaves_out)
 
     def wear(self, preset: Preset) -> None:
         """Wear the lines of a preset in place of the present ones; say what it leaves out."""
-        session = self._window.session
+        session = self._context.session
         before = session.design
         if before is None:
             return
         step, title = session.undo_stack.index(), say(preset.title)
         session.edit(lambda design: with_preset(design, preset), tr("Preset {name}").format(name=title))
-        self._window.navigation.show_step("lines")
+        self._context.navigation.show_step("lines")
         if session.design is None or session.design is before:
             return
         led = _led_anew(before, session.design)
         if led:
             said = tr("Led as in the preset {name}: {lines}").format(name=title, lines=led)
             undo = tr("Undo"), partial(session.undo_stack.setIndex, step)
-            self._window.notifications.info(said, say(preset.leaves_out), [undo])
+            self._context.notifications.info(said, say(preset.leaves_out), [undo])
 
     def ask(self) -> None:
         """Ask for a name, and keep the present lines as a preset."""
@@ -102,7 +104,7 @@ class PresetDesk(QObject):
         names = chain([name], (f"{name} {number}" for number in count(2)))
         offered = next(each for each in names if each not in taken)
         while title := ask_name(
-            self._window, tr("Save lines as preset"), tr("Name of the preset"), offered, LONGEST_TITLE
+            self._context.window, tr("Save lines as preset"), tr("Name of the preset"), offered, LONGEST_TITLE
         ):
             if not user_file(title).exists() or self._may_replace(title):
                 self.save(title)
@@ -113,20 +115,20 @@ class PresetDesk(QObject):
         """Ask whether the preset of that name may go; without an answer the name is asked for again."""
         question = tr("Replace the preset {name}?").format(name=title)
         said = tr("There is one of that name already. Its lines will be lost.")
-        return ask(self._window, question, said, [("replace", tr("Replace"))]) == "replace"
+        return ask(self._context.window, question, said, [("replace", tr("Replace"))]) == "replace"
 
     def save(self, title: str) -> None:
         """Keep the present lines as a preset."""
-        session = self._window.session
+        session = self._context.session
         if session.design is None:
             return
         try:
             path = save_preset(preset_from(session.design, title))
         except UserError as problem:
-            self._window.notifications.error(problem, "preset")
+            self._context.notifications.error(problem, "preset")
             return
-        self._window.notifications.withdraw("preset")
-        self._window.notifications.done(tr("Preset {name} saved.").format(name=title), str(path))
+        self._context.notifications.withdraw("preset")
+        self._context.notifications.done(tr("Preset {name} saved.").format(name=title), str(path))
 
 
 def _goes(preset: Preset, design: Design) -> bool:

@@ -12,7 +12,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from app.gui.features.maps.band_coloring import BandPainter, BandValues
 from app.gui.features.maps.legend import Legend
 from app.gui.features.maps.legend_placement import LegendPlace
-from app.gui.features.maps.values import MapValues
+from app.gui.features.maps.values import MapValues, PressureSource, SymmetrySource, WornSource
 from app.gui.viewport.body_view import BodyView
 from app.gui.viewport.value_labels import ValueFlag, ValueFlags
 from app.i18n.catalog import number
@@ -25,7 +25,7 @@ from core.geometry.mesh import Floats
 from core.pipeline.live_solver import Frame
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
     from app.rendering.body_actor import BodyActor
     from app.rendering.scene import Scene
 
@@ -38,21 +38,23 @@ class Pinned:
     line: str = ""
 
 
-class MapDesk(QObject):
-    """Lays the map called ``name`` over the bodies that are seen; an empty name is none.
+class MapsController(QObject):
+    """Lay the map called ``name`` over the bodies that are seen; an empty name is none.
 
-    ``changed`` says that another map was chosen, or none.
+    ``chosen`` carries the name of the map that was chosen, or none.
     """
 
-    changed = Signal()
+    chosen = Signal(str)
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window, self._view = window, window.view
+    def __init__(
+        self, context: AppContext, pressures: PressureSource, symmetry: SymmetrySource, worn: WornSource
+    ) -> None:
+        super().__init__(context.session)
+        self._context, self._view = context, context.view
         self._kinds = {kind.name: kind for kind in map_kinds()}
         self.name, self._last = "", MAPS[0]
-        desks = window.pressure_controller, window.symmetry_controller, window.scan_comparison_controller
-        self._seen = MapValues(self._view.beside, *desks)
+        self._pressures, self._worn = pressures, worn
+        self._seen = MapValues(self._view.beside, pressures, symmetry, worn)
         self.pinned: tuple[Pinned, ...] = ()
         self._flagged: tuple[Pinned, ...] = ()
         self._by_hand: dict[str, tuple[float, float]] = {}
@@ -78,9 +80,11 @@ class MapDesk(QObject):
         self.legend.theme_changed.connect(lambda: QTimer.singleShot(0, self, self.refresh))
         self.flags.pinned.connect(self.pin)
         self.flags.pulled.connect(self.unpin)
-        self._window.pressure_controller.changed.connect(self.refresh)
-        self._window.scan_comparison_controller.compared.connect(self.refresh)
-        self._window.pressure_controller.place_asked.connect(self.look_at_most)
+        tools = self._view.tools.actions_by_name
+        tools["map"].triggered.connect(self.toggle)
+        tools["next-map"].triggered.connect(self.cycle)
+        # What the view shows of a frame is there before it is coloured.
+        self._view.compared.connect(self.follow)
 
     @property
     def now(self) -> BodyState | None:
@@ -95,7 +99,7 @@ class MapDesk(QObject):
 
     def cycle(self) -> None:
         """Go on to the next map, and after the last one to the first."""
-        names = [name for name in MAPS if name != "worn" or self._window.scan_comparison_controller.worn]
+        names = [name for name in MAPS if name != "worn" or self._worn.worn]
         self.choose(names[(names.index(self.name) + 1) % len(names) if self.name in names else 0])
 
     def choose(self, name: str) -> None:
@@ -107,7 +111,7 @@ class MapDesk(QObject):
             self._last = name
             self.legend.show_map(name)
         self.refresh()
-        self.changed.emit()
+        self.chosen.emit(name)
 
     def set_range(self, low: float, high: float) -> None:
         """Set the range of the shown map by hand."""
@@ -138,7 +142,7 @@ class MapDesk(QObject):
 
     def look_at_most(self) -> None:
         """Turn to the place that is pressed most, and pin what it is pressed with."""
-        listed = self._window.pressure_controller.shown
+        listed = self._pressures.shown
         if listed is None or listed.highest is None:
             return
         line = listed.highest.line
@@ -180,7 +184,7 @@ class MapDesk(QObject):
 
     def follow(self) -> None:
         """Bring legend, colours and flags up to date; the view is being drawn anyway."""
-        frame = self._window.session.frame
+        frame = self._context.session.frame
         shown = bool(self.name) and frame is not None
         self._view.tools.set_shown("map", shown)
         self.legend.setVisible(shown)

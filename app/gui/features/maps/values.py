@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Protocol
 from weakref import WeakKeyDictionary
 
-from app.gui.features.garment.pressure_controller import PressureController
 from app.gui.features.maps.band_coloring import BandValues, pressures_on, pulls_on
-from app.gui.features.scan_comparison.controller import ScanComparisonController
-from app.gui.features.symmetry.controller import SymmetryController
 from app.gui.viewport.body_view import BodyView
 from app.gui.viewport.comparison import ViewComparison
 from app.i18n.catalog import tr
@@ -17,15 +15,57 @@ from core.geometry.mesh import Floats
 from core.pipeline.live_solver import Frame
 
 
+class PressureSource(Protocol):
+    """Gives the map of contact pressure."""
+
+    @property
+    def shown(self) -> PressureList | None:
+        """The pressures beside the cut list."""
+        ...
+
+    def of(self, frame: Frame) -> PressureList | None:
+        """Return the pressures of a frame, once they are known."""
+        ...
+
+    def missing(self, frame: Frame) -> str:
+        """Return why there are none, or nothing."""
+        ...
+
+
+class SymmetrySource(Protocol):
+    """Gives the note of the map Left and right."""
+
+    def note(self, frame: Frame, after: bool) -> str:
+        """Return the note on a frame."""
+        ...
+
+
+class WornSource(Protocol):
+    """Gives the map of a worn scan, if there is one."""
+
+    @property
+    def worn(self) -> object:
+        """The scan, or None."""
+        ...
+
+    def values(self, frame: Frame) -> Floats:
+        """Return predicted less real at the moving vertices, (r,) [mm]."""
+        ...
+
+    def note(self, frame: Frame) -> str:
+        """Return the note on a frame, or nothing."""
+        ...
+
+
 class MapValues:
     """Reads maps off the bodies that ``beside`` shows; ``now`` is the session's own, once there is one."""
 
     def __init__(
         self,
         beside: ViewComparison,
-        pressure: PressureController,
-        even: SymmetryController,
-        worn: ScanComparisonController,
+        pressure: PressureSource,
+        even: SymmetrySource,
+        worn: WornSource,
     ) -> None:
         self._beside, self._pressure, self._even, self._worn = beside, pressure, even, worn
         self.now: BodyState | None = None

@@ -37,7 +37,7 @@ class ReportPage(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        self.paper = _Desk()
+        self.paper = _PageArea()
         self.customer = QLineEdit()
         self.customer.setFont(font("body"))
         self.customer.setFixedHeight(30)
@@ -138,7 +138,7 @@ class ReportPage(QWidget):
         return column
 
 
-class _Desk(QScrollArea):
+class _PageArea(QScrollArea):
     """The pages below each other on the ground of the window; Ctrl and the wheel make them larger."""
 
     def __init__(self) -> None:
@@ -147,7 +147,7 @@ class _Desk(QScrollArea):
         self.setWidgetResizable(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAccessibleName(tr("Pages of the sheet"))
-        self._ground = _Ground()
+        self._ground = _Background()
         self.setWidget(self._ground)
         self._lay = QVBoxLayout(self._ground)
         self._lay.setContentsMargins(GAP, GAP, GAP, GAP)
@@ -206,7 +206,7 @@ class _Desk(QScrollArea):
             leaf.setFixedSize(width, round(width * A4[1] / A4[0]))
 
 
-class _Ground(QWidget):
+class _Background(QWidget):
     """What pages lie on."""
 
     def paintEvent(self, event: QPaintEvent) -> None:

@@ -1,14 +1,16 @@
-"""What the window does about the scan: how it was understood, and the question how it stands."""
+"""The scan: what was detected on it, its edits, and the question of its orientation."""
 
 from __future__ import annotations
 
 import logging
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QColor, QImage
 
+from app.gui.features.scan.panel import ScanPanel
 from app.gui.session.jobs import Job
 from app.gui.theme.stylesheet import tokens_of
 from app.gui.viewport.orientation_card import PICTURE, OrientationChoice
@@ -26,27 +28,43 @@ from core.scan.edits import ScanEdits
 from core.scan.orientation.lean_angles import corrected_up
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 _QUESTION = "how the scan stands"
 """What a notice is about that asks for an answer, or says that there is none."""
 
 
-class ScanDesk(QObject):
-    """Brings what was understood of a scan to the window, and what the user knows better to the session.
+class ScanController(QObject):
+    """Show what was detected on a scan, and make corrections of it edits of the design.
 
-    ``stuck`` is what keeps the scan that is shown from being a document, until the user knows better; never
-    while a document is open, for that is what is shown then.
+    ``found`` carries the stages of a body whose landmarks are to be shown, ``checked`` those of one that has
+    just been opened, ``incomplete_shown`` why the scan that is shown is no document.
     """
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window = window
-        self._session = window.session
+    found = Signal(object)
+    checked = Signal(object)
+    incomplete_shown = Signal(object)
+
+    def __init__(self, context: AppContext, panel: ScanPanel, may_leave: Callable[[], bool]) -> None:
+        super().__init__(context.session)
+        self._context, self._panel, self._may_leave = context, panel, may_leave
+        self._session = context.session
         self._asked_for: Design | None = None
-        self.stuck: IncompleteBuildError | None = None
         self._stages: Stages | None = None
         self._painting: Job | None = None
+        self._connect()
+
+    def _connect(self) -> None:
+        session, panel, question = self._session, self._panel, self._context.view.question
+        session.failed.connect(lambda _: self.show_refused())
+        session.asked.connect(self.show_stuck)
+        panel.told.connect(self.tell)
+        panel.edits.edited.connect(self.edit)
+        panel.lean.leaned.connect(self.lean)
+        panel.lean.up_chosen.connect(self.stand_upright)
+        panel.front_asked.connect(self.ask)
+        question.answered.connect(self.answer)
+        question.left.connect(self.leave_question)
 
     @property
     def painting(self) -> bool:
@@ -57,17 +75,17 @@ class ScanDesk(QObject):
 
     def show_found(self, stages: Stages) -> None:
         """Show what was understood of the scan, and found on it."""
-        window = self._window
-        window.scan.set_scan(scan_view(stages.design.scan, stages.body, landmarks=stages.landmarks))
+        context = self._context
+        self._panel.set_scan(scan_view(stages.design.scan, stages.body, landmarks=stages.landmarks))
         sure = stages.body.pose.is_certain and not stages.landmarks.size_doubted
-        window.navigation.mark_step("scan", "done" if sure else "look", 1)
-        window.landmark_desk.show_found(stages)
+        context.navigation.mark_step("scan", "done" if sure else "look", 1)
+        self.found.emit(stages)
 
     def show_opened(self, frame: Frame) -> None:
         """Show what is unclear on a scan that was opened, and ask for its orientation if need be."""
         self._check_pose(frame.stages)
         for sentence in warnings(frame.stages):
-            self._window.notifications.warn(sentence, topic=SCAN)
+            self._context.notifications.warn(sentence, topic=SCAN)
 
     def show_frame(self, frame: Frame) -> None:
         """Show what was found on the scan of a frame, if it is another one; warnings that are over go."""
@@ -75,25 +93,25 @@ class ScanDesk(QObject):
         if former is None or frame.stages.landmarks is not former.landmarks:
             self.show_found(frame.stages)
         if former is not None and frame.stages.control is not former.control:
-            self._window.notifications.keep_only(SCAN, warnings(frame.stages))
+            self._context.notifications.keep_only(SCAN, warnings(frame.stages))
 
     def _check_pose(self, stages: Stages) -> None:
         self._forget_question()
-        self.stuck = None
-        self._window.landmark_desk.show_unclear(stages)
+        self._session.stuck = None
+        self.checked.emit(stages)
         pose, source = stages.body.pose, stages.design.scan
         if pose.is_certain:
             return
         if source.up and source.front:
             unsure = tr("Busk is not sure of the unit, up or front of this scan.")
-            self._window.notifications.warn(unsure, pose.reason, topic=_QUESTION)
+            self._context.notifications.warn(unsure, pose.reason, topic=_QUESTION)
         else:
             self._ask(stages.body, None)
 
     def show_stuck(self, stuck: IncompleteBuildError) -> None:
         """Show a scan that cannot go on if no document is open; ask how it stands if that is not sure."""
         self._forget_question()
-        asked = self.stuck is not None and self.stuck.design.scan is stuck.design.scan
+        asked = self._session.stuck is not None and self._session.stuck.design.scan is stuck.design.scan
         if self._session.design is None:
             self._show_alone(stuck)
         if stuck.kind == "unsure" and not asked:
@@ -103,16 +121,16 @@ class ScanDesk(QObject):
 
     def _show_alone(self, stuck: IncompleteBuildError) -> None:
         """Show a scan that cannot go on in the place of a document."""
-        window, self.stuck = self._window, stuck
+        context, self._session.stuck = self._context, stuck
         lacks = stuck.kind == "landmarks"
-        window.landmark_desk.show_stuck(stuck)
-        window.scan.set_scan(scan_view(stuck.design.scan, stuck.body, stuck.kind != "refused"))
-        window.view.show_stuck(stuck.body, stuck.landmarks)
-        window.navigation.show_step("landmarks" if lacks else "scan")
-        window.navigation.mark_step("scan", "done" if lacks else "look")
+        self.incomplete_shown.emit(stuck)
+        self._panel.set_scan(scan_view(stuck.design.scan, stuck.body, stuck.kind != "refused"))
+        context.view.show_stuck(stuck.body, stuck.landmarks)
+        context.navigation.show_step("landmarks" if lacks else "scan")
+        context.navigation.mark_step("scan", "done" if lacks else "look")
 
     def _say_stuck(self, stuck: IncompleteBuildError) -> None:
-        notifications = self._window.notifications
+        notifications = self._context.notifications
         notifications.withdraw(REFUSED)
         notifications.show("bad", stuck.message, stuck.hint, lasting=True, topic=REFUSED)
 
@@ -120,7 +138,7 @@ class ScanDesk(QObject):
 
     def tell(self, key: str, value: str) -> None:
         """Read the scan again with its unit, up or front as told; an empty key forgets what was told."""
-        design = self.stuck.design if self.stuck else self._session.design
+        design = self._session.stuck.design if self._session.stuck else self._session.design
         if design is None:
             return
         scan = design.scan
@@ -150,33 +168,33 @@ class ScanDesk(QObject):
         self._rotate(up, tr("Stand upright"))
 
     def _rotate(self, up: str, text: str) -> None:
-        design = self.stuck.design if self.stuck else self._session.design
+        design = self._session.stuck.design if self._session.stuck else self._session.design
         if design is not None:
             self._read_again(design.scan.set_up(up=up), text)
 
     def edit(self, edits: ScanEdits, text: str) -> None:
         """Edit the scan as one undo step named ``text``."""
-        design = self.stuck.design if self.stuck else self._session.design
+        design = self._session.stuck.design if self._session.stuck else self._session.design
         if design is not None:
             self._read_again(replace(design.scan, edits=edits), text)
 
     def show_refused(self) -> None:
         """Show the scan as it is after an edit that was refused."""
         frame, design = self._session.frame, self._session.design
-        if frame is not None and design is not None and not self.stuck:
+        if frame is not None and design is not None and not self._session.stuck:
             self.show_found(frame.stages)
 
     def _read_again(self, scan: ScanSource, text: str) -> None:
-        if self.stuck:
-            self._session.open_design(replace(self.stuck.design, scan=scan))
+        if self._session.stuck:
+            self._session.open_design(replace(self._session.stuck.design, scan=scan))
         else:
             self._session.change({"scan": scan}, text)
 
     def ask(self) -> None:
         """Show the pictures for the present scan."""
         frame = self._session.frame
-        if self.stuck:
-            self._ask(self.stuck.body, self.stuck.design)
+        if self._session.stuck:
+            self._ask(self._session.stuck.body, self._session.stuck.design)
         elif frame is not None:
             self._ask(frame.stages.body, None)
 
@@ -184,10 +202,10 @@ class ScanDesk(QObject):
         """Take the answer: the open scan is read again as one undo step, one that waits is opened."""
         waiting, design = self._asked_for, self._session.design
         self._forget_question()
-        self._window.notifications.withdraw(_QUESTION)
+        self._context.notifications.withdraw(_QUESTION)
         if waiting is not None:
             # What is open may have been edited while the question waited.
-            if self._window.project_controller.may_leave():
+            if self._may_leave():
                 self._session.open_design(replace(waiting, scan=waiting.scan.set_up(up=up, front=front)))
         elif design is not None:
             self._session.change(
@@ -198,9 +216,9 @@ class ScanDesk(QObject):
         """Leave a scan as it is understood; one that waited for the answer is let go, if it is not shown."""
         waiting, frame = self._asked_for, self._session.frame
         self._forget_question()
-        self._window.notifications.withdraw(_QUESTION)
-        if self.stuck:
-            self._say_stuck(self.stuck)
+        self._context.notifications.withdraw(_QUESTION)
+        if self._session.stuck:
+            self._say_stuck(self._session.stuck)
         elif waiting is None and frame is not None and not frame.stages.body.pose.is_certain:
             self._say_unsure(tr("Please check it at the Scan step."))
 
@@ -208,7 +226,13 @@ class ScanDesk(QObject):
 
     def _shown_body(self) -> Body | None:
         frame = self._session.frame
-        return self.stuck.body if self.stuck else frame.stages.body if frame is not None else None
+        return (
+            self._session.stuck.body
+            if self._session.stuck
+            else frame.stages.body
+            if frame is not None
+            else None
+        )
 
     def _shown_up(self) -> str:
         body = self._shown_body()
@@ -216,20 +240,20 @@ class ScanDesk(QObject):
 
     def _forget_question(self) -> None:
         self._asked_for = None
-        self._window.jobs.cancel(self._painting)
+        self._context.jobs.cancel(self._painting)
         self._painting = None
-        self._window.view.question.hide()
+        self._context.view.question.hide()
 
     def _ask(self, body: Body, waiting: Design | None) -> None:
         """Have a picture painted for each way the body may stand."""
         self._asked_for = waiting
         if not body.pose.is_certain:
             self._say_unsure(tr("Please choose a picture below."))
-        clay = QColor(APPEARANCES[tokens_of(self._window).dark].clay)
-        colour, scale = (clay.red(), clay.green(), clay.blue()), self._window.devicePixelRatioF()
+        clay = QColor(APPEARANCES[tokens_of(self._context.window).dark].clay)
+        colour, scale = (clay.red(), clay.green(), clay.blue()), self._context.view.devicePixelRatioF()
         size = round(PICTURE[0] * scale), round(PICTURE[1] * scale)
-        self._window.jobs.cancel(self._painting)
-        self._painting = self._window.jobs.run(
+        self._context.jobs.cancel(self._painting)
+        self._painting = self._context.jobs.run(
             tr("Painting how the scan may stand"),
             lambda progress: option_thumbnails(body, size, colour, progress),
             self._show_question,
@@ -240,7 +264,7 @@ class ScanDesk(QObject):
     def _show_question(self, painted: object) -> None:
         assert isinstance(painted, list)
         self._painting = None
-        self._window.view.question.ask(
+        self._context.view.question.ask(
             [OrientationChoice(way.up, way.front, _image(picture), _words(way)) for way, picture in painted]
         )
 
@@ -251,9 +275,9 @@ class ScanDesk(QObject):
         self._say_unsure(tr("Please check it at the Scan step."))
 
     def _say_unsure(self, ask: str) -> None:
-        self._window.notifications.withdraw(_QUESTION)
+        self._context.notifications.withdraw(_QUESTION)
         unsure = tr("Busk is not sure how this scan stands.")
-        self._window.notifications.warn(unsure, ask, topic=_QUESTION)
+        self._context.notifications.warn(unsure, ask, topic=_QUESTION)
 
 
 def _words(way: OrientationOption) -> str:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QObject, QTimer
+from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.gui.features.sections.marks import apex_pairs, bands, bust_points, home, most_off, side_of
 from app.gui.features.sections.panel import ProfilePanel
+from app.gui.file_export import write_file
 from app.gui.plots.section_plot import Drawn
 from app.gui.viewport.plane_handle import PlaneHandle
 from app.gui.viewport.viewport import Viewport
@@ -20,7 +21,6 @@ from app.presenters.bust_shift import bust_shift
 from app.presenters.maps import BodyState, section_words, sides_words
 from app.presenters.plots import PLOT_INTERVAL
 from app.presenters.status import is_result
-from core.errors import UserError
 from core.export.mesh import write_profile
 from core.geometry.mesh import Floats
 from core.geometry.planar_curves import AXES, Curve, Plane, Slicer, mirrored, nearest, protrusion
@@ -28,20 +28,32 @@ from core.measurements.uncertain_value import OutputUncertainties
 from core.pipeline.live_solver import Frame
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
 
 _NEAR = 25.0  # how near to a curve the pointer reads it [px]
 
 
-class SectionDesk(QObject):
-    """Shows one plane at a time; it goes through a bust point until it is moved by hand.
+class SectionsController(QObject):
+    """Show one plane at a time; it goes through a bust point until it is moved by hand.
 
     ``curves`` are what is shown of the plane: before, after, and of the other side if that is asked for.
+    ``uncertainty_of`` returns the uncertainties of a frame, ``profiles_in`` the target profiles in a plane.
+    ``switched`` is emitted before the plane is shown or hidden.
     """
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window, self._view = window, window.view
+    switched = Signal()
+    carrying_changed = Signal()
+
+    def __init__(
+        self,
+        context: AppContext,
+        uncertainty_of: Callable[[Frame], OutputUncertainties | None],
+        profiles_in: Callable[[Plane], dict[str, Sequence[Floats]]],
+    ) -> None:
+        super().__init__(context.session)
+        self._uncertainty_of, self._profiles_in = uncertainty_of, profiles_in
+        self._mirrored = False
+        self._context, self._view = context, context.view
         self.is_on = False
         self.axis = "x"
         self.curves: dict[str, tuple[Curve, ...]] = {}
@@ -70,6 +82,9 @@ class SectionDesk(QObject):
         panel.closed.connect(lambda: self.set_on(False))
         panel.plot.pointed.connect(self._point)
         self._view.floating.rearranged.connect(self._give_room)
+        self._view.tools.actions_by_name["section"].triggered.connect(self.set_on)
+        self._view.viewport.pin_pressed.connect(self.follow_landmark)
+        self._view.compared.connect(self.follow)
 
     def _give_room(self) -> None:
         if not self.panel.isHidden():
@@ -80,7 +95,7 @@ class SectionDesk(QObject):
     def set_on(self, on: bool) -> None:
         """Show or hide the plane and its panel."""
         self.is_on = self._again = on
-        self._window.uncertainty_controller.follow()
+        self.switched.emit()
         self.refresh()
 
     def choose_axis(self, axis: str) -> None:
@@ -120,17 +135,14 @@ class SectionDesk(QObject):
 
     def export(self) -> None:
         """Ask for a place and write the curves there."""
-        name = f"{self._window.session.name}-{self.axis}.csv"
-        path = ask_save(self._window, tr("Export the curves as CSV…"), name, "CSV (*.csv)", ".csv")
+        name = f"{self._context.session.name}-{self.axis}.csv"
+        path = ask_save(self._context.window, tr("Export the curves as CSV…"), name, "CSV (*.csv)", ".csv")
         if not path or self._slicer is None:
             return
-        try:
-            write_profile(path, self._slicer.plane, self.curves)
-        except UserError as problem:
-            self._window.notifications.error(problem, "curves")
-        else:
-            said = tr("Curves written to {name}.").format(name=Path(path).name)
-            self._window.notifications.file_written("curves", said, path)
+        plane, curves, said = self._slicer.plane, self.curves, tr("Curves written to {name}.")
+        write_file(
+            self._context.notifications, "curves", path, lambda to: write_profile(to, plane, curves), said
+        )
 
     # -- the handle in the view
 
@@ -147,7 +159,7 @@ class SectionDesk(QObject):
     def _take(self) -> None:
         if self._slicer is not None:
             self._former, self._hand_at = dict(self._by_hand), self._slicer.plane.at
-            self._window.job_desk.show()
+            self.carrying_changed.emit()
 
     def _pull(self, step: float) -> None:
         """Go along the axis with the hand [mm], but not out of the body."""
@@ -158,9 +170,14 @@ class SectionDesk(QObject):
 
     def _open_hand(self) -> None:
         self._former = None
-        self._window.job_desk.show()
+        self.carrying_changed.emit()
 
     # -- what is shown
+
+    def show_map(self, name: str) -> None:
+        """Show the curves of the other side too while left and right are compared by the map."""
+        self._mirrored = name == "sides"
+        self.refresh()
 
     def refresh(self) -> None:
         """Cut the body of the session's frame, show the curves, and have the view drawn."""
@@ -176,7 +193,7 @@ class SectionDesk(QObject):
 
     def follow(self) -> None:
         """Cut the body of the session's frame, and show the curves; the view is being drawn anyway."""
-        frame = self._window.session.frame
+        frame = self._context.session.frame
         shown = self.is_on and frame is not None
         self._view.tools.set_shown("section", shown)
         self.panel.setVisible(shown)
@@ -198,7 +215,7 @@ class SectionDesk(QObject):
             self._slicer, self._opposite = Slicer(now.rest, plane), None
             self._before = self._slicer.curves(now.rest.vertices)
         self.curves = {"before": self._before, "after": self._slicer.curves(now.places)}
-        if self._window.map_desk.name == "sides":
+        if self._mirrored:
             self.curves["other"] = self._other_side(now, plane)
 
     def _other_side(self, now: BodyState, plane: Plane) -> tuple[Curve, ...]:
@@ -241,8 +258,8 @@ class SectionDesk(QObject):
         sides, now, curves = "other" in self.curves, self._now, self.curves
         roles = ("after", "other") if sides else ("before", "after")
         pairs = apex_pairs(now, plane, curves["other"], curves["after"]) if sides else bust_points(now, plane)
-        spread = None if sides else self._window.uncertainty_controller.of(now.frame)
-        shown = self._window.ask_desk.drawing.in_plane(plane)
+        spread = None if sides else self._uncertainty_of(now.frame)
+        shown = self._profiles_in(plane)
         drawn = Drawn(
             shown | {role: [curve.places for curve in curves[role]] for role in roles},
             pairs,

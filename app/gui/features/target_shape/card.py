@@ -18,7 +18,7 @@ from app.i18n.catalog import tr
 _SIDES = 16  # room left and right of what it holds [px]
 
 
-class AskCard(QWidget):
+class TargetCard(QWidget):
     """Takes wishes and shows what comes of them; a page in the place of the lines, beside the body.
 
     Rows stand above what depends on an answer, so that none moves when one comes. ``entered`` carries a

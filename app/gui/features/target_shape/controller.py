@@ -7,20 +7,22 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, QTimer
+from PySide6.QtCore import QObject, QTimer, Signal
+from PySide6.QtGui import QUndoGroup
+from PySide6.QtWidgets import QStackedWidget
 
 from app.gui.context import RESHAPED
-from app.gui.features.target_shape.card import AskCard
-from app.gui.features.target_shape.handles import AskHandles
-from app.gui.features.target_shape.linearization import AskGround
-from app.gui.features.target_shape.menu import AskMenu
+from app.gui.features.target_shape.card import TargetCard
+from app.gui.features.target_shape.handles import TargetHandles
+from app.gui.features.target_shape.linearization import TargetDesign
+from app.gui.features.target_shape.menu import TargetMenu
 from app.gui.features.target_shape.presenter import is_as_wished, show_answer, wish_views
-from app.gui.features.target_shape.profile_tool import AskDrawing
-from app.gui.features.target_shape.surroundings import AskAround
+from app.gui.features.target_shape.profile_tool import ProfileTool
+from app.gui.features.target_shape.surroundings import TargetOptions
 from app.gui.features.target_shape.targets import Wishes
-from app.gui.features.target_shape.targets_undo import AskSteps
-from app.gui.features.target_shape.view_state import AskBack
-from app.gui.features.target_shape.worker import Answer, AskWork, Question
+from app.gui.features.target_shape.targets_undo import TargetUndo
+from app.gui.features.target_shape.view_state import ViewState
+from app.gui.features.target_shape.worker import Answer, Question, TargetWorker
 from app.gui.widgets.accessibility import announce
 from app.i18n.catalog import joined, say, tr
 from app.presenters.target_shape import inactive_words, step_words
@@ -29,27 +31,31 @@ from core.document.design import Design
 from core.errors import UserError
 
 if TYPE_CHECKING:
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
     from core.analysis.inverse_design.profile_curve import ProfileCurve
 
 _RESTS = 150  # stillness of a hand after which the best lengths are looked for [ms]
 _SLOW = 400  # an answer that takes longer is worth a word [ms]
 
 
-class AskDesk(QObject):
+class TargetShapeController(QObject):
     """Opens the card by ``begin``; what is wished is answered while it is open, and previewed on the body.
 
     A wish without a value is shown as it is, and not asked for.
     """
 
-    def __init__(self, window: MainWindow) -> None:
-        super().__init__(window)
-        self._window, self._session = window, window.session
+    closed = Signal()
+    presets_asked = Signal()
+
+    def __init__(self, context: AppContext, pages: QStackedWidget, undo_group: QUndoGroup) -> None:
+        super().__init__(context.session)
+        self._pages = pages
+        self._context, self._session = context, context.session
         self.all_wishes = Wishes()
         self._answer: Answer | None = None
         self._apply_due = False
-        self.ground = AskGround(window.session)
-        self.work = AskWork(window.jobs, self)
+        self.ground = TargetDesign(context.session)
+        self.work = TargetWorker(context.jobs, self)
         self.work.answered.connect(self._take)
         self.work.refused.connect(self._refuse)
         self.work.nearer.connect(self._show_nearer)
@@ -57,21 +63,20 @@ class AskDesk(QObject):
         self._rest.timeout.connect(self.ask)
         self._slow = QTimer(self, interval=_SLOW, singleShot=True)
         self._slow.timeout.connect(self._show)
-        self.card = AskCard()
-        window.lines_page.addWidget(self.card)
-        self.handles = AskHandles(window, self)
-        self.drawing, self.around = AskDrawing(window, self), AskAround(window, self)
-        self.menu, self.back = AskMenu(window, self), AskBack(window, self)
-        self.steps = AskSteps(window, self)
+        self.card = TargetCard()
+        pages.addWidget(self.card)
+        self.handles = TargetHandles(context, self)
+        self.drawing, self.around = ProfileTool(context, self), TargetOptions(context, self)
+        self.menu, self.back = TargetMenu(context, self), ViewState(context, self)
+        self.steps = TargetUndo(context.session, undo_group, self)
         self._connect()
 
     def _connect(self) -> None:
-        window, card, session = self._window, self.card, self._session
+        context, card, session = self._context, self.card, self._session
         said = tr("Say where the bust is to be; Busk finds the lengths of the worn lines")
-        do = window.actions_
+        do = context.actions
         do.rule("lines")
         do.add("lines", tr("Ask for the result…"), "A", said, do=self.begin, of_document=True)
-        window.ask_door.clicked.connect(lambda _: self.begin())
         card.entered.connect(self.wish)
         card.removed.connect(self.drop)
         card.add_asked.connect(self.menu.show)
@@ -81,8 +86,8 @@ class AskDesk(QObject):
         session.design_changed.connect(self._follow_design)
         session.frame_ready.connect(lambda _: self.handles.follow())
         session.opened.connect(lambda _: self._forget())
-        window.navigation.step_shown.connect(self._follow_step)
-        window.view.compared.connect(self.handles.follow)
+        context.navigation.step_shown.connect(self._follow_step)
+        context.view.compared.connect(self.handles.follow)
 
     # -- what is asked for
 
@@ -99,7 +104,7 @@ class AskDesk(QObject):
     @property
     def is_open(self) -> bool:
         """Whether something is being asked for."""
-        return self._window.lines_page.currentWidget() is self.card
+        return self._pages.currentWidget() is self.card
 
     def begin(
         self,
@@ -117,13 +122,13 @@ class AskDesk(QObject):
             return
         if self.is_open:
             self.leave()
-        self._window.navigation.start_tool()
-        self._window.navigation.show_step("lines")
+        self._context.navigation.start_tool()
+        self._context.navigation.show_step("lines")
         limit = math.inf if math.isinf(self.all_wishes.most_kpa) else limit
         self.all_wishes, self.answer, self._apply_due = replace(Wishes.of(goals), limit=limit), None, False
         self.ground.begin(prepare, said)
         self.back.remember()
-        self._window.lines_page.setCurrentWidget(self.card)
+        self._pages.setCurrentWidget(self.card)
         self.drawing.choose("bust")
         self.steps.forget()
         self.card.take_focus(next(iter(self.wishes), ""))
@@ -216,10 +221,10 @@ class AskDesk(QObject):
         self.ground.leave()
         if self.is_open:
             self.back.go()
-        self._window.lines_page.setCurrentIndex(0)
+        self._pages.setCurrentIndex(0)
         self.handles.put_away()
         self.steps.forget()
-        self._window.lines_desk.show_rows()  # their lengths may be those that were tried on
+        self.closed.emit()  # shown lengths may be those that were tried on
 
     def _forget(self) -> None:
         """Let another body begin with the usual limit."""

@@ -6,9 +6,9 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Signal
 
-from app.gui.features.target_shape.profile_card import AskProfile
+from app.gui.features.target_shape.profile_card import ProfileHandles
 from app.gui.viewport.target_handle import TargetHandle
 from app.i18n.catalog import tr
 from app.presenters.bust_shift import bust_shift
@@ -17,8 +17,8 @@ from core.geometry.mesh import Floats
 from core.pipeline.frame import Frame
 
 if TYPE_CHECKING:
-    from app.gui.features.target_shape.controller import AskDesk
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
+    from app.gui.features.target_shape.controller import TargetShapeController
 
 SIDES = ("left", "right")
 KINDS = {"bust": ("lift", "out"), "apex": ("apex lift", "apex out")}
@@ -30,19 +30,21 @@ _NAMES = {"left": lambda: tr("Left handle"), "right": lambda: tr("Right handle")
 _FARTHEST = 80.0  # a bust point is not dragged further from where it is at rest [mm]
 
 
-class AskHandles(QObject):
+class TargetHandles(QObject):
     """One handle a side in the main view; linked they wish for the mean of both, else for each side.
 
     ``kind`` is what they are dragged at: "bust" points, "apex", the foremost places, or "profile": then there
     are those of the drawn profiles instead.
     """
 
-    def __init__(self, window: MainWindow, desk: AskDesk) -> None:
-        super().__init__(desk)
-        self._window, self._desk = window, desk
+    carrying_changed = Signal()
+
+    def __init__(self, context: AppContext, controller: TargetShapeController) -> None:
+        super().__init__(controller)
+        self._context, self._controller = context, controller
         self.kind = "bust"
         self.by_side: dict[str, TargetHandle] = {}
-        self.profile = AskProfile(window.view.viewport, self)
+        self.profile = ProfileHandles(context.view.viewport, self)
         self._before: tuple[dict[str, float | None], dict[str, ProfileCurve]] | None = None
         self._pulled: dict[str, float] = {}  # how far the hand has gone each way since it closed [mm]
         self.profile.taken.connect(self._take_profile)
@@ -62,9 +64,9 @@ class AskHandles(QObject):
         self._open_hands()
         figures, drawn = before
         for section, profile in drawn.items():
-            self._desk.drawing.draw(section, profile)
-        self._desk.wish_by_hand(figures, at_rest=True)
-        self._window.job_desk.show()
+            self._controller.drawing.draw(section, profile)
+        self._controller.wish_by_hand(figures, at_rest=True)
+        self.carrying_changed.emit()
         return True
 
     def put_away(self) -> None:
@@ -76,16 +78,21 @@ class AskHandles(QObject):
 
     def follow(self) -> None:
         """Stand where the bust points are wished on the shown body."""
-        frame, view = self._window.session.frame, self._window.view
-        if frame is None or not self._desk.is_open or not view.after or not self._desk.ground.asks:
+        frame, view = self._context.session.frame, self._context.view
+        if (
+            frame is None
+            or not self._controller.is_open
+            or not view.after
+            or not self._controller.ground.asks
+        ):
             self.put_away()
             return
         if self.kind == "profile":
             for handle in self.by_side.values():
                 handle.put_away()
             if not self.carries:
-                self._desk.drawing.follow(frame)
-            self.profile.follow(frame, self._desk.drawn)
+                self._controller.drawing.follow(frame)
+            self.profile.follow(frame, self._controller.drawn)
             return
         self.profile.put_away()
         if not self.by_side:
@@ -97,7 +104,7 @@ class AskHandles(QObject):
 
     def _make(self) -> None:
         for side in SIDES:
-            handle = TargetHandle(self._window.view.viewport, side, _NAMES[side]())
+            handle = TargetHandle(self._context.view.viewport, side, _NAMES[side]())
             handle.taken.connect(self._take)
             handle.pulled.connect(partial(self._pull, side))
             handle.dropped.connect(self._drop)
@@ -105,7 +112,7 @@ class AskHandles(QObject):
 
     def _missing(self, frame: Frame, side: str) -> Floats:
         """Return the way from the bust point of a side to where it is wished, (3,) [mm]."""
-        wishes = self._desk.wishes
+        wishes = self._controller.wishes
         up, out = (
             next(
                 (
@@ -121,18 +128,18 @@ class AskHandles(QObject):
 
     def _take(self) -> None:
         if self._before is None:
-            self._before = dict(self._desk.wishes), dict(self._desk.drawn)
+            self._before = dict(self._controller.wishes), dict(self._controller.drawn)
             self._pulled = dict.fromkeys(KINDS.get(self.kind, ()), 0.0)
-            self._window.job_desk.show()
+            self.carrying_changed.emit()
 
     def _take_profile(self, section: str) -> None:
         """Take the curve of a section; from elsewhere than its side a hand cannot tell out from across."""
-        drawing = self._desk.drawing
+        drawing = self._controller.drawing
         if drawing.is_from_side(section):
             self._take()
         else:
             self._open_hands()
-            drawing.look_at(self._desk.drawn[section])
+            drawing.look_at(self._controller.drawn[section])
 
     def _open_hands(self) -> None:
         for handle in (*self.by_side.values(), *self.profile.all()):
@@ -141,15 +148,17 @@ class AskHandles(QObject):
     def _draw(self, section: str, handle: int, up: float, out: float) -> None:
         """Go on with the curve of a section by a step of the hand at one of its handles [mm]."""
         if self._before is not None:
-            self._desk.drawing.draw(section, self._desk.drawn[section].with_moved_handle(handle, up, out))
-            self._desk.wish_by_hand(dict(self._desk.wishes), at_rest=False)
+            self._controller.drawing.draw(
+                section, self._controller.drawn[section].with_moved_handle(handle, up, out)
+            )
+            self._controller.wish_by_hand(dict(self._controller.wishes), at_rest=False)
 
     def _pull(self, side: str, up: float, out: float) -> None:
         """Go on with the wishes by a step of the hand [mm]."""
-        frame = self._window.session.frame
+        frame = self._context.session.frame
         if frame is None or self._before is None:
             return
-        wishes, linked = dict(self._desk.wishes), self._desk.card.link.isChecked()
+        wishes, linked = dict(self._controller.wishes), self._controller.card.link.isChecked()
         for what, step in zip(KINDS[self.kind], (up, out), strict=True):
             name = what if linked else f"{what} {side}"
             self._pulled[what] += step
@@ -160,7 +169,7 @@ class AskHandles(QObject):
                     if other != name and (linked or other == what):
                         wishes.pop(other, None)
                 wishes[name] = float(np.clip(value, -_FARTHEST, _FARTHEST))
-        self._desk.wish_by_hand(wishes, at_rest=False)
+        self._controller.wish_by_hand(wishes, at_rest=False)
 
     def _is_meant(self, what: str) -> bool:
         """Tell whether the hand goes that way on purpose: a way that was free stays so if it does not."""
@@ -170,8 +179,8 @@ class AskHandles(QObject):
     def _drop(self) -> None:
         if self._before is not None:
             self._before = None
-            self._desk.wish_by_hand(dict(self._desk.wishes), at_rest=True)
-            self._window.job_desk.show()
+            self._controller.wish_by_hand(dict(self._controller.wishes), at_rest=True)
+            self.carrying_changed.emit()
 
 
 def _now(frame: Frame, name: str) -> float:

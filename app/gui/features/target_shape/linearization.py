@@ -9,7 +9,7 @@ from app.presenters.target_shape import missing_input_text
 from core.document.design import Design
 
 
-class AskGround:
+class TargetDesign:
     """Holds the ``design`` that is asked, until ``leave``; ``said`` tells what was made of the session's."""
 
     def __init__(self, session: Session) -> None:

@@ -15,24 +15,24 @@ from app.presenters.target_shape import profile_title, target_title
 from core.analysis.inverse_design.quantities import EVEN, GIRTH
 
 if TYPE_CHECKING:
-    from app.gui.features.target_shape.controller import AskDesk
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
+    from app.gui.features.target_shape.controller import TargetShapeController
 
 _BOTH = ("lift", "out", "apex lift", "apex out", GIRTH)
 
 
-class AskMenu(QObject):
+class TargetMenu(QObject):
     """Offers figures that are not wished for yet, and profiles from tables."""
 
-    def __init__(self, window: MainWindow, desk: AskDesk) -> None:
-        super().__init__(desk)
-        self._window, self._desk = window, desk
-        self.menu = Menu(window)
+    def __init__(self, context: AppContext, controller: TargetShapeController) -> None:
+        super().__init__(controller)
+        self._context, self._controller = context, controller
+        self.menu = Menu(context.window)
 
     def show(self) -> None:
         """Open the menu under its button."""
         self.fill()
-        pull_down(self.menu, self._desk.card.add)
+        pull_down(self.menu, self._controller.card.add)
 
     def fill(self) -> None:
         """List what can be wished for besides what is."""
@@ -44,22 +44,22 @@ class AskMenu(QObject):
         self._offer(self.menu.add_submenu(tr("Left against right")), EVEN.names)
         self.menu.addSeparator()
         for side in ("left", "right"):
-            if f"profile {side}" not in self._desk.drawn:
-                self.menu.addAction(profile_title(side), partial(self._desk.drawing.begin, side))
+            if f"profile {side}" not in self._controller.drawn:
+                self.menu.addAction(profile_title(side), partial(self._controller.drawing.begin, side))
             words = tr("{profile} from a table…").format(profile=profile_title(side))
             self.menu.addAction(words, partial(self.ask_profile, side))
 
     def ask_profile(self, side: str) -> None:
         """Ask for a table, and wish for the profile in it."""
-        path = ask_table(self._window, tr("Profile from a table"))
+        path = ask_table(self._context.window, tr("Profile from a table"))
         if path:
-            self._desk.drawing.take_table(side, path)
+            self._controller.drawing.take_table(side, path)
 
     def _offer(self, menu: QMenu, names: tuple[str, ...]) -> None:
         for name in names:
-            if name not in self._desk.wishes:
+            if name not in self._controller.wishes:
                 menu.addAction(target_title(name), partial(self._add, name))
 
     def _add(self, name: str) -> None:
         """Show a figure as it is now, to be typed over."""
-        self._desk.add(name)
+        self._controller.add(name)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from app.gui.features.target_shape.card import AskCard
+from app.gui.features.target_shape.card import TargetCard
 from app.gui.features.target_shape.row import WishView
 from app.gui.features.target_shape.targets import PRESSURE, Wishes
 from app.gui.features.target_shape.worker import Answer
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 
 def show_answer(
-    card: AskCard, design: Design, wishes: Wishes, answer: Answer | None, *, apart: str, busy: str
+    card: TargetCard, design: Design, wishes: Wishes, answer: Answer | None, *, apart: str, busy: str
 ) -> None:
     """Show what came of wishes: ``busy`` is nothing, "soon" or "slow"; ``apart`` tells what is parted."""
     locked = {traits.name for traits in design.traits if traits.locked}

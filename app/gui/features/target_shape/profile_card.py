@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from app.gui.viewport.viewport import Viewport
 
 
-class AskProfile(QObject):
+class ProfileHandles(QObject):
     """One curve a section with its handles in a view.
 
     ``taken`` and ``dropped`` when a hand closes and opens, ``taken`` with the section; ``pulled`` carries the

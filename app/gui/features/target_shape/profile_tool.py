@@ -15,8 +15,8 @@ from app.rendering.camera import box_of
 from core.errors import UserError
 
 if TYPE_CHECKING:
-    from app.gui.features.target_shape.controller import AskDesk
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
+    from app.gui.features.target_shape.controller import TargetShapeController
     from core.analysis.inverse_design.profile_curve import ProfileCurve
     from core.geometry.mesh import Floats
     from core.geometry.planar_curves import Plane
@@ -28,50 +28,50 @@ _THROUGH = 0.5  # a plane that is this near goes through the same place [mm]
 _SIDEWAYS = 0.8  # of a view from the side: what is seen from less of it is not drawn on [1]
 
 
-class AskDrawing(QObject):
+class ProfileTool(QObject):
     """Chooses by ``choose`` what the handles drag; profiles begin with the skin as it is shown."""
 
-    def __init__(self, window: MainWindow, desk: AskDesk) -> None:
-        super().__init__(desk)
-        self._window, self._desk = window, desk
+    def __init__(self, context: AppContext, controller: TargetShapeController) -> None:
+        super().__init__(controller)
+        self._context, self._controller = context, controller
 
     def choose(self, kind: str) -> None:
         """Let the handles be those of the "bust" points, of the foremost places ("apex"), or of a "profile".
 
         The figures that they drag are shown; those of the others go unless they are asked for.
         """
-        desk = self._desk
-        if kind == "profile" and not desk.drawn:
+        controller = self._controller
+        if kind == "profile" and not controller.drawn:
             self.begin(self._side())
             return
         if kind in KINDS:
             for name in (name for names in KINDS.values() for name in names):
-                if desk.wishes.get(name) is None and name not in KINDS[kind]:
-                    desk.wishes.pop(name, None)
+                if controller.wishes.get(name) is None and name not in KINDS[kind]:
+                    controller.wishes.pop(name, None)
             for name in KINDS[kind]:
-                if not any(each.startswith(name) for each in desk.wishes):
-                    desk.wishes[name] = None
+                if not any(each.startswith(name) for each in controller.wishes):
+                    controller.wishes[name] = None
         self.turn_to(kind)
-        desk.steps.note()
+        controller.steps.note()
 
     def turn_to(self, kind: str) -> None:
         """Let the handles be those of a kind, whatever is on the card."""
-        self._desk.handles.kind = kind
-        self._desk.card.show_hand(kind)
-        self._desk.ask()
+        self._controller.handles.kind = kind
+        self._controller.card.show_hand(kind)
+        self._controller.ask()
 
     def begin(self, side: str) -> None:
         """Draw the profile through the bust point of a side, as it is now, to be dragged."""
         from core.analysis.inverse_design.profile_curve import profile_at  # noqa: PLC0415 (few ever ask)
 
-        frame, answer = self._window.session.frame, self._desk.answer
+        frame, answer = self._context.session.frame, self._controller.answer
         if frame is None:
             return
         reply = answer.reply if answer is not None else None
         try:
             profile = profile_at(frame.stages, side, frame.control_points if reply is None else reply.points)
         except UserError as problem:
-            self._window.notifications.error(problem)
+            self._context.notifications.error(problem)
         else:
             self._take(profile)
 
@@ -80,43 +80,43 @@ class AskDrawing(QObject):
         from core.analysis.inverse_design.profile_csv import read_profile  # noqa: PLC0415 (few ever ask)
         from core.analysis.inverse_design.profile_curve import profile_from_table  # noqa: PLC0415
 
-        frame = self._window.session.frame
+        frame = self._context.session.frame
         if frame is None:
             return
         try:
             profile = profile_from_table(frame.stages, side, read_profile(path))
             profile.goals(frame.stages)
         except UserError as problem:
-            self._window.notifications.error(problem)
+            self._context.notifications.error(problem)
         else:
             self._take(profile)
 
     def draw(self, section: str, profile: ProfileCurve) -> None:
         """Wish for a profile as it is drawn; where it cannot be, the one before stays."""
-        frame = self._window.session.frame
+        frame = self._context.session.frame
         if frame is None:
             return
         try:
             goals = profile.goals(frame.stages)
         except UserError:
             return
-        self._desk.all_wishes.set_curve(section, goals, profile)
+        self._controller.all_wishes.set_curve(section, goals, profile)
 
     def follow(self, frame: Frame) -> None:
         """Let profiles that are free be those of the body of a frame."""
         from core.analysis.inverse_design.profile_curve import profile_at  # noqa: PLC0415 (few ever ask)
 
-        for section, profile in list(self._desk.drawn.items()):
+        for section, profile in list(self._controller.drawn.items()):
             if profile.is_unchanged:
                 fresh = profile_at(frame.stages, profile.section, frame.control_points)
-                self._desk.all_wishes.set_curve(section, (), fresh)
+                self._controller.all_wishes.set_curve(section, (), fresh)
 
     def in_plane(self, plane: Plane) -> dict[str, Sequence[Floats]]:
         """Return the profiles that are wished in a plane, if any are, as flat places (k, 2) [mm]."""
         from core.analysis.inverse_design.profile_curve import section_to_space  # noqa: PLC0415 (few ever ask)
 
-        frame, drawn = self._window.session.frame, self._desk.drawn.values()
-        if frame is None or not self._desk.is_open or plane.axis != "x":
+        frame, drawn = self._context.session.frame, self._controller.drawn.values()
+        if frame is None or not self._controller.is_open or plane.axis != "x":
             return {}
         wished = [section_to_space(frame.stages, p.section, p.curve) for p in drawn if not p.is_unchanged]
         found = [plane.flat(places) for places in wished if abs(places[0, 0] - plane.at) < _THROUGH]
@@ -124,14 +124,14 @@ class AskDrawing(QObject):
 
     def is_from_side(self, section: str) -> bool:
         """Tell whether a profile is looked at from about its side: else up and out cannot be told by hand."""
-        across = self._window.view.viewport.view.axes[2][0]
-        return bool((across if self._desk.drawn[section].section == "left" else -across) > _SIDEWAYS)
+        across = self._context.view.viewport.view.axes[2][0]
+        return bool((across if self._controller.drawn[section].section == "left" else -across) > _SIDEWAYS)
 
     def hint(self) -> str:
         """Return what to do with the handles, as long as nothing was done."""
-        kind = self._desk.handles.kind
-        untouched = kind == "profile" and any(each.is_unchanged for each in self._desk.drawn.values())
-        if self._desk.goals() and not untouched:
+        kind = self._controller.handles.kind
+        untouched = kind == "profile" and any(each.is_unchanged for each in self._controller.drawn.values())
+        if self._controller.goals() and not untouched:
             return ""
         hints = {
             "bust": tr("Type what it is to be, or drag the handle at the bust point."),
@@ -144,16 +144,16 @@ class AskDrawing(QObject):
         self.draw(f"profile {profile.section}", profile)
         self.look_at(profile)
         self.turn_to("profile")
-        self._desk.steps.note()
+        self._controller.steps.note()
 
     def _side(self) -> str:
-        return "right" if self._window.view.viewport.view.axes[2][0] < -_LEVEL else "left"
+        return "right" if self._context.view.viewport.view.axes[2][0] < -_LEVEL else "left"
 
     def look_at(self, profile: ProfileCurve) -> None:
         """Look at a profile from its side, and over the tools."""
         from core.analysis.inverse_design.profile_curve import section_to_space  # noqa: PLC0415
 
-        view, viewport, frame = self._window.view, self._window.view.viewport, self._window.session.frame
+        view, viewport, frame = self._context.view, self._context.view.viewport, self._context.session.frame
         if frame is None:
             return
         room, tools = max(viewport.height(), 1), view.floating.seen(view.tools).top()
@@ -164,4 +164,4 @@ class AskDrawing(QObject):
         box[2] = middle - half, middle + half
         framed = viewport.view.named(profile.section).framing(box, viewport.width() / room)
         # Seen in parallel the body's outline lies where the curve does, however near it is looked at.
-        self._desk.back.look(replace(framed.pan(0.0, -0.5 * covered, room), parallel=True))
+        self._controller.back.look(replace(framed.pan(0.0, -0.5 * covered, room), parallel=True))

@@ -6,15 +6,15 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
-from PySide6.QtGui import QUndoCommand, QUndoStack
+from PySide6.QtGui import QUndoCommand, QUndoGroup, QUndoStack
 
 from app.gui.features.target_shape.targets import PRESSURE, Wishes
+from app.gui.session.session import Session
 from app.i18n.catalog import listed, tr
 from app.presenters.target_shape import target_title
 
 if TYPE_CHECKING:
-    from app.gui.features.target_shape.controller import AskDesk
-    from app.gui.main_window import MainWindow
+    from app.gui.features.target_shape.controller import TargetShapeController
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +35,7 @@ class _State:
 class _Step(QUndoCommand):
     """One step from a state to another, which has been done when it is pushed."""
 
-    def __init__(self, steps: AskSteps, before: _State, after: _State, words: str) -> None:
+    def __init__(self, steps: TargetUndo, before: _State, after: _State, words: str) -> None:
         super().__init__(words)
         self._steps, self._before, self._after = steps, before, after
         self._done = True
@@ -49,17 +49,17 @@ class _Step(QUndoCommand):
         self._steps.show(self._before)
 
 
-class AskSteps(QObject):
+class TargetUndo(QObject):
     """Keeps a step by ``note`` whenever something else is asked for; they end with the card.
 
     Once one is kept, undo and redo of the window mean these steps and leave the design alone, until it is
     edited itself.
     """
 
-    def __init__(self, window: MainWindow, desk: AskDesk) -> None:
-        super().__init__(desk)
-        self._desk = desk
-        self._group, self._others = window.undo_group, window.session.undo_stack
+    def __init__(self, session: Session, group: QUndoGroup, controller: TargetShapeController) -> None:
+        super().__init__(controller)
+        self._controller = controller
+        self._group, self._others = group, session.undo_stack
         self.stack = QUndoStack(self)
         self._group.addStack(self.stack)
         self._last = self._state()
@@ -82,12 +82,12 @@ class AskSteps(QObject):
     def show(self, state: _State) -> None:
         """Ask for what was asked for once."""
         self._last = state
-        self._desk.handles.let_go()
-        self._desk.all_wishes = _copy(state.wishes)
-        self._desk.drawing.turn_to(state.kind)
+        self._controller.handles.let_go()
+        self._controller.all_wishes = _copy(state.wishes)
+        self._controller.drawing.turn_to(state.kind)
 
     def _state(self) -> _State:
-        return _State(_copy(self._desk.all_wishes), self._desk.handles.kind)
+        return _State(_copy(self._controller.all_wishes), self._controller.handles.kind)
 
 
 def _copy(wishes: Wishes) -> Wishes:

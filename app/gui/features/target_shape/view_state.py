@@ -12,16 +12,16 @@ from app.gui.viewport.target_handle import TargetHandle
 from app.rendering.camera import View
 
 if TYPE_CHECKING:
-    from app.gui.features.target_shape.controller import AskDesk
-    from app.gui.main_window import MainWindow
+    from app.gui.context import AppContext
+    from app.gui.features.target_shape.controller import TargetShapeController
 
 
-class AskBack(QObject):
+class ViewState(QObject):
     """Leads the camera by ``look``, and brings it back by ``go`` unless a hand has turned it since."""
 
-    def __init__(self, window: MainWindow, desk: AskDesk) -> None:
-        super().__init__(desk)
-        self._window, self._desk = window, desk
+    def __init__(self, context: AppContext, controller: TargetShapeController) -> None:
+        super().__init__(controller)
+        self._context, self._controller = context, controller
         self._keyboard: QWidget | None = None
         self._own: View | None = None  # the view that somebody chose
         self._led: View | None = None  # the one that was led to from there
@@ -29,21 +29,21 @@ class AskBack(QObject):
 
     def remember(self) -> None:
         """Know where the keyboard is; the camera is known once it is led away."""
-        self._keyboard, self._own, self._led = self._window.focusWidget(), None, None
+        self._keyboard, self._own, self._led = self._context.window.focusWidget(), None, None
 
     def look(self, view: View) -> None:
         """Lead the camera to a view."""
-        heading = self._window.view.viewport.heading
+        heading = self._context.view.viewport.heading
         if self._led is None:
             self._parallel = heading.parallel
         if heading != self._led:
             self._own = heading
         self._led = view
-        self._window.view.viewport.glide_to(view)
+        self._context.view.viewport.glide_to(view)
 
     def go(self) -> None:
         """Give camera and keyboard back, before the card goes."""
-        own, led, viewport = self._own, self._led, self._window.view.viewport
+        own, led, viewport = self._own, self._led, self._context.view.viewport
         self._own = self._led = None
         if own is not None and led is not None:
             here = viewport.heading
@@ -52,8 +52,8 @@ class AskBack(QObject):
             parallel = self._parallel if there.parallel == led.parallel else there.parallel
             if (view := replace(there, parallel=parallel)) != here:
                 viewport.glide_to(view)
-        has, before = self._window.focusWidget(), self._keyboard
-        if has is None or self._desk.card.isAncestorOf(has) or isinstance(has, TargetHandle):
+        has, before = self._context.window.focusWidget(), self._keyboard
+        if has is None or self._controller.card.isAncestorOf(has) or isinstance(has, TargetHandle):
             # A button would be pressed by the next Enter, or a space that is meant to flip the body.
             gone = before is None or isinstance(before, QAbstractButton) or not before.isVisible()
             (viewport if gone or before is None else before).setFocus(Qt.FocusReason.OtherFocusReason)

@@ -78,7 +78,7 @@ class _Known:
     presses: dict[str, float] = field(default_factory=dict)
 
 
-class AskWork(QObject):
+class TargetWorker(QObject):
     """Answers one question at a time. ``answered`` carries an Answer, ``refused`` why there is none.
 
     ``nearer`` carries a question and the nearest design so far, while it is looked for elsewhere.

@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 class ViewController(QObject):
     """Show the body that a step is about, and add to the menu of the view what has no button on it.
 
-    ``map_chosen`` carries the map that is chosen in the menu; ``material_shown`` is emitted when the body is
+    ``map_asked`` carries the map that is chosen in the menu; ``material_shown`` is emitted when the body is
     of another material.
     """
 
-    map_chosen = Signal(str)
+    map_asked = Signal(str)
     material_shown = Signal()
 
     def __init__(self, context: AppContext, show_variants: Callable[[], object]) -> None:
@@ -53,7 +53,7 @@ class ViewController(QObject):
         titles = {"": tr("No map")} | {kind.name: kind.title for kind in map_kinds()}
         self.maps = do.group("maps", titles)
         for name, action in self.maps.items():
-            action.triggered.connect(lambda _=False, name=name: self.map_chosen.emit(name))
+            action.triggered.connect(lambda _=False, name=name: self.map_asked.emit(name))
         self.show_map("")
 
     def show_map(self, name: str) -> None:
