@@ -104,7 +104,7 @@ def test_a_scan_that_cannot_go_on_is_read_once_however_many_pins_it_takes(
     )
 
     def script(window: MainWindow) -> Script:
-        desk, panel = window.scan_controller, window.landmarks
+        panel = window.landmarks
         yield lambda: window.session.stuck is not None
         first = window.session.stuck
         place(window, "bust_point_left", QPoint(12, -8))
@@ -197,7 +197,7 @@ def test_on_a_refused_scan_nothing_can_be_placed_and_what_was_stays_in_sight(
     box((340.0, 220.0, 700.0)).export(brick)
 
     def script(window: MainWindow) -> Script:
-        desk, panel = window.scan_controller, window.landmarks
+        panel = window.landmarks
         yield lambda: window.session.stuck is not None
         refused = window.session.stuck
         assert refused is not None
