@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +11,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLabel, QScrollArea
 from window_tools import Script, run_main, settled, undrawn
+from worn_pair import write_worn_pair
 
 import app.gui.features.scan_comparison.controller
 from app.gui.features.scan_comparison.page import ScanComparisonPage, ScanComparisonView
@@ -19,31 +19,16 @@ from app.gui.main_window import MainWindow
 from app.i18n.catalog import speaking
 from app.presenters.samples import sample_design
 from app.presenters.scan_comparison import bust_words, parameter_title
-from benchmarks.worn_pairs import scanned, worn_mesh, written
 from core.analysis.calibration.api import Residuals, ResidualSummary, calibrate, compare
 from core.control_mesh.template import read_template
-from core.document.document import Document
 from core.document.line_notation import ready_made_lines
-from core.document.storage.project_file import open_project, save_project
 from core.errors import UserError
-from core.pipeline.build import build
 
 
 @pytest.fixture(scope="module")
 def pair(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, str, str]:
     """A project on a body of 2,100 corners, a scan with the garment on, and one of another body."""
-    folder = tmp_path_factory.mktemp("worn")
-    small = open_project(Path(__file__).parents[1] / "releases/0.1.0/first.busk").design
-    design = replace(small, volume="exact", firm_chest=0.03).with_line("mid-bust", 0.88)
-    stages = build(design)
-    truth = replace(design, line_stiffness=6.0, firm_chest=0.1)
-    mesh, _ = scanned(
-        worn_mesh(stages, truth), stages, np.random.default_rng(4), noise=0.2, resampled=False, hole=15.0
-    )
-    project = folder / "plan.busk"
-    save_project(project, Document.single(design), stages.scan, None)
-    other = stages.body.mesh.moved(stages.body.mesh.vertices * (1.15, 1.0, 1.0))
-    return str(project), written(mesh, folder / "worn.ply"), written(other, folder / "other.ply")
+    return write_worn_pair(tmp_path_factory.mktemp("worn"), hole=15.0)
 
 
 def said(window: MainWindow) -> str:

@@ -14,6 +14,7 @@ from PySide6.QtCore import QObject, QSettings
 from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QComboBox, QStyle, QStyleOptionFrame, QTreeWidget
 from window_tools import Script, points, run_main, settled
+from worn_pair import released_design
 
 import app.gui.features.uncertainty.controller
 from app.gui.main_window import MainWindow
@@ -22,7 +23,7 @@ from app.i18n.catalog import LANGUAGES
 from core.analysis.uncertainty.input_uncertainty import origins
 from core.document.custom_measures import CustomMeasurement
 from core.document.document import Document
-from core.document.storage.project_file import open_project, save_project
+from core.document.storage.project_file import save_project
 from core.garment.elastic_library import built_in
 from core.pipeline.build import build
 
@@ -42,7 +43,7 @@ MEANT = re.compile(
 @pytest.fixture
 def design(tmp_path: Path) -> str:
     """A small body with two lines, one of an elastic, and a girth at a height."""
-    small = open_project(Path(__file__).parents[1] / "releases/0.1.0/first.busk").design
+    small = released_design()
     own = (
         CustomMeasurement("Ribs", "girth", ("waist_front",), 60.0),
         CustomMeasurement("Chest", "girth", (), 250.0),

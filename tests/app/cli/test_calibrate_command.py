@@ -3,30 +3,19 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
+from worn_pair import write_worn_pair
 
 from app.cli.main import main
-from benchmarks.worn_pairs import scanned, worn_mesh, written
-from core.document.document import Document
-from core.document.storage.project_file import open_project, save_project
-from core.pipeline.build import build
+from core.document.storage.project_file import open_project
 
 
 @pytest.fixture(scope="module")
 def pair(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, str]:
     """A project on a body of 2,100 corners, and a scan with the garment on that needs other numbers."""
-    folder = tmp_path_factory.mktemp("worn")
-    small = open_project(Path(__file__).parents[2] / "releases/0.1.0/first.busk").design
-    design = replace(small, volume="exact", firm_chest=0.03).with_line("mid-bust", 0.88)
-    stages = build(design)
-    truth = worn_mesh(stages, replace(design, line_stiffness=6.0, firm_chest=0.1))
-    mesh, _ = scanned(truth, stages, np.random.default_rng(4), noise=0.2, resampled=False, hole=0.0)
-    save_project(folder / "plan.busk", Document.single(design), stages.scan, None)
-    return str(folder / "plan.busk"), written(mesh, folder / "worn.ply")
+    return write_worn_pair(tmp_path_factory.mktemp("worn"), hole=0.0)[:2]
 
 
 def test_it_tells_finds_and_saves(pair: tuple[str, str], tmp_path: Path, capsys) -> None:

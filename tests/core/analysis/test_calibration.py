@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from worn_pair import released_design
 
 from app.presenters.scan_comparison import improvement_text
 from benchmarks.worn_pairs import scanned, worn_mesh, written
@@ -28,7 +28,6 @@ from core.analysis.calibration.surface_distance import ScanSurface
 from core.document.calibration_record import Calibration, FittedParameter
 from core.document.design import Design, ScanSource
 from core.document.serialization import from_json, to_json
-from core.document.storage.project_file import open_project
 from core.errors import ProjectError, UserError
 from core.garment.elastic_library import find_elastic
 from core.pipeline.build import Stages, build
@@ -39,7 +38,7 @@ STEP = 3e-4
 
 def design(**settings: object) -> Design:
     """Two lines on a mannequin of 2,100 corners, as an older version kept it."""
-    small = open_project(Path(__file__).parents[2] / "releases/0.1.0/first.busk").design
+    small = released_design()
     base = replace(small, lines=(), volume="exact", **settings)
     return base.with_line("mid-bust", 0.85).with_line("full-bust", 0.9)
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
+from worn_pair import released_design
 
 from benchmarks.worn_pairs import only, other_mesh, scanned, worn_mesh
 from core.analysis.calibration.api import compare, predicted_points
@@ -16,7 +16,6 @@ from core.analysis.calibration.residuals import FittingScan, aligned_fitting_sca
 from core.analysis.calibration.robust_least_squares import Prior, cost, normal_equations, robust_deviation
 from core.analysis.calibration.surface_distance import ScanSurface, Surface, curvature
 from core.deformation.incremental_normals import moving_faces
-from core.document.storage.project_file import open_project
 from core.errors import ScanError
 from core.geometry import closest_point
 from core.geometry.mesh import Mesh
@@ -31,7 +30,7 @@ POSE = Pose("mm", "+z", "-y", np.eye(4), True, "", 0.0)
 @pytest.fixture(scope="module")
 def stages() -> Stages:
     """One line on a mannequin of 2,100 corners, as an older version kept it."""
-    small = open_project(Path(__file__).parents[2] / "releases/0.1.0/first.busk").design
+    small = released_design()
     return build(replace(small, volume="exact").with_line("mid-bust", 0.85))
 
 
