@@ -18,7 +18,9 @@ def pair(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, str]:
     return write_worn_pair(tmp_path_factory.mktemp("worn"), hole=0.0)[:2]
 
 
-def test_it_tells_finds_and_saves(pair: tuple[str, str], tmp_path: Path, capsys) -> None:
+def test_residuals_and_parameters_are_printed_and_saved(
+    pair: tuple[str, str], tmp_path: Path, capsys
+) -> None:
     out = str(tmp_path / "calibrated.busk")
     assert main(["calibrate", *pair, "--out", out]) == 0
     said = capsys.readouterr().out
@@ -49,6 +51,6 @@ def test_it_tells_finds_and_saves(pair: tuple[str, str], tmp_path: Path, capsys)
         (["--unit", "cm"], "is not the size of a body"),
     ],
 )
-def test_what_cannot_be_is_refused(pair: tuple[str, str], words: list[str], said: str, capsys) -> None:
+def test_invalid_options_are_refused(pair: tuple[str, str], words: list[str], said: str, capsys) -> None:
     assert main(["calibrate", *pair, *words]) == 2
     assert said in capsys.readouterr().err

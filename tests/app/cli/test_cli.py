@@ -76,7 +76,7 @@ HELD = ["--settings", "line_hold=held", "--settings", "line_contact=sliding"]
 
 
 @pytest.mark.parametrize(("volume", "line", "code"), [("none", "97%", 0), ("conventional", "60%", 3)])
-def test_the_exit_code_says_whether_it_settled(
+def test_the_exit_code_is_that_of_convergence(
     mannequin: Path, tmp_path: Path, volume: str, line: str, code: int
 ) -> None:
     arguments = [
@@ -94,7 +94,7 @@ def test_the_exit_code_says_whether_it_settled(
     assert state == ("settled" if code == 0 else "vibrating")
 
 
-def test_turns_are_made_exactly_as_often_as_asked(mannequin: Path, tmp_path: Path) -> None:
+def test_the_requested_number_of_iterations_is_made(mannequin: Path, tmp_path: Path) -> None:
     main(["solve", str(mannequin), "--line", "mid-bust=97%", "--iterations", "7", "--out", str(tmp_path)])
     assert len((tmp_path / "turns.csv").read_text("utf-8").splitlines()) == 8
 
@@ -267,7 +267,7 @@ def test_batch_commands_load_no_qt(mannequin: Path, tmp_path: Path) -> None:
     assert subprocess.run([sys.executable, "-c", code], check=False, capture_output=True).returncode == 0
 
 
-def test_an_own_line_is_worn_and_reported(mannequin: Path, tmp_path: Path) -> None:
+def test_a_custom_line_is_active_and_reported(mannequin: Path, tmp_path: Path) -> None:
     strap = ["--path", "Strap=r2c3:r6c3", "--line", "STRAP=-4%", "--volume", "accumulating"]
     assert main(["solve", str(mannequin), *strap, "--out", str(tmp_path)]) == 0
     figures = json.loads((tmp_path / "report.json").read_text("utf-8"))

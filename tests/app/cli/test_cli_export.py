@@ -55,7 +55,7 @@ def test_all_files_of_a_project_at_once(tmp_path, anna, capsys):
     assert f"{len(list(measures.iter('m')))} measures" in said.out
 
 
-def test_unit_and_axes_are_those_that_are_told(tmp_path, anna):
+def test_unit_and_axes_are_those_of_the_options(tmp_path, anna):
     words = ["--unit", "cm", "--axes", "y-up"]
     assert main(["export", anna, "--body", str(tmp_path / "x.ply"), *words]) == 0
     assert main(["export", anna, "--body", str(tmp_path / "y.glb")]) == 0
@@ -63,7 +63,7 @@ def test_unit_and_axes_are_those_that_are_told(tmp_path, anna):
     assert centimetres == pytest.approx(100.0 * metres, abs=1e-3)
 
 
-def test_before_is_the_body_at_rest_and_after_the_reshaped_one(tmp_path, anna):
+def test_original_is_the_undeformed_body(tmp_path, anna):
     for name, words in (("before", ["--original"]), ("after", [])):
         files = ["--body", str(tmp_path / f"{name}.ply"), "--measurements", str(tmp_path / f"{name}.json")]
         assert main(["export", anna, *files, "--unit", "mm", *words]) == 0
@@ -76,7 +76,7 @@ def test_before_is_the_body_at_rest_and_after_the_reshaped_one(tmp_path, anna):
     assert "apex_lift" not in told[0]["measures"]
 
 
-def test_a_scan_is_exported_with_lines_that_are_told(tmp_path, capsys):
+def test_a_scan_is_exported_with_the_given_lines(tmp_path, capsys):
     words = ["--line", "under-bust=97%", "--strips", str(tmp_path / "w.dxf")]
     assert main(["export", str(SCAN), *words]) == 0
     assert "Under-bust" in capsys.readouterr().out
@@ -98,13 +98,13 @@ def test_a_scan_is_exported_with_lines_that_are_told(tmp_path, capsys):
         (["--body", "x.ply", "--control-mesh", "x.ply"], "x.ply is specified for two outputs"),
     ],
 )
-def test_what_cannot_be_is_refused_before_anything_is_solved(monkeypatch, capsys, anna, words, said):
+def test_invalid_files_are_refused_before_solving(monkeypatch, capsys, anna, words, said):
     monkeypatch.setattr(exported, "build", lambda *_: pytest.fail("it has begun to solve"))
     assert main(["export", anna, *words]) == 2
     assert said in capsys.readouterr().err
 
 
-def test_lines_of_a_design_that_wears_none_are_refused(tmp_path, capsys):
+def test_lines_of_a_design_without_active_lines_are_refused(tmp_path, capsys):
     assert main(["export", str(SCAN), "--lines", str(tmp_path / "z.dxf")]) == 2
     assert "No line is worn. Set the length of a line first." in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []

@@ -35,7 +35,7 @@ def runaway(mannequin: Path, tmp_path: Path) -> Path:
     ],
     ids=" ".join,
 )
-def test_nothing_is_told_or_written_of_a_run_that_ran_away(
+def test_nothing_is_printed_or_written_of_a_diverged_run(
     runaway: Path,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,

@@ -24,7 +24,7 @@ from app.cli.main import main
         ("60%", 3, "folded", "degrees. It does not tell how a body would look."),
     ],
 )
-def test_a_shape_that_is_no_body_is_named_and_the_line_to_blame(
+def test_an_invalid_shape_is_named_with_its_line(
     mannequin: Path,
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
@@ -65,7 +65,7 @@ def test_a_shape_that_is_no_body_is_named_and_the_line_to_blame(
         (["--iterations", "1"], 3, "settling after 1 iteration, ", ""),
     ],
 )
-def test_the_last_line_tells_how_it_ended(
+def test_the_last_line_states_the_result(
     mannequin: Path,
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],

@@ -54,7 +54,7 @@ def test_a_project_is_measured_before_and_after(project: Path, capsys: pytest.Ca
     assert open_project(project).design.own_measures == (GORE,)
 
 
-def test_a_long_name_of_ones_own_keeps_the_columns(person: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_long_custom_name_keeps_the_columns(person: Path, capsys: pytest.CaptureFixture[str]) -> None:
     name = "Bust point left to the middle of the front, straight"
     assert main(["measure", str(person), "--custom", f"{name}=straight:bust_point_left,front_centre"]) == 0
     heading, first, *_, last = capsys.readouterr().out.splitlines()
@@ -62,7 +62,7 @@ def test_a_long_name_of_ones_own_keeps_the_columns(person: Path, capsys: pytest.
     assert first.index(" mm") == last.index(" mm") == heading.index(" unit")
 
 
-def test_text_and_table_tell_the_same(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_text_and_csv_have_the_same_values(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["measure", str(project)]) == 0
     text = capsys.readouterr().out.splitlines()
     assert text[0].startswith("Verdict: ")
@@ -87,7 +87,7 @@ def test_it_is_written_whole_by_the_ending_of_its_name(person: Path, tmp_path: P
     assert "Bust girth" in (tmp_path / "a.txt").read_text("utf-8")
 
 
-def test_a_wished_form_counts_more_than_the_ending(person: Path, tmp_path: Path) -> None:
+def test_a_requested_form_overrules_the_ending(person: Path, tmp_path: Path) -> None:
     assert main(["measure", str(person), "--json", "--out", str(tmp_path / "a.txt")]) == 0
     assert json.loads((tmp_path / "a.txt").read_text("utf-8"))["versions"]
 

@@ -28,7 +28,7 @@ RUNS_AWAY = ["--line", "mid-bust=60%", "--settings=line_force=explicit", "--sett
 NO_DISPLAY = ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM", "VTK_DEFAULT_OPENGL_WINDOW")
 
 
-def test_a_sheet_with_no_display(mannequin: Path, tmp_path: Path) -> None:
+def test_a_report_without_a_display(mannequin: Path, tmp_path: Path) -> None:
     environment = {key: value for key, value in os.environ.items() if key not in NO_DISPLAY}
     words = ["report", str(mannequin), *WORN, "--out", "sheet.pdf", "--json", "sheet.json"]
     words += ["--csv", "sheet.csv", "--language", "ja", "--customer", "佐藤 0412", "--system", "eu"]
@@ -69,7 +69,7 @@ def test_the_customer_of_a_project_is_taken_and_can_be_overruled(mannequin: Path
     assert json.loads(out.read_text("utf-8"))["heading"]["customer"] == ""
 
 
-def test_a_sheet_in_inches_and_its_data_in_millimetres(
+def test_a_report_in_inches_has_data_in_millimetres(
     mannequin: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(lengths, "_unit", "mm")  # as before, once it is over
@@ -96,7 +96,7 @@ def test_a_sheet_in_inches_and_its_data_in_millimetres(
         (["--out", "a.pdf", *RUNS_AWAY], "ran away"),
     ],
 )
-def test_what_cannot_be_is_refused_before_anything_is_written(
+def test_invalid_options_are_refused_before_writing(
     mannequin: Path,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -110,7 +110,7 @@ def test_what_cannot_be_is_refused_before_anything_is_written(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_the_sheet_comes_without_pictures_where_they_cannot_be_drawn(
+def test_a_report_without_pictures_where_they_cannot_be_rendered(
     mannequin: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def fails(*_: object, **__: object) -> None:
@@ -123,7 +123,7 @@ def test_the_sheet_comes_without_pictures_where_they_cannot_be_drawn(
     assert "The pictures of the body could not be drawn here" in Pdf(out).text()
 
 
-def test_a_disk_that_gets_full_leaves_the_old_sheet_or_one_without_pictures(
+def test_a_full_disk_leaves_the_old_report_or_one_without_pictures(
     mannequin: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     written, fsync = [], os.fsync

@@ -21,7 +21,7 @@ STRAPS = ("--path", "strap left=r2c3:r6c3", "--path", "strap right=r2c-3:r6c-3")
 WORN = (*PERSON, *STRAPS, "--line", "full-bust=97%", "--line", "strap left=97%", "--line", "strap right=97%")
 
 
-def test_how_left_and_right_differ_is_told_side_by_side(capsys: pytest.CaptureFixture[str]) -> None:
+def test_left_and_right_are_compared(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["symmetry", *PERSON]) == DONE
     told = capsys.readouterr().out
     verdict = told.partition("\n")[0]
@@ -36,7 +36,7 @@ def test_how_left_and_right_differ_is_told_side_by_side(capsys: pytest.CaptureFi
     assert figures["made"] is None
 
 
-def test_what_makes_it_even_is_found_and_saved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_balanced_lengths_are_printed_and_saved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "even.busk"
     out.write_bytes(b"the former version")
     assert main(["symmetry", *WORN, "--balance", "--out", str(out)]) == DONE
@@ -55,7 +55,7 @@ def test_what_makes_it_even_is_found_and_saved(tmp_path: Path, capsys: pytest.Ca
     assert figures["answer"] == "adaptive"
 
 
-def test_what_is_not_worth_it_is_left_as_it_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_balance_of_little_gain_changes_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "left.busk"
     assert (
         main(["symmetry", *PERSON, "--line", "full-bust=94%", "--balance", "--out", str(out)])
@@ -75,7 +75,7 @@ def test_what_is_not_worth_it_is_left_as_it_is(tmp_path: Path, capsys: pytest.Ca
     assert saved.ratio("mid-bust") == 0.93
 
 
-def test_what_makes_no_sense_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_invalid_options_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for words, sentence in (
         (["--out", str(tmp_path / "a.busk")], "No result to save"),
         (["--balance", "--out", "a.ply"], "not a project file name"),

@@ -23,7 +23,7 @@ def mannequin(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return coarse_mannequin(tmp_path_factory.mktemp("coarse"))
 
 
-def test_it_prints_figures_with_what_they_may_be_off_by(
+def test_values_are_printed_with_their_uncertainty(
     mannequin: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["uncertainty", str(mannequin), *WORN, *QUICK]) == 0
@@ -59,7 +59,9 @@ def test_it_writes_shares_as_json_and_standard_deviations_as_a_table(
     assert float(pull["high"]) == pytest.approx(float(pull["value"]) * math.exp(off), rel=1e-3)
 
 
-def test_a_bare_body_is_told_at_rest_alone(mannequin: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_without_lines_the_original_body_is_printed(
+    mannequin: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["uncertainty", str(mannequin), *QUICK]) == 0
     said = capsys.readouterr().out
     assert said.startswith("Verdict: No active lines\n\nNo active lines: ")
@@ -69,7 +71,7 @@ def test_a_bare_body_is_told_at_rest_alone(mannequin: Path, capsys: pytest.Captu
 
 
 @pytest.mark.parametrize("wrong", ["tape=3", "skin_mm=thick", "skin_mm=-1"])
-def test_what_cannot_be_assumed_is_said(
+def test_an_invalid_assumption_is_refused(
     mannequin: Path, capsys: pytest.CaptureFixture[str], wrong: str
 ) -> None:
     assert main(["uncertainty", str(mannequin), "--assume", wrong]) == 2
