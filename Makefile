@@ -1,7 +1,7 @@
 # Two commands do it all: `make run` opens the program, `make test` checks it. Both set up first what they need.
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help run test setup setup-test lint types bench fuzz lock docs docs-pictures package package-numbers setup-package package-test check-windows clean
+.PHONY: help run test setup setup-test lint types bench fuzz words lock docs docs-pictures package package-numbers setup-package package-test check-windows clean
 export PYTHON
 
 python := .venv/bin/python
@@ -43,6 +43,9 @@ bench: setup  ## measure the speed of the turn and of the deformation
 SECONDS := 300
 fuzz: setup-test  ## damage scans, projects, names and bodies for a while: make fuzz SECONDS=900; failures go to fuzz.jsonl
 	@$(python) benchmarks/fuzz.py --seconds $(SECONDS) --keep fuzz.jsonl
+
+words: setup  ## bring the catalogues in resources/locale up to date with the texts of the code
+	@$(python) benchmarks/catalogue.py
 
 lock:  ## pin every dependency again (needs uv, which nothing else needs)
 	@[ -n "$(uv)" ] || { echo "make lock needs uv: python3 -m pip install uv"; exit 1; }

@@ -100,7 +100,7 @@ class Slider:
     def _signs(self, ratio: float) -> frozenset[str]:
         stages = self.built(ratio)
         if isinstance(stages, UserError):
-            return frozenset({"stretched" if "table ends" in stages.message else "unreachable"})
+            return frozenset({"stretched" if "table ends" in str(stages.message) else "unreachable"})
         model, ratios = stages.model, line_targets(stages.design, stages).ratios
         balance = solve_exact(model, ratios)
         if not balance.is_converged:

@@ -1,16 +1,29 @@
-"""What can go wrong for a user, said in one sentence with what to do."""
+"""Errors that a user can solve: a message, and a hint what to do."""
+
+from core.messages import EMPTY, Message, join
 
 
 class UserError(Exception):
-    """A problem that the user can solve: ``message`` says what is wrong, ``hint`` what to do."""
+    """A problem that the user can solve: ``message`` states what is wrong, ``hint`` what to do."""
 
-    def __init__(self, message: str, hint: str = "") -> None:
+    def __init__(self, message: Message, hint: Message = EMPTY) -> None:
         super().__init__(message)
         self.message = message
         self.hint = hint
 
+    @property
+    def text(self) -> Message:
+        """The message and the hint as one message."""
+        return join((self.message, self.hint))
+
     def __str__(self) -> str:
-        return f"{self.message} {self.hint}".strip()
+        return str(self.text)
+
+
+def reason_of(problem: BaseException) -> str | Message:
+    """Return what an exception states: its message, or its text without the number of an OSError."""
+    first = problem.args[0] if problem.args else ""
+    return getattr(problem, "strerror", None) or (first if isinstance(first, Message) else str(problem))
 
 
 def as_exception(error: BaseException) -> Exception:

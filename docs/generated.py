@@ -111,7 +111,7 @@ def measurements() -> str:
     for each in DEFINITIONS.values():
         title = f"{each.title}, left and right" if each.sided else each.title
         picture = f"![{each.title}](../pictures/measures/{each.key}.png)"
-        rows.append((picture, title, each.unit, each.iso or "-", each.text))
+        rows.append((picture, title, each.unit, each.iso or "-", str(each.text)))
     return table(heads, rows)
 
 

@@ -19,6 +19,7 @@ from core.errors import LineError, UserError
 from core.garment.elastic_library import find_elastic, read_elastic
 from core.landmarks.manual import placed_mark
 from core.mechanics.constraint_lines import Line, length_ratio
+from core.messages import Message
 from core.pipeline.build import Stages, build
 from core.scan.edits import ScanEdits, hole_centre
 
@@ -70,7 +71,10 @@ def apply_lines(design: Design, lines: Sequence[Line], requests: Sequence[str]) 
         line = next((line for line in lines if line.name.lower() == name.strip().lower()), None)
         if line is None or not equals:
             names = ", ".join(line.name for line in lines)
-            raise LineError(f"'{request}' is not a line.", f"Enter NAME=LENGTH. Lines: {names}.")
+            raise LineError(
+                Message("'{request}' is not a line.", request=request),
+                Message("Enter NAME=LENGTH. Lines: {names}.", names=names),
+            )
         ratio = length_ratio(text, line.name, line.rest_length, line.whole_length)
         design = design.with_line(line.name, ratio)
     return design
@@ -84,7 +88,8 @@ def apply_elastics(design: Design, requests: Sequence[str]) -> Design:
         if line is None or not equals:
             active = ", ".join(sorted(design.active_lines())) or "none"
             raise LineError(
-                f"'{request}' is not an active line.", f"Enter LINE=ELASTIC. Active lines: {active}."
+                Message("'{request}' is not an active line.", request=request),
+                Message("Enter LINE=ELASTIC. Active lines: {active}.", active=active),
             )
         chosen = read_elastic(Path(elastic)) if elastic.lower().endswith(".csv") else find_elastic(elastic)
         design = design.with_elastic(line, chosen)
@@ -101,7 +106,10 @@ def settings_of(pairs: Sequence[str]) -> dict[str, Any]:
         key, equals, value = pair.partition("=")
         key, value = key.strip().lower().replace("-", "_"), value.strip().lower()
         if not equals or key not in _READERS:
-            raise UserError(f"'{pair}' is not a setting.", f"Enter KEY=VALUE. Keys: {', '.join(_READERS)}.")
+            raise UserError(
+                Message("'{pair}' is not a setting.", pair=pair),
+                Message("Enter KEY=VALUE. Keys: {choices}.", choices=", ".join(_READERS)),
+            )
         values[key] = _READERS[key](key, value)
     return values
 
@@ -110,7 +118,8 @@ def _word(key: str, value: str) -> str:
     plain = stored_word(value.replace("_", "-").replace(" ", "-"))
     if plain not in WORDS[key]:
         raise UserError(
-            f"'{value}' is not a value of {key}.", f"Choose one of: {', '.join(shown_words(key))}."
+            Message("'{value}' is not a value of {key}.", value=value, key=key),
+            Message("Choose one of: {choices}.", choices=", ".join(shown_words(key))),
         )
     return plain
 
@@ -119,7 +128,10 @@ def _number(key: str, value: str) -> float:
     try:
         return float(value.replace(",", "."))
     except ValueError:
-        raise UserError(f"The {key} '{value}' is not a number.", f"Enter for example {key}=1.5.") from None
+        raise UserError(
+            Message("The {key} '{value}' is not a number.", key=key, value=value),
+            Message("Enter for example {key}=1.5.", key=key),
+        ) from None
 
 
 def _gain(key: str, value: str) -> float | None:
@@ -132,7 +144,10 @@ def _firm_chest(key: str, value: str) -> float:
 
 def _switch(key: str, value: str) -> bool:
     if value not in _ON:
-        raise UserError(f"'{value}' is not a value of {key}.", "Choose one of: yes, no.")
+        raise UserError(
+            Message("'{value}' is not a value of {key}.", value=value, key=key),
+            Message("Choose one of: yes, no."),
+        )
     return _ON[value]
 
 
@@ -149,7 +164,8 @@ def check_project_name(out: str) -> None:
     """Raise UserError unless ``out`` is empty or the name of a project file."""
     if out and not is_project(out):
         raise UserError(
-            f"{out} is not a project file name.", f"Specify a project file: --out design{SUFFIX}."
+            Message("{out} is not a project file name.", out=out),
+            Message("Specify a project file: --out design{SUFFIX}.", SUFFIX=SUFFIX),
         )
 
 

@@ -110,8 +110,8 @@ def report_error(error: UserError, in_window: bool) -> None:
     from PySide6.QtWidgets import QApplication, QMessageBox  # noqa: PLC0415
 
     app = QApplication.instance() or QApplication(sys.argv[:1])
-    box = QMessageBox(QMessageBox.Icon.Warning, "Busk", error.message)
+    box = QMessageBox(QMessageBox.Icon.Warning, "Busk", str(error.message))
     box.setTextFormat(Qt.TextFormat.PlainText)  # of this and the next text: a path may look like HTML
-    box.setInformativeText(error.hint)
+    box.setInformativeText(str(error.hint))
     box.exec()
     del app

@@ -13,6 +13,7 @@ from threadpoolctl import threadpool_limits
 from app.cli.environment import is_seen_in_window, path_of, report_error, set_up_streams
 from app.cli.parser import COMMANDS, command_options, current_name, runner_of, window_options
 from core.errors import UserError
+from core.messages import Message
 
 PIPE_CLOSED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
@@ -50,9 +51,13 @@ def _run_window(words: Sequence[str]) -> int:
     options = window_options(words)
     file = None if options.file is None else path_of(options.file)
     if file == "":
-        raise UserError("No file is named.", "Specify a scan or a project, or see 'busk --help'.")
+        raise UserError(
+            Message("No file is named."), Message("Specify a scan or a project, or see 'busk --help'.")
+        )
     if file is not None and not os.path.exists(file) and not is_seen_in_window(file):
-        raise UserError(f"{file} is neither a file nor a command.", "See 'busk --help'.")
+        raise UserError(
+            Message("{file} is neither a file nor a command.", file=file), Message("See 'busk --help'.")
+        )
     # Thousands of modules come now and stay: looking for garbage among them costs a tenth of the start.
     gc.disable()
     from app.gui.startup import run_window  # noqa: PLC0415 (a command needs no Qt)

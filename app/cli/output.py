@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import TypeVar
 
 from core.document.printable_name import shown_line
-from core.errors import UserError
+from core.errors import UserError, reason_of
 from core.export import csv_cells
 from core.files.atomic_write import write_text
+from core.messages import Message
 
 T = TypeVar("T")
 
@@ -21,12 +22,12 @@ DONE, NOT_CONVERGED = 0, 3
 _NUMBER = re.compile(r"[-+\N{MINUS SIGN}±]?\d.*|[-\N{EN DASH}]?")
 
 
-def finish(text: str, converged: bool, warnings: Iterable[str] = ()) -> int:
+def finish(text: str, converged: bool, warnings: Iterable[Message | str] = ()) -> int:
     """Print a text, if any, then the ``warnings`` that are not a line of it; return the exit code."""
     if text:
         print(text, flush=True)
     printed = {line.strip() for line in text.splitlines()}
-    warn(each for each in warnings if each not in printed)
+    warn(each for each in map(str, warnings) if each not in printed)
     return DONE if converged else NOT_CONVERGED
 
 
@@ -45,7 +46,7 @@ def write_output(forms: Mapping[str, Callable[[T], str]], result: T, kind: str, 
     if out is None:
         return forms[kind](result)
     if not out.strip():
-        raise UserError("The output file has no name.", "Specify a file: --out table.csv.")
+        raise UserError(Message("The output file has no name."), Message("Specify a file: --out table.csv."))
     form = forms[kind or {".json": "json", ".csv": "csv"}.get(Path(out).suffix.lower(), "")]
     write_text(Path(out), form(result) + "\n")
     return f"written to {out}"
@@ -54,13 +55,14 @@ def write_output(forms: Mapping[str, Callable[[T], str]], result: T, kind: str, 
 def make_folder(name: str) -> Path:
     """Create an output folder, if it does not exist, and return it. Raises UserError."""
     if not name.strip():
-        raise UserError("The output folder has no name.", "Specify a folder: --out result.")
+        raise UserError(Message("The output folder has no name."), Message("Specify a folder: --out result."))
     folder = Path(name)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as why:
         raise UserError(
-            f"The folder {name} cannot be created: {why.strerror}.", "Choose another folder."
+            Message("The folder {name} cannot be created: {problem}.", name=name, problem=reason_of(why)),
+            Message("Choose another folder."),
         ) from why
     return folder
 

@@ -9,6 +9,7 @@ from typing import NoReturn
 
 from core import __version__
 from core.errors import UserError
+from core.messages import Message
 
 COMMANDS = {
     "solve": "solve a design and write body, control mesh, iterations and report",
@@ -113,7 +114,10 @@ class _Parser(argparse.ArgumentParser):
     """Reports wrong arguments as a UserError."""
 
     def error(self, message: str) -> NoReturn:
-        raise UserError(f"{message[:1].upper()}{message[1:]}.", f"See '{self.prog} --help'.")
+        raise UserError(
+            Message("{text}.", text=message[:1].upper() + message[1:]),
+            Message("See '{prog} --help'.", prog=self.prog),
+        )
 
 
 def window_parser() -> argparse.ArgumentParser:

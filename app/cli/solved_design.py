@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property, reduce
 
 from app.cli.design import apply_elastics, apply_lines
-from app.i18n.catalog import joined
 from app.presenters.assessment import assessment_lines
 from app.presenters.elastics import effect_words, next_step
 from core.document.design import Design
@@ -18,6 +17,7 @@ from core.garment.elastic_library import library
 from core.garment.elastic_options import KEEP_CUT, KEEP_FIT, elastic_option, outcome_of
 from core.garment.match_shape import match_lengths
 from core.garment.tension import divergence_error
+from core.messages import Message, join
 from core.pipeline.build import Stages, build
 from core.pipeline.exact import NoEquilibriumError
 from core.pipeline.solve import Solution, solve
@@ -32,7 +32,7 @@ class SolvedDesign:
     """
 
     solution: Solution
-    warnings: list[str]
+    warnings: list[Message]
     effect: tuple[str, ...] = ()
 
     @property
@@ -81,7 +81,10 @@ def solve_design(
     design = apply_lines(design, stages.model.lines, lines)
     requested = apply_elastics(design, elastics)
     if not design.lines and not bare:
-        raise LineError("No active lines.", "Set one: --line mid-bust=75% --elastic 'mid-bust=plush 12'.")
+        raise LineError(
+            Message("No active lines."),
+            Message("Set one: --line mid-bust=75% --elastic 'mid-bust=plush 12'."),
+        )
     named = [name for name in requested.active_elastics() if keep_fit or elastics]
     rigid = build(reduce(lambda each, name: each.with_elastic(name, None), named, design), stages)
     try:
@@ -92,7 +95,7 @@ def solve_design(
         raise _with_next_step(problem, rigid, requested, KEEP_FIT if keep_fit else KEEP_CUT) from problem
     warnings = shape_warnings(solution)
     if solution.verdict.motion != "settled":
-        warnings.append("The solver has not converged: these values may still change.")
+        warnings.append(Message("The solver has not converged: these values may still change."))
     return SolvedDesign(solution, warnings, _effect_of(solution.stages, rigid) if named else ())
 
 
@@ -112,4 +115,6 @@ def _with_next_step(problem: ElasticError, rigid: Stages, requested: Design, mod
         options = [elastic_option(rigid, names, each, mode) for each in (wanted, *library().values())]
     except LineError:
         return problem  # there is no equilibrium without elastics either
-    return LineError(problem.message, joined((problem.hint, next_step(options[0], options, names))))
+    return LineError(
+        problem.message, join((problem.hint, Message("{text}", text=next_step(options[0], options, names))))
+    )

@@ -9,7 +9,7 @@ from PySide6.QtGui import QAction, QKeySequence, QUndoGroup
 from PySide6.QtWidgets import QWidget
 
 from app.gui.menus import Menus
-from app.i18n.catalog import LANGUAGES, tr
+from app.i18n.catalog import LANGUAGES, tr, tr_context
 from app.presenters.samples import SAMPLES
 
 CONTROLS = ("adaptive", "conventional", "accumulating", "exact", "none")
@@ -41,7 +41,9 @@ class Actions(Menus):
         self.open = self.add("file", tr("Open…"), _KEYS.Open)
         self.recent = self.submenu("file", "recent", tr("Open recent"))
         self.submenu("file", "samples", tr("Open sample"))
-        self.samples = {name: self.add("samples", tr(title)) for name, title in SAMPLES.items()}
+        self.samples = {
+            name: self.add("samples", tr_context("sample", title)) for name, title in SAMPLES.items()
+        }
         self.rule("file")
         self.save = self.add("file", tr("Save"), _KEYS.Save, of_document=True)
         self.save_as = self.add("file", tr("Save as…"), "Ctrl+Shift+S", of_document=True)

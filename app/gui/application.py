@@ -29,6 +29,7 @@ from app.i18n.lengths import use_unit
 from core import __version__
 from core.errors import UserError
 from core.files.atomic_write import private_folder
+from core.messages import Message
 
 # Read by the libraries at their import.
 os.environ.setdefault("QT_API", "pyside6")
@@ -196,6 +197,8 @@ def _name_to_windows() -> None:
 def _refuse_bad_pair() -> None:
     if PySide6.__version__.startswith("6.12.0") and sys.version_info < (3, 12):
         raise UserError(
-            f"PySide6 6.12.0 crashes on Python {platform.python_version()}.",
-            "Run 'make setup' again: it installs a pair that works.",
+            Message(
+                "PySide6 6.12.0 crashes on Python {python_version}.", python_version=platform.python_version()
+            ),
+            Message("Run 'make setup' again: it installs a pair that works."),
         )

@@ -17,6 +17,7 @@ from app.presenters.samples import lifted_sample
 from app.rendering.display import has_display
 from core.document.design import Design
 from core.errors import UserError
+from core.messages import Message
 
 if TYPE_CHECKING:
     from PySide6.QtWidgets import QApplication
@@ -31,8 +32,11 @@ def run_window(file: str | None = None, safe: bool = False) -> int:
     """
     if not has_display() and "QT_QPA_PLATFORM" not in os.environ:
         raise UserError(
-            "There is no display to open a window on.",
-            "Use 'busk demo --out out' for the same session in pictures, or 'busk --help' for the commands.",
+            Message("There is no display to open a window on."),
+            Message(
+                "Use 'busk demo --out out' for the same session in pictures, or 'busk --help' for "
+                "the commands."
+            ),
         )
     app = application()
     with log_kept():

@@ -1,4 +1,4 @@
-"""The words of the window: English in the code, other languages in ``resources/words``."""
+"""The catalogue of texts: English in the code, other languages as gettext files in ``resources/locale``."""
 
 from __future__ import annotations
 
@@ -6,33 +6,81 @@ import json
 import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from functools import cache, lru_cache
+from functools import cache
+from gettext import GNUTranslations, NullTranslations, c2py
 from importlib import resources
+from typing import Any
 
-from app.i18n.lengths import length_unit, with_lengths
-from app.i18n.numerals import number as number  # noqa: PLC0414 - lengths, which words need, write numbers too
+from app.i18n.numerals import number as number  # noqa: PLC0414 - imported with the texts almost everywhere
+from core.messages import Message
 
 LANGUAGES = {"en": "English", "ja": "日本語"}
-"""The languages that can be chosen, by code, each in its own words."""
+"""The languages that can be chosen, by code, each under its own name."""
 
 _code = "en"
 _JOINER = "\N{WORD JOINER}"
 _END = re.compile(r"[\u3001-\u30ff\u4e00-\u9fff\uff09]{2,4}$", re.MULTILINE)  # kana, kanji, their marks
-_SENTENCE_END = re.compile(r"(?<=[.?!]) (?=[A-Z'])")
+_FIELD = re.compile(r'^(msgctxt|msgid|msgid_plural|msgstr(?:\[\d+\])?) (".*"(?:\n".*")*)', re.MULTILINE)
+_PLURAL = re.compile(r"plural=([^;]+);")
+
+
+class Catalogue(GNUTranslations):
+    """Translations read from a PO file as it is: without a compiled copy that could be out of date."""
+
+    texts: dict[tuple[str, str], list[str]]
+    """Translations by context, empty for none, and English text; several where there are plural forms."""
+
+    def _parse(self, fp: Any) -> None:  # to be overridden for another format, says gettext
+        entry: dict[str, str] = {}
+        entries = [entry]
+        for name, quoted in _FIELD.findall(fp.read().decode("utf-8")):
+            if name == "msgctxt" or (name == "msgid" and "msgid" in entry):
+                entries.append(entry := {})
+            entry[name] = "".join(map(_unquoted, quoted.split("\n")))
+        self.texts = {}
+        self._catalog: dict[str | tuple[str, int], str] = {}
+        for entry in entries:
+            forms = [text for name, text in entry.items() if name.startswith("msgstr")]
+            self._add(entry.get("msgctxt", ""), entry["msgid"], forms, "msgid_plural" in entry)
+
+    def _add(self, context: str, english: str, forms: list[str], plural: bool) -> None:
+        key = self.CONTEXT % (context, english) if context else english
+        if not english:
+            self.plural = c2py(_PLURAL.findall(forms[0])[0])
+        elif any(forms):
+            self.texts[context, english] = forms
+            self._catalog.update(
+                {(key, k): form for k, form in enumerate(forms)} if plural else {key: forms[0]}
+            )
+
+
+def _unquoted(text: str) -> str:
+    # The escapes of both formats are the same; without any, nothing has to be parsed.
+    return str(json.loads(text)) if "\\" in text else text[1:-1]
+
+
+@cache
+def catalogue(code: str) -> NullTranslations:
+    """Return the translations into a language; English has none."""
+    if code == "en":
+        return NullTranslations()
+    file = resources.files("resources") / "locale" / code / "LC_MESSAGES" / "busk.po"
+    with file.open("rb") as stream:
+        return Catalogue(stream)
 
 
 def use_language(code: str) -> None:
-    """Set the language of all words asked for from now on; an unknown one leaves English.
+    """Set the language of all texts from now on; an unknown one leaves English.
 
-    Call it once, before the first widget is built: a widget keeps the words it was built with.
+    Call it once, before the first widget is built: a widget keeps the texts it was built with.
     """
     global _code  # noqa: PLW0603 - one language at a time
     _code = code if code in LANGUAGES else "en"
 
 
 @contextmanager
-def speaking(code: str) -> Iterator[None]:
-    """Ask for words of another language meanwhile: of a sheet that is for somebody else than the window."""
+def using_language(code: str) -> Iterator[None]:
+    """Use another language meanwhile, as for a report that is not in the language of the window."""
     before = _code
     use_language(code)
     try:
@@ -42,85 +90,54 @@ def speaking(code: str) -> Iterator[None]:
 
 
 def language() -> str:
-    """Return the code of the language in use, for texts that bring their own words."""
+    """Return the code of the language in use."""
     return _code
 
 
-@cache
-def read_words(name: str) -> dict[str, str]:
-    """Return one table of ``resources/words``, English to translated."""
-    text = (resources.files("resources") / "words" / f"{name}.json").read_text(encoding="utf-8")
-    table: dict[str, str] = json.loads(text)
-    return table
-
-
 def tr(english: str) -> str:
-    """Return ``english`` in the language of the window, or as it is where no translation is known."""
-    return _table(_code).get(english, english)
+    """Return a text in the language in use, or in English where no translation is known."""
+    return catalogue(_code).gettext(english)
 
 
-def say(english: str, unit: str = "") -> str:
-    """Return what the core says in the language of the window.
-
-    ``english`` is one or more sentences with names and numbers filled in; one that no pattern fits stays.
-    Lengths in millimetres get the unit in use; with "mm", as in files, they stay.
-    """
-    return _said(_code, unit or length_unit(), english)
+def tr_context(context: str, english: str) -> str:
+    """Return a text that means something else in another context."""
+    return catalogue(_code).pgettext(context, english)
 
 
-@lru_cache(4096)  # the same is said again and again, and hundreds of patterns are tried for each
-def _said(code: str, unit: str, english: str) -> str:
-    messages = _messages(code, unit)
-    for pattern, translated in messages:
-        match = pattern.fullmatch(english)
-        if match:
-            places = match.groupdict()
-            template, places = (translated, places) if unit == "mm" else with_lengths(translated, places)
-            return template.format(**{name: _said(code, unit, value) for name, value in places.items()})
-    sentences = _SENTENCE_END.split(english) if messages else [english]
-    if len(sentences) > 1:
-        return ("" if code == "ja" else " ").join(_said(code, unit, each) for each in sentences)
-    # A sentence that begins with the name of a line; a name of a file, with its dot, stays as it is.
-    begins_small = english.endswith((".", "?")) and re.match(r"[a-z][a-z-]* ", english)
-    return english[0].upper() + english[1:] if begins_small else english
+def tr_plural(one: str, many: str, count: int) -> str:
+    """Return the text for a number of things, with ``{count}`` still to be filled."""
+    return catalogue(_code).ngettext(one, many, count)
+
+
+def template(message: Message) -> str:
+    """Return the text of a message in the language in use, with its parameters still to be filled."""
+    if not message.plural:
+        return tr_context(message.context, message.msgid) if message.context else tr(message.msgid)
+    count = message.parameters["count"]
+    return tr_plural(message.msgid, message.plural, count if isinstance(count, int) else 0)
+
+
+def translations(code: str) -> dict[tuple[str, str], list[str]]:
+    """Return all translations into a language by context and English text; see ``Catalogue``."""
+    found = catalogue(code)
+    return found.texts if isinstance(found, Catalogue) else {}
 
 
 def in_all_languages(shown: str) -> list[str]:
-    """Return words of the window as they are shown, and as they are in every other language."""
-    english = next((text for text, translated in _table(_code).items() if translated == shown), shown)
-    others = (read_words(code).get(english) for code in LANGUAGES if code != "en")
-    return [shown, english, *(other for other in others if other)]
-
-
-@cache
-def _table(code: str) -> dict[str, str]:
-    return {} if code == "en" else read_words(code)
-
-
-@cache
-def _messages(code: str, unit: str) -> list[tuple[re.Pattern[str], str]]:
-    """Return what the core may say, as patterns with their translations; none if it stays as it is."""
-    if code == "en":  # which numbers are lengths is read off the patterns, which every other language has
-        messages = {} if unit == "mm" else {english: english for english in read_words("ja_messages")}
-    else:
-        messages = read_words(f"{code}_messages")
-    # The more words a pattern holds, the surer its match: the longest is tried first.
-    longest = sorted(messages, key=lambda text: -len(re.sub(r"\{\w*\}", "", text)))
-    return [(_pattern(english), messages[english]) for english in longest]
-
-
-def _pattern(english: str) -> re.Pattern[str]:
-    """Return what a message looks like with its places filled."""
-    return re.compile(re.sub(r"\\\{(\w+)\\\}", r"(?P<\1>.+)", re.escape(english)), re.DOTALL)
+    """Return a text of the window in the language in use and in every other language."""
+    known = (key[1] for key, forms in translations(_code).items() if forms[0] == shown)
+    english = next(known, shown)
+    others = (translations(code).get(("", english)) for code in LANGUAGES if code != "en")
+    return [shown, english, *(other[0] for other in others if other)]
 
 
 def listed(names: Iterable[str]) -> str:
-    """Return names one after the other, as the language in use parts them."""
+    """Return names one after the other, as the language in use separates them."""
     return ("、" if _code == "ja" else ", ").join(names)
 
 
 def colon() -> str:
-    """Return a colon as the language in use writes it, with the room after it."""
+    """Return a colon as the language in use writes it, with the space after it."""
     return "：" if _code == "ja" else ": "
 
 
@@ -129,11 +146,11 @@ def joined(sentences: Iterable[str]) -> str:
     return ("" if _code == "ja" else " ").join(filter(None, sentences))
 
 
-def held_together(text: str) -> str:
+def add_word_joiners(text: str) -> str:
     """Return text whose paragraphs never end in a line of a letter or two, where any two letters may part."""
     return _END.sub(lambda end: _JOINER.join(end[0]), text)
 
 
-def let_apart(text: str) -> str:
-    """Return text that was ``held_together`` as it was."""
+def strip_word_joiners(text: str) -> str:
+    """Return text without the joiners of ``add_word_joiners``."""
     return text.replace(_JOINER, "")

@@ -6,8 +6,8 @@ Whole millimetres are as fine as a tape, and are shown as inches and sixteenths;
 
 from __future__ import annotations
 
-import re
-from collections.abc import Mapping
+from collections.abc import Iterator
+from contextlib import contextmanager
 from fractions import Fraction
 
 from app.i18n.numerals import number
@@ -18,9 +18,6 @@ UNITS = {"mm": 1.0, "cm": 10.0, "in": 25.4}
 
 _STEPS = {"mm": (1.0, 5.0), "cm": (1.0, 5.0), "in": (25.4 / 16, 25.4 / 4)}  # of arrow keys [mm]
 _SIXTEENTHS = 16
-_PLACE = r"\{(?:\w+)\}|\d[\d.,]*"
-_IN_TEMPLATE = re.compile(rf"(?:({_PLACE})( to | から |～|–))?({_PLACE})( ?)mm(?![A-Za-z0-9_])")
-_NUMBER = re.compile(r"[+\N{MINUS SIGN}-]?\d[\d,]*(?:\.\d+)?")
 _unit = "mm"
 
 
@@ -31,6 +28,17 @@ def use_unit(code: str) -> None:
     """
     global _unit  # noqa: PLW0603 - one unit at a time
     _unit = code if code in UNITS else "mm"
+
+
+@contextmanager
+def using_unit(code: str) -> Iterator[None]:
+    """Use another unit meanwhile: files keep millimetres."""
+    before = _unit
+    use_unit(code)
+    try:
+        yield
+    finally:
+        use_unit(before)
 
 
 def length_unit() -> str:
@@ -103,37 +111,6 @@ def read_length(text: str) -> float | None:
     sign, size, unit = typed
     mm = millimetres(size, unit or _unit)
     return -mm if mm is not None and sign == "-" else mm
-
-
-def with_lengths(template: str, places: Mapping[str, str]) -> tuple[str, dict[str, str]]:
-    """Return a template, and what fills its ``places``, with lengths in mm brought to the unit in use.
-
-    Its lengths are those before "mm": ``{name} mm``, ``15 mm``, ``{low} to {high} mm``.
-    """
-    filled = dict(places)
-
-    def convert(place: str) -> str:
-        name = place.strip("{}")
-        if place == name:
-            return _rewritten(place)
-        filled[name] = _rewritten(places[name])
-        return place
-
-    def replaced(match: re.Match[str]) -> str:
-        figures = [places.get(each.strip("{}"), each) for each in match.group(1, 3) if each]
-        if not all(map(_NUMBER.fullmatch, figures)):
-            return match[0]
-        first = f"{convert(match[1])}{match[2]}" if match[1] else ""
-        return f"{first}{convert(match[3])}{match[4]}{_unit}"
-
-    return _IN_TEMPLATE.sub(replaced, template), filled
-
-
-def _rewritten(figure: str) -> str:
-    """Return a written number of millimetres in the unit in use, as finely as it was written."""
-    plain = figure.replace(",", "").replace("\N{MINUS SIGN}", "-")
-    digits = len(plain.partition(".")[2])
-    return length_number(float(plain), digits, signed=plain.startswith("+"))
 
 
 def _sixteenths(inches: float, signed: bool) -> str:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
-from app.i18n.catalog import colon, joined, say, tr
-from app.presenters.cut_list import told
+from app.i18n.catalog import colon, joined, tr
+from app.presenters.messages import render
 from core.document.design import Design
-from core.garment.assessment import BAD, CAUTION, GOOD, PENDING, Assessment, Finding
+from core.garment.assessment import BAD, CAUTION, GOOD, PENDING, Assessment
 
 IDLE = "idle"
 """The level of a design without an active line, as long as nothing else is wrong: there is no result yet."""
@@ -49,29 +48,14 @@ def tone(level: str) -> str:
     return {GOOD: "ok", CAUTION: "warn", BAD: "bad"}.get(level, "info")
 
 
-def assessment_view(
-    assessment: Assessment, design: Design | None = None, titles: Mapping[str, str] | None = None
-) -> AssessmentView:
-    """Return an assessment in words, with lines and elastics as they are called in a ``design``, if any.
-
-    Where that is not known, ``titles`` are those of lines by name.
-    """
+def assessment_view(assessment: Assessment, design: Design | None = None) -> AssessmentView:
+    """Return an assessment in words, with lines as they are called in a ``design``, if it is known."""
     level = IDLE if assessment.level == GOOD and not assessment.active else assessment.level
-    reasons = tuple(
-        (told(each.message, design) if design else say(_titled(each, titles or {})), say(each.action))
-        for each in assessment.findings
-    )
+    reasons = tuple((render(each.message, design), render(each.action)) for each in assessment.findings)
     waiting = {"convergence": tr("Converging…"), "pressure": tr("Computing contact pressure…")}
     return AssessmentView(
         level, headline(level), reasons, waiting.get(assessment.pending, "") if level == PENDING else ""
     )
-
-
-def _titled(finding: Finding, titles: Mapping[str, str]) -> str:
-    """Return the message of a finding with the title of its line in place of its name."""
-    name = finding.lines[0] if finding.lines else ""
-    starts = bool(name) and finding.message.startswith(f"{name} ")
-    return titles.get(name, name) + finding.message.removeprefix(name) if starts else finding.message
 
 
 def assessment_lines(assessment: Assessment, design: Design) -> list[str]:

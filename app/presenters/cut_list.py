@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.i18n.catalog import joined, number, say, tr
-from app.i18n.lengths import length_number
-from app.presenters.lines import line_colours, line_title, titled
+from app.i18n.catalog import joined, number, tr
+from app.i18n.lengths import length_number, using_unit
+from app.presenters.lines import line_colours
+from app.presenters.messages import elastic_title, line_title, render_all
 from app.rendering.band import band_width
 from core.document.design import Design
 from core.garment.cut_list import CutList, CutRow
@@ -28,18 +29,11 @@ def cut_list_view(frame: Frame, cuts: CutList) -> CutListView:
     ]
     return CutListView(
         tuple(views),
-        tuple(told(note, design) for note in cuts.notes) if pieces else (),
+        tuple(render_all(cuts.notes, design)) if pieces else (),
         design.tissue_stiffness,
         worn=bool(pieces),
         bare=not any(row.elastic for row in cuts.rows),
     )
-
-
-def told(sentence: str, design: Design, unit: str = "") -> str:
-    """Return a sentence of the core with the titles of lines and elastics; ``unit`` as in ``say``."""
-    for name in sorted((each.name for each in design.elastics), key=len, reverse=True):
-        sentence = sentence.replace(name, say(name, unit))
-    return say(titled(sentence, design), unit)
 
 
 def as_table(stages: Stages, cuts: CutList, pressed: PressureList | None) -> list[list[str]]:
@@ -71,7 +65,7 @@ def as_table(stages: Stages, cuts: CutList, pressed: PressureList | None) -> lis
 def _off(name: str, design: Design, color: str) -> CutView:
     """Return the row of a band that can be cut although its line does not constrain the model."""
     notes = (tr("On the rib cage: it moves nothing, but it can be cut."),)
-    elastic = say(design.line_settings(name).elastic)
+    elastic = elastic_title(design.line_settings(name).elastic)
     return CutView(name, line_title(name, design), color, band_width(name, design), elastic, notes=notes)
 
 
@@ -82,11 +76,11 @@ def _view(row: CutRow, design: Design, color: str, still: bool) -> CutView:
         line_title(row.line, design),
         color,
         band_width(row.line, design),
-        say(row.elastic),
+        elastic_title(row.elastic),
         "" if row.cut_mm is None else length_number(row.cut_mm, 0),
         "" if row.elongation is None else f"{number(100.0 * row.elongation, 0, signed=True)} %",
         "" if row.tension_n is None else number(row.tension_n, 1),
-        tuple(told(note, design) for note in row.notes if row.elastic),
+        tuple(render_all(row.notes, design)) if row.elastic else (),
         100.0 * row.elongation if set_here and row.elongation is not None else None,
         row.front_only,
         row.far,
@@ -106,9 +100,10 @@ def _cells(row: CutRow, kpa: float | None, design: Design) -> list[str]:
         row.allowance_mm,
     )
     written = ["" if each is None else f"{each:.1f}" for each in figures]
-    notes = joined(told(note, design, "mm") for note in row.notes)
     estimate = tr("yes") if row.estimate else tr("no")
-    return [line_title(row.line, design), say(row.elastic, "mm"), *written, estimate, notes]
+    with using_unit("mm"):
+        elastic, notes = elastic_title(row.elastic), joined(render_all(row.notes, design))
+    return [line_title(row.line, design), elastic, *written, estimate, notes]
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from app.i18n.catalog import joined, listed, number, tr
 from app.i18n.lengths import length
 from app.presenters.assessment import assessment_view
-from app.presenters.lines import line_title, row_title
+from app.presenters.lines import row_title
+from app.presenters.messages import line_title
 from app.presenters.status import state_title
 from core.analysis.diagnosis.candidate_changes import Change, Fix
 from core.analysis.diagnosis.diagnose import Diagnosis

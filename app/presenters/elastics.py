@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from app.i18n.catalog import joined, number, say, tr
-from app.i18n.lengths import length, length_number, width, width_number
-from app.presenters.lines import titled
+from app.i18n.catalog import joined, number, tr, tr_context
+from app.i18n.lengths import length, length_number, width_number
+from app.presenters.messages import elastic_title, render
 from core.document.design import Design
 from core.document.elastic import Elastic
 from core.garment.elastic_options import KEEP_CUT, KEEP_FIT, ElasticOption, Outcome, nearest, strongest
@@ -34,21 +34,16 @@ def _view(elastic: Elastic, where: str, own: bool) -> ElasticView:
     forces = tuple(number(elastic.force(e), 1) if e <= elastic.max_elongation + 1e-9 else "" for e in TOLD_AT)
     return ElasticView(
         elastic.name,
-        elastic.name if own else say(elastic.name),
+        elastic.name if own else elastic_title(elastic.name),
         tr("{where}, estimate").format(where=where) if elastic.estimate else where,
         width_number(elastic.width_mm),
         forces,
         width_number(elastic.allowance_mm),
-        say(elastic.source),
+        tr_context("elastic", elastic.source),
         elastic.estimate,
         own,
         elastic.curve,
     )
-
-
-def kind_title(elastic: Elastic) -> str:
-    """Return what an elastic that comes with Busk is called without its width."""
-    return say(elastic.name).removesuffix(width(elastic.width_mm)).strip()
 
 
 TOLD_AT = (0.2, 0.4, 0.6, 0.8)
@@ -128,7 +123,7 @@ def choice_view(
         return ChoiceView(title, note=tr("Computing…"))
     outcome = option.outcome or option.closest
     if outcome is None:
-        return ChoiceView(title, note=_said(option.reason, design))
+        return ChoiceView(title, note=render(option.reason, design))
     rows = [outcome.rows[name] for name in names if name in outcome.rows]
     far, usable = any(row.far for row in rows), option.outcome is not None
     stretch = [row.elongation for row in rows if row.elongation is not None]
@@ -140,7 +135,7 @@ def choice_view(
         length_number(one.cut_mm, 0) if one is not None and one.cut_mm is not None else "",
         length_number(one.reached_front_mm) if one is not None else "",
         length_number(outcome.lift, signed=True),
-        _note(option, rigid, far, name) if usable else _said(option.reason, design),
+        _note(option, rigid, far, name) if usable else render(option.reason, design),
         usable,
         far and usable,
     )
@@ -181,7 +176,7 @@ def advice_view(
     if option.outcome is not None:
         told = option.elastic is not None and rigid is not None
         return AdviceView(effect_words(option.outcome, rigid) if told and rigid is not None else "")
-    lines, offers = [_said(option.reason, design)], []
+    lines, offers = [render(option.reason, design)], []
     if option.closest is not None:
         lines = [joined((*lines, effect_words(option.closest, rigid) if rigid is not None else ""))]
         offers.append((tr("Use at its limit"), place, True))
@@ -190,8 +185,12 @@ def advice_view(
         at, limited = other
         offers.append((_offer(titles[at], limited), at, limited))
         lines.append(_other_words(options[at], titles[at], limited, rigid))
-    elif option.closest is None and option.problem is not None and option.problem.hint not in option.reason:
-        lines.append(_said(option.problem.hint, design))
+    elif (
+        option.closest is None
+        and option.problem is not None
+        and option.problem.hint not in option.reason.sentences
+    ):
+        lines.append(render(option.problem.hint, design))
     return AdviceView("\n".join(each for each in lines if each), tuple(offers), "warn")
 
 
@@ -200,12 +199,12 @@ def next_step(option: ElasticOption, options: Sequence[ElasticOption], names: Se
     assert option.elastic is not None
     other = nearest(options, option.elastic)
     if other is not None and other.elastic is not None:
-        return tr("Nearest elastic that works: {elastic}.").format(elastic=say(other.elastic.name))
+        return tr("Nearest elastic that works: {elastic}.").format(elastic=elastic_title(other.elastic.name))
     best = strongest(options, names)
     if best is None or best.elastic is None:
         return ""
     words = tr("No elastic works at this length; {elastic} comes nearest.")
-    return words.format(elastic=say(best.elastic.name))
+    return words.format(elastic=elastic_title(best.elastic.name))
 
 
 def _other(
@@ -237,13 +236,9 @@ def _other_words(option: ElasticOption, title: str, limited: bool, rigid: Outcom
     return joined((words.format(elastic=title), effect))
 
 
-def _said(sentence: str, design: Design) -> str:
-    return say(titled(sentence, design))
-
-
 def title_of(elastic: Elastic | None) -> str:
     """Return what an elastic is called, or that there is none."""
-    return say(elastic.name) if elastic is not None else tr("No elastic")
+    return elastic_title(elastic.name) if elastic is not None else tr("No elastic")
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from app.i18n.catalog import tr
-from app.presenters.lines import line_title
+from app.presenters.messages import line_title
 from app.presenters.model_options import Choice
 from app.rendering.band import band_width
 from app.rendering.camera import View

@@ -8,26 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from app.i18n.catalog import listed, number, say, tr
-from app.i18n.lengths import length
+from app.i18n.catalog import listed, number, tr
+from app.i18n.lengths import length, using_unit
 from app.presenters.export import ExportOptions, ExportSource
 from app.presenters.measurements import measure_title
+from app.presenters.messages import render
 from core import __version__
 from core.errors import UserError
-from core.export.band_geometry import (
-    BACK,
-    CENTRE,
-    EDGE,
-    LEFT,
-    LOWER,
-    SEAM,
-    SEWN,
-    SHOULDER,
-    SIDE_SEAM,
-    UPPER,
-    line_curves,
-    strips,
-)
+from core.export.band_geometry import line_curves, strips
 from core.export.drawings import CURVE_FORMATS, STRIP_FORMATS, drawing_kind, write_curves, write_strips
 from core.export.measurement_files import (
     LENGTHS_ALONE,
@@ -40,6 +28,7 @@ from core.export.mesh import kind_of, write_control_points, write_mesh
 from core.export.solution_report import write_iterations
 from core.export.units_and_axes import FileSpace, space_of
 from core.geometry.mesh import Mesh
+from core.messages import Message
 from core.progress import Pieces, Progress, part_of
 
 if TYPE_CHECKING:
@@ -108,7 +97,7 @@ def _picture_kind(path: str, manner: ExportOptions) -> None:
 
 def _table_kind(path: str, manner: ExportOptions) -> None:
     if not path.lower().endswith(".csv"):
-        raise UserError("A table is a .csv file.", "Choose a name that ends in .csv.")
+        raise UserError(Message("A table is a .csv file."), Message("Choose a name that ends in .csv."))
 
 
 def _in_space(space: FileSpace) -> str:
@@ -157,21 +146,10 @@ def _flat(path: str, outcome: ExportSource, manner: ExportOptions) -> ExportPrev
     return ExportPreview(told, "1:1", lambda at, _, hear: write_strips(at, drawn, heading, _strip_words))
 
 
-def _strip_words(text: str) -> str:
+def _strip_words(message: Message) -> str:
     """Return what stands on a strip in the language in use; files keep millimetres."""
-    marks = {
-        SIDE_SEAM: tr("right side, seam"),
-        CENTRE: tr("centre front"),
-        LEFT: tr("left side"),
-        BACK: tr("centre back"),
-        SEAM: tr("seam"),
-        UPPER: tr("upper end"),
-        LOWER: tr("lower end"),
-        EDGE: tr("upper edge"),
-        SHOULDER: tr("shoulder"),
-        SEWN: tr("back, at the under-bust band"),
-    }
-    return marks.get(text) or say(text, "mm")
+    with using_unit("mm"):
+        return render(message)
 
 
 def _measures(path: str, outcome: ExportSource, manner: ExportOptions) -> ExportPreview:

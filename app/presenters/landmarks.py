@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
-from app.i18n.catalog import say, tr
+from app.i18n.catalog import tr
 from app.i18n.lengths import length
+from app.presenters.messages import render
 from core.landmarks.types import CERTAIN, NAMES, Landmark
 from core.landmarks.warnings import ESSENTIAL
 
@@ -90,7 +91,15 @@ def landmark_view(name: str, mark: Landmark | None, accepted: Collection[Spot] =
     weak = unsure or (mark.off > 0.0 and spot_of(mark) not in accepted)
     traced, off = len(mark.evidence) > 0, mark.off
     return LandmarkView(
-        name, title, mark.confidence, mark.rule, group, mark.by_hand, weak=weak, traced=traced, off_mm=off
+        name,
+        title,
+        mark.confidence,
+        render(mark.rule),
+        group,
+        mark.by_hand,
+        weak=weak,
+        traced=traced,
+        off_mm=off,
     )
 
 
@@ -152,4 +161,4 @@ class LandmarkView:
         doubtful = tr("Doubtful: below {least} % it wants a look.")
         said = {"certain": sure, "doubtful": "" if self.by_hand else doubtful, "unneeded": grey}
         told = said.get(self.sureness, "").format(least=f"{CERTAIN * 100:.0f}")
-        return "\n".join([say(self.rule), *[read] * self.traced, *[told] * bool(told)])
+        return "\n".join([self.rule, *[read] * self.traced, *[told] * bool(told)])

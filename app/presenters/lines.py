@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 
-from app.i18n.catalog import listed, number, say, tr
+from app.i18n.catalog import number, tr
 from app.i18n.lengths import length
+from app.presenters.messages import elastic_title, kind_of, line_title, render, side_of
 from app.rendering.band import OFF_WIDTH, Band, band_width
 from core.analysis.length_limits.zones import LengthLimits
 from core.control_mesh.embedding import embed
@@ -29,37 +29,6 @@ OWN_COLOURS = ("#E2A32F", "#6FA3F5", "#7A1F2E", "#A9ABC9", "#8C8B2C", "#C2571A")
 
 Shown = tuple[LengthLimits, bool]
 """How far a line can go, and whether that was of the design before."""
-
-
-def line_title(name: str, design: Design | None = None) -> str:
-    """Return a line's name in the window's language, or the title that ``design`` gives it."""
-    own = design.line_settings(name).title if design else ""
-    if own:
-        side = _side(name)
-        return listed((own, side)) if side else own
-    titles = {
-        "full-bust": tr("Full bust"),
-        "mid-bust": tr("Mid-bust"),
-        "under-bust": tr("Under-bust"),
-        "strap left": tr("Strap left"),
-        "strap right": tr("Strap right"),
-        "sling left": tr("Sling left"),
-        "sling right": tr("Sling right"),
-        "oblique left": tr("Oblique left"),
-        "oblique right": tr("Oblique right"),
-        "ring left": tr("Ring left"),
-        "ring right": tr("Ring right"),
-    }
-    kind, side = kind_of(name), _side(name)
-    kind = titles.get(kind) or _generated(kind)
-    usual = listed((kind, side)) if side else kind
-    return titles.get(name, usual[:1].upper() + usual[1:])
-
-
-def _generated(name: str) -> str:
-    """Return a name as the program gives it to a drawn line, such as "line 1", in the window's language."""
-    word, _, number = name.partition(" ")
-    return tr("line {number}").format(number=number) if word == "line" and number.isdecimal() else name
 
 
 def pair_title(name: str, design: Design) -> str:
@@ -84,38 +53,13 @@ def row_title(name: str, design: Design) -> str:
 
 def told_title(name: str, design: Design) -> str:
     """Return what the row of a line is called where others follow: "Mid-bust (left)", "Straps"."""
-    side = _side(name)
+    side = side_of(name)
     if not side or len(design.linked_pair(name)) > 1:
         return row_title(name, design)
     kind = kind_of(name)
     titles = {"strap": tr("Strap"), "sling": tr("Sling"), "oblique": tr("Oblique"), "ring": tr("Ring")}
     line = design.line_settings(name).title or titles.get(kind) or line_title(kind)
     return tr("{line} ({side})").format(line=line, side=side)
-
-
-def titled(said: str, design: Design | None) -> str:
-    """Return a sentence with the titles of lines in place of their names.
-
-    A line of the template that a sentence begins with is called as in the list, too.
-    """
-    if design is None:
-        return said
-    own = {each.name for each in design.traits if each.title}
-    for name in sorted(own | set(LINE_COLOURS), key=len, reverse=True):
-        title = line_title(name, design).replace("\\", r"\\")
-        whole = rf"{re.escape(name)}(?![\w-])"
-        said = re.sub(f"^{whole}", title[:1].upper() + title[1:], said)
-        said = re.sub(rf"(?<![\w-]){whole}", title, said) if name in own else said
-    return said
-
-
-def kind_of(name: str) -> str:
-    """Return the name of a line without its side."""
-    return name.removesuffix(" left").removesuffix(" right")
-
-
-def _side(name: str) -> str:
-    return {" left": tr("left"), "right": tr("right")}.get(name[-5:], "") if partner_of(name) else ""
 
 
 def line_colours(names: Iterable[str], design: Design | None = None) -> dict[str, str]:
@@ -158,7 +102,7 @@ def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineV
     name, traits = lines[0].name, design.line_settings(lines[0].name)
     tail = frame.stages.tails.get(name)
     own = {each.name for each in design.own_lines}
-    sides = [SideView(_side(line.name), line.rest_length, frame.lengths[line.name]) for line in lines]
+    sides = [SideView(side_of(line.name), line.rest_length, frame.lengths[line.name]) for line in lines]
     partner = partner_of(name) if partner_of(name) in own else ""
     return LineView(
         name,
@@ -180,7 +124,7 @@ def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineV
         usual_stiffness=design.line_stiffness,
         apart=name.rsplit(" ", 1)[-1] if partner and len(lines) == 1 else "",
         pair_title=pair_title(name, design),
-        elastic=say(traits.elastic),
+        elastic=elastic_title(traits.elastic),
         splits=not partner and can_split(design, _template(design.template), name),
         parted=is_split(design, name),
         strap="" if tail is None else _strap_words(tail),
@@ -212,7 +156,7 @@ def _over_shoulder(design: Design, frame: Frame, name: str) -> bool | None:
 def _strap_words(tail: Tail) -> str:
     """Return where a strap goes on from its upper end, or why it does not."""
     if tail.problem:
-        return tr("{why} It ends on the upper chest.").format(why=say(tail.problem))
+        return tr("{why} It ends on the upper chest.").format(why=render(tail.problem))
     words = tr("Over the shoulder to the under-bust band at the back; {length} of it on the fixed body")
     return words.format(length=length(tail.length, 0))
 

@@ -6,10 +6,9 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from app.i18n.catalog import colon, number, say, tr
+from app.i18n.catalog import colon, number, tr
 from app.i18n.lengths import decimal_length, length, length_number, shown_digits, shown_unit, shown_value
-from app.presenters.landmarks import landmark_title
-from app.presenters.lines import line_title
+from app.presenters.messages import line_title, render
 from core.document.custom_measures import LONGEST_NAME, CustomMeasurement
 from core.errors import UserError
 from core.landmarks.types import CERTAIN
@@ -18,6 +17,7 @@ from core.measurements.definitions import Measure, definition_of
 from core.measurements.table import Measures, measure_rows
 from core.measurements.uncertain_value import LIFT, OUT, round_uncertainty, uncertainty_digits
 from core.mechanics.iteration import Observables
+from core.messages import Message
 from core.pipeline.live_solver import Frame
 
 
@@ -28,20 +28,14 @@ def measure_views(frame: Frame) -> list[MeasureView]:
     return [replace(row, group=group) for row in rows]
 
 
-def measured_views(
-    before: Measures, after: Measures | None, own: Sequence[CustomMeasurement] = ()
-) -> list[MeasureView]:
-    """Return what was measured on the body at rest and reshaped, group by group.
-
-    ``own`` are the measures of the designer's own.
-    """
-    told = {f"{OWN}{each.name}": description(each) for each in own}
-    views = [_measured(row, told) for row in measure_rows(before, after)]
+def measured_views(before: Measures, after: Measures | None) -> list[MeasureView]:
+    """Return what was measured on the body at rest and reshaped, group by group."""
+    views = [_measured(row) for row in measure_rows(before, after)]
     groups = list(dict.fromkeys(view.group for view in views))
     return sorted(views, key=lambda view: groups.index(view.group))
 
 
-def _measured(row: dict[str, Any], told: Mapping[str, str]) -> MeasureView:
+def _measured(row: dict[str, Any]) -> MeasureView:
     own, key = row["key"].startswith(OWN), row["key"]
     return MeasureView(
         measure_title(row),
@@ -49,11 +43,11 @@ def _measured(row: dict[str, Any], told: Mapping[str, str]) -> MeasureView:
         row["before"],
         row["after"],
         key=key,
-        group=tr("Your own") if own else say(definition_of(key)[0].group),
-        note=say(row["note"]),
+        group=tr("Your own") if own else render(definition_of(key)[0].group),
+        note=render(row["note"]),
         plus_minus=row["plus_minus"],
         estimate=row["estimate"],
-        tip=told.get(key, "") if own else say(row["definition"]),
+        tip=render(row["definition"]),
         iso=row["iso"],
         sure=row["confidence"],
         own=own,
@@ -269,30 +263,8 @@ def digits_of(unit: str) -> int:
 def measure_title(row: Mapping[str, Any]) -> str:
     """Return what a row of ``measure_rows`` is called; names of one's own as they are."""
     sides = {"left": tr("{what}, left"), "right": tr("{what}, right")}
-    title = row["title"] if row["key"].startswith(OWN) else say(row["title"])
+    title = render(row["title"])
     return sides.get(row["side"], "{what}").format(what=title)
-
-
-def description(own: CustomMeasurement) -> str:
-    """Return how a measure of the designer's own is taken."""
-    places = [landmark_title(name) for name in own.marks]
-    if own.kind != "girth":
-        ways = {
-            "straight": tr("Yours: straight from {start} to {end}."),
-            "skin": tr("Yours: the shortest way over the skin from {start} to {end}."),
-        }
-        return ways[own.kind].format(start=places[0], end=places[1])
-    if not places:
-        return tr("Yours: a tape, level, {length} above the lowest point of the scan.").format(
-            length=length(own.level, 0)
-        )
-    at, above, below = (
-        tr("Yours: a tape, level, at {place}."),
-        tr("Yours: a tape, level, {length} above {place}."),
-        tr("Yours: a tape, level, {length} below {place}."),
-    )
-    words = above if own.level > 0.0 else below if own.level < 0.0 else at
-    return words.format(place=places[0], length=length(abs(own.level), 0))
 
 
 def to_draft(own: CustomMeasurement) -> Draft:
@@ -314,7 +286,9 @@ def from_draft(draft: Draft, suggested: str, taken: Collection[str]) -> CustomMe
         return None
     name = draft.name or _free(suggested, taken)
     if name in taken:
-        raise UserError(f"There is a measure {name} already.", "Give it a name of its own.")
+        raise UserError(
+            Message("There is a measure {name} already.", name=name), Message("Give it a name of its own.")
+        )
     return CustomMeasurement(name, draft.kind, draft.marks, draft.level if draft.kind == "girth" else 0.0)
 
 
@@ -335,14 +309,14 @@ def suggested_name(draft: Draft, titles: Mapping[str, str]) -> str:
 def value_texts(before: Measure, after: Measure) -> tuple[str, str, str]:
     """Return the values of a measurement, their change, and doubts or why it is missing."""
     if before.value is None or after.value is None:
-        return "", "", say(before.note or after.note)
+        return "", "", render(before.note or after.note)
     values = f"{length_number(before.value)} → {length(after.value)}"
     said = tr("before → after, {change}").format(
         change=length(round(after.value, 1) - round(before.value, 1), signed=True)
     )
     sure = min(before.confidence, after.confidence)
     unsure = tr("What it is taken from is sure to {percent} %").format(percent=number(100 * sure, 0))
-    doubts = (unsure if sure < CERTAIN else "", say(after.note))
+    doubts = (unsure if sure < CERTAIN else "", render(after.note))
     return values, said, "\n".join(each for each in doubts if each)
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from app.i18n.catalog import tr
 from app.i18n.lengths import length_unit, shown_value
 from app.presenters.bust_shift import mean_lifts, shift_between
-from app.presenters.lines import line_title
+from app.presenters.messages import line_title
 from core.mechanics.iteration import Observables, Record
 from core.pipeline.live_solver import Frame
 

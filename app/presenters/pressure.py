@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from app.i18n.catalog import joined, language, listed, number, say, tr
+from app.i18n.catalog import joined, language, listed, number, tr
 from app.i18n.lengths import length
-from app.presenters.lines import LineView, line_colours, line_title, titled
+from app.presenters.lines import LineView, line_colours
+from app.presenters.messages import line_title, render, render_all
 from core.document.design import Design
 from core.garment.assessment import UNKNOWN_PRESSURE
 from core.garment.pressure import LEFT_OUT, NOT_FOR_STRAPS, mmhg
@@ -30,7 +31,7 @@ def rating_limits() -> RatingLimits:
         (rating_text(GREEN), rating_text(AMBER), rating_text(RED)),
         limits.sources[0].named(language()),
         (*doubts, *told),
-        tuple(say(each) for each in LEFT_OUT),
+        tuple(map(render, LEFT_OUT)),
     )
 
 
@@ -47,7 +48,7 @@ def pressure_views(listed: PressureList, design: Design, stale: bool) -> dict[st
 
 
 def _view(row: PressureRow, design: Design, stale: bool) -> PressureView:
-    notes = [say(titled(note, design)) for note in row.notes]
+    notes = render_all(row.notes, design)
     if row.max_kpa is None:
         return PressureView("", "", "", "\n".join(notes))
     light = "" if stale else row.light
@@ -69,7 +70,7 @@ def line_pressure_view(view: LineView, listed: PressureList | None) -> LineView:
 
 def _unmeant(row: PressureRow) -> list[str]:
     """Return that the limits were set for other bands, of a line of which that holds."""
-    return [say(note) for note in row.notes if note == NOT_FOR_STRAPS]
+    return [render(note) for note in row.notes if note == NOT_FOR_STRAPS]
 
 
 def _figures(row: PressureRow) -> list[str]:
@@ -112,7 +113,7 @@ def place_words(row: PressureRow) -> str:
 
 def unknown_pressure() -> str:
     """Return that the pressures of a shape were not computed, and what to do."""
-    return joined((say(UNKNOWN_PRESSURE.message), say(UNKNOWN_PRESSURE.action)))
+    return joined((render(UNKNOWN_PRESSURE.message), render(UNKNOWN_PRESSURE.action)))
 
 
 def pressure_summary(listed: PressureList | None, design: Design, doubt: str = "") -> PressureSummary:

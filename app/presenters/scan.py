@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.i18n.catalog import say, tr
+from app.i18n.catalog import tr
 from app.i18n.lengths import length
+from app.presenters.messages import render
 from core.document.design import ScanSource
 from core.geometry.mesh import Points
 from core.landmarks.types import Landmarks
@@ -34,12 +35,12 @@ def scan_view(
     return ScanView(
         source.name,
         pose.unit,
-        pose.reason,
+        render(pose.reason),
         pose.is_certain,
         pose.up,
         pose.front,
         len(body.mesh.faces),
-        body.repairs,
+        tuple(map(render, body.repairs)),
         _notes(body),
         frozenset(key for key in ("unit", "up", "front") if getattr(source, key) is not None),
         _edits_view(source, body) if upright else None,
@@ -51,8 +52,8 @@ def scan_view(
 def _edits_view(source: ScanSource, body: Body) -> EditsView:
     """Return the edits of a scan, with those of its open holes that are listed."""
     rows, (low, high) = body.holes[:NAMED], body.heights
-    holes = [HoleView(say(hole_sentence(body.mesh, hole)), _place(hole.centre)) for hole in rows]
-    more = [say(each) for each in hole_sentences(body.mesh, body.holes)[NAMED:]]
+    holes = [HoleView(render(hole_sentence(body.mesh, hole)), _place(hole.centre)) for hole in rows]
+    more = [render(each) for each in hole_sentences(body.mesh, body.holes)[NAMED:]]
     return EditsView(source.edits, high - low, tuple(holes), "".join(more))
 
 
@@ -63,7 +64,7 @@ def _place(centre: Points) -> tuple[float, float, float]:
 
 def _notes(body: Body) -> tuple[str, ...]:
     """Return what else is to be known of a body: its edits, and on what copy of its skin it is measured."""
-    return (*map(say, edit_warnings(body)), *_copy_notes(body))
+    return (*map(render, edit_warnings(body)), *_copy_notes(body))
 
 
 def _copy_notes(body: Body) -> tuple[str, ...]:

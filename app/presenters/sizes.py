@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from html import escape
 
-from app.i18n.catalog import colon, joined, language, listed, say, tr
+from app.i18n.catalog import colon, joined, language, listed, tr
 from app.i18n.lengths import length
+from app.presenters.messages import render
 from core.measurements.letter_sizes import letter_sizes
 from core.measurements.sizes import GIRTHS_OF_SIZES, Neighbour, SizeAnswer, neighbours_of, sizes
 from core.measurements.table import Measures
@@ -20,7 +21,7 @@ def size_views(
     """Return the sizes of a body in every system, or none and why; ``spread`` adds others within the ±."""
     underbust, bust = (measured[key] for key in GIRTHS_OF_SIZES)
     if underbust.value is None or bust.value is None:
-        return [], say(underbust.note or bust.note)
+        return [], render(underbust.note or bust.note)
     answers = sizes(underbust.value, bust.value, allowance_mm)
     letters = {"jp": tuple(_letters(measured))}
     return [
@@ -57,7 +58,7 @@ def _view(key: str, answer: SizeAnswer, letters: tuple[str, ...], within: str) -
         key,
         key.upper() if len(key) == 2 else answer.table.system,
         answer.label or "\N{EN DASH}",
-        joined(say(each) for each in answer.rule),
+        joined(render(each) for each in answer.rule),
         (*_near(answer), *letters),
         answer.table.title.told(language()),
         doubts,

@@ -6,10 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.i18n.catalog import joined, listed, number, say, tr
+from app.i18n.catalog import joined, listed, number, tr
 from app.i18n.lengths import length, length_number, length_unit, shown_digits, shown_unit, shown_value
 from app.presenters.lines import row_title
 from app.presenters.measurements import length_uncertainty, plus_minus
+from app.presenters.messages import render
 from app.presenters.target_shape import is_met, is_signed, reasons_words, target_title
 from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER, LIFT, OUT, Goal, section_of
 from core.analysis.symmetry.compare import BeforeAfter, SideDifference, SymmetryRow, symmetry_rows
@@ -46,9 +47,9 @@ def symmetry_view(
     offs = _offs(spread)
     said = _sentence(now, {}, tr("Bust points before: {how}.")) if doubt else _sentence(now, offs)
     return SymmetryView(
-        joined((*map(say, edit_warnings(stages.body)), said)),
+        joined((*map(render, edit_warnings(stages.body)), said)),
         tuple(_view(rows[key], bool(doubt), offs.get(key)) for key in _titles()),
-        (*map(say, told.notes), *_rests_on()),
+        (*map(render, told.notes), *_rests_on()),
         hint,
         possible,
     )

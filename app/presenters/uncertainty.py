@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from app.i18n.catalog import joined, language, listed, number, say, tr
+from app.i18n.catalog import joined, language, listed, number, tr
 from app.i18n.lengths import length, shown_unit
 from app.presenters.measurements import MeasureView, length_uncertainty, plus_minus
+from app.presenters.messages import render
 from core.analysis.uncertainty.input_uncertainty import origins
 from core.export.report_data import NOT_MODELLED
 from core.garment.pressure import LEFT_OUT
@@ -37,7 +38,7 @@ def source_sentences() -> tuple[str, ...]:
 
 def limitation_sentences() -> tuple[str, ...]:
     """Return what no value includes, in the words of the report."""
-    return tuple(say(each) for each in (*NOT_MODELLED, *LEFT_OUT))
+    return tuple(render(each) for each in (*NOT_MODELLED, *LEFT_OUT))
 
 
 def with_uncertainty(
@@ -100,7 +101,7 @@ def uncertainty_view(spread: OutputUncertainties | None, waiting: str, faint: bo
     meaning = tr("± is twice the standard deviation: 95 % of all cases, if errors are normal.")
     told = tr("± of a former shape: what it means") if faint else tr("± holds 95 % of cases: what it means")
     return UncertaintyView(
-        joined([meaning, _without_off(), *map(say, spread.cautions)]), _contact(spread), faint, told
+        joined([meaning, _without_off(), *map(render, spread.cautions)]), _contact(spread), faint, told
     )
 
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from app.i18n.catalog import number, say, tr
+from app.i18n.catalog import number, tr
 from app.i18n.lengths import length_number, shown_unit
 from app.presenters.assessment import AssessmentView
 from app.presenters.bust_shift import bust_sentence, bust_shift
-from app.presenters.lines import line_colours, line_title, row_title
+from app.presenters.lines import line_colours, row_title
+from app.presenters.messages import elastic_title, line_title
 from app.presenters.status import is_result
 from core.document.design import Design
 from core.garment.cut_list import CutRow, cut_list
@@ -139,7 +140,9 @@ def _pieces(variants: Variants, pressed: Pressed) -> list[VariantRow]:
                 VariantValues(
                     "mm", 0, False, tuple(each[name].cut_mm if name in each else None for each in cuts)
                 ),
-                VariantTexts(tuple(say(design.line_settings(name).elastic) for _, design, _ in variants)),
+                VariantTexts(
+                    tuple(elastic_title(design.line_settings(name).elastic) for _, design, _ in variants)
+                ),
                 VariantValues("kPa", 1, False, tuple(each.get(name) for each in press)),
             ),
         )

@@ -26,6 +26,7 @@ from app.rendering.scene import Scene
 from core.errors import UserError
 from core.files.atomic_write import atomic_path
 from core.geometry.mesh import Floats, Points
+from core.messages import Message
 from core.pipeline.build import Stages
 from core.progress import Pieces, Progress, quiet
 
@@ -149,7 +150,10 @@ def picture_kind(path: str | os.PathLike[str]) -> str:
     """Return the kind of picture that a name ends in. Raises UserError if Busk does not make it."""
     kind = Path(path).suffix.lower().lstrip(".")
     if kind != "png":
-        raise UserError(f"Busk does not draw pictures as .{kind}.", "Choose a name that ends in .png.")
+        raise UserError(
+            Message("Busk does not draw pictures as .{kind}.", kind=kind),
+            Message("Choose a name that ends in .png."),
+        )
     return kind
 
 

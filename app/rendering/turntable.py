@@ -16,6 +16,7 @@ from PIL import Image, ImageDraw, ImageFont
 from app.rendering.offscreen import OffscreenRenderer, Picture, with_background
 from core.errors import UserError
 from core.files.atomic_write import atomic_path
+from core.messages import Message
 from core.progress import Pieces, Progress, part_of, quiet
 
 FORMATS = ("gif", "webp", "png")
@@ -44,17 +45,19 @@ class Turntable:
     labels: tuple[str, str] = ("before", "after")
 
     def __post_init__(self) -> None:
-        values = {
-            "frames": self.frames,
-            "seconds": self.seconds,
-            "width": self.size[0],
-            "height": self.size[1],
+        refusals = {
+            "frames": Message("A turntable cannot have {value} frames."),
+            "seconds": Message("A turntable cannot have {value} seconds."),
+            "width": Message("A turntable cannot have {value} width."),
+            "height": Message("A turntable cannot have {value} height."),
         }
-        for name, value in values.items():
+        values = (self.frames, self.seconds, *self.size)
+        for (name, refusal), value in zip(refusals.items(), values, strict=True):
             low, high = _LIMITS[name]
             if not low <= value <= high:
                 raise UserError(
-                    f"A turntable cannot have {value:g} {name}.", f"It goes from {low:g} to {high:g}."
+                    refusal.fill(value=f"{value:g}"),
+                    Message("It goes from {low} to {high}.", low=f"{low:g}", high=f"{high:g}"),
                 )
 
 
@@ -62,7 +65,10 @@ def turntable_kind(path: str | os.PathLike[str]) -> str:
     """Return the kind of turntable that a name ends in. Raises UserError if Busk does not make it."""
     kind = Path(path).suffix.lower().lstrip(".")
     if kind not in FORMATS:
-        raise UserError(f"Busk does not make turntables as .{kind}.", f"Choose one of: {', '.join(FORMATS)}.")
+        raise UserError(
+            Message("Busk does not make turntables as .{kind}.", kind=kind),
+            Message("Choose one of: {choices}.", choices=", ".join(FORMATS)),
+        )
     return kind
 
 
@@ -98,7 +104,10 @@ def write_turntable(
     """
     kind, targets = turntable_kind(path), turntable_files(path, turntable.frames)
     if not targets[0].parent.is_dir():
-        raise UserError(f"There is no folder {targets[0].parent}.", "Make it, or choose another one.")
+        raise UserError(
+            Message("There is no folder {folder}.", folder=str(targets[0].parent)),
+            Message("Make it, or choose another one."),
+        )
     pictures = _composed(shots, turntable, progress)
     with ExitStack() as stack:
         partials = [stack.enter_context(atomic_path(each)) for each in targets]

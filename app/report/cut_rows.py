@@ -6,9 +6,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import inf, sqrt
 
-from app.i18n.catalog import joined, listed, number, say, tr
+from app.i18n.catalog import joined, listed, number, tr
 from app.i18n.lengths import length_number, length_unit, width, width_number
 from app.presenters.measurements import length_uncertainty
+from app.presenters.messages import elastic_title, render
 from app.presenters.pressure import rating_text
 from app.report.text import NOTHING, piece_title, value_text
 from core.export.report_data import Report
@@ -81,7 +82,7 @@ def _rows(sheet: Report, order: Sequence[str]) -> list[tuple[CutRow, PressureRow
 def _notes(cut: CutRow, press: PressureRow, sheet: Report) -> list[str]:
     remarked = (SLACK, UNCHOSEN, SLACK_NOTE, FRONT_ONLY)  # beside the cut list already
     notes = (note for note in (*cut.notes, *press.notes) if note not in remarked)
-    return list(dict.fromkeys((*map(say, notes), *_within_words(cut, press, sheet))))
+    return list(dict.fromkeys((*map(render, notes), *_within_words(cut, press, sheet))))
 
 
 def _within_words(cut: CutRow, press: PressureRow, sheet: Report) -> Iterator[str]:
@@ -177,7 +178,9 @@ def _length(mm: float | None, signed: bool = False) -> str:
 
 def _elastic(cut: CutRow) -> str:
     """Return what a line is made of, without the width, which stands beside it."""
-    return say(cut.elastic).removesuffix(f" {width(cut.width_mm or 0.0)}") if cut.elastic else NOTHING
+    return (
+        elastic_title(cut.elastic).removesuffix(f" {width(cut.width_mm or 0.0)}") if cut.elastic else NOTHING
+    )
 
 
 def _without_figures(view: CutRowText) -> CutRowText:

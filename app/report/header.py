@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from app.i18n.catalog import joined, number, say, tr
+from app.i18n.catalog import joined, number, tr
 from app.i18n.lengths import length_number, length_unit
 from app.presenters.assessment import IDLE, AssessmentView
 from app.presenters.bust_shift import forward_words
 from app.presenters.measurements import length_uncertainty
+from app.presenters.messages import render
 from app.rendering.palette import LIGHT
 from app.report.cut_rows import cut_pieces
 from app.report.document import SHOT_SIZES, SHOTS, ReportDocument
@@ -118,7 +119,7 @@ def _great(
 
 def _size(sheet: Report) -> Block:
     chosen = sheet.sizes[0] if sheet.sizes else {"band": None, "cup": None}
-    below = size_words(sheet) if sheet.sizes else say(sheet.no_size)
+    below = size_words(sheet) if sheet.sizes else render(sheet.no_size)
     nothing = "\N{EN DASH}"
     system = f" {system_word(chosen)}" if sheet.sizes else ""
     band = _great(_CELLS[0], _CELLS[2] - 6.0, tr("Band") + system, chosen["band"] or nothing, below)

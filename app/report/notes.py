@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from app.i18n.catalog import colon, joined, language, listed, say, tr
+from app.i18n.catalog import colon, joined, language, listed, tr
+from app.presenters.messages import render, render_all
 from app.presenters.uncertainty import source_words
 from app.report.text import REASONS, assessment_text, is_known, system_word
 from core.export.report_data import Report
@@ -16,7 +17,7 @@ from core.measurements.sizes import built_in
 def cut_notes(sheet: Report) -> list[str]:
     """Return what holds for all of the cut list."""
     height = tr("Height: the middle of the front over (+) or under (−) the bust points, as worn.")
-    return [height, *(_with_elastics(note, sheet) for note in sheet.cuts.notes)]
+    return [height, *render_all(sheet.cuts.notes)]
 
 
 def note_groups(sheet: Report) -> Iterator[tuple[str, list[str]]]:
@@ -29,22 +30,22 @@ def note_groups(sheet: Report) -> Iterator[tuple[str, list[str]]]:
     limits = _limits() if sheet.cuts.rows else []
     if estimated := [*_meaning(sheet), *limits, *_unsure(sheet)]:
         yield tr("Estimated"), estimated
-    yield tr("Not modelled"), [say(each) for each in sheet.left_out]
+    yield tr("Not modelled"), render_all(sheet.left_out)
 
 
 def _beyond_the_head(sheet: Report) -> list[str]:
     """Return the reasons of the verdict that have no room at the head, and what else is to be looked at."""
     told = {each.message for each in sheet.assessment.findings}
     reasons = [joined(each) for each in assessment_text(sheet).reasons[REASONS:]]
-    return [*reasons, *(say(each) for each in sheet.warnings if each not in told)]
+    return [*reasons, *(render(each) for each in sheet.warnings if each not in told)]
 
 
 def size_rule(sheet: Report) -> str:
     """Return how the size in the chosen system was found, and its sister sizes."""
     if not sheet.sizes:
-        return say(sheet.no_size)
+        return render(sheet.no_size)
     chosen = sheet.sizes[0]
-    rule = joined([say(sentence) for sentence in chosen["rule"]])
+    rule = joined(render_all(chosen["rule"]))
     sisters = listed([each["size"] for each in chosen["sisters"]])
     more = tr("Sister sizes: {sizes}").format(sizes=sisters) if sisters else ""
     return joined([f"{system_word(chosen)}{colon()}{rule}", more])
@@ -68,7 +69,7 @@ def _meaning(sheet: Report) -> list[str]:
     sources = listed([source_words(each) for each in sheet.off_sources])
     means = tr("± is twice the standard deviation: 95 % of all cases, if errors are normal.")
     holds = tr("It holds: {sources}. Whether lines stick or slide is no part of it.").format(sources=sources)
-    return [joined([means, holds]), *map(say, sheet.off_notes)]
+    return [joined([means, holds]), *map(render, sheet.off_notes)]
 
 
 def _limits() -> list[str]:
@@ -80,15 +81,7 @@ def _limits() -> list[str]:
 
 def _unsure(sheet: Report) -> list[str]:
     notes = (row["note"] for row in sheet.measures if row["estimate"] and is_known(row) and row["note"])
-    return [say(note) for note in dict.fromkeys(notes)]
-
-
-def _with_elastics(sentence: str, sheet: Report) -> str:
-    """Return what the core says of elastics, whose names are words of their own."""
-    names = {row.elastic for row in sheet.cuts.rows if row.elastic}
-    for name in sorted(names, key=len, reverse=True):
-        sentence = sentence.replace(f"{name}; ", listed([say(name), ""])).replace(name, say(name))
-    return say(sentence)
+    return render_all(list(dict.fromkeys(notes)))
 
 
 def _caution(size: dict[str, Any]) -> str:

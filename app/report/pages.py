@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from PySide6.QtGui import QPainter
 
-from app.i18n.catalog import speaking, tr
+from app.i18n.catalog import tr, using_language
 from app.rendering.palette import LIGHT
 from app.report.curves import LOWEST, curve_block
 from app.report.cut_rows import force_range_warning
@@ -63,7 +63,7 @@ def pages_of(handout: ReportDocument, language: str) -> Pages:
 
     The first page is for the sample room: verdict, pictures, what to cut, key measures. All else is appendix.
     """
-    with speaking(language):
+    with using_language(language):
         placed = _first(handout)
         placed += _appendix(handout, max(each.page for each in placed) + 1)
         return Pages(tuple(placed), max(each.page for each in placed) + 1, foot_words(handout.report))

@@ -11,6 +11,7 @@ from app.report.pages import Pages
 from app.report.painter import UNITS
 from core.errors import ProjectError
 from core.files.atomic_write import atomic_path
+from core.messages import Message
 
 _DOTS = 1200  # of the writer to an inch
 
@@ -21,7 +22,8 @@ def write_pdf(path: str | Path, pages: Pages, title: str) -> None:
     data.open(QIODevice.OpenModeFlag.WriteOnly)
     if not _paint(_writer(data, title), pages):
         raise ProjectError(
-            f"{target} cannot be written: its pages could not be painted.", "Choose another folder."
+            Message("{target} cannot be written: its pages could not be painted.", target=str(target)),
+            Message("Choose another folder."),
         )
     # Painted in memory first: of a disk that gets full Qt says nothing, half a sheet would count as written.
     with atomic_path(target) as partial:

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
 
-from app.i18n.catalog import colon, listed, number, say, tr
+from app.i18n.catalog import colon, listed, number, tr
 from app.i18n.lengths import shown_digits, shown_value
 from app.presenters.assessment import AssessmentView, assessment_view
-from app.presenters.lines import line_title
 from app.presenters.measurements import length_uncertainty, measure_title, plus_minus
+from app.presenters.messages import line_title, render
 from app.presenters.pressure import rating_text
 from core.document.lines import partner_of
 from core.export.report_data import Report
@@ -54,8 +54,7 @@ def project_words(sheet: Report) -> str:
 
 def assessment_text(sheet: Report) -> AssessmentView:
     """Return the overall verdict on a sheet in words."""
-    titles = {row.line: piece_title(row.line, row.title) for row in sheet.cuts.rows}
-    return assessment_view(sheet.assessment, titles=titles)
+    return assessment_view(sheet.assessment)
 
 
 def size_words(sheet: Report) -> str:
@@ -99,7 +98,7 @@ def measure_rows(sheet: Report) -> list[tuple[str, list[MeasureRow]]]:
         missing = [row for row in those if not is_known(row)]
         for note, same in groupby(missing, key=lambda row: row["note"]):
             title = listed([measure_title(row) for row in same])
-            shown.append(MeasureRow(title, "", (), f"{title}{colon()}{say(note)}"))
+            shown.append(MeasureRow(title, "", (), f"{title}{colon()}{render(note)}"))
         found.append((group, shown))
     return found
 
@@ -156,7 +155,7 @@ def _change(row: dict[str, Any], digits: int) -> str:
 
 
 def _group(key: str) -> str:
-    return tr("Your own") if key.startswith(OWN) else say(definition_of(key)[0].group)
+    return tr("Your own") if key.startswith(OWN) else render(definition_of(key)[0].group)
 
 
 def is_known(row: dict[str, Any]) -> bool:

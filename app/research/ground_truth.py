@@ -11,15 +11,16 @@ from typing import Any
 
 import numpy as np
 
-from core.errors import UserError
+from core.errors import UserError, reason_of
 from core.files.regular_file import read_text
 from core.geometry.mesh import Floats, Points
 from core.landmarks.types import NAMES, SIDES
+from core.messages import Message
 from core.scan.orientation.pose import MILLIMETRES
 
 FILE = "truth.json"
 MOST_BYTES = 100_000_000
-FORM = "Its format is described in the user guide, page Validation."
+FORM = Message("Its format is described in the user guide, page Validation.")
 TINY = 1e-9
 
 ROUNDED = 5e-3
@@ -99,18 +100,27 @@ def read_truths(folder: Path) -> tuple[list[Truth], list[str]]:
     for section in ("bodies", "scans"):
         entries = content.get(section) or {}
         if not isinstance(entries, dict):
-            raise TruthError(f"'{section}' in {FILE} is no table of files by name.", FORM)
+            raise TruthError(
+                Message("'{section}' in {file} is no table of files by name.", section=section, file=FILE),
+                FORM,
+            )
         for name, entry in entries.items():
             try:
                 truth, unknown = _truth(name, _as_table("what it tells", entry), section == "scans")
             except ValueError as problem:
                 raise TruthError(
-                    f"What {FILE} tells about '{name}' cannot be used: {problem}.", FORM
+                    Message(
+                        "What {file} tells about '{name}' cannot be used: {why}.",
+                        file=FILE,
+                        name=name,
+                        why=str(problem),
+                    ),
+                    FORM,
                 ) from problem
             truths.append(truth)
             strange |= unknown
     if not truths:
-        raise TruthError(f"{FILE} names no file under 'bodies' or 'scans'.", FORM)
+        raise TruthError(Message("{file} names no file under 'bodies' or 'scans'.", file=FILE), FORM)
     return truths, sorted(strange)
 
 
@@ -120,17 +130,29 @@ def _read_json(folder: Path) -> Table:
         content = json.loads(read_text(path, MOST_BYTES))
     except FileNotFoundError:
         raise TruthError(
-            f"There is no {FILE} in {folder}, which tells where the landmarks are.", FORM
+            Message(
+                "There is no {file} in {folder}, which tells where the landmarks are.",
+                file=FILE,
+                folder=folder,
+            ),
+            FORM,
         ) from None
     except OSError as problem:
         if problem.errno == errno.EFBIG:
-            raise TruthError(f"{path} is too large to be a list of landmarks.", FORM) from problem
-        raise TruthError(f"{path} cannot be read: {problem.strerror}.", "Choose another folder.") from problem
+            raise TruthError(
+                Message("{path} is too large to be a list of landmarks.", path=path), FORM
+            ) from problem
+        raise TruthError(
+            Message("{file} cannot be read: {problem}.", file=path, problem=reason_of(problem)),
+            Message("Choose another folder."),
+        ) from problem
     except (ValueError, RecursionError) as problem:
         where = f"line {problem.lineno}" if isinstance(problem, json.JSONDecodeError) else "its first line"
-        raise TruthError(f"{path} is not written as JSON: look at {where}.", FORM) from problem
+        raise TruthError(
+            Message("{path} is not written as JSON: look at {where}.", path=path, where=where), FORM
+        ) from problem
     if not isinstance(content, dict):
-        raise TruthError(f"{FILE} holds no table of bodies or scans.", FORM)
+        raise TruthError(Message("{file} holds no table of bodies or scans.", file=FILE), FORM)
     return content
 
 

@@ -42,8 +42,8 @@ def run(kind: str, recipe: Any) -> tuple[str, str]:
     try:
         return "ok", module.run(recipe)
     except UserError as problem:
-        lacking = isinstance(problem.__cause__, MemoryError) or "not enough memory" in problem.message
-        return ("memory" if lacking else "refused"), problem.message
+        lacking = isinstance(problem.__cause__, MemoryError) or "not enough memory" in str(problem.message)
+        return ("memory" if lacking else "refused"), str(problem.message)
     except MemoryError:
         return "memory", "out of memory"
     except Exception:

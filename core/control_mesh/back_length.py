@@ -10,6 +10,7 @@ from core.control_mesh.fit import ControlMesh
 from core.errors import FitError
 from core.geometry.mesh import Floats, Mesh, Points, frozen
 from core.landmarks.torso.cross_sections import Level, trunk_levels
+from core.messages import LineName, Message
 
 _BEARING = np.radians(2.0)
 """How far apart, seen from the axis of the trunk, the points lie through which a back is drawn [rad]."""
@@ -38,8 +39,8 @@ def back_of(calm: Mesh, control: ControlMesh, path_name: str) -> Back:
     level = trunk_levels(calm, [0.5 * (right[2] + left[2])])[0]
     if len(level.segments) == 0:
         raise FitError(
-            f"The scan has no back at the height of the {path_name} line.",
-            "Open a scan of a whole upper body.",
+            Message("The scan has no back at the height of the {line} line.", line=LineName(path_name)),
+            Message("Open a scan of a whole upper body."),
         )
     axis = 0.5 * (level.points.min(axis=0) + level.points.max(axis=0))[:2]
     ends = np.array([right[:2], left[:2]]) - axis

@@ -18,6 +18,7 @@ from core.control_mesh.validation import Faults, find_mesh_faults
 from core.errors import FitError
 from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points
 from core.landmarks.types import Landmarks
+from core.messages import Message, SideName
 from core.scan.body import Body
 
 MOST_HOLES = 0.5
@@ -45,7 +46,7 @@ class ControlMesh:
     paths: Mapping[str, tuple[int, ...]]
     bust_points: tuple[int, int]
     border: Indices
-    warnings: tuple[str, ...]
+    warnings: tuple[Message, ...]
     quality: FitQuality | None = None
     embedded: Mapping[str, EmbeddedCurve] = field(default_factory=dict)
 
@@ -76,7 +77,10 @@ def fit_control_mesh(
     """
     low, high = LINE_HEIGHTS
     if not low <= line_height <= high:
-        raise FitError(f"The line height {line_height:g} is out of range.", f"Choose {low:g} to {high:g}.")
+        raise FitError(
+            Message("The line height {height} is out of range.", height=f"{line_height:g}"),
+            Message("Choose {low} to {high}.", low=f"{low:g}", high=f"{high:g}"),
+        )
     ground = fit_frame(template, body.smoothed, landmarks)
     outline, holes = project_border(ground, landmarks)
     creases, lacking, holed = find_creases(ground, outline, landmarks)
@@ -97,8 +101,11 @@ def fit_control_mesh(
     _refuse_holes(template, holes)
     if best.faults.folded.any():
         raise FitError(
-            f"Triangles of the control mesh would be folded on this body: {best.faults.folded.sum()}.",
-            "Correct the bust points and folds, or choose the other template.",
+            Message(
+                "Triangles of the control mesh would be folded on this body: {count}.",
+                count=int(best.faults.folded.sum()),
+            ),
+            Message("Correct the bust points and folds, or choose the other template."),
         )
     quality = measure_fit(best.mesh, ground.skin, *_off_landmarks(template, best.mesh, landmarks))
     warnings = [*_fold_warnings(best.lost), *_arm_warning(ground), *_hole_warning(int(holes.sum()))]
@@ -215,35 +222,52 @@ def _refuse_holes(template: Template, holes: Flags) -> None:
     sides = [holes[free & (sign * column > 0)].mean() for sign in (1, -1)]
     if max(sides) > MOST_HOLES or holes.mean() > MOST_HOLES:
         raise FitError(
-            f"The scan has no skin where {holes.sum()} of the {holes.size} control points must lie.",
-            "Close the holes of the scan, or open one that reaches from the ribs to the collarbones.",
+            Message(
+                "The scan has no skin where {missing} of the {all} control points must lie.",
+                missing=int(holes.sum()),
+                all=holes.size,
+            ),
+            Message(
+                "Close the holes of the scan, or open one that reaches from the ribs to the collarbones."
+            ),
         )
 
 
-def _hole_warning(count: int) -> list[str]:
+def _hole_warning(count: int) -> list[Message]:
     if count == 0:
         return []
     return [
-        f"The scan has holes at {count} control points: they lie as their neighbours and the other side tell."
+        Message(
+            "The scan has holes at {count} control points: they lie as their neighbours and the "
+            "other side tell.",
+            count=count,
+        )
     ]
 
 
-def _arm_warning(ground: FittingFrame) -> list[str]:
+def _arm_warning(ground: FittingFrame) -> list[Message]:
     if ground.torso.armpit >= max(ground.torso.left.bust, ground.torso.right.bust):
         return []
-    return ["The arms touch the body below the bust points: the sides of the mesh may lie on an arm."]
+    return [
+        Message("The arms touch the body below the bust points: the sides of the mesh may lie on an arm.")
+    ]
 
 
-def _fold_warnings(lost: list[int]) -> list[str]:
+def _fold_warnings(lost: list[int]) -> list[Message]:
     sides = [side for side, sign in (("left", 1), ("right", -1)) if any(sign * number > 0 for number in lost)]
     return [
-        f"The fold under the {side} breast could not be followed everywhere: "
-        "some control points lie at an estimated height."
+        Message(
+            "The fold under the {side} breast could not be followed everywhere: some control "
+            "points lie at an estimated height.",
+            side=SideName(side),
+        )
         for side in sides
     ]
 
 
-def _control_mesh(template: Template, mesh: Mesh, warnings: list[str], quality: FitQuality) -> ControlMesh:
+def _control_mesh(
+    template: Template, mesh: Mesh, warnings: list[Message], quality: FitQuality
+) -> ControlMesh:
     bust = template.row_of("bust point")
     left, right = (template.point(bust, sign * template.bust_column) for sign in (1, -1))
     return ControlMesh(

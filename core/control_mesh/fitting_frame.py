@@ -12,6 +12,7 @@ from core.control_mesh.torso_frame import Torso, cropped, measure_torso
 from core.errors import FitError
 from core.geometry.mesh import Floats, Indices, Mesh, Points
 from core.landmarks.types import Landmarks
+from core.messages import Length, Message
 
 CLEAR = 15.0
 """Beside the bust points their row stays so far above the folds, however low they hang [mm, ref. size]."""
@@ -122,8 +123,14 @@ def _upper_levels(
     rise = above - bust
     if np.median(rise) < rows * LEAST:
         raise FitError(
-            f"The scan ends {np.median(rise):.0f} mm above the bust points, where the upper breast begins.",
-            f"Open a scan that reaches {rows * LEAST + 5.0:.0f} mm or more above them, or correct them.",
+            Message(
+                "The scan ends {rise} above the bust points, where the upper breast begins.",
+                rise=Length(np.median(rise)),
+            ),
+            Message(
+                "Open a scan that reaches {need} or more above them, or correct them.",
+                need=Length(rows * LEAST + 5.0),
+            ),
         )
     above = bust + np.maximum(rise, rows * LEAST)
     edges = np.minimum(edge, above - 25.0 * scale)

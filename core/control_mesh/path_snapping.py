@@ -15,6 +15,7 @@ from core.control_mesh.fit import ControlMesh
 from core.errors import LineError
 from core.geometry.mesh import Floats, Indices, Points, half_edges
 from core.geometry.plane_sections import arc_length, interpolate
+from core.messages import Message
 
 STEP = 4.0
 """Distance between the points of the curve that are looked at [mm]; larger for very long curves."""
@@ -57,7 +58,8 @@ def snap(control: ControlMesh, curve: Points, closed: bool = False, *, pulling: 
     path = path[:-1] if closed else path
     if len(path) < (3 if closed else 2):
         raise LineError(
-            "The line is too short for the control mesh.", "Draw it on to the next control points."
+            Message("The line is too short for the control mesh."),
+            Message("Draw it on to the next control points."),
         )
     off = max_deviation(samples, points[[*path, *path[:1]] if closed else list(path)])
     return Snapped(path, closed, off, not control.fixed[list(path)].all())
@@ -73,7 +75,9 @@ def resampled(curve: Points) -> Points:
     """Return points evenly along a curve, both ends among them. Raises LineError if it has no length."""
     along = arc_length(curve)
     if len(curve) < 2 or along[-1] < STEP:
-        raise LineError("The line has no length.", "Draw it from one place of the body to another.")
+        raise LineError(
+            Message("The line has no length."), Message("Draw it from one place of the body to another.")
+        )
     at = np.linspace(0.0, along[-1], int(np.clip(along[-1] / STEP, 2, _MOST)) + 1)
     return interpolate(at, along, curve)
 

@@ -18,6 +18,7 @@ from core.control_mesh.validation import (
 )
 from core.geometry.closest_point import Frames, neighbourhoods
 from core.geometry.mesh import Flags, Floats, Mesh
+from core.messages import Length, Message
 
 SAMPLES = 2500
 """The deviation is taken at about so many vertices of the skin."""
@@ -56,22 +57,31 @@ class FitQuality:
     fold_off: float
 
     @property
-    def warnings(self) -> tuple[str, ...]:
+    def warnings(self) -> tuple[Message, ...]:
         """What is poor, a sentence each."""
         found = []
         if self.deviation_mean > LOOSE:
             found.append(
-                f"The control mesh is coarse on this body: the skin lies {self.deviation_mean:.1f} mm "
-                f"from it in the mean and {self.deviation_max:.0f} mm at most."
+                Message(
+                    "The control mesh is coarse on this body: the skin lies {mean} from it in the mean "
+                    "and {most} at most.",
+                    mean=Length(self.deviation_mean, 1),
+                    most=Length(self.deviation_max),
+                )
             )
         if self.smallest_angle < POINTED:
             found.append(
-                f"The control mesh has pointed triangles, of {self.smallest_angle:.0f} degrees: "
-                "look at the bust points and folds."
+                Message(
+                    "The control mesh has pointed triangles, of {angle} degrees: look at the bust points "
+                    "and folds.",
+                    angle=f"{self.smallest_angle:.0f}",
+                )
             )
         if self.same_way <= SAME_WAY:
             found.append(
-                "The control mesh bridges part of a fold under a breast: look there at what the lines do."
+                Message(
+                    "The control mesh bridges part of a fold under a breast: look there at what the lines do."
+                )
             )
         return tuple(found)
 

@@ -14,6 +14,7 @@ from core.errors import LineError
 from core.geometry.geodesic import shortest_path
 from core.geometry.mesh import Mesh, Points, frozen
 from core.geometry.plane_sections import arc_length, cut, join_segments, resample
+from core.messages import EMPTY, Message
 
 NO_TAIL = np.empty((0, 3))
 
@@ -36,7 +37,7 @@ class Tail:
     length: float
     path: Points
     top: float = 0.0
-    problem: str = ""
+    problem: Message = EMPTY
 
 
 def strap_tail(skin: Mesh, end: Points, band: Points) -> Tail:
@@ -67,7 +68,8 @@ def shoulder_above(skin: Mesh, end: Points) -> Points:
     open_there = not closed and min(along[peak], along[-1] - along[peak]) < _TOP
     if open_there or top[2] - end[2] < _LEAST or np.ptp(level[:, 1]) > _FLAT:
         raise LineError(
-            "The scan ends below the shoulder.", "The strap ends on the upper chest: add the rest by tape."
+            Message("The scan ends below the shoulder."),
+            Message("The strap ends on the upper chest: add the rest by tape."),
         )
     return np.asarray(top)
 
@@ -76,5 +78,5 @@ def _outline(skin: Mesh, end: Points) -> tuple[Points, bool]:
     """Return the curve in which a plane from front to back cuts the skin at ``end``, and if it is closed."""
     curves = join_segments(cut(skin, end, (1.0, 0.0, 0.0)))
     if not curves:
-        raise LineError("There is no skin at the upper end of the strap.", "Draw it anew.")
+        raise LineError(Message("There is no skin at the upper end of the strap."), Message("Draw it anew."))
     return min(curves, key=lambda curve: float(np.linalg.norm(curve[0] - end, axis=1).min()))

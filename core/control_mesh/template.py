@@ -15,6 +15,7 @@ import numpy as np
 from core.control_mesh.embedding import Grid
 from core.errors import FitError
 from core.geometry.mesh import Faces, Flags, Indices, frozen
+from core.messages import Message
 
 TEMPLATES = ("168", "120")
 """The names of the templates: their numbers of polygons in the paper (human, mannequin)."""
@@ -148,7 +149,10 @@ def _index(values: Any) -> Indices:
 def read_template(name: str) -> Template:
     """Return one of the TEMPLATES. Raises FitError if there is no such template."""
     if name not in TEMPLATES:
-        raise FitError(f"There is no template '{name}'.", f"Choose one of: {', '.join(TEMPLATES)}.")
+        raise FitError(
+            Message("There is no template '{name}'.", name=name),
+            Message("Choose one of: {choices}.", choices=", ".join(TEMPLATES)),
+        )
     text = (resources.files("resources") / "templates" / f"{name}.json").read_text(encoding="utf-8")
     return parse_template(text)
 
@@ -221,4 +225,4 @@ def _check_rows(template: Template) -> None:
 
 
 def _refusal(why: str) -> FitError:
-    return FitError(f"The template is not usable: {why}.", "Install Busk again.")
+    return FitError(Message("The template is not usable: {why}.", why=why), Message("Install Busk again."))

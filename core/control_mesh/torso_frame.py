@@ -10,6 +10,7 @@ from core.errors import FitError
 from core.geometry.mesh import Flags, Floats, Mesh, Points
 from core.landmarks.torso.cross_sections import trunk_levels
 from core.landmarks.types import Landmarks
+from core.messages import Message, SideName
 
 REFERENCE = 130.0
 """Half width of the torso under the breasts for which the lengths of a template are given [mm]."""
@@ -77,8 +78,8 @@ def measure_torso(mesh: Mesh, landmarks: Landmarks) -> Torso:
     level = _below(mesh, landmarks.underbust_level)
     if len(level) < 3:
         raise FitError(
-            "The scan ends at the breasts: there is no torso under them.",
-            "Open a scan that reaches at least 10 cm below the breasts, or correct the landmarks.",
+            Message("The scan ends at the breasts: there is no torso under them."),
+            Message("Open a scan that reaches at least 10 cm below the breasts, or correct the landmarks."),
         )
     low, high = level.min(axis=0), level.max(axis=0)
     axis = np.array([0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.0])
@@ -121,8 +122,12 @@ def _breast(landmarks: Landmarks, side: str, axis: Points) -> Breast:
     azimuth = float(np.arctan2(outward, forward))
     if not np.radians(10.0) < azimuth < np.radians(80.0):
         raise FitError(
-            f"The {side} bust point lies {np.degrees(azimuth):.0f} degrees to that side of the middle.",
-            "Set the bust point on the breast of that side.",
+            Message(
+                "The {side} bust point lies {angle} degrees to that side of the middle.",
+                side=SideName(side),
+                angle=f"{np.degrees(azimuth):.0f}",
+            ),
+            Message("Set the bust point on the breast of that side."),
         )
     lowest = min(float(fold[2]), float(landmarks.position(f"lowest_{side}")[2]))
     return Breast(azimuth, max(ROOT, azimuth + BEYOND), float(bust[2]), float(fold[2]), lowest)

@@ -13,6 +13,7 @@ from scipy.spatial import cKDTree
 from core.control_mesh.fit import ControlMesh
 from core.geometry.closest_point import Frames, centroids, corner_reach, neighbourhoods
 from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points, frozen
+from core.messages import EMPTY, Message
 
 FAR = 60.0
 """No vertex further than this from the control mesh belongs to the patch [mm]."""
@@ -37,11 +38,15 @@ class BlendRegion:
 
     fade: Floats
     rule: Literal["flood", "distance"]
-    reason: str = ""
+    reason: Message = EMPTY
 
 
 class _FenceError(Exception):
     """The border of the patch cannot be drawn on the surface."""
+
+    def __init__(self, reason: Message) -> None:
+        super().__init__(reason)
+        self.reason = reason
 
 
 def blend_weights(body: Mesh, control: ControlMesh, fade: float = 25.0) -> BlendRegion:
@@ -54,7 +59,7 @@ def blend_weights(body: Mesh, control: ControlMesh, fade: float = 25.0) -> Blend
     try:
         return BlendRegion(frozen(_flooded(body, control, fade)), "flood")
     except _FenceError as gap:
-        return BlendRegion(frozen(_by_distance(body, control, fade)), "distance", str(gap))
+        return BlendRegion(frozen(_by_distance(body, control, fade)), "distance", gap.reason)
 
 
 def smooth_step(t: Floats) -> Floats:
@@ -72,9 +77,9 @@ def _flooded(body: Mesh, control: ControlMesh, fade: float) -> Floats:
     region = _flood(graph, fence, at[list(control.bust_points)])
     inner = np.setdiff1d(at, at[control.border])
     if region[inner].mean() < COVERED:
-        raise _FenceError("The scan falls into pieces within the patch.")
+        raise _FenceError(Message("The scan falls into pieces within the patch."))
     if _touches_rest(body, around, region):
-        raise _FenceError("The border of the patch does not close on the scan.")
+        raise _FenceError(Message("The border of the patch does not close on the scan."))
     region[fence] = True
     members = np.flatnonzero(region)
     sources = np.searchsorted(members, fence)
@@ -123,7 +128,7 @@ def _fence(graph: sparse.csr_array, tree: cKDTree, stops: Indices, corners: Poin
         while step != at:
             step = int(before[step])
             if step < 0:
-                raise _FenceError("The border of the patch meets a hole in the scan.")
+                raise _FenceError(Message("The border of the patch meets a hole in the scan."))
             vertices.add(int(members[step]))
     return np.array(sorted(vertices), dtype=np.int64)
 

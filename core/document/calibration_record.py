@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from core.document.printable_name import is_printable
 from core.errors import UserError
+from core.messages import Message
 
 LONGEST_NAME = 200
 """Letters of the name of the worn scan's file, and of that of a number."""
@@ -58,4 +59,6 @@ class Calibration:
             figures += [number.before, number.after, number.plus_minus]
         words = all(name.strip() and is_printable(name, LONGEST_NAME) for name in names)
         if not words or len(names) > MOST_NUMBERS + 1 or not all(map(math.isfinite, figures)):
-            raise UserError("What is kept of a calibration cannot be read.", "Calibrate again.")
+            raise UserError(
+                Message("What is kept of a calibration cannot be read."), Message("Calibrate again.")
+            )

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from core.document.printable_name import is_blank, is_printable
 from core.errors import UserError
 from core.landmarks.types import NAMES
+from core.messages import LandmarkName, Message, length_of
 
 LONGEST_CUSTOMER = 120
 """Letters of what a customer is called."""
@@ -43,42 +44,66 @@ class CustomMeasurement:
 
     def __post_init__(self) -> None:
         if is_blank(self.name) or not is_printable(self.name, LONGEST_NAME):
-            raise UserError("A measure needs a name of its own.", f"Use up to {LONGEST_NAME} letters.")
+            raise UserError(
+                Message("A measure needs a name of its own."),
+                Message("Use up to {count} letters.", count=LONGEST_NAME),
+            )
         if self.kind not in KINDS:
-            raise UserError(f"There is no kind of measure '{self.kind}'.", "Choose straight, skin or girth.")
+            raise UserError(
+                Message("There is no kind of measure '{kind}'.", kind=self.kind),
+                Message("Choose straight, skin or girth."),
+            )
         unknown = [mark for mark in self.marks if mark not in NAMES]
         if unknown:
-            raise UserError(f"There is no landmark {unknown[0]}.", f"Choose one of {', '.join(NAMES)}.")
+            raise UserError(
+                Message("There is no landmark {name}.", name=unknown[0]),
+                Message("Choose one of {choices}.", choices=tuple(NAMES)),
+            )
         if self.kind == "girth" and (len(self.marks) > 1 or not abs(self.level) < FURTHEST):
             raise UserError(
-                f"The girth {self.name} has no level.", "Name one landmark, or a height in mm, or both."
+                Message("The girth {name} has no level.", name=self.name),
+                Message("Name one landmark, or a height in mm, or both."),
             )
         if self.kind != "girth" and (len(set(self.marks)) != 2 or len(self.marks) != 2 or self.level):
-            raise UserError(f"The measure {self.name} has no two ends.", "Name two different landmarks.")
+            raise UserError(
+                Message("The measure {name} has no two ends.", name=self.name),
+                Message("Name two different landmarks."),
+            )
 
     @property
-    def text(self) -> str:
+    def text(self) -> Message:
         """How it is taken, in a sentence."""
-        places = [mark.replace("_", " ") for mark in self.marks]
+        places = [LandmarkName(mark) for mark in self.marks]
         if self.kind == "straight":
-            return f"Yours: straight from {places[0]} to {places[1]}."
+            return Message("Yours: straight from {start} to {end}.", start=places[0], end=places[1])
         if self.kind == "skin":
-            return f"Yours: the shortest way over the skin from {places[0]} to {places[1]}."
+            return Message(
+                "Yours: the shortest way over the skin from {start} to {end}.", start=places[0], end=places[1]
+            )
         if not places:
-            return f"Yours: a tape, level, {self.level:g} mm above the lowest point of the scan."
+            return Message(
+                "Yours: a tape, level, {height} above the lowest point of the scan.",
+                height=length_of(self.level),
+            )
         if self.level > 0.0:
-            return f"Yours: a tape, level, {self.level:g} mm above {places[0]}."
+            return Message(
+                "Yours: a tape, level, {height} above {place}.", height=length_of(self.level), place=places[0]
+            )
         if self.level < 0.0:
-            return f"Yours: a tape, level, {-self.level:g} mm below {places[0]}."
-        return f"Yours: a tape, level, at {places[0]}."
+            return Message(
+                "Yours: a tape, level, {height} below {place}.",
+                height=length_of(-self.level),
+                place=places[0],
+            )
+        return Message("Yours: a tape, level, at {place}.", place=places[0])
 
 
 def check_customer(name: str) -> None:
     """Raise UserError if no sheet could name a customer so; nobody may be named."""
     if not is_printable(name, LONGEST_CUSTOMER):
         raise UserError(
-            "The name of the customer is too long or cannot be printed.",
-            f"Use up to {LONGEST_CUSTOMER} letters.",
+            Message("The name of the customer is too long or cannot be printed."),
+            Message("Use up to {count} letters.", count=LONGEST_CUSTOMER),
         )
 
 
@@ -105,12 +130,18 @@ def parse_measurement(text: str) -> CustomMeasurement:
     """Read ``NAME=KIND:PLACES``, see ``HELP``. Raises UserError."""
     told = re.fullmatch(r"([^=]+)=\s*(\w+)\s*:(.*)", text.replace("\N{MINUS SIGN}", "-"))
     if told is None:
-        raise UserError(f"'{text}' is no measure.", "Write NAME=KIND:PLACES, see 'busk measure --help'.")
+        raise UserError(
+            Message("'{text}' is no measure.", text=text),
+            Message("Write NAME=KIND:PLACES, see 'busk measure --help'."),
+        )
     name, kind, places = (part.strip() for part in told.groups())
     if kind != "girth":
         return CustomMeasurement(name, kind, tuple(place.strip() for place in places.split(",")))
     level = re.fullmatch(r"([a-z_]*)\s*([+-]?\s*\d+(?:\.\d+)?)?", places)
     if level is None or not places:
-        raise UserError(f"The girth {name} has no level.", "Name one landmark, or a height in mm, or both.")
+        raise UserError(
+            Message("The girth {name} has no level.", name=name),
+            Message("Name one landmark, or a height in mm, or both."),
+        )
     marks = (level[1],) if level[1] else ()
     return CustomMeasurement(name, kind, marks, float((level[2] or "0").replace(" ", "")))

@@ -26,6 +26,7 @@ from core.landmarks.manual import PlacedMark
 from core.mechanics.constraint_lines import RATIO_LIMITS
 from core.mechanics.options import CHOICES, DEFAULT_LINE_STIFFNESS, RANGES, ModelOptions
 from core.mechanics.volume import CONTROLS
+from core.messages import LineName, Message, SettingName
 from core.scan.source import ScanSource
 
 __all__ = ["TEMPLATES", "WEIGHTS", "Design", "ScanSource"]
@@ -87,47 +88,73 @@ class Design:
         for line in self.lines:
             if not RATIO_LIMITS[0] <= line.ratio <= RATIO_LIMITS[1]:
                 raise LineError(
-                    f"{line.name} cannot be set to {100 * line.ratio:.1f} % of its rest length.",
-                    f"Stay between {100 * RATIO_LIMITS[0]:.0f} and {100 * RATIO_LIMITS[1]:.0f} %.",
+                    Message(
+                        "{line} cannot be set to {percent} % of its rest length.",
+                        line=LineName(line.name),
+                        percent=f"{100 * line.ratio:.1f}",
+                    ),
+                    Message(
+                        "Stay between {low} and {high} %.",
+                        low=f"{100 * RATIO_LIMITS[0]:.0f}",
+                        high=f"{100 * RATIO_LIMITS[1]:.0f}",
+                    ),
                 )
         if twice := repeated(line.name for line in self.own_lines):
-            raise LineError(f"There are two lines '{twice}'.", "Give each line a name of its own.")
+            raise LineError(
+                Message("There are two lines '{name}'.", name=LineName(twice)),
+                Message("Give each line a name of its own."),
+            )
         if twice := repeated(line.name for line in self.traits):
-            raise LineError(f"The line {twice} is treated in two ways.", "Say once how.")
+            raise LineError(
+                Message("The line {name} is treated in two ways.", name=LineName(twice)),
+                Message("Say once how."),
+            )
         if twice := repeated(mark.name for mark in self.placed):
-            raise LandmarkError(f"The landmark {twice} is placed twice.", "Place it once.")
+            raise LandmarkError(
+                Message("The landmark {name} is placed twice.", name=twice), Message("Place it once.")
+            )
         if twice := repeated(measure.name for measure in self.own_measures):
-            raise UserError(f"There are two measures '{twice}'.", "Give each measure a name of its own.")
+            raise UserError(
+                Message("There are two measures '{name}'.", name=twice),
+                Message("Give each measure a name of its own."),
+            )
         check_elastics(self.elastics, {each.name: each.elastic for each in self.traits if each.elastic})
 
     def _check_counts(self) -> None:
         check_counts(
             (
-                *((len(lines), MOST_LINES, "lines") for lines in (self.lines, self.own_lines, self.traits)),
-                (sum(map(CustomLine.count, self.own_lines)), MOST_POINTS, "points of own lines"),
-                (len(self.own_measures), MOST_MEASURES, "own measures"),
-                (len(self.elastics), MOST_ELASTICS, "elastics"),
-                (sum(len(each.curve) for each in self.elastics), MOST_ROWS, "rows in tables of elastics"),
+                *(
+                    (len(lines), MOST_LINES, Message("lines"))
+                    for lines in (self.lines, self.own_lines, self.traits)
+                ),
+                (sum(map(CustomLine.count, self.own_lines)), MOST_POINTS, Message("points of own lines")),
+                (len(self.own_measures), MOST_MEASURES, Message("own measures")),
+                (len(self.elastics), MOST_ELASTICS, Message("elastics")),
+                (
+                    sum(len(each.curve) for each in self.elastics),
+                    MOST_ROWS,
+                    Message("rows in tables of elastics"),
+                ),
             )
         )
 
     def _check_settings(self) -> None:
         check_words(
             (
-                (self.template, TEMPLATES, "template"),
-                (self.volume, CONTROLS, "volume control"),
-                (self.weights, WEIGHTS, "t-FFD weights"),
-                *((getattr(self, key), words, key.replace("_", " ")) for key, words in CHOICES.items()),
+                (self.template, TEMPLATES, SettingName("template")),
+                (self.volume, CONTROLS, SettingName("volume control")),
+                (self.weights, WEIGHTS, SettingName("t-FFD weights")),
+                *((getattr(self, key), words, SettingName(key)) for key, words in CHOICES.items()),
             )
         )
-        check_flags((getattr(self, key), key.replace("_", " ")) for key in ("scaled_normals", "dense_volume"))
+        check_flags((getattr(self, key), SettingName(key)) for key in ("scaled_normals", "dense_volume"))
         check_numbers(
             (
-                (self.line_height, 0.25, 0.75, "line height"),
-                *((getattr(self, key), *limits, key.replace("_", " ")) for key, limits in RANGES.items()),
-                (1.0 if self.gain is None else self.gain, 0.0, 10.0, "gain"),
-                (self.tissue_stiffness, *TISSUE_LIMITS, "tissue stiffness"),
-                (self.worn_tight_mm, *WORN_TIGHT, "allowance of a tape worn tight"),
+                (self.line_height, 0.25, 0.75, SettingName("line height")),
+                *((getattr(self, key), *limits, SettingName(key)) for key, limits in RANGES.items()),
+                (1.0 if self.gain is None else self.gain, 0.0, 10.0, SettingName("gain")),
+                (self.tissue_stiffness, *TISSUE_LIMITS, SettingName("tissue stiffness")),
+                (self.worn_tight_mm, *WORN_TIGHT, SettingName("allowance of a tape worn tight")),
             )
         )
 
@@ -183,8 +210,10 @@ class Design:
         """
         if self.own_lines and template != self.template:
             raise LineError(
-                f"Own lines belong to the control mesh of {self.template} polygons.",
-                "Keep it, or remove your own lines first.",
+                Message(
+                    "Own lines belong to the control mesh of {template} polygons.", template=self.template
+                ),
+                Message("Keep it, or remove your own lines first."),
             )
         return replace(self, template=template)
 
@@ -272,4 +301,6 @@ class Design:
 
     def _check_unlocked(self, name: str) -> None:
         if self.line_settings(name).locked:
-            raise LineError(f"The line {name} is locked.", "Unlock it first.")
+            raise LineError(
+                Message("The line {name} is locked.", name=LineName(name)), Message("Unlock it first.")
+            )

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from core.document.design import Design
 from core.errors import UserError
+from core.messages import Message
 
 VARIANTS = ("A", "B", "C")
 """What variants are called, in this order."""
@@ -28,7 +29,9 @@ class Document:
     def __post_init__(self) -> None:
         names = [name for name, _ in self.designs]
         if self.shown not in names or names != sorted(set(names) & set(VARIANTS)):
-            raise UserError("The variants of this document do not fit together.", "Open a backup.")
+            raise UserError(
+                Message("The variants of this document do not fit together."), Message("Open a backup.")
+            )
 
     @classmethod
     def single(cls, design: Design) -> Document:

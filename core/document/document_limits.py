@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sized
 from typing import Any
 
 from core.errors import ProjectError, UserError
+from core.messages import Message
 
 LARGEST_SCAN = 1_000_000_000
 """Bytes of the scan in a project: more than any file that is read as one."""
@@ -36,22 +37,29 @@ MOST_ELASTICS, MOST_ROWS = 200, 40_000
 """Elastics of a design, and points of all their curves together."""
 
 
-def check_counts(counted: Iterable[tuple[int, int, str]]) -> None:
+def check_counts(counted: Iterable[tuple[int, int, Message]]) -> None:
     """Raise UserError for the first count beyond its limit; each with what is counted."""
     for count, most, what in counted:
         if count > most:
-            raise UserError(f"This design has too many {what}: {count}.", f"Use up to {most}.")
+            raise UserError(
+                Message("This design has too many {what}: {count}.", what=what, count=count),
+                Message("Use up to {count}.", count=most),
+            )
 
 
 def check_size(name: str, data: Sized, most: int) -> None:
     """Raise ProjectError if a part of a project is larger than what is read of it [bytes]."""
     if len(data) > most:
-        raise too_large(name, most, "Use fewer lines, shorter tables of elastics, or a thinner scan.")
+        raise too_large(
+            name, most, Message("Use fewer lines, shorter tables of elastics, or a thinner scan.")
+        )
 
 
-def too_large(name: str, most: int, hint: str) -> ProjectError:
+def too_large(name: str, most: int, hint: Message) -> ProjectError:
     """Return what to say of a part of a project that is too large, with a ``hint`` what to do."""
-    return ProjectError(f"{name} of this project is larger than {most / 1e6:.0f} MB.", hint)
+    return ProjectError(
+        Message("{name} of this project is larger than {size} MB.", name=name, size=f"{most / 1e6:.0f}"), hint
+    )
 
 
 def check_values(text: str) -> None:
@@ -72,7 +80,10 @@ def check_nesting(value: Any, most: int = MOST_NESTED) -> None:
             raise ValueError("not a number")
         if not level:
             return
-    raise ProjectError("The project's design is nested too deeply.", "Open a backup or start from the scan.")
+    raise ProjectError(
+        Message("The project's design is nested too deeply."),
+        Message("Open a backup or start from the scan."),
+    )
 
 
 def _held(value: Any) -> Iterable[Any]:

@@ -10,6 +10,7 @@ from core.document.document_limits import check_values
 from core.document.json_values import parsed
 from core.document.serialization import WITH_VARIANTS, from_json, from_values, to_json, to_values
 from core.errors import ProjectError, UserError
+from core.messages import Message
 
 DESIGN, VARIANTS = "design.json", "variants.json"
 """The name of the text of the design that is shown, and of that of its variants, if there are any."""
@@ -42,4 +43,6 @@ def from_texts(texts: Mapping[str, str]) -> Document:
     except ProjectError:
         raise
     except (UserError, ValueError, KeyError, TypeError, AttributeError) as broken:
-        raise ProjectError("The project's variants cannot be read.", "Open a backup.") from broken
+        raise ProjectError(
+            Message("The project's variants cannot be read."), Message("Open a backup.")
+        ) from broken

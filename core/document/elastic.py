@@ -9,6 +9,7 @@ from itertools import pairwise
 
 from core.document.printable_name import is_blank, is_printable, repeated
 from core.errors import LineError
+from core.messages import ElasticName, LengthRange, LineName, Message, length_of
 
 Point = tuple[float, float]
 Curve = tuple[Point, ...]
@@ -56,18 +57,28 @@ class Elastic:
 
     def __post_init__(self) -> None:
         if is_blank(self.name) or not is_printable(self.name, LONGEST_NAME):
-            raise LineError("An elastic needs a name.", f"Use up to {LONGEST_NAME} letters.")
+            raise LineError(
+                Message("An elastic needs a name."), Message("Use up to {count} letters.", count=LONGEST_NAME)
+            )
         if not is_printable(self.source.translate(_WHITE), LONGEST_SOURCE):
             raise LineError(
-                f"The source of the elastic {self.name} is too long or cannot be printed.",
-                f"Use up to {LONGEST_SOURCE} letters.",
+                Message(
+                    "The source of the elastic {name} is too long or cannot be printed.",
+                    name=ElasticName(self.name),
+                ),
+                Message("Use up to {count} letters.", count=LONGEST_SOURCE),
             )
-        for key, (low, high) in LIMITS.items():
-            number, what = getattr(self, key), key.removesuffix("_mm")
+        for key, what in (("width_mm", Message("width")), ("allowance_mm", Message("allowance"))):
+            number, (low, high) = getattr(self, key), LIMITS[key]
             if not low <= number <= high:
                 raise LineError(
-                    f"The {what} {number:g} mm of {self.name} is out of range.",
-                    f"It goes from {low:g} to {high:g} mm.",
+                    Message(
+                        "The {what} {length} of {name} is out of range.",
+                        what=what,
+                        length=length_of(number),
+                        name=self.name,
+                    ),
+                    Message("It goes from {range}.", range=LengthRange(low, high)),
                 )
         self._check_curve()
 
@@ -76,19 +87,33 @@ class Elastic:
         whole = all(math.isfinite(number) for row in rows for number in row)
         if not whole or not 2 <= len(rows) <= MOST_POINTS or tuple(rows[0]) != (0.0, 0.0):
             raise LineError(
-                f"The table of {self.name} is no curve.", "It begins with no force at no elongation."
+                Message("The table of {name} is no curve.", name=self.name),
+                Message("It begins with no force at no elongation."),
             )
         for (before, weaker), (after, stronger) in pairwise(rows):
             if not before < after or not weaker < stronger:
                 raise LineError(
-                    f"The table of {self.name} goes back after {100.0 * before:g} % and {weaker:g} N.",
-                    "Elongation and force must both rise from row to row: leave out the way back.",
+                    Message(
+                        "The table of {name} goes back after {elongation} % and {force} N.",
+                        name=self.name,
+                        elongation=f"{100.0 * before:g}",
+                        force=f"{weaker:g}",
+                    ),
+                    Message("Elongation and force must both rise from row to row: leave out the way back."),
                 )
         if self.max_elongation > FURTHEST or self.max_force > STRONGEST:
             raise LineError(
-                f"The table of {self.name} ends at {100.0 * self.max_elongation:g} %"
-                f" and {self.max_force:g} N.",
-                f"Look at its units: no elastic goes beyond {100.0 * FURTHEST:g} % or {STRONGEST:g} N.",
+                Message(
+                    "The table of {name} ends at {elongation} % and {force} N.",
+                    name=self.name,
+                    elongation=f"{100.0 * self.max_elongation:g}",
+                    force=f"{self.max_force:g}",
+                ),
+                Message(
+                    "Look at its units: no elastic goes beyond {elongation} % or {force} N.",
+                    elongation=f"{100.0 * FURTHEST:g}",
+                    force=f"{STRONGEST:g}",
+                ),
             )
 
     @property
@@ -128,18 +153,28 @@ class Elastic:
         return next((piece for piece in pieces if ends(piece[1])), pieces[-1])
 
     def overstretch_error(
-        self, elongation: float, line: str, ratio: float | None = None
+        self, elongation: float, line: LineName, ratio: float | None = None
     ) -> OverstretchedError:
         """Return what to say of a line, at a ``ratio`` if set, that stretches it beyond its curve."""
         return OverstretchedError(self, elongation, line, ratio)
 
-    def overload_error(self, force: float, line: str) -> ElasticError:
+    def overload_error(self, force: float, line: LineName) -> ElasticError:
         """Return what to say when a line would pull the elastic with more than its curve knows."""
         needed, end = _beyond(force, self.max_force, 1), f"{self.max_force:g}"
         return ElasticError(
-            f"{self.name} would be pulled with {needed} N as {line}; its table ends at {end} N.",
-            "Let the line be longer, or take a stronger or wider elastic.",
-            f"Too weak: {needed} N at this length, its table ends at {end} N.",
+            Message(
+                "{name} would be pulled with {force} N as {line}; its table ends at {strength} N.",
+                name=ElasticName(self.name),
+                force=needed,
+                line=line,
+                strength=end,
+            ),
+            Message("Let the line be longer, or take a stronger or wider elastic."),
+            Message(
+                "Too weak: {force} N at this length, its table ends at {strength} N.",
+                force=needed,
+                strength=end,
+            ),
             line,
         )
 
@@ -147,9 +182,9 @@ class Elastic:
 class ElasticError(LineError):
     """An elastic cannot be used for a ``line``; ``reason`` states why, where both are named beside it."""
 
-    def __init__(self, message: str, hint: str, reason: str, line: str) -> None:
+    def __init__(self, message: Message, hint: Message, reason: Message, line: LineName) -> None:
         super().__init__(message, hint)
-        self.reason, self.line = reason, line
+        self.reason, self.line = reason, line.text
 
 
 class OverstretchedError(ElasticError):
@@ -158,19 +193,33 @@ class OverstretchedError(ElasticError):
     The hint names the shortest ``ratio`` that works, where lengths are set: the line gives way no less there.
     """
 
-    def __init__(self, elastic: Elastic, elongation: float, line: str, ratio: float | None) -> None:
+    def __init__(self, elastic: Elastic, elongation: float, line: LineName, ratio: float | None) -> None:
         needed, end = (
             _beyond(100.0 * elongation, 100.0 * elastic.max_elongation, 0),
             f"{100.0 * elastic.max_elongation:g}",
         )
-        hint = "Let the line be longer, or take an elastic that stretches further."
+        hint = Message("Let the line be longer, or take an elastic that stretches further.")
         if ratio is not None:
             least = math.ceil(100.0 * MARGIN * ratio * (1.0 + elongation) / (1.0 + elastic.max_elongation))
-            hint = f"Set {line} to {least:.0f} % or longer, or choose an elastic that stretches further."
+            hint = Message(
+                "Set {line} to {percent} % or longer, or choose an elastic that stretches further.",
+                line=line,
+                percent=f"{least:.0f}",
+            )
         super().__init__(
-            f"{elastic.name} would be stretched by {needed} % as {line}; its table ends at {end} %.",
+            Message(
+                "{name} would be stretched by {elongation} % as {line}; its table ends at {reach} %.",
+                name=ElasticName(elastic.name),
+                elongation=needed,
+                line=line,
+                reach=end,
+            ),
             hint,
-            f"Too short a cut: {needed} % stretch, its table ends at {end} %.",
+            Message(
+                "Too short a cut: {elongation} % stretch, its table ends at {reach} %.",
+                elongation=needed,
+                reach=end,
+            ),
             line,
         )
         self.elastic, self.elongation = elastic, elongation
@@ -186,8 +235,18 @@ def check_elastics(elastics: Sequence[Elastic], made: Mapping[str, str]) -> None
     """Raise LineError if two elastics share a name, or a line is ``made`` of one that is not there."""
     names = [elastic.name for elastic in elastics]
     if twice := repeated(names):
-        raise LineError(f"There are two elastics '{twice}'.", "Give each elastic a name of its own.")
+        raise LineError(
+            Message("There are two elastics '{name}'.", name=twice),
+            Message("Give each elastic a name of its own."),
+        )
     known = set(names)
     for line, name in made.items():
         if name not in known:
-            raise LineError(f"The elastic {name} of the line {line} is missing.", "Choose it again.")
+            raise LineError(
+                Message(
+                    "The elastic {name} of the line {line} is missing.",
+                    name=ElasticName(name),
+                    line=LineName(line),
+                ),
+                Message("Choose it again."),
+            )

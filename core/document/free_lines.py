@@ -15,6 +15,7 @@ from core.document.line_notation import DECIMALS
 from core.errors import LineError
 from core.geometry.mesh import Floats, Mesh, Points
 from core.geometry.plane_sections import resample
+from core.messages import Message
 
 _STEPS = (6.0, 3.0, 1.5)
 """How far apart the vertices of a free line are [mm]: the first that keeps the curve."""
@@ -48,7 +49,9 @@ def free_curve(skin: Mesh, control: ControlMesh, pieces: Sequence[Points], close
     mesh.
     """
     if sum(float(np.linalg.norm(np.diff(piece, axis=0), axis=1).sum()) for piece in pieces) < STEP:
-        raise LineError("The line has no length.", "Draw it from one place of the body to another.")
+        raise LineError(
+            Message("The line has no length."), Message("Draw it from one place of the body to another.")
+        )
     for step in _STEPS:
         found = _curve(skin, control, pieces, closed, step)
         if found.deviation < _KEPT:
@@ -64,15 +67,17 @@ def _curve(
     kept = np.flatnonzero(on_mesh.inside)
     if len(kept) < 2 or (closed and len(kept) < len(curve)):
         raise LineError(
-            "The line leaves the area of the control mesh.",
-            "Draw it on the breasts and near them, where the body is reshaped.",
+            Message("The line leaves the area of the control mesh."),
+            Message("Draw it on the breasts and near them, where the body is reshaped."),
         )
     inner = slice(int(kept[0]), int(kept[-1]) + 1)
     cells = _distinct(on_mesh.cells[inner])
     if closed:
         cells = cells[:-1]
     if len(cells) < (3 if closed else 2):
-        raise LineError("The line has no length.", "Draw it from one place of the body to another.")
+        raise LineError(
+            Message("The line has no length."), Message("Draw it from one place of the body to another.")
+        )
     places: tuple[Cell, ...] = tuple((float(row), float(column)) for row, column in cells)
     embedded = embed(control.grid, places + places[:1] * closed)
     shown = points_on_skin(skin, control.mesh, embedded.weights)

@@ -11,6 +11,7 @@ from types import NoneType, UnionType
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
 from core.errors import ProjectError
+from core.messages import Message
 
 T = TypeVar("T")
 
@@ -44,7 +45,7 @@ def field_of(kind: type, key: str, value: Any) -> Any:
 def whole_number(value: Any, place: str) -> int:
     """Return a JSON ``value`` as a whole number. Raises ProjectError."""
     if type(value) is not int or abs(value) > _LARGEST:
-        raise _wrong(place, "a whole number")
+        raise _wrong(place, Message("a whole number"))
     return value
 
 
@@ -55,14 +56,14 @@ def _types(kind: type) -> dict[str, Any]:
 
 def _object(kind: Any, value: Any, place: str) -> Any:
     if not isinstance(value, dict):
-        raise _wrong(place, "an object")
+        raise _wrong(place, Message("an object"))
     read = {}
     for field in fields(kind):
         where = f"{place}.{field.name}"
         if field.name in value:
             read[field.name] = _read(_types(kind)[field.name], value[field.name], where)
         elif field.default is MISSING and field.default_factory is MISSING:
-            raise ProjectError(f"'{where}' is missing in this file.", _HINT)
+            raise ProjectError(Message("'{place}' is missing in this file.", place=where), _HINT)
     return kind(**read)
 
 
@@ -80,7 +81,7 @@ def _read(kind: Any, value: Any, place: str) -> Any:
 def _tuple(kinds: tuple[Any, ...], value: Any, place: str) -> tuple[Any, ...]:
     given = _list(value, place)
     if kinds[-1] is not Ellipsis and len(given) != len(kinds):
-        raise _wrong(place, f"a list of {len(kinds)}")
+        raise _wrong(place, Message("a list of {count}", count=len(kinds)))
     of_each = [kinds[0]] * len(given) if kinds[-1] is Ellipsis else kinds
     return tuple(
         _read(kind, each, f"{place}[{k}]") for k, (kind, each) in enumerate(zip(of_each, given, strict=True))
@@ -89,19 +90,19 @@ def _tuple(kinds: tuple[Any, ...], value: Any, place: str) -> tuple[Any, ...]:
 
 def _list(value: Any, place: str) -> list[Any]:
     if not isinstance(value, list):
-        raise _wrong(place, "a list")
+        raise _wrong(place, Message("a list"))
     return value
 
 
 def _text(value: Any, place: str) -> str:
     if not isinstance(value, str):
-        raise _wrong(place, "a text")
+        raise _wrong(place, Message("a text"))
     return value
 
 
 def _flag(value: Any, place: str) -> bool:
     if not isinstance(value, bool):
-        raise _wrong(place, "true or false")
+        raise _wrong(place, Message("true or false"))
     return value
 
 
@@ -109,13 +110,13 @@ def _number(value: Any, place: str) -> float:
     if type(value) is int and abs(value) <= _LARGEST:
         return float(value)
     if type(value) is not float or not math.isfinite(value):
-        raise _wrong(place, "a number")
+        raise _wrong(place, Message("a number"))
     return value
 
 
 _PLAIN: dict[Any, Callable[[Any, str], Any]] = {str: _text, bool: _flag, int: whole_number, float: _number}
-_HINT = "Open a backup or start from the scan."
+_HINT = Message("Open a backup or start from the scan.")
 
 
-def _wrong(place: str, what: str) -> ProjectError:
-    return ProjectError(f"'{place}' in this file is not {what}.", _HINT)
+def _wrong(place: str, what: Message) -> ProjectError:
+    return ProjectError(Message("'{place}' in this file is not {kind}.", place=place, kind=what), _HINT)

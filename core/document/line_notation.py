@@ -16,6 +16,7 @@ from core.control_mesh.template import Template
 from core.document.lines import CustomLine
 from core.errors import LineError
 from core.geometry.mesh import Flags
+from core.messages import LineName, Message
 
 HELP = (
     "NAME=POINT,POINT,...[,closed][,shoulder]: a line of your own. A POINT is the number of a control point, "
@@ -32,7 +33,9 @@ DECIMALS = 4
 
 _NUMBER = r"\d+(?:\.\d+)?"
 _PLACE = re.compile(rf"r({_NUMBER})c([+-]?{_NUMBER})")
-_ASK = "Write NAME=r2c-3,r3c0,r2c3 or NAME=28,45,34, with ,closed at the end for a line that goes round."
+_ASK = Message(
+    "Write NAME=r2c-3,r3c0,r2c3 or NAME=28,45,34, with ,closed at the end for a line that goes round."
+)
 _ENDINGS = ("closed", "shoulder")
 
 
@@ -44,7 +47,7 @@ def parse_line(text: str, template: Template) -> CustomLine:
     while words and words[-1] in _ENDINGS:
         endings.add(words.pop())
     if not equals or not name or not words or not all(words):
-        raise LineError(f"'{text}' is no line.", _ASK)
+        raise LineError(Message("'{text}' is no line.", text=text), _ASK)
     closed, shoulder = (ending in endings for ending in _ENDINGS)
     if any(_between(word) for word in words):
         places = tuple(place for word in words for place in _places(word, template))
@@ -94,17 +97,24 @@ def with_custom_lines(control: ControlMesh, own: tuple[CustomLine, ...]) -> Cont
     paths, embedded, count = dict(control.paths), {}, len(control.mesh.vertices)
     for line in own:
         if line.name in paths or line.name in embedded:
-            raise LineError(f"There are two lines '{line.name}'.", "Give each line a name of its own.")
+            raise LineError(
+                Message("There are two lines '{name}'.", name=LineName(line.name)),
+                Message("Give each line a name of its own."),
+            )
         if not all(0 <= point < count for point in line.points):
             raise LineError(
-                f"The line {line.name} names a control point that there is not.",
-                f"The control mesh has the points 0 to {count - 1}.",
+                Message("The line {name} names a control point that there is not.", name=LineName(line.name)),
+                Message("The control mesh has the points 0 to {last}.", last=count - 1),
             )
         if not all(control.grid.has(place) for place in line.places):
             raise LineError(
-                f"The line {line.name} leaves the control mesh.",
-                f"Its rows are 0 to {control.grid.top}, its columns {-control.grid.half} to "
-                f"{control.grid.half}.",
+                Message("The line {line} leaves the control mesh.", line=LineName(line.name)),
+                Message(
+                    "Its rows are 0 to {rows}, its columns {low} to {high}.",
+                    rows=control.grid.top,
+                    low=-control.grid.half,
+                    high=control.grid.half,
+                ),
             )
         if line.free:
             embedded[line.name] = _led_over(control, embed(control.grid, line.grid_path), line)
@@ -162,7 +172,10 @@ def _walk(word: str, template: Template) -> list[int]:
         (int(template.row[end]), int(template.column[end])) for end in (ends[0], ends[-1])
     )
     if len(ends) != 2 or (row == to_row) == (column == to_column):
-        raise LineError(f"'{word}' does not go along a row or a column.", "Name its points one by one.")
+        raise LineError(
+            Message("'{word}' does not go along a row or a column.", word=word),
+            Message("Name its points one by one."),
+        )
     rows, columns = _steps(row, to_row), _steps(column, to_column)
     return [template.point(r, c) for r in rows for c in columns]
 
@@ -179,8 +192,12 @@ def _point(word: str, template: Template) -> int:
         count = len(template.row)
         if not word.isdecimal() or not int(word) < count:
             raise LineError(
-                f"'{word}' is no control point of the template {template.name}.",
-                f"Its points are 0 to {count - 1}, or places like r2c-3. {_ASK}",
+                Message(
+                    "'{word}' is no control point of the template {template}.",
+                    word=word,
+                    template=template.name,
+                ),
+                Message("Its points are 0 to {last}, or places like r2c-3. {how}", last=count - 1, how=_ASK),
             )
         return int(word)
     if _between(word) or not template.grid.has((float(match[1]), float(match[2]))):
@@ -190,8 +207,13 @@ def _point(word: str, template: Template) -> int:
 
 def _nowhere(word: str, template: Template) -> LineError:
     return LineError(
-        f"The template {template.name} has no place '{word}'.",
-        f"Its rows are 0 to {len(template.rows) - 1}, its columns {-template.half} to {template.half}.",
+        Message("The template {template} has no place '{word}'.", template=template.name, word=word),
+        Message(
+            "Its rows are 0 to {rows}, its columns {low} to {high}.",
+            rows=len(template.rows) - 1,
+            low=-template.half,
+            high=template.half,
+        ),
     )
 
 

@@ -11,6 +11,7 @@ from core.control_mesh.embedding import Cell
 from core.document.printable_name import check_line_name, is_blank, is_printable
 from core.errors import LineError
 from core.mechanics.options import RANGES
+from core.messages import LineName, Message, length_of
 
 LONGEST_TITLE = 60
 """Letters of a line's title."""
@@ -51,20 +52,26 @@ class CustomLine:
 
     def __post_init__(self) -> None:
         if is_blank(self.name):
-            raise LineError("A line has no name.", "Give each line a name of its own.")
+            raise LineError(Message("A line has no name."), Message("Give each line a name of its own."))
         check_line_name(self.name)
         stops: tuple[object, ...] = self.places or self.points
         following = stops + stops[:1] if self.closed else stops
         if len(stops) < (3 if self.closed else 2) or any(a == b for a, b in pairwise(following)):
             raise LineError(
-                f"The line {self.name} does not go from point to point.",
-                "Name two control points at least, three if it is closed, and none twice in a row.",
+                Message("The line {name} does not go from point to point.", name=LineName(self.name)),
+                Message("Name two control points at least, three if it is closed, and none twice in a row."),
             )
         if not all(isfinite(number) for place in self.places for number in place):
-            raise LineError(f"The line {self.name} has a point without a place.", "Draw it anew.")
+            raise LineError(
+                Message("The line {line} has a point without a place.", line=LineName(self.name)),
+                Message("Draw it anew."),
+            )
         if self.closed and self.over_shoulder:
             raise LineError(
-                f"The line {self.name} is closed and cannot go over the shoulder.", "Leave its ends open."
+                Message(
+                    "The line {line} is closed and cannot go over the shoulder.", line=LineName(self.name)
+                ),
+                Message("Leave its ends open."),
             )
 
     @property
@@ -111,21 +118,33 @@ class LineSettings:
         check_line_name(self.name)
         if not is_printable(self.title, LONGEST_TITLE):
             raise LineError(
-                f"The title of the line {self.name} is too long or cannot be printed.",
-                f"Use up to {LONGEST_TITLE} letters.",
+                Message(
+                    "The title of the line {name} is too long or cannot be printed.", name=LineName(self.name)
+                ),
+                Message("Use up to {count} letters.", count=LONGEST_TITLE),
             )
         if self.colour and not re.fullmatch("#[0-9a-fA-F]{6}", self.colour):
-            raise LineError(f"'{self.colour}' is no colour.", "Write it like #e5536b.")
+            raise LineError(
+                Message("'{text}' is no colour.", text=self.colour), Message("Write it like #e5536b.")
+            )
         low, high = RANGES["line_stiffness"]
         if self.stiffness is not None and not low <= self.stiffness <= high:
             raise LineError(
-                f"The stiffness {self.stiffness:g} of the line {self.name} is out of range.",
-                f"It goes from {low:g} to {high:g}.",
+                Message(
+                    "The stiffness {value} of the line {name} is out of range.",
+                    value=f"{self.stiffness:g}",
+                    name=LineName(self.name),
+                ),
+                Message("It goes from {low} to {high}.", low=f"{low:g}", high=f"{high:g}"),
             )
         if self.width is not None and not WIDTHS[0] <= self.width <= WIDTHS[1]:
             raise LineError(
-                f"The line {self.name} cannot be {self.width:g} mm wide.",
-                f"It goes from {WIDTHS[0]:g} to {WIDTHS[1]:g}.",
+                Message(
+                    "The line {name} cannot be {width} wide.",
+                    name=LineName(self.name),
+                    width=length_of(self.width),
+                ),
+                Message("It goes from {low} to {high}.", low=f"{WIDTHS[0]:g}", high=f"{WIDTHS[1]:g}"),
             )
 
     def mechanical(self) -> LineSettings:

@@ -18,9 +18,10 @@ from core.document.line_notation import format_path, parse_line, ready_made_line
 from core.document.lines import LONGEST_TITLE, CustomLine, LineSettings
 from core.document.printable_name import is_blank, is_printable
 from core.document.storage.project_file import safe_name
-from core.errors import LineError, UserError
+from core.errors import LineError, UserError, reason_of
 from core.files.atomic_write import private_folder, write_text
 from core.files.regular_file import read_text
+from core.messages import LineName, Message
 
 FORMAT = 1
 """The newest format of a preset that is read."""
@@ -63,8 +64,8 @@ class Preset:
     def __post_init__(self) -> None:
         if not is_printable(self.title, LONGEST_TITLE) or not is_printable(self.leaves_out, _LONGEST):
             raise LineError(
-                "The title of the preset is too long or cannot be printed.",
-                f"Use up to {LONGEST_TITLE} letters.",
+                Message("The title of the preset is too long or cannot be printed."),
+                Message("Use up to {count} letters.", count=LONGEST_TITLE),
             )
 
     def lines_on_template(self, template: Template) -> Iterator[tuple[PresetLine, tuple[CustomLine, ...]]]:
@@ -78,8 +79,11 @@ class Preset:
             elif line.line in template.lines:
                 yield line, ()
             else:
-                known = ", ".join([*template.lines, *pairs])
-                raise LineError(f"There is no line '{line.line}'.", f"The lines are: {known}.")
+                known = tuple(LineName(each) for each in (*template.lines, *pairs))
+                raise LineError(
+                    Message("There is no line '{line}'.", line=LineName(line.line)),
+                    Message("The lines are: {lines}.", lines=known),
+                )
 
 
 def read_preset(path: Path) -> Preset:
@@ -87,10 +91,9 @@ def read_preset(path: Path) -> Preset:
     try:
         return preset_of(read_text(path, _LARGEST))
     except (OSError, ValueError, UserError) as problem:
-        why = problem.message if isinstance(problem, UserError) else getattr(problem, "strerror", None)
-        why = why or str(problem)
         raise LineError(
-            f"The preset {path.name} cannot be read: {why}.", "Correct the file or remove it."
+            Message("The preset {name} cannot be read: {why}.", name=path.name, why=reason_of(problem)),
+            Message("Correct the file or remove it."),
         ) from problem
 
 
@@ -166,13 +169,16 @@ def preset_from(design: Design, title: str) -> Preset:
     own = {line.name: line for line in design.own_lines}
     if design.active_elastics():
         raise LineError(
-            "The lengths of elastics belong to one body: they cannot be kept as a preset.",
-            "Make the lines of no elastic first; then their lengths are those of the shape.",
+            Message("The lengths of elastics belong to one body: they cannot be kept as a preset."),
+            Message("Make the lines of no elastic first; then their lengths are those of the shape."),
         )
     names = sorted(design.active_lines() - own.keys()) + list(own)
     lines = tuple(_as_preset(name, design, own.get(name), template) for name in names)
     if not lines:
-        raise LineError("There are no lines to keep as a preset.", "Set a line shorter or add one first.")
+        raise LineError(
+            Message("There are no lines to keep as a preset."),
+            Message("Set a line shorter or add one first."),
+        )
     return Preset(title, lines, template=design.template if own else "")
 
 
@@ -193,8 +199,12 @@ def with_preset(design: Design, preset: Preset) -> Design:
     """
     if preset.template not in ("", design.template):
         raise LineError(
-            f"The preset {preset.title} belongs to the control mesh of {preset.template} polygons.",
-            "Choose that control mesh first.",
+            Message(
+                "The preset {name} belongs to the control mesh of {count} polygons.",
+                name=preset.title,
+                count=preset.template,
+            ),
+            Message("Choose that control mesh first."),
         )
     after = design.with_lines_reset()
     for line, own in preset.lines_on_template(read_template(design.template)):

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from unicodedata import category
 
 from core.errors import LineError
+from core.messages import LineName, Message
 
 LONGEST_NAME = 120
 """Letters of the name of a line."""
@@ -53,8 +54,8 @@ def check_line_name(name: str) -> None:
     if not is_printable(name, LONGEST_NAME):
         told = " ".join(shown(name[:LONGEST_NAME]).split())
         raise LineError(
-            f"The name of the line '{told}' is too long or cannot be printed.",
-            f"Use up to {LONGEST_NAME} letters.",
+            Message("The name of the line '{name}' is too long or cannot be printed.", name=LineName(told)),
+            Message("Use up to {count} letters.", count=LONGEST_NAME),
         )
 
 

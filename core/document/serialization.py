@@ -12,6 +12,7 @@ from core.document.document_limits import LARGEST_UNKNOWN, check_nesting, check_
 from core.document.elastic import TISSUE_STIFFNESS
 from core.document.json_values import field_of, parsed, whole_number
 from core.errors import ProjectError
+from core.messages import Message
 from core.scan.edits import UNEDITED
 
 FORMAT = 5
@@ -71,7 +72,7 @@ def from_json(text: str) -> Design:
         return from_values(parsed(text))
     except ValueError as broken:
         raise ProjectError(
-            "The project's design cannot be read.", "Open a backup or start from the scan."
+            Message("The project's design cannot be read."), Message("Open a backup or start from the scan.")
         ) from broken
 
 
@@ -82,13 +83,20 @@ def from_values(values: Any) -> Design:
     written = whole_number(values["format"], "format")
     if written > FORMAT:
         raise ProjectError(
-            f"This project has format {written}; this Busk reads up to {FORMAT}.", "Update Busk."
+            Message(
+                "This project has format {written}; this Busk reads up to {format}.",
+                written=written,
+                format=FORMAT,
+            ),
+            Message("Update Busk."),
         )
     known = {key: field_of(Design, key, values[key]) for key in values if key in _KNOWN}
     others = {key: values[key] for key in values if key not in (*_KNOWN, "format", "length_unit")}
     check_nesting(others)
     if not _fits(others):
-        raise ProjectError("The project holds too much that this Busk does not know.", "Update Busk.")
+        raise ProjectError(
+            Message("The project holds too much that this Busk does not know."), Message("Update Busk.")
+        )
     return Design(**known, unknown=others)
 
 

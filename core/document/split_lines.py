@@ -11,6 +11,7 @@ from core.document.design import Design
 from core.document.line_notation import DECIMALS
 from core.document.lines import CustomLine
 from core.errors import LineError
+from core.messages import LineName, Message
 
 _HALVES = ("{name} left", "{name} right")
 
@@ -25,7 +26,10 @@ def halves(name: str, path: Sequence[int], template: Template) -> tuple[CustomLi
     at = sides.index(0) if 0 in sides else -1
     before, after = sides[:at], sides[at + 1 :]
     if path[0] == path[-1]:
-        raise LineError(f"The line {name} goes round and has no two halves.", "Draw two lines instead.")
+        raise LineError(
+            Message("The line {name} goes round and has no two halves.", name=LineName(name)),
+            Message("Draw two lines instead."),
+        )
     if at <= 0 or not (
         (_beside(before, -1) and _beside(after, 1)) or (_beside(before, 1) and _beside(after, -1))
     ):
@@ -38,7 +42,10 @@ def halves(name: str, path: Sequence[int], template: Template) -> tuple[CustomLi
 def free_halves(line: CustomLine) -> tuple[CustomLine, CustomLine]:
     """Return the left and the right half of a free line; see ``halves``."""
     if line.closed:
-        raise LineError(f"The line {line.name} goes round and has no two halves.", "Draw two lines instead.")
+        raise LineError(
+            Message("The line {name} goes round and has no two halves.", name=LineName(line.name)),
+            Message("Draw two lines instead."),
+        )
     side = 1.0 if line.places[0][1] < 0.0 else -1.0
     before = [place for place in line.places if side * place[1] < 0.0]
     after = [place for place in line.places if side * place[1] > 0.0]
@@ -58,8 +65,11 @@ def free_halves(line: CustomLine) -> tuple[CustomLine, CustomLine]:
 
 def _crosses_not(name: str) -> LineError:
     return LineError(
-        f"The line {name} does not go across the front centre from one side to the other.",
-        "Split one that does, such as the mid-bust line.",
+        Message(
+            "The line {name} does not go across the front centre from one side to the other.",
+            name=LineName(name),
+        ),
+        Message("Split one that does, such as the mid-bust line."),
     )
 
 
@@ -93,7 +103,10 @@ def split(design: Design, template: Template, name: str, *, linked: bool = False
     pair = _halves_of(design, template, name)
     for half in pair:
         if half.name in there and there[half.name] != half:
-            raise LineError(f"There is another line {half.name}.", "Rename or remove that one first.")
+            raise LineError(
+                Message("There is another line {name}.", name=LineName(half.name)),
+                Message("Rename or remove that one first."),
+            )
     worn, ratio, traits = name in design.active_lines(), design.ratio(name), design.line_settings(name)
     after = design
     for half in pair:
@@ -117,7 +130,12 @@ def _halves_of(design: Design, template: Template, name: str) -> tuple[CustomLin
     elif name in template.paths:
         touched = list(template.paths[name])
     else:
-        raise LineError(f"There is no line '{name}'.", "Name one of the design's.")
+        raise LineError(
+            Message("There is no line '{line}'.", line=LineName(name)), Message("Name one of the design's.")
+        )
     if not template.free[touched].any():
-        raise LineError(f"The line {name} lies where nothing moves.", "Split one that moves the body.")
+        raise LineError(
+            Message("The line {name} lies where nothing moves.", name=LineName(name)),
+            Message("Split one that moves the body."),
+        )
     return free_halves(own[name]) if name in own and own[name].free else halves(name, touched, template)

@@ -14,19 +14,27 @@ from core.garment.cut_list import CutRow, cut_list
 from core.geometry.mesh import Floats, Points
 from core.geometry.plane_sections import arc_length
 from core.mechanics.constraint_lines import Line
+from core.messages import EMPTY, ElasticName, Length, Message, length_of
 from core.pipeline.build import Stages
 from core.pipeline.line_routes import NO_BACK
 
-SIDE_SEAM, CENTRE, LEFT, BACK, SEAM = "right side, seam", "centre front", "left side", "centre back", "seam"
-UPPER, LOWER = "upper end", "lower end"
-EDGE, SHOULDER, SEWN = "upper edge", "shoulder", "back, at the under-bust band"
+SIDE_SEAM, LEFT = Message("right side, seam"), Message("left side")
+CENTRE, BACK, SEAM = Message("centre front"), Message("centre back"), Message("seam")
+UPPER, LOWER = Message("upper end"), Message("lower end")
+EDGE, SHOULDER, SEWN = Message("upper edge"), Message("shoulder"), Message("back, at the under-bust band")
 """What the marks of a strip are called: a band that goes round begins and ends at the right side."""
 
-AS_WORN = "as worn: an elastic is cut shorter"
+AS_WORN = Message("as worn: an elastic is cut shorter")
 """What is said of a strip of which no elastic is chosen."""
 
-NOT_TO_CUT = "NOT TO CUT"
+NOT_TO_CUT = Message("NOT TO CUT")
 """What is printed across such a strip."""
+
+_TO_CUT = Message("to cut from {elastic}, {allowance} of it for seams; worn {worn}, stretched by {stretch} %")
+_FRONT_TO_CUT = Message(
+    "front part only, to cut from {elastic}, {allowance} of it for seams; "
+    "worn {worn}, stretched by {stretch} %"
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,8 +72,8 @@ class Strip:
     title: str
     length: float
     width: float
-    marks: tuple[tuple[float, str], ...] = ()
-    note: str = ""
+    marks: tuple[tuple[float, Message], ...] = ()
+    note: Message = EMPTY
     to_cut: bool = True
 
 
@@ -119,10 +127,12 @@ def _cut(worn: Strip, row: CutRow) -> Strip:
     marks = [(seam + at * shrunk, what) for at, what in worn.marks]
     if seam > 0.0:
         marks += [(at, SEAM) for at in (seam, row.cut_mm - seam) if all(abs(at - k) > 1e-6 for k, _ in marks)]
-    part = "front part only, to cut" if row.front_only else "to cut"
-    note = (
-        f"{part} from {row.elastic}, {row.allowance_mm:g} mm of it for seams; "
-        f"worn {worn.length:.1f} mm, stretched by {100.0 * row.elongation:.0f} %"
+    part = _FRONT_TO_CUT if row.front_only else _TO_CUT
+    note = part.fill(
+        elastic=ElasticName(row.elastic),
+        allowance=length_of(row.allowance_mm),
+        worn=Length(worn.length, 1),
+        stretch=f"{100.0 * row.elongation:.0f}",
     )
     width = row.width_mm or worn.width
     return replace(worn, length=row.cut_mm, width=width, marks=tuple(sorted(marks)), note=note, to_cut=True)
@@ -131,7 +141,7 @@ def _cut(worn: Strip, row: CutRow) -> Strip:
 def _worn(stages: Stages) -> Sequence[Line]:
     worn = [line for line in stages.model.lines if line.name in stages.design.active_lines()]
     if not worn:
-        raise LineError("No line is worn.", "Set the length of a line first.")
+        raise LineError(Message("No line is worn."), Message("Set the length of a line first."))
     return worn
 
 
@@ -147,7 +157,7 @@ def _halves(places: Points, laid: CentreLine) -> tuple[Points, Points]:
     return places[: last + 1], np.concatenate([places[last:], places[:1]])
 
 
-def _marks(stages: Stages, line: Line, control_points: Points) -> tuple[tuple[float, str], ...]:
+def _marks(stages: Stages, line: Line, control_points: Points) -> tuple[tuple[float, Message], ...]:
     middle = float(stages.control.mesh.vertices[stages.control.border, 0].mean())
     places, back = line.places(control_points), stages.backs.get(line.name)
     s = arc_length(places)

@@ -17,9 +17,10 @@ from core.export.dxf import new_dxf
 from core.export.units_and_axes import FileSpace
 from core.files.atomic_write import atomic_path
 from core.geometry.mesh import Points
+from core.messages import Length, Message, length_of
 
-Say = Callable[[str], str]
-"""Puts a sentence of the core into another language."""
+Say = Callable[[Message], str]
+"""Returns a message as it is to be written."""
 
 CURVE_FORMATS = ("dxf", "obj")
 STRIP_FORMATS = ("svg", "dxf")
@@ -74,14 +75,25 @@ def drawing_kind(path: str | os.PathLike[str], formats: Sequence[str]) -> str:
     """Return which of ``formats`` a name ends in. Raises UserError if it is none."""
     kind = Path(path).suffix.lower().lstrip(".")
     if kind not in formats:
-        raise UserError(f"Busk does not draw lines as .{kind}.", f"Choose one of: {', '.join(formats)}.")
+        raise UserError(
+            Message("Busk does not draw lines as .{kind}.", kind=kind),
+            Message("Choose one of: {choices}.", choices=", ".join(formats)),
+        )
     return kind
 
 
-def strip_label(strip: Strip) -> str:
+def strip_label(strip: Strip) -> Message:
     """Return what stands beside a strip."""
-    size = f"{strip.title}: {strip.length:.1f} mm long, {strip.width:g} mm wide"
-    return f"{size}; {strip.note}" if strip.note else size
+    length, width = Length(strip.length, 1), length_of(strip.width)
+    if not strip.note:
+        return Message("{title}: {length} long, {width} wide", title=strip.title, length=length, width=width)
+    return Message(
+        "{title}: {length} long, {width} wide; {note}",
+        title=strip.title,
+        length=length,
+        width=width,
+        note=strip.note,
+    )
 
 
 def _obj_lines(parts: Iterable[tuple[str, str, Points]], space: FileSpace) -> Iterable[str]:

@@ -19,6 +19,7 @@ from core.errors import UserError
 from core.export.csv_cells import cell
 from core.export.units_and_axes import UNITS
 from core.files.atomic_write import write_text
+from core.messages import Message
 
 Values = Mapping[str, tuple[float, str]]
 """Values with their units by key, lengths in mm; areas and volumes have units of their own."""
@@ -68,10 +69,14 @@ def measurement_file_kind(path: str | os.PathLike[str], unit: str) -> str:
     units = _XML_UNITS if kind in _XML_VERSIONS else UNITS
     if kind not in MEASURE_FORMATS:
         raise UserError(
-            f"Busk does not write measures as .{kind}.", f"Choose one of: {', '.join(MEASURE_FORMATS)}."
+            Message("Busk does not write measures as .{kind}.", kind=kind),
+            Message("Choose one of: {choices}.", choices=", ".join(MEASURE_FORMATS)),
         )
     if unit not in units:
-        raise UserError(f"A .{kind} file cannot be in {unit}.", f"Choose one of: {', '.join(units)}.")
+        raise UserError(
+            Message("A .{kind} file cannot be in {unit}.", kind=kind, unit=unit),
+            Message("Choose one of: {choices}.", choices=", ".join(units)),
+        )
     return kind
 
 

@@ -13,6 +13,7 @@ from core.export.units_and_axes import FileSpace, space_of
 from core.files.atomic_write import atomic_path
 from core.geometry.mesh import Mesh, Points
 from core.geometry.planar_curves import Curve, Plane
+from core.messages import Message
 from core.progress import Progress, quiet
 
 FORMATS = ("ply", "obj", "stl", "glb")
@@ -53,7 +54,10 @@ def kind_of(path: str | os.PathLike[str]) -> str:
     """Return the kind of mesh file that a name ends in. Raises UserError if Busk does not write it."""
     kind = Path(path).suffix.lower().lstrip(".")
     if kind not in FORMATS:
-        raise UserError(f"Busk does not write .{kind} files.", f"Choose one of: {', '.join(FORMATS)}.")
+        raise UserError(
+            Message("Busk does not write .{kind} files.", kind=kind),
+            Message("Choose one of: {choices}.", choices=", ".join(FORMATS)),
+        )
     return kind
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -25,6 +25,7 @@ from core.measurements.table import Measures, before_after, measure_rows
 from core.measurements.uncertain_value import BEFORE, SOURCES, OutputUncertainties
 from core.mechanics.convergence import SOUND
 from core.mechanics.iteration import Observables, Record
+from core.messages import EMPTY, Message, plain
 from core.pipeline.build import Stages
 from core.pipeline.warnings import ShownState, controlled_volume, immovable_lines, shape_warnings, warnings
 from core.progress import Progress, quiet
@@ -33,8 +34,8 @@ AROUND = 12.0
 """What a section shows beside the part that can move [mm]."""
 
 NOT_MODELLED = (
-    "Friction between garment and skin, gravity, breathing, posture and movement are not modelled.",
-    "Lines alone shape the body: cloth between them, seams, wires and hooks are not there.",
+    Message("Friction between garment and skin, gravity, breathing, posture and movement are not modelled."),
+    Message("Lines alone shape the body: cloth between them, seams, wires and hooks are not there."),
 )
 """What no figure of a sheet takes into account."""
 
@@ -138,24 +139,24 @@ class Report:
     volume: VolumeKept
     measures: tuple[dict[str, Any], ...]
     sizes: tuple[dict[str, Any], ...]
-    no_size: str
+    no_size: Message
     cuts: CutList
     pressures: tuple[PressureRow, ...]
     limits: Mapping[str, Any]
     sections: tuple[SectionCurves, ...]
     turns: IterationCurve
-    doubts: tuple[str, ...]
-    warnings: tuple[str, ...]
-    left_out: tuple[str, ...]
+    doubts: tuple[Message, ...]
+    warnings: tuple[Message, ...]
+    left_out: tuple[Message, ...]
     model: Mapping[str, Any]
     versions: Mapping[str, str]
     assessment: Assessment
     definitions: tuple[dict[str, Any], ...] = field(
-        default_factory=lambda: tuple(asdict(each) for each in DEFINITIONS.values())
+        default_factory=lambda: tuple(map(plain, DEFINITIONS.values()))
     )
     off: Mapping[str, float] = field(default_factory=dict)
     off_factor: Mapping[str, float] = field(default_factory=dict)
-    off_notes: tuple[str, ...] = ()
+    off_notes: tuple[Message, ...] = ()
     off_sources: tuple[str, ...] = ()
     strain: Pair | None = None
 
@@ -167,7 +168,7 @@ class Report:
     def as_data(self) -> dict[str, Any]:
         """Return the sheet ready for JSON."""
         told = {name: dict(getattr(self, name)) for name in ("limits", "model", "off", "off_factor")}
-        return {**asdict(self), **told, "assessment": self.assessment.as_data()}
+        return {**plain(self), **told, "assessment": self.assessment.as_data()}
 
 
 def make_report(
@@ -230,14 +231,14 @@ def with_uncertainty(
     return replace(sheet, off_notes=spread.cautions, off_sources=tuple(s for s in SOURCES if s in within))
 
 
-def _sizes(before: Measures, heading: Heading) -> tuple[tuple[dict[str, Any], ...], str]:
+def _sizes(before: Measures, heading: Heading) -> tuple[tuple[dict[str, Any], ...], Message]:
     """Return the sizes of the body at rest, the chosen system first, or none and why."""
     underbust, bust = (before[key] for key in GIRTHS_OF_SIZES)
     if underbust.value is None or bust.value is None:
         return (), underbust.note or bust.note
     answers = sizes(underbust.value, bust.value, heading.allowance_mm)
     keys = sorted(answers, key=lambda key: key != heading.system)
-    return tuple(sizes_text(answers[key]) for key in keys), ""
+    return tuple(sizes_text(answers[key]) for key in keys), EMPTY
 
 
 def _lift(rest: Observables, now: Observables) -> Lift:

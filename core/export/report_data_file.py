@@ -19,6 +19,7 @@ from core.measurements.uncertain_value import (
     OUT,
     TENSION,
 )
+from core.messages import join
 
 COLUMNS = (
     *("section", "key", "title", "unit", "before", "after", "difference", "plus_minus", "note"),
@@ -53,22 +54,23 @@ def report_rows(sheet: Report) -> Iterator[Row]:
         size = each["size"] or ""
         yield {"section": "size", "key": each["key"], "title": each["title"], "before": size}
     if sheet.no_size:
-        yield {"section": "size", "key": "none", "title": "No size", "note": sheet.no_size}
+        yield {"section": "size", "key": "none", "title": "No size", "note": str(sheet.no_size)}
     for number, reason in enumerate(sheet.assessment.findings, start=1):
-        note = " ".join(filter(None, (reason.message, reason.action)))
+        note = str(join((reason.message, reason.action)))
         told = {"key": str(number), "title": reason.topic.capitalize(), "after": reason.level}
         yield {"section": "verdict", **told, "note": note}
     yield from _shape_rows(sheet)
     for row in sheet.measures:
-        title = f"{row['title']}, {row['side']}" if row["side"] else row["title"]
-        known = {key: row[key] for key in ("key", "unit", "before", "after", "difference", "note")}
+        title = f"{row['title']}, {row['side']}" if row["side"] else str(row["title"])
+        known = {key: row[key] for key in ("key", "unit", "before", "after", "difference")}
         off = {f"off_{what}": sheet.off.get(f"{kind}:{row['key']}") for kind, what in _OFF.items()}
+        known["note"] = str(row["note"])
         yield {"section": "measure", "title": title, **known, "plus_minus": row["plus_minus"] or None, **off}
     yield from _cut_rows(sheet)
     yield from _pressure_rows(sheet)
     for section, sentences in (("warning", (*sheet.doubts, *sheet.warnings)), ("left out", sheet.left_out)):
         for number, sentence in enumerate(sentences, start=1):
-            yield {"section": section, "key": str(number), "note": sentence}
+            yield {"section": section, "key": str(number), "note": str(sentence)}
 
 
 def _shape_rows(sheet: Report) -> Iterator[Row]:
@@ -84,7 +86,7 @@ def _shape_rows(sheet: Report) -> Iterator[Row]:
 
 def _cut_rows(sheet: Report) -> Iterator[Row]:
     for row in sheet.cuts.rows:
-        about = " ".join(filter(None, (row.elastic, *row.notes)))
+        about = " ".join(filter(None, (row.elastic, *map(str, row.notes))))
         for key, unit, value, kind in (
             ("cut", "mm", row.cut_mm, CUT),
             ("width", "mm", row.width_mm, ""),
@@ -97,12 +99,12 @@ def _cut_rows(sheet: Report) -> Iterator[Row]:
             told = {"key": f"{row.line}: {key}", "title": title, "unit": unit, "after": value}
             yield {"section": "cut", **told, "note": about, **_off(sheet, kind, row.line)}
     for number, note in enumerate(sheet.cuts.notes, start=1):
-        yield {"section": "cut", "key": str(number), "note": note}
+        yield {"section": "cut", "key": str(number), "note": str(note)}
 
 
 def _pressure_rows(sheet: Report) -> Iterator[Row]:
     for row in sheet.pressures:
-        note = " ".join(filter(None, (row.light, row.where, *row.notes)))
+        note = " ".join(filter(None, (row.light, row.where, *map(str, row.notes))))
         for key, unit, value, kind in (
             ("largest pressure", "kPa", row.max_kpa, MAX_KPA),
             ("largest pressure", "mmHg", row.max_mmhg, ""),

@@ -19,6 +19,7 @@ from core.files.atomic_write import atomic_path, write_text
 from core.mechanics.constraint_lines import Line
 from core.mechanics.iteration import Observables, Record
 from core.mechanics.mesh_quality import MeshQuality
+from core.messages import Message, plain
 from core.pipeline.build import Stages
 from core.pipeline.solve import Solution
 from core.pipeline.warnings import immovable_lines, shape_warnings, warnings
@@ -87,7 +88,7 @@ def report(solution: Solution) -> dict[str, Any]:
         },
         "fit": _fit_report(stages),
         "settings": _settings(stages),
-        "notes": [*shape_warnings(solution), *notes(stages)],
+        "notes": plain([*shape_warnings(solution), *notes(stages)]),
         "seconds": {
             **{name: round(seconds, 4) for name, seconds in stages.seconds.items()},
             "solve": round(solution.seconds, 4),
@@ -162,15 +163,17 @@ def _settings(stages: Stages) -> dict[str, Any]:
     }
 
 
-def notes(stages: Stages) -> list[str]:
+def notes(stages: Stages) -> list[Message]:
     """Return in sentences what a reader of the figures has to know."""
     return [
         *immovable_lines(stages),
         *warnings(stages),
         *stages.body.repairs,
-        "Lengths are those of the front part of a line, side to side; the back does not change.",
-        "Not modelled: friction between garment and skin, gravity, stiffness of real tissue, and of real "
-        "elastic where a line is made of none.",
+        Message("Lengths are those of the front part of a line, side to side; the back does not change."),
+        Message(
+            "Not modelled: friction between garment and skin, gravity, stiffness of real tissue, "
+            "and of real elastic where a line is made of none."
+        ),
     ]
 
 

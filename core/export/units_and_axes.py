@@ -8,6 +8,7 @@ import numpy as np
 
 from core.errors import UserError
 from core.geometry.mesh import Floats, Points
+from core.messages import Message, SettingName
 
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
 """What a file can be written in, in millimetres."""
@@ -31,9 +32,15 @@ class FileSpace:
     axes: str = "z-up"
 
     def __post_init__(self) -> None:
-        for word, choices, what in ((self.unit, UNITS, "unit"), (self.axes, AXES, "set of axes")):
+        for word, choices, what in (
+            (self.unit, UNITS, SettingName("unit")),
+            (self.axes, AXES, SettingName("set of axes")),
+        ):
             if word not in choices:
-                raise UserError(f"There is no {what} '{word}'.", f"Choose one of: {', '.join(choices)}.")
+                raise UserError(
+                    Message("There is no {what} '{value}'.", what=what, value=word),
+                    Message("Choose one of: {choices}.", choices=", ".join(choices)),
+                )
 
     def places(self, points: Points) -> Points:
         """Return places of Busk, shape (k, 3) [mm], as they stand in the file."""

@@ -13,8 +13,9 @@ from contextlib import contextmanager, suppress
 from glob import escape
 from pathlib import Path
 
-from core.errors import ProjectError
+from core.errors import ProjectError, reason_of
 from core.files.regular_file import NOT_A_FILE
+from core.messages import Message
 
 PRIVATE_FILE, PRIVATE_FOLDER = 0o600, 0o700
 """Access rights of personal data: its owner's alone."""
@@ -29,10 +30,10 @@ _STEM = 40
 """Letters of a target's name in that of its partial file, so few that no system refuses its length."""
 
 _HINTS = {
-    errno.ENOSPC: "Choose another folder or make room.",
-    errno.EDQUOT: "Choose another folder or make room.",
-    errno.ENAMETOOLONG: "Choose a shorter name.",
-    errno.EINVAL: "Choose another name.",
+    errno.ENOSPC: Message("Choose another folder or make room."),
+    errno.EDQUOT: Message("Choose another folder or make room."),
+    errno.ENAMETOOLONG: Message("Choose a shorter name."),
+    errno.EINVAL: Message("Choose another name."),
 }
 
 _LOCK = threading.Lock()
@@ -70,7 +71,10 @@ def write_text(target: Path, text: str, encoding: str = "utf-8", private: bool =
 
 def still_writing_error(target: Path) -> ProjectError:
     """Return what to say when a file is to be written that is on its way already."""
-    return ProjectError(f"{target.name} is still being written.", "Wait a moment, or choose another name.")
+    return ProjectError(
+        Message("{file} is still being written.", file=target.name),
+        Message("Wait a moment, or choose another name."),
+    )
 
 
 def private_folder(folder: Path) -> Path:
@@ -113,8 +117,8 @@ def _whole_file(named: Path, private: bool) -> Iterator[Path]:
         os.replace(partial, target)
     except OSError as problem:
         raise ProjectError(
-            f"{named} cannot be written: {problem.strerror or problem}.",
-            _HINTS.get(problem.errno or 0, "Choose another folder."),
+            Message("{file} cannot be written: {problem}.", file=str(named), problem=reason_of(problem)),
+            _HINTS.get(problem.errno or 0, Message("Choose another folder.")),
         ) from problem
     finally:
         # Where nothing can be written nothing can be removed: the first problem is the one to tell.

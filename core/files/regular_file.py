@@ -7,8 +7,10 @@ import os
 import stat
 from pathlib import Path
 
-TOO_LARGE = "it is far too large"
-NOT_A_FILE = "it is not a file"
+from core.messages import Message
+
+TOO_LARGE = Message("it is far too large")
+NOT_A_FILE = Message("it is not a file")
 """Reasons why something cannot be read: a folder, a pipe and a device are not files."""
 
 

@@ -7,7 +7,7 @@ scan, landmarks and the fit of the control mesh.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 from core.garment.cut_list import CutList, CutRow, cut_list
@@ -15,6 +15,7 @@ from core.garment.pressure_limits import AMBER, GREEN, pressure_limits
 from core.garment.pressure_list import PressureList, PressureRow, pressure_list
 from core.landmarks.warnings import collect_warnings
 from core.mechanics.convergence import Convergence
+from core.messages import EMPTY, Length, LineName, Message, join, plain
 from core.pipeline.build import Stages
 from core.pipeline.warnings import ShownState, warnings
 
@@ -45,15 +46,15 @@ class Finding:
 
     topic: str
     level: str
-    message: str
-    action: str = ""
+    message: Message
+    action: Message = EMPTY
     lines: tuple[str, ...] = ()
     value: float = 0.0
 
 
 UNKNOWN_PRESSURE = Finding(
-    *("pressure", CAUTION, "The contact pressure was not computed."),
-    "Change a length to compute it again.",
+    *("pressure", CAUTION, Message("The contact pressure was not computed.")),
+    Message("Change a length to compute it again."),
 )
 
 
@@ -77,7 +78,7 @@ class Assessment:
 
     def as_data(self) -> dict[str, Any]:
         """Return the assessment ready for JSON."""
-        return {"level": self.level, "findings": [asdict(each) for each in self.findings]}
+        return {"level": self.level, "findings": plain(self.findings)}
 
 
 def assess(shown: ShownState) -> Assessment:
@@ -116,31 +117,37 @@ def _run(shown: ShownState, running: bool) -> Iterator[Finding]:
     verdict = shown.verdict
     if verdict.motion == "diverging":
         yield Finding(
-            *("convergence", BAD, "The calculation diverges: there is no shape."),
-            "Set the lines longer or softer.",
+            *("convergence", BAD, Message("The calculation diverges: there is no shape.")),
+            Message("Set the lines longer or softer."),
         )
     elif verdict.motion == "vibrating":
-        message = "The calculation does not converge: it oscillates."
-        yield Finding("convergence", BAD, message, "Diagnose the design.")
+        message = Message("The calculation does not converge: it oscillates.")
+        yield Finding("convergence", BAD, message, Message("Diagnose the design."))
     elif verdict.motion == "settling" and not running:
-        yield Finding("convergence", BAD, "The calculation has not converged.", "Diagnose the design.")
+        yield Finding(
+            "convergence", BAD, Message("The calculation has not converged."), Message("Diagnose the design.")
+        )
     if verdict.motion not in ("diverging", "vibrating"):
         yield from _shape(verdict)
 
 
 def _shape(verdict: Convergence) -> Iterator[Finding]:
-    condition, action = verdict.condition, "Diagnose the design."
+    condition, action = verdict.condition, Message("Diagnose the design.")
     if condition is None:
         return
     ends = (100.0 * (each - 1.0) for each in (condition.shortest, condition.longest))
     low, high = (f"{each:+.0f}".replace("-", "\N{MINUS SIGN}") for each in ends)
     if condition.folded:
-        yield Finding("shape", BAD, "The skin folds over: this shape is not valid.", action)
+        yield Finding("shape", BAD, Message("The skin folds over: this shape is not valid."), action)
     elif condition.overstrained:
-        message = f"Skin is compressed or stretched by over 30 % ({low} to {high} %)."
+        message = Message(
+            "Skin is compressed or stretched by over 30 % ({low} to {high} %).", low=low, high=high
+        )
         yield Finding("shape", BAD, message, action)
     elif condition.strained:
-        message = f"Skin is compressed or stretched by over 20 % ({low} to {high} %)."
+        message = Message(
+            "Skin is compressed or stretched by over 20 % ({low} to {high} %).", low=low, high=high
+        )
         yield Finding("shape", CAUTION, message, action)
 
 
@@ -152,17 +159,25 @@ def _bands(cuts: CutList | None) -> Iterator[Finding]:
         if row.slack:
             yield _slack(row)
         elif row.far and row.elongation is not None:
-            message = f"The elastic of {row.title} is stretched far, by {100.0 * row.elongation:.0f} %."
-            action = "Cut it longer, or choose another elastic."
+            message = Message(
+                "The elastic of {line} is stretched far, by {percent} %.",
+                line=LineName(row.line, row.title),
+                percent=f"{100.0 * row.elongation:.0f}",
+            )
+            action = Message("Cut it longer, or choose another elastic.")
             yield Finding("band", CAUTION, message, action, (row.line,), row.elongation)
 
 
 def _slack(row: CutRow) -> Finding:
     level = BAD if row.push_n > PUSHES else CAUTION
-    message = f"{row.title} is slack: it has no tension."
+    message = Message("{line} is slack: it has no tension.", line=LineName(row.line, row.title))
     if row.push_n:
-        message = f"{row.title} is slack: it would have to push with {row.push_n:.1f} N, which no band can."
-    return Finding("band", level, message, "Shorten it, or take it off.", (row.line,))
+        message = Message(
+            "{line} is slack: it would have to push with {newtons} N, which no band can.",
+            line=LineName(row.line, row.title),
+            newtons=f"{row.push_n:.1f}",
+        )
+    return Finding("band", level, message, Message("Shorten it, or take it off."), (row.line,))
 
 
 def _pressures(pressed: PressureList | None) -> Iterator[Finding]:
@@ -174,16 +189,21 @@ def _pressures(pressed: PressureList | None) -> Iterator[Finding]:
 
 def _pressure(row: PressureRow) -> Finding:
     if row.max_kpa is None:
-        message = f"{row.title} has an unknown contact pressure."
-        return Finding("pressure", CAUTION, message, " ".join(row.notes), (row.line,))
+        message = Message("{line} has an unknown contact pressure.", line=LineName(row.line, row.title))
+        return Finding("pressure", CAUTION, message, join(row.notes), (row.line,))
     kpa, mmhg = row.max_kpa or 0.0, row.max_mmhg or 0.0
-    message = f"{row.title} presses with {kpa:.1f} kPa ({mmhg:.0f} mmHg)."
+    message = Message(
+        "{line} presses with {kpa} kPa ({mmhg} mmHg).",
+        line=LineName(row.line, row.title),
+        kpa=f"{kpa:.1f}",
+        mmhg=f"{mmhg:.0f}",
+    )
     if row.light == AMBER:
-        action = "Try it on: sit and breathe in with it."
+        action = Message("Try it on: sit and breathe in with it.")
         return Finding("pressure", CAUTION, message, action, (row.line,), kpa)
     unwearable = kpa >= pressure_limits().beyond[-1][0]
-    action = "Set it longer, wider or softer."
-    much = "It cannot be worn: set it much longer, wider or softer."
+    action = Message("Set it longer, wider or softer.")
+    much = Message("It cannot be worn: set it much longer, wider or softer.")
     return Finding("pressure", BAD, message, much if unwearable else action, (row.line,), kpa)
 
 
@@ -198,13 +218,15 @@ def _foundations(stages: Stages) -> Iterator[Finding]:
 
 def _fit(stages: Stages) -> Iterator[Finding]:
     """Yield how far the control mesh is off the body, where that is more than on any body that was tried."""
-    quality, action = stages.control.quality, "Check the bust points and folds."
+    quality, action = stages.control.quality, Message("Check the bust points and folds.")
     if quality is None:
         return
     largest, most, fold = FIT_LIMITS
     if quality.deviation_max > largest or quality.deviation_95 > most:
-        message = f"The control mesh is up to {quality.deviation_max:.0f} mm off the skin."
+        message = Message("The control mesh is up to {mm} off the skin.", mm=Length(quality.deviation_max))
         yield Finding("fit", CAUTION, message, action)
     if quality.fold_off > fold:
-        message = f"The fold row of the control mesh is {quality.fold_off:.0f} mm off the fold."
+        message = Message(
+            "The fold row of the control mesh is {mm} off the fold.", mm=Length(quality.fold_off)
+        )
         yield Finding("fit", CAUTION, message, action)

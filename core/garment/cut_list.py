@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from core.geometry.mesh import Points
 from core.geometry.plane_sections import arc_length
 from core.mechanics.constraint_lines import Line
 from core.mechanics.force_units import newtons_per_unit
+from core.messages import EMPTY, ElasticName, Length, LineName, Message, join, length_of, plain
 from core.pipeline.build import Stages
 
 FAR = 0.8
@@ -23,16 +24,21 @@ FAR = 0.8
 UNEVEN = 0.1
 """A tension that differs by more than this along a line is told [1]."""
 
-SLACK = "Slack: it is longer than the body needs there, and a band cannot push. Shorten it, or take it off."
+SLACK = join(
+    (
+        Message("Slack: it is longer than the body needs there, and a band cannot push."),
+        Message("Shorten it, or take it off."),
+    )
+)
 """What is said of a line without tension that the model would have push."""
 
-UNCHOSEN = "No elastic is chosen for it: choose one to get its length to cut."
+UNCHOSEN = Message("No elastic is chosen for it: choose one to get its length to cut.")
 """What is said of a line that is made of nothing in particular."""
 
 SEWN_ON = 3.0
 """A line that ends nearer than this to a band is sewn to it [mm]."""
 
-FRONT_ONLY = (
+FRONT_ONLY = Message(
     "Front part only, up to the edge of the control mesh: what goes on over shoulder or back is not in it."
 )
 """What is said of a line that ends where the control mesh does."""
@@ -65,12 +71,12 @@ class CutRow:
     allowance_mm: float | None = None
     cut_mm: float | None = None
     estimate: bool = True
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message, ...] = ()
     front_only: bool = False
     far: bool = False
     slack: bool = False
     push_n: float = 0.0
-    refused: str = ""
+    refused: Message = EMPTY
     height_mm: float | None = None
 
 
@@ -84,11 +90,12 @@ class CutList:
     rows: tuple[CutRow, ...]
     tissue_stiffness: float
     newtons_per_unit: float
-    notes: tuple[str, ...]
+    notes: tuple[Message, ...]
 
     def as_data(self) -> dict[str, Any]:
         """Return the list ready for JSON."""
-        return asdict(self)
+        data: dict[str, Any] = plain(self)
+        return data
 
 
 def cut_list(stages: Stages, control_points: Points) -> CutList:
@@ -133,8 +140,11 @@ def _row(stages: Stages, line: Line, reached: float, tensions: Mapping[str, Line
     if tail is not None and tail.length > 0.0:
         row = _noted(
             row,
-            "From its lower end over the shoulder to the under-bust band at the back: "
-            f"{tail.length:.0f} mm of it lie where the body is fixed.",
+            Message(
+                "From its lower end over the shoulder to the under-bust band at the back: {mm} of it "
+                "lie where the body is fixed.",
+                mm=Length(tail.length),
+            ),
         )
     elif goes_on(stages, line):
         why = (tail.problem,) if tail is not None and tail.problem else ()
@@ -175,10 +185,13 @@ def _held(row: CutRow, elastic: Elastic) -> CutRow:
     """Return the row of a line whose length is held: its tension tells how far its elastic is stretched."""
     if row.tension_n is None:
         return _noted(
-            row, "It lies on points that do not move, so its tension is not known: let lines spring back."
+            row,
+            Message(
+                "It lies on points that do not move, so its tension is not known: let lines spring back."
+            ),
         )
     if row.tension_n > elastic.max_force:
-        return _refused(row, str(elastic.overload_error(row.tension_n, row.title)))
+        return _refused(row, elastic.overload_error(row.tension_n, LineName(row.line, row.title)).text)
     if row.slack:
         return row
     return _stretched(row, elastic, elastic.elongation(row.tension_n), row.tension_n)
@@ -186,7 +199,7 @@ def _held(row: CutRow, elastic: Elastic) -> CutRow:
 
 def _stretched(row: CutRow, elastic: Elastic, elongation: float, tension: float) -> CutRow:
     if elongation > elastic.max_elongation:
-        return _refused(row, str(elastic.overstretch_error(elongation, row.title)))
+        return _refused(row, elastic.overstretch_error(elongation, LineName(row.line, row.title)).text)
     row = replace(
         row,
         elongation=max(elongation, 0.0),
@@ -200,45 +213,67 @@ def _stretched(row: CutRow, elastic: Elastic, elongation: float, tension: float)
     if elongation <= FAR * elastic.max_elongation:
         return row
     end = 100.0 * elastic.max_elongation
-    note = f"Stretched far, its table ends at {end:g} %: 30 to 50 % are usual, an estimate."
+    note = Message(
+        "Stretched far, its table ends at {end} %: 30 to 50 % are usual, an estimate.", end=f"{end:g}"
+    )
     return _noted(replace(row, far=True), note)
 
 
-def _refused(row: CutRow, why: str) -> CutRow:
+def _refused(row: CutRow, why: Message) -> CutRow:
     return replace(_noted(row, why), refused=why)
 
 
-def _noted(row: CutRow, note: str) -> CutRow:
+def _noted(row: CutRow, note: Message) -> CutRow:
     return replace(row, notes=(*row.notes, note))
 
 
-def _uneven(tension: LineTension) -> tuple[str, ...]:
+def _uneven(tension: LineTension) -> tuple[Message, ...]:
     low, high = max(float(tension.segments.min()), 0.0), max(float(tension.segments.max()), 0.0)
     if high - low <= UNEVEN * abs(tension.mean):
         return ()
-    return (f"Its tension goes from {low:.1f} to {high:.1f} N along the line.",)
+    return (
+        Message(
+            "Its tension goes from {low} to {high} N along the line.", low=f"{low:.1f}", high=f"{high:.1f}"
+        ),
+    )
 
 
-def _notes(rows: tuple[CutRow, ...], tissue: float) -> tuple[str, ...]:
+def _notes(rows: tuple[CutRow, ...], tissue: float) -> tuple[Message, ...]:
     """Return in sentences what holds for the whole list."""
     notes = [
-        f"Newtons are an estimate: skin and tissue are taken to answer with {tissue:.0f} N per m of width "
-        "and strain; skins alone were measured from about 160 to 1150.",
+        Message(
+            "Newtons are an estimate: skin and tissue are taken to answer with {tissue} N per m "
+            "of width and strain; skins alone were measured from about 160 to 1150.",
+            tissue=f"{tissue:.0f}",
+        ),
     ]
     guessed = sorted({row.elastic for row in rows if row.elastic and row.estimate and row.cut_mm})
     if guessed:
-        notes.append(f"The force of {'; '.join(guessed)} is an estimate: measure your own before you cut.")
+        notes.append(
+            Message(
+                "The force of {elastics} is an estimate: measure your own before you cut.",
+                elastics=tuple(map(ElasticName, guessed)),
+            )
+        )
     if any(row.closed and row.cut_mm for row in rows):
-        notes.append("The back of a band is taken to be stretched as far as its front.")
-        notes.append("Lengths run along the line, which need not lie level: a girth by tape is another one.")
+        notes.append(Message("The back of a band is taken to be stretched as far as its front."))
+        notes.append(
+            Message("Lengths run along the line, which need not lie level: a girth by tape is another one.")
+        )
     allowances = {row.allowance_mm for row in rows if row.cut_mm}
     if len(allowances) == 1:
         notes.append(
-            f"Each length to cut includes {allowances.pop():g} mm for seams; hooks and eyes, "
-            "rings and slides are not taken off."
+            Message(
+                "Each length to cut includes {allowance} for seams; hooks and eyes, rings and slides are "
+                "not taken off.",
+                allowance=length_of(allowances.pop() or 0.0),
+            )
         )
     elif allowances:
         notes.append(
-            "Lengths to cut hold the allowance for seams; hooks and eyes, rings and slides are not taken off."
+            Message(
+                "Lengths to cut hold the allowance for seams; hooks and eyes, rings and slides are "
+                "not taken off."
+            )
         )
     return tuple(notes)

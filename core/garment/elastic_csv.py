@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 
 from core.document.elastic import Curve, Elastic
 from core.errors import LineError
+from core.messages import Message, length_of
 
 LARGEST = 1_000_000
 """Bytes of the largest table that is read."""
@@ -28,9 +29,10 @@ _TOLD = re.compile(
 )
 _QUOTED = re.compile(r'^"(.*)"$')
 
-HELP = (
-    "one row of headings with units, like 'elongation %' and 'force N' (also N/cm, cN, gf, kgf), then one "
-    "row for each point; before them lines like '# width_mm: 12', '# name: ...', '# allowance_mm: 20'"
+HELP = Message(
+    "It needs one row of headings with units, like 'elongation %' and 'force N' (also N/cm, cN, gf, kgf), "
+    "then one row for each point; before them lines like '# width_mm: 12', '# name: ...', "
+    "'# allowance_mm: 20'."
 )
 """What a user has to know to write a table."""
 
@@ -61,12 +63,17 @@ def elastic_from_csv(text: str, name: str, width_mm: float | None = None) -> Ela
     """
     told = _told(text)
     name = told.get("name") or name
-    width = width_mm if "width" not in told else _number(told["width"].removesuffix("mm"), "width", name)
+    width = (
+        width_mm if "width" not in told else _number(told["width"].removesuffix("mm"), Message("width"), name)
+    )
     if width is None:
-        raise LineError(f"The table {name} does not say how wide the elastic is.", "Write '# width_mm: 12'.")
+        raise LineError(
+            Message("The table {name} does not say how wide the elastic is.", name=name),
+            Message("Write '# width_mm: 12'."),
+        )
     allowance = ALLOWANCE
     if "allowance" in told:
-        allowance = _number(told["allowance"].removesuffix("mm"), "allowance", name)
+        allowance = _number(told["allowance"].removesuffix("mm"), Message("allowance"), name)
     estimate = told.get("estimate", "no").strip().lower() in ("yes", "true", "1")
     curve = _curve(text, name, width)
     source = told.get("source", "").replace(_UNFILLED, "")
@@ -79,15 +86,22 @@ def _check_units(elastic: Elastic) -> None:
     """Raise LineError where figures are no elastic's in the units that the headings tell."""
     if elastic.max_elongation < SHORTEST_REACH:
         raise LineError(
-            f"The table {elastic.name} ends at {100.0 * elastic.max_elongation:g} %:"
-            " no elastic stretches so little.",
-            "If 1 means twice as long, head it 'elongation 1'.",
+            Message(
+                "The table {name} ends at {end} %: no elastic stretches so little.",
+                name=elastic.name,
+                end=f"{100.0 * elastic.max_elongation:g}",
+            ),
+            Message("If 1 means twice as long, head it 'elongation 1'."),
         )
     if elastic.max_force > MOST_PER_CM * elastic.width_mm / 10.0:
         raise LineError(
-            f"The table {elastic.name} ends at {elastic.max_force:g} N: no elastic {elastic.width_mm:g} mm "
-            "wide pulls so hard.",
-            "Look at its unit: 'force cN' or 'force gf' may be meant.",
+            Message(
+                "The table {name} ends at {strength} N: no elastic {width} wide pulls so hard.",
+                name=elastic.name,
+                strength=f"{elastic.max_force:g}",
+                width=length_of(elastic.width_mm),
+            ),
+            Message("Look at its unit: 'force cN' or 'force gf' may be meant."),
         )
 
 
@@ -129,11 +143,14 @@ def _percent(share: float) -> str:
     return short if float(short) / 100.0 == share else repr(100.0 * share)
 
 
-def _number(text: str, what: str, name: str) -> float:
+def _number(text: str, what: Message, name: str) -> float:
     try:
         return float(text.strip().replace(",", "."))
     except ValueError:
-        raise LineError(f"The {what} '{text.strip()}' of {name} is no number.", "Write it in mm.") from None
+        raise LineError(
+            Message("The {what} '{text}' of {name} is no number.", what=what, text=text.strip(), name=name),
+            Message("Write it in mm."),
+        ) from None
 
 
 def _curve(text: str, name: str, width: float) -> Curve:
@@ -144,10 +161,13 @@ def _curve(text: str, name: str, width: float) -> Curve:
         if line.strip(" \t,;") and not line.lstrip().startswith("#")
     ]
     if not numbered:
-        raise LineError(f"The table {name} is empty.", f"It needs {HELP}.")
+        raise LineError(Message("The table {name} is empty.", name=name), HELP)
     comma = next((mark for mark in "\t;," if mark in numbered[0][1]), "")
     if not comma:
-        raise LineError(f"The table {name} has one column only.", f"It needs {HELP}.")
+        raise LineError(
+            Message("The table {name} has one column only.", name=name),
+            HELP,
+        )
     heading, *rows = ((count, _cells(line, comma)) for count, line in numbered)
     columns = _columns(heading[1], name, width)
     points = list(_points(rows, columns, name, "," if comma != "," else "."))
@@ -155,13 +175,17 @@ def _curve(text: str, name: str, width: float) -> Curve:
         points = points[1:]
     if len(points) < FEWEST:
         raise LineError(
-            f"The table {name} has too few rows to be a curve.",
-            f"Measure {FEWEST} points at least beside the unstretched elastic.",
+            Message("The table {name} has too few rows to be a curve.", name=name),
+            Message("Measure {count} points at least beside the unstretched elastic.", count=FEWEST),
         )
     if points[0][0] == 0.0:
         raise LineError(
-            f"The table {name} begins with {points[0][1]:g} N at no elongation.",
-            "Measure from where it begins to pull, or leave that row out.",
+            Message(
+                "The table {name} begins with {force} N at no elongation.",
+                name=name,
+                force=f"{points[0][1]:g}",
+            ),
+            Message("Measure from where it begins to pull, or leave that row out."),
         )
     return ((0.0, 0.0), *points)
 
@@ -180,12 +204,19 @@ def _columns(heading: Sequence[str], name: str, width: float) -> tuple[tuple[int
     for pattern, what, example in ((_ELONGATION, "elongation", "%"), (_FORCE, "force", "N")):
         at = next((i for i, cell in enumerate(heading) if pattern.search(cell)), None)
         if at is None:
-            raise LineError(f"The table {name} has no column '{what}'.", f"It needs {HELP}.")
+            raise LineError(
+                Message("The table {name} has no column '{what}'.", name=name, what=what),
+                HELP,
+            )
         unit = _unit(heading[at], what, width)
         if unit is None:
             raise LineError(
-                f"The column '{heading[at].strip()}' of {name} does not say its unit.",
-                f"Head it like '{what} {example}'.",
+                Message(
+                    "The column '{heading}' of {name} does not say its unit.",
+                    heading=heading[at].strip(),
+                    name=name,
+                ),
+                Message("Head it like '{example}'.", example=f"{what} {example}"),
             )
         found.append((at, unit))
     return found[0], found[1]
@@ -216,6 +247,7 @@ def _points(
             stretched, pulled = (float(row[at].strip().replace(point, ".")) for at, _ in columns)
         except (ValueError, IndexError):
             raise LineError(
-                f"Line {count} of the table {name} has no two numbers.", "Leave out what is no point."
+                Message("Line {count} of the table {name} has no two numbers.", count=count, name=name),
+                Message("Leave out what is no point."),
             ) from None
         yield stretched / columns[0][1], pulled * columns[1][1]

@@ -14,10 +14,11 @@ import platformdirs
 
 from core.document.elastic import Elastic
 from core.document.storage.project_file import safe_name
-from core.errors import LineError, UserError
+from core.errors import LineError, UserError, reason_of
 from core.files.atomic_write import private_folder, write_text
 from core.files.regular_file import read_regular
 from core.garment.elastic_csv import ALLOWANCE, LARGEST, TEMPLATE, csv_of, elastic_from_csv, has_allowance
+from core.messages import ElasticName, Message
 
 __all__ = [
     "ALLOWANCE",
@@ -102,9 +103,15 @@ def find_elastic(text: str) -> Elastic:
     found = exact or (alike if words else [])
     if len(found) > 1:
         names = "; ".join(each.name for each in found)
-        raise LineError(f"Several elastics are called '{text}'.", f"Choose one of: {names}.")
+        raise LineError(
+            Message("Several elastics are called '{text}'.", text=text),
+            Message("Choose one of: {choices}.", choices=names),
+        )
     if not found:
-        raise LineError(f"No elastic is called '{text}'.", f"Choose one of: {'; '.join(elastics)}.")
+        raise LineError(
+            Message("No elastic is called '{text}'.", text=text),
+            Message("Choose one of: {choices}.", choices=tuple(map(ElasticName, elastics))),
+        )
     return found[0]
 
 
@@ -123,10 +130,16 @@ def _text_of(path: Path) -> str:
         data = read_regular(path, LARGEST)
     except OSError as problem:
         raise LineError(
-            f"The table {path.name} cannot be read: {problem.strerror}.", "Check its name and place."
+            Message(
+                "The table {name} cannot be read: {problem}.", name=path.name, problem=reason_of(problem)
+            ),
+            Message("Check its name and place."),
         ) from problem
     if b"\0" in data:
-        raise LineError(f"The file {path.name} is no text.", "Save the table as CSV, then import that.")
+        raise LineError(
+            Message("The file {name} is no text.", name=path.name),
+            Message("Save the table as CSV, then import that."),
+        )
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -151,8 +164,10 @@ def remove_elastic(name: str) -> None:
                 path.unlink()
             except OSError as problem:
                 raise UserError(
-                    f"The table {path.name} cannot be removed: {problem.strerror}.",
-                    "Remove it from the folder by hand.",
+                    Message(
+                        "The table {name} cannot be removed: {why}.", name=path.name, why=reason_of(problem)
+                    ),
+                    Message("Remove it from the folder by hand."),
                 ) from problem
 
 
@@ -165,7 +180,10 @@ def save_elastic(elastic: Elastic) -> Path:
     try:
         private_folder(folder)
     except OSError as problem:
-        raise UserError(f"The folder {folder} cannot be made.", "Make room, or make it by hand.") from problem
+        raise UserError(
+            Message("The folder {folder} cannot be made.", folder=str(folder)),
+            Message("Make room, or make it by hand."),
+        ) from problem
     held = [path for path in _own_tables() if _holds(path, elastic.name)]
     # Of several the library has the last; names that differ may be one name for files.
     path = held[-1] if held else _free(folder, safe_name(elastic.name))

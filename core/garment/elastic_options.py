@@ -22,6 +22,7 @@ from core.garment.match_shape import (
 )
 from core.garment.tension import line_tensions
 from core.geometry.mesh import Points
+from core.messages import EMPTY, LineName, Message
 from core.pipeline.build import Stages, build
 
 KEEP_FIT, KEEP_CUT = MODES = ("fit", "cut")
@@ -57,10 +58,10 @@ class ElasticOption:
     closest: Outcome | None = None
 
     @property
-    def reason(self) -> str:
+    def reason(self) -> Message:
         """Why it cannot be used, as one short sentence, or nothing."""
         problem = self.problem
-        return problem.reason if isinstance(problem, ElasticError) else str(problem or "")
+        return problem.reason if isinstance(problem, ElasticError) else problem.text if problem else EMPTY
 
 
 def elastic_option(stages: Stages, names: Sequence[str], elastic: Elastic | None, mode: str) -> ElasticOption:
@@ -147,7 +148,7 @@ def _refused(
         if tensions[name].compression:
             return _slack(stages, name)
         if held and tensions[name].tension > elastic.max_force:
-            return elastic.overload_error(tensions[name].tension, name)
+            return elastic.overload_error(tensions[name].tension, LineName(name))
     return None
 
 
@@ -186,8 +187,8 @@ def _slack(stages: Stages, name: str) -> ElasticError:
     length = line.rest_length if off is None else line.length(off)
     percent = math.floor(100.0 * length / line.rest_length - 0.1)
     return ElasticError(
-        f"{name} is slack: as long as this it has no tension.",
-        f"Set {name} to {percent:.0f} % or shorter.",
-        f"Slack at this length: set the line to {percent:.0f} % or shorter.",
-        name,
+        Message("{line} is slack: as long as this it has no tension.", line=LineName(name)),
+        Message("Set {line} to {percent} % or shorter.", line=LineName(name), percent=f"{percent:.0f}"),
+        Message("Slack at this length: set the line to {percent} % or shorter.", percent=f"{percent:.0f}"),
+        LineName(name),
     )

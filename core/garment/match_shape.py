@@ -14,6 +14,7 @@ from core.garment.tension import line_tensions
 from core.geometry.mesh import Floats, Points
 from core.mechanics.constraint_lines import RATIO_LIMITS, Line
 from core.mechanics.force_units import newtons_per_unit
+from core.messages import ElasticName, Length, LineName, Message
 from core.pipeline.build import Stages, build
 from core.pipeline.exact import NoEquilibriumError, exact_equilibrium
 
@@ -68,14 +69,20 @@ def too_weak_error(elastic: Elastic, ratio: float, excess: float, line: str) -> 
 
     ``ratio`` [1] is the shortest to which it can be cut.
     """
-    limit = f"at its limit, {100.0 * elastic.max_elongation:g} % stretch"
+    limit = Message("at its limit, {reach} % stretch", reach=f"{100.0 * elastic.max_elongation:g}")
     if ratio <= RATIO_LIMITS[0] + PRECISION:
-        limit = f"at the shortest cut, {100.0 * RATIO_LIMITS[0]:g} %"
+        limit = Message("at the shortest cut, {ratio} %", ratio=f"{100.0 * RATIO_LIMITS[0]:g}")
     return ElasticError(
-        f"{elastic.name} is too weak for {line}: {excess:.1f} mm too long {limit}.",
-        "Let the line be longer, or take a stronger or wider elastic.",
-        f"Too weak: {excess:.1f} mm too long {limit}.",
-        line,
+        Message(
+            "{name} is too weak for {line}: {excess} too long {limit}.",
+            name=ElasticName(elastic.name),
+            line=LineName(line),
+            excess=Length(excess, 1),
+            limit=limit,
+        ),
+        Message("Let the line be longer, or take a stronger or wider elastic."),
+        Message("Too weak: {excess} too long {limit}.", excess=Length(excess, 1), limit=limit),
+        LineName(line),
     )
 
 
@@ -107,8 +114,11 @@ def match_reached_lengths(
     short = np.exp(reached - wanted) - 1.0 > SHORT
     if np.any(reached - wanted < -SHORT) or any(short & [elastics[name] is None for name in moving]):
         raise LineError(
-            f"No length of elastic was found with which {', '.join(moving)} would reach the same.",
-            "Let the lines be longer, or take stronger or wider elastics.",
+            Message(
+                "No length of elastic was found with which {lines} would reach the same.",
+                lines=", ".join(moving),
+            ),
+            Message("Let the lines be longer, or take stronger or wider elastics."),
         )
     pairs = {name: _shared(found, design.linked_pair(name), moving) for name in moving}
     missed = {name: float(each) for name, each, far in zip(moving, excess, short, strict=True) if far}

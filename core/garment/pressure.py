@@ -20,6 +20,7 @@ from core.garment.cut_list import is_strap
 from core.garment.pressure_limits import pressure_limits
 from core.garment.tension import LineTension, line_tensions
 from core.geometry.mesh import Flags, Floats, Points
+from core.messages import Length, Message
 from core.pipeline.build import Stages
 
 MMHG = 0.133322
@@ -29,20 +30,24 @@ LEAST_OVER = 20.0
 """The radius is never taken over less than this length [mm]: a scan does not show more."""
 
 LEFT_OUT = (
-    "An estimate, and rather too much: tissue gives way under a band, and sensors read up to 42 % less.",
-    "Friction is left out: what keeps a band from slipping, along it or up and down, is not counted.",
-    "Only the pull along the band presses here; fabric that is stretched both ways presses more.",
-    "The radius is taken over about the width of the band: an edge of a bone presses more.",
-    "The body stands and breathes evenly: sitting and breathing in can double the pressure.",
+    Message(
+        "An estimate, and rather too much: tissue gives way under a band, and sensors read up to 42 % less."
+    ),
+    Message(
+        "Friction is left out: what keeps a band from slipping, along it or up and down, is not counted."
+    ),
+    Message("Only the pull along the band presses here; fabric that is stretched both ways presses more."),
+    Message("The radius is taken over about the width of the band: an edge of a bone presses more."),
+    Message("The body stands and breathes evenly: sitting and breathing in can double the pressure."),
 )
 """What the figures leave out."""
 
-SLACK_NOTE = "It is slack: it does not press."
+SLACK_NOTE = Message("It is slack: it does not press.")
 """What is said of a line without tension."""
 
-NOT_FOR_STRAPS = (
-    "The limits of the light are for soft parts round the trunk: "
-    "they were not set for what goes over shoulders."
+NOT_FOR_STRAPS = Message(
+    "The limits of the light are for soft parts round the trunk: they were not set for "
+    "what goes over shoulders."
 )
 """What is said of a line that goes on beyond the control mesh, as straps do."""
 
@@ -67,7 +72,7 @@ class LinePressure:
     width: float
     step: float
     closed: bool
-    input_notes: tuple[str, ...] = ()
+    input_notes: tuple[Message, ...] = ()
 
     @cached_property
     def along(self) -> Floats:
@@ -144,18 +149,22 @@ class LinePressure:
         return pressure_limits().rating(self.largest)
 
     @property
-    def notes(self) -> tuple[str, ...]:
+    def notes(self) -> tuple[Message, ...]:
         """What is to be said of this band: what was taken for granted, and where it does not press."""
         said = list(self.input_notes)
         if not self.tension.any():
             said.append(SLACK_NOTE)
         elif not self.tension.all():
-            said.append("Part of it is slack: it does not press there.")
+            said.append(Message("Part of it is slack: it does not press there."))
         if self.bridges:
             most = max(bridge.height for bridge in self.bridges)
             said.append(
-                f"It goes straight over hollows for {self.bridged_length:.0f} mm, "
-                f"up to {most:.0f} mm off the skin: it does not press there."
+                Message(
+                    "It goes straight over hollows for {length}, up to {height} off the skin: it does "
+                    "not press there.",
+                    length=Length(self.bridged_length),
+                    height=Length(most),
+                )
             )
         return tuple(said)
 
@@ -194,13 +203,13 @@ def pressures(stages: Stages, control_points: Points) -> Mapping[str, LinePressu
     )
 
 
-def _told(stages: Stages, name: str, tension: LineTension) -> tuple[str, ...]:
+def _told(stages: Stages, name: str, tension: LineTension) -> tuple[Message, ...]:
     """Return in sentences what was taken for granted."""
     said = []
     if tension.estimate:
-        said.append("Its tension follows from the stiffness of tissue alone, an estimate.")
+        said.append(Message("Its tension follows from the stiffness of tissue alone, an estimate."))
     if not stages.design.line_settings(name).width:
-        said.append(f"It is taken to be {USUAL_WIDTH:g} mm wide: no width was told.")
+        said.append(Message("It is taken to be {width} wide: no width was told.", width=Length(USUAL_WIDTH)))
     if any(line.name == name and is_strap(stages, line) for line in stages.model.lines):
         said.append(NOT_FOR_STRAPS)
     return tuple(said)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 from core.deformation.tffd import deform
@@ -13,6 +13,7 @@ from core.garment.pressure_limits import pressure_limits
 from core.garment.tension import LineTension, line_tensions
 from core.geometry.mesh import Mesh, Points
 from core.mechanics.constraint_lines import Line
+from core.messages import Message, plain
 from core.pipeline.build import Stages
 
 
@@ -40,7 +41,7 @@ class PressureRow:
     light: str = ""
     force_n: float | None = None
     bridged_mm: float | None = None
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +72,7 @@ class PressureList:
         """Return the list ready for JSON, with limits, their sources and what is left out."""
         limits = pressure_limits()
         return {
-            "rows": [asdict(row) for row in self.rows],
+            "rows": plain(self.rows),
             "force_n": self.force_n,
             "limits": {
                 "amber_kpa": limits.amber_kpa,
@@ -81,7 +82,7 @@ class PressureList:
                 "sources": [{"name": each.name, "says": each.words.en} for each in limits.sources],
                 "doubts": [each.en for each in limits.doubts],
             },
-            "left_out": list(LEFT_OUT),
+            "left_out": plain(LEFT_OUT),
         }
 
 
@@ -129,7 +130,11 @@ def _row(
     )
 
 
-def _unknown(held: bool) -> str:
+def _unknown(held: bool) -> Message:
     if held:
-        return "It lies on points that do not move, so its tension is not known: let lines spring back."
-    return "It lies on points that do not move: its tension is known once an elastic is chosen for it."
+        return Message(
+            "It lies on points that do not move, so its tension is not known: let lines spring back."
+        )
+    return Message(
+        "It lies on points that do not move: its tension is known once an elastic is chosen for it."
+    )

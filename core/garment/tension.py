@@ -12,6 +12,7 @@ from core.geometry.mesh import Floats, Points
 from core.mechanics.force_units import newtons_per_unit
 from core.mechanics.newton import SlidingSurface
 from core.mechanics.potential import Potential
+from core.messages import Message
 from core.pipeline.build import Stages, line_targets
 
 SLACK = 0.05
@@ -46,8 +47,8 @@ class LineTension:
 def divergence_error() -> LineError:
     """Return what to say where the points are those of no body any more."""
     return LineError(
-        "The calculation ran away: there is no body to measure or to sew for.",
-        "Set the lines longer or softer.",
+        Message("The calculation ran away: there is no body to measure or to sew for."),
+        Message("Set the lines longer or softer."),
     )
 
 

@@ -14,11 +14,15 @@ from core.errors import LineError
 from core.geometry.closest_point import barycentric, nearest_faces
 from core.geometry.mesh import Faces, Flags, Mesh, Points, half_edges
 from core.geometry.plane_sections import arc_length
+from core.messages import Message
 
 
 def no_path_error() -> LineError:
     """Return what to say where two places do not hang together."""
-    return LineError("There is no way over the skin to that place.", "Click on the same part of the body.")
+    return LineError(
+        Message("There is no way over the skin to that place."),
+        Message("Click on the same part of the body."),
+    )
 
 
 class SurfacePaths:
@@ -34,7 +38,8 @@ class SurfacePaths:
             self._solver = potpourri3d.EdgeFlipGeodesicSolver(mesh.vertices, mesh.faces.astype(np.int64))
         except (RuntimeError, ValueError) as problem:
             raise LineError(
-                "Lines cannot be drawn on the skin of this scan.", "Lead one through control points."
+                Message("Lines cannot be drawn on the skin of this scan."),
+                Message("Lead one through control points."),
             ) from problem
 
     def path(self, start: Points, end: Points) -> Points:

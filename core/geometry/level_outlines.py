@@ -12,6 +12,7 @@ from scipy.sparse.csgraph import connected_components
 
 from core.errors import LandmarkError
 from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points, rows_of
+from core.messages import Message
 
 BINS = 120
 """Directions in which the reach of an outline is told, 3 degrees apart."""
@@ -116,7 +117,8 @@ def _cut_levels(mesh: Mesh, z: Floats) -> tuple[Points, Indices, Indices]:
 def not_a_surface_error() -> LandmarkError:
     """Return the refusal of a skin most of which is none."""
     return LandmarkError(
-        "The triangles of this scan run right through the body.", "Export the skin of the body alone."
+        Message("The triangles of this scan run right through the body."),
+        Message("Export the skin of the body alone."),
     )
 
 

@@ -12,6 +12,7 @@ from core.landmarks.detect import find_landmarks
 from core.landmarks.torso.girths import girth_warnings, girths, levels
 from core.landmarks.types import Landmarks
 from core.landmarks.warnings import collect_warnings
+from core.messages import plain
 from core.scan.body import Body
 
 MOST = 60
@@ -32,7 +33,7 @@ def detection(body: Body, landmarks: Landmarks | None = None) -> dict[str, Any]:
             "file": (to_file[:3, :3] @ mark.position + to_file[:3, 3]).tolist(),
             "mm": mark.position.tolist(),
             "confidence": float(mark.confidence),
-            "rule": mark.rule,
+            "rule": str(mark.rule),
             "by_hand": mark.by_hand,
             "evidence": _thinned(mark.evidence),
         }
@@ -50,9 +51,9 @@ def detection(body: Body, landmarks: Landmarks | None = None) -> dict[str, Any]:
         "sure": body.pose.is_certain and not landmarks.size_doubted,
         "hints": [hint.kind for hint in landmarks.hints],
         "upright": landmarks.upright,
-        "reason": body.pose.reason,
-        "repairs": list(body.repairs),
-        "warnings": collect_warnings(body, landmarks) + girth_warnings(found),
+        "reason": str(body.pose.reason),
+        "repairs": plain(body.repairs),
+        "warnings": plain(collect_warnings(body, landmarks) + girth_warnings(found)),
     }
 
 

@@ -11,6 +11,7 @@ from core.geometry.mesh import Floats, Indices
 from core.landmarks.body_build import Build
 from core.landmarks.torso.torso_axis import torso_axis
 from core.landmarks.types import Hint
+from core.messages import Length, Message
 from core.scan.orientation.pose import Pose
 from core.scan.orientation.unit_detection import MILLIMETRES
 
@@ -43,8 +44,10 @@ def size_hint(build: Build, pose: Pose) -> tuple[Hint, ...]:
     low, unit = float(build.mesh.vertices[:, 2].min()), pose.unit
     stature = whole_figure(heights, widths, build.armpit, low)
     if stature and not STATURES[0] < stature < STATURES[1]:
-        sentence = (
-            f"In {unit}, the body is {stature:.0f} mm tall, which is rare among adults. Check the unit."
+        sentence = Message(
+            "In {unit}, the body is {stature} tall, which is rare among adults. Check the unit.",
+            unit=unit,
+            stature=Length(stature),
         )
         return (Hint("size", sentence),)
     lengths = _lengths(build, heights, widths)
@@ -62,19 +65,27 @@ def _torso_hint(lengths: dict[str, float], unit: str) -> tuple[Hint, ...]:
         return ()
     length, percent = lengths["length"], 100.0 * abs(np.expm1(scale))
     if form:
-        sentence = (
-            f"In inches, the body is unusually large: {length:.0f} mm from waist to neck. In cm, it would be "
-            f"a dress form at half scale, with a waist girth of {in_cm:.0f} mm. Check the unit."
+        sentence = Message(
+            "In inches, the body is unusually large: {length} from waist to neck. In cm, it "
+            "would be a dress form at half scale, with a waist girth of {in_cm}. Check the unit.",
+            length=Length(length),
+            in_cm=Length(in_cm),
         )
     elif scale > 0.0:
-        sentence = (
-            f"In {unit}, the body is unusually large: {length:.0f} mm from waist to neck, about "
-            f"{percent:.0f} % more than usual. Check the unit."
+        sentence = Message(
+            "In {unit}, the body is unusually large: {length} from waist to neck, about "
+            "{percent} % more than usual. Check the unit.",
+            unit=unit,
+            length=Length(length),
+            percent=f"{percent:.0f}",
         )
     else:
-        sentence = (
-            f"In {unit}, the body is unusually small: {length:.0f} mm from waist to neck, about "
-            f"{percent:.0f} % less than usual. Check the unit."
+        sentence = Message(
+            "In {unit}, the body is unusually small: {length} from waist to neck, about "
+            "{percent} % less than usual. Check the unit.",
+            unit=unit,
+            length=Length(length),
+            percent=f"{percent:.0f}",
         )
     return (Hint("size", sentence),)
 

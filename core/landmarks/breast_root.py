@@ -10,6 +10,7 @@ from core.geometry.mesh import SIGNS, Flags, Floats, Mesh, Points
 from core.geometry.plane_sections import curvature
 from core.landmarks.torso.cross_sections import trunk_levels
 from core.landmarks.types import SIDES, Landmark, Landmarks
+from core.messages import Message
 
 FINE = 720
 """Directions in which the outline of a breast is read, half a degree apart."""
@@ -23,12 +24,18 @@ USUAL = np.radians(80.0), np.radians(28.0)
 HOLLOW = 0.002
 """A root is hollower than this [1/mm]."""
 
-INNER = "The most hollow place of the outline at the height of the bust point, between it and the middle."
-NO_INNER = "Half way from the middle to the bust point: the outline shows no hollow between the breasts."
-OUTER = (
+INNER = Message(
+    "The most hollow place of the outline at the height of the bust point, between it and the middle."
+)
+NO_INNER = Message(
+    "Half way from the middle to the bust point: the outline shows no hollow between the breasts."
+)
+OUTER = Message(
     "The most hollow place of the outline at the height of the bust point, to the side of it: a suggestion."
 )
-NO_OUTER = "Where the root of a breast usually ends: the breast passes into the side without a hollow."
+NO_OUTER = Message(
+    "Where the root of a breast usually ends: the breast passes into the side without a hollow."
+)
 
 
 def breast_root_landmarks(mesh: Mesh, found: Landmarks) -> list[Landmark]:

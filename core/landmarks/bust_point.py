@@ -14,12 +14,13 @@ from core.landmarks.chest import Pole
 from core.landmarks.nipple import GRID, BreastPatch, breast_patch
 from core.landmarks.nipple_pair import ALONE, BORNE, Nipple, find_nipples
 from core.landmarks.types import SIDES, Landmark
+from core.messages import Message
 
-NIPPLE = "The nipple: the spot that stands out of the smooth breast around it."
-SMOOTH = "Between the foremost place and the middle of the breast: no nipple stands out."
-MIRRORED = "The middle of the breast, shifted towards where the nipple of the other breast lies."
+NIPPLE = Message("The nipple: the spot that stands out of the smooth breast around it.")
+SMOOTH = Message("Between the foremost place and the middle of the breast: no nipple stands out.")
+MIRRORED = Message("The middle of the breast, shifted towards where the nipple of the other breast lies.")
 
-ACROSS = "Estimated, as no breast stands out there: across from the bust point of the other breast."
+ACROSS = Message("Estimated, as no breast stands out there: across from the bust point of the other breast.")
 
 OUTWARD = 18.0
 """On a smooth breast the bust point lies so far outside the foremost place, towards the pole [mm]."""

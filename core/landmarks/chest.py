@@ -12,6 +12,7 @@ from core.errors import LandmarkError
 from core.geometry.mesh import SIGNS, Floats, Indices, Points
 from core.landmarks.anchor import ABOVE, LOWEST, Anchor, reach_map, smoothed
 from core.landmarks.torso.cross_sections import TorsoSections
+from core.messages import Message
 
 BELOW = 25.0
 """A pole is looked for so far below the anchor [mm], and up to the highest breast."""
@@ -79,7 +80,9 @@ def forward_places(survey: TorsoSections, anchor: Anchor) -> tuple[Points, Point
     out = x[columns] * np.sin(turn) - RISING * np.maximum(high[rows] - HIGH, 0.0)[:, None]
     left, right = (known[rows][:, side] * np.cos(turn) + out for side in both)
     if not (left.size and np.isfinite(left + right).any()):
-        raise LandmarkError("The front of the chest is missing.", "Open a scan that shows the whole bust.")
+        raise LandmarkError(
+            Message("The front of the chest is missing."), Message("Open a scan that shows the whole bust.")
+        )
     row, column = np.unravel_index(np.argmax(left + right), left.shape)
     away = np.hypot((high[rows] - high[rows][row])[:, None], x[columns] - x[columns][column])
     places = []
@@ -117,7 +120,9 @@ def find_poles(survey: TorsoSections, anchor: Anchor) -> tuple[Pole, Pole]:
 
 
 def _no_base() -> LandmarkError:
-    return LandmarkError("The trunk under the breasts is missing.", "Open a scan that shows the whole trunk.")
+    return LandmarkError(
+        Message("The trunk under the breasts is missing."), Message("Open a scan that shows the whole trunk.")
+    )
 
 
 def _prominence(survey: TorsoSections, anchor: Anchor, p: Points, row: Indices) -> Floats:
@@ -138,7 +143,9 @@ def _pole(
 ) -> Pole:
     """Find the pole among the points of one side: the highest summit near the ``forward`` place, centred."""
     if len(p) < 200:
-        raise LandmarkError("The front of the chest is missing.", "Open a scan that shows the whole bust.")
+        raise LandmarkError(
+            Message("The front of the chest is missing."), Message("Open a scan that shows the whole bust.")
+        )
     high = p[:, 2] - anchor.z
     score = prominence - STRAYING * np.abs(azimuth - np.clip(azimuth, *USUAL))
     score -= RISING * np.maximum(high - HIGH, 0.0)

@@ -22,6 +22,7 @@ from core.landmarks.torso.cross_sections import scan_torso
 from core.landmarks.torso_landmarks import torso_landmarks
 from core.landmarks.types import SIDES, Landmark, Landmarks
 from core.landmarks.validation import check, check_anchor, check_placed, placed_warnings
+from core.messages import Message
 from core.progress import Progress, quiet
 from core.scan.body import Body
 from core.scan.edited_body import is_estimated
@@ -39,7 +40,7 @@ UNMEASURED = 0.55
 ESTIMATED = 0.3
 """The most confidence [1] in a landmark on skin that fills a hole: no more than in one that a hole hides."""
 
-FILLED = "Found on skin that fills a hole by estimate."
+FILLED = Message("Found on skin that fills a hole by estimate.")
 
 
 def find_landmarks(
@@ -77,7 +78,7 @@ def find_landmarks(
 
 def _detected(
     mesh: Mesh, by_hand: Mapping[str, Landmark], progress: Progress
-) -> tuple[Landmarks, tuple[str, ...]]:
+) -> tuple[Landmarks, tuple[Message, ...]]:
     """Return the landmarks of the bust, with warnings, where not all of them are placed."""
     trunk = scan_torso(mesh)
     progress(FINDING, 0.3)

@@ -7,6 +7,7 @@ import numpy as np
 from core.landmarks.body_build import Build
 from core.landmarks.torso.cross_sections import Level
 from core.landmarks.types import Hint
+from core.messages import Message
 from core.scan.orientation.lean_angles import corrected_up
 from core.scan.orientation.pose import Pose
 
@@ -27,14 +28,16 @@ def lean_hint(build: Build, pose: Pose) -> tuple[Hint, ...]:
     up = corrected_up(pose, lean, 0.0)
     forward, lean = lean > 0.0, abs(lean)
     if forward:
-        sentence = (
-            f"The trunk leans forward by about {lean:.0f} degrees, and girths are measured level. "
-            "Set it upright at the Scan step."
+        sentence = Message(
+            "The trunk leans forward by about {lean} degrees, and girths are measured level. Set "
+            "it upright at the Scan step.",
+            lean=f"{lean:.0f}",
         )
     else:
-        sentence = (
-            f"The trunk leans backward by about {lean:.0f} degrees, and girths are measured level. "
-            "Set it upright at the Scan step."
+        sentence = Message(
+            "The trunk leans backward by about {lean} degrees, and girths are measured level. "
+            "Set it upright at the Scan step.",
+            lean=f"{lean:.0f}",
         )
     return (Hint("lean", sentence, up),)
 

@@ -13,6 +13,7 @@ from core.landmarks.breast_profiles import OWN, Profile, profiles
 from core.landmarks.inframammary_fold import Trace, trace
 from core.landmarks.manual import reconcile_with_detected
 from core.landmarks.types import SIDES, Landmark
+from core.messages import Message
 
 HOLLOW = 0.006
 """A crease is hollower than this [1/mm]."""
@@ -36,16 +37,16 @@ counts as much as so many places that are seen [1]."""
 NEAR = 42.0
 """Behind a hole the crease is taken from what is seen of it so far to both sides [mm]."""
 
-CREASE = "The sharpest crease below the breast, on the upright profile through the bust point."
-NO_CREASE = "The most hollow place below the breast: the upright profile shows no crease."
-ESTIMATED = "Estimated, as the scan has a hole there: from the skin around the hole."
-MIRRORED = "Estimated, as the scan has a hole there: from the fold of the other breast."
-GUESSED = "Estimated, as the scan shows no fold there: from the height of the hole."
-UNSEEN = "Estimated, as no fold shows there: a little above where the body comes forward."
+CREASE = Message("The sharpest crease below the breast, on the upright profile through the bust point.")
+NO_CREASE = Message("The most hollow place below the breast: the upright profile shows no crease.")
+ESTIMATED = Message("Estimated, as the scan has a hole there: from the skin around the hole.")
+MIRRORED = Message("Estimated, as the scan has a hole there: from the fold of the other breast.")
+GUESSED = Message("Estimated, as the scan shows no fold there: from the height of the hole.")
+UNSEEN = Message("Estimated, as no fold shows there: a little above where the body comes forward.")
 HIDDEN = (ESTIMATED, MIRRORED, GUESSED)
 """The rules of folds that a hole of the scan hides."""
 
-LOWEST = "The lowest point of the breast between the bust point and the fold."
+LOWEST = Message("The lowest point of the breast between the bust point and the fold.")
 
 MISSING = 0.3
 """The most confidence [1] in a lowest point over a fold that shows in no crease, or hangs over."""

@@ -12,6 +12,7 @@ from core.geometry.closest_point import nearest_on
 from core.geometry.mesh import MAX_COORDINATE, Floats, Mesh, Points
 from core.geometry.mirror_plane import mirror
 from core.landmarks.types import CERTAIN, NAMES, Landmark
+from core.messages import LandmarkName, Length, Message
 
 HELP = (
     "NAME=x,y,z: a landmark that you place yourself, like bust_point_left=112.5,-140,1204; may be repeated. "
@@ -20,7 +21,7 @@ HELP = (
 )
 """What a user has to know to place a landmark."""
 
-PLACED = "Placed by hand."
+PLACED = Message("Placed by hand.")
 
 ASTRAY, ADRIFT = 15.0, 20.0
 """So far from where a rule finds it [mm], a placed landmark contradicts the rule: one that is sure of itself,
@@ -51,9 +52,14 @@ class PlacedMark:
 def check_place(name: str, place: Sequence[float] | Points) -> None:
     """Raise LandmarkError for a name that no landmark has, and for what is no place."""
     if name not in NAMES:
-        raise LandmarkError(f"There is no landmark {name}.", f"Choose one of {', '.join(NAMES)}.")
+        raise LandmarkError(
+            Message("There is no landmark {name}.", name=name),
+            Message("Choose one of {choices}.", choices=", ".join(NAMES)),
+        )
     if np.shape(place) != (3,) or not (np.abs(place) < MAX_COORDINATE).all():
-        raise LandmarkError(f"{name} needs a place with three numbers.", "Give x, y and z.")
+        raise LandmarkError(
+            Message("{name} needs a place with three numbers.", name=name), Message("Give x, y and z.")
+        )
 
 
 def placed_mark(text: str) -> PlacedMark:
@@ -63,7 +69,8 @@ def placed_mark(text: str) -> PlacedMark:
         x, y, z = map(float, place.split(","))
     except ValueError:
         raise LandmarkError(
-            f"'{text}' places no landmark.", "Write NAME=x,y,z with the numbers of the scan file."
+            Message("'{text}' places no landmark.", text=text),
+            Message("Write NAME=x,y,z with the numbers of the scan file."),
         ) from None
     return PlacedMark(name.strip().lower().replace("-", "_"), (x, y, z))
 
@@ -96,7 +103,9 @@ def reconcile_with_detected(placed: Landmark | None, found: Landmark) -> Landmar
     off = float(np.linalg.norm(placed.position - found.position))
     if found.confidence < DIM or off < (ASTRAY if found.confidence >= CERTAIN else ADRIFT):
         return placed
-    return replace(placed, off=off, rule=f"Placed by hand, {off:.0f} mm from where the rule finds it.")
+    return replace(
+        placed, off=off, rule=Message("Placed by hand, {off} from where the rule finds it.", off=Length(off))
+    )
 
 
 def nearest_skin(mesh: Mesh, point: Points) -> Points:
@@ -123,7 +132,11 @@ def _laid(mesh: Mesh, name: str, point: Points) -> Landmark:
     place = nearest_skin(mesh, point)
     if np.linalg.norm(place - point) > REACH:
         raise LandmarkError(
-            f"The landmark {name.replace('_', ' ')} was placed more than {REACH:.0f} mm off the skin.",
-            "Place it on the skin of the body.",
+            Message(
+                "The landmark {name} was placed more than {far} off the skin.",
+                name=LandmarkName(name.replace("_", " ")),
+                far=Length(REACH),
+            ),
+            Message("Place it on the skin of the body."),
         )
     return Landmark(name, place, 1.0, PLACED, by_hand=True)

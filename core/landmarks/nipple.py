@@ -14,6 +14,7 @@ from core.errors import LandmarkError
 from core.geometry.mesh import Flags, Floats, Mesh, Points, quadric_terms, unit
 from core.landmarks.anchor import smoothed
 from core.landmarks.chest import Pole
+from core.messages import Message
 
 GRID = 2.0
 """Cell of the height map [mm]."""
@@ -134,8 +135,8 @@ def breast_patch(mesh: Mesh, pole: Pole) -> BreastPatch:
     height = _height(local, np.stack([u, v], axis=-1))
     if not np.isfinite(height).any():
         raise LandmarkError(
-            "The skin of a breast is missing, or its points are too far apart.",
-            "Open a scan that shows the whole bust.",
+            Message("The skin of a breast is missing, or its points are too far apart."),
+            Message("Open a scan that shows the whole bust."),
         )
     own = _hanging_together(height)
     points = pole.position + np.stack([u, v, np.where(own, height, np.nan)], axis=-1) @ frame

@@ -15,6 +15,7 @@ from core.landmarks.lean import lean_hint
 from core.landmarks.torso.cross_sections import Level, stable_level, trunk_levels
 from core.landmarks.types import CERTAIN, SIDES, Hint, Landmark, Landmarks
 from core.landmarks.validation import refusal
+from core.messages import Length, Message
 from core.scan.orientation.pose import Pose
 
 ANGULAR = 0.91
@@ -62,7 +63,7 @@ def require_not_angular(build: Build, landmarks: Landmarks) -> None:
     """Raise LandmarkError where the trunk is a block rather than a body."""
     under = [level for level in build.levels if level.z < landmarks.underbust_level - 5.0]
     if len(under) > 2 and np.median([_filling(level) for level in under[-4:]]) > ANGULAR:
-        raise refusal("the trunk is angular like a block of stone or wood")
+        raise refusal(Message("the trunk is angular like a block of stone or wood"))
 
 
 def hints(build: Build, pose: Pose, landmarks: Landmarks) -> tuple[Hint, ...]:
@@ -86,9 +87,11 @@ def flat_hint(mesh: Mesh, landmarks: Landmarks) -> tuple[Hint, ...]:
     hung = depth < min(FLAT_SLOPE * drop, FLAT_RUN) and seen < FAINT and more < FLAT_AROUND * under.tape
     if not (low or hung):
         return ()
-    sentence = (
-        f"The bust girth is only {more:.0f} mm larger than the under-bust girth. The breasts may be small, "
-        "compressed, removed or hidden by loose clothes, or this is a man: check bust points and folds."
+    sentence = Message(
+        "The bust girth is only {more} larger than the under-bust girth. The breasts may be "
+        "small, compressed, removed or hidden by loose clothes, or this is a man: check bust "
+        "points and folds.",
+        more=Length(more),
     )
     return (Hint("flat", sentence),)
 
@@ -106,9 +109,9 @@ def clothes_hint(build: Build, landmarks: Landmarks) -> tuple[Hint, ...]:
     hidden = max(seen) < 0.5 and min(seen) < FAINT and bridged and _breast(landmarks)[1] > LONG
     if not (wrinkled or (around > CREASED and hidden)):
         return ()
-    sentence = (
-        "The surface under the bust has wrinkles like loose clothes. Bust points and folds under cloth are "
-        "uncertain: scan the body in close-fitting underwear, or check them."
+    sentence = Message(
+        "The surface under the bust has wrinkles like loose clothes. Bust points and folds "
+        "under cloth are uncertain: scan the body in close-fitting underwear, or check them."
     )
     return (Hint("clothes", sentence),)
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from core.geometry.mesh import Mesh, Points
+from core.messages import Length, Message
 
 NEAR = 40.0
 """The points of the scan are counted so far round a place [mm]."""
@@ -26,10 +27,13 @@ def confidence_factor(apart: float) -> float:
     return float(np.exp(-max(apart - FINE, 0.0) / COARSER))
 
 
-def coarse_warning(apart: float) -> tuple[str, ...]:
+def coarse_warning(apart: float) -> tuple[Message, ...]:
     """Return one sentence if the points of the scan lie too far ``apart`` [mm] for sure landmarks."""
     if apart <= FINE + 1.0:
         return ()
     return (
-        f"The scan is coarse: its points lie about {apart:.0f} mm apart. Landmarks and girths are less sure.",
+        Message(
+            "The scan is coarse: its points lie about {apart} apart. Landmarks and girths are less sure.",
+            apart=Length(apart),
+        ),
     )

@@ -11,21 +11,24 @@ from core.landmarks.bust_point import ACROSS
 from core.landmarks.torso.cross_sections import Level, stable_level, trunk_levels
 from core.landmarks.torso.torso_axis import STEP, TorsoAxis, torso_axis
 from core.landmarks.types import SIDES, Landmark, Landmarks
+from core.messages import Message
 
-FRONT = "On the centre line of the front, half way between the bust points, at the bust level."
-FRONT_UNDER = "On the centre line of the front, half way between the bust points, at the under-bust level."
-BACK = "In the hollow of the spine at the bust level."
-BACK_UNDER = "In the hollow of the spine at the under-bust level."
-FLAT_BACK = "In the middle of the back, half way between its sides: no hollow of the spine shows."
-SIDE = "The place of the trunk farthest to the side, where the under-bust girth is measured."
-ARMPIT = "The highest level on which the arm does not yet join the trunk, at its side."
-WAIST = (
-    "On the centre line of the front, where the trunk is slimmest below the bust; "
-    "the waist between lowest rib and hip bone does not show and may lie some cm lower."
+FRONT = Message("On the centre line of the front, half way between the bust points, at the bust level.")
+FRONT_UNDER = Message(
+    "On the centre line of the front, half way between the bust points, at the under-bust level."
 )
-HIP = "On the centre line of the front, where the trunk is widest round below the waist."
-NECK_FRONT = "The most hollow place of the centre line of the front between chest and neck."
-NECK_BACK = "The most prominent place of the centre line of the back at the foot of the neck."
+BACK = Message("In the hollow of the spine at the bust level.")
+BACK_UNDER = Message("In the hollow of the spine at the under-bust level.")
+FLAT_BACK = Message("In the middle of the back, half way between its sides: no hollow of the spine shows.")
+SIDE = Message("The place of the trunk farthest to the side, where the under-bust girth is measured.")
+ARMPIT = Message("The highest level on which the arm does not yet join the trunk, at its side.")
+WAIST = Message(
+    "On the centre line of the front, where the trunk is slimmest below the bust; the "
+    "waist between lowest rib and hip bone does not show and may lie some cm lower."
+)
+HIP = Message("On the centre line of the front, where the trunk is widest round below the waist.")
+NECK_FRONT = Message("The most hollow place of the centre line of the front between chest and neck.")
+NECK_BACK = Message("The most prominent place of the centre line of the back at the foot of the neck.")
 
 CLEAR, PLAIN = 0.8, 0.4
 """How sure a mark is that shows clearly, and one that hardly shows (0..1): our judgement."""
@@ -212,7 +215,7 @@ def _extreme(guide: TorsoAxis, value: Floats, inside: Flags, clear: float) -> tu
 
 
 def _girdle(
-    mesh: Mesh, guide: TorsoAxis, z: float, confidence: float, name: str, rule: str
+    mesh: Mesh, guide: TorsoAxis, z: float, confidence: float, name: str, rule: Message
 ) -> Landmark | None:
     """Return the centre front at height ``z`` [mm]; its evidence is the front of the outline there."""
     level = trunk_levels(mesh, [z])[0]
@@ -251,7 +254,7 @@ def _neck(
     return marks
 
 
-def _foot(line: Points, z: float, name: str, back: bool, rule: str) -> Landmark | None:
+def _foot(line: Points, z: float, name: str, back: bool, rule: Message) -> Landmark | None:
     if len(line) < 10 or arc_length(line)[-1] < 80.0:
         return None
     line = line if line[0, 2] > line[-1, 2] else line[::-1]

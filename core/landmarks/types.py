@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from core.geometry.mesh import Points, frozen
+from core.messages import Message
 
 SIDES = ("left", "right")
 
@@ -36,7 +37,7 @@ class Landmark:
     name: str
     position: Points
     confidence: float
-    rule: str
+    rule: Message
     evidence: Points = field(default_factory=lambda: np.empty((0, 3)))
     by_hand: bool = False
     off: float = 0.0
@@ -56,7 +57,7 @@ class Hint:
     """
 
     kind: str
-    sentence: str
+    sentence: Message
     up: str = ""
 
 
@@ -71,7 +72,7 @@ class Landmarks:
     points: Mapping[str, Landmark]
     bust_level: float
     underbust_level: float
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[Message, ...] = ()
     hints: tuple[Hint, ...] = ()
 
     @property

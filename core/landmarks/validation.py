@@ -14,6 +14,7 @@ from core.landmarks.chest import Pole
 from core.landmarks.lower_breast import HIDDEN, NO_CREASE, UNSEEN
 from core.landmarks.torso.cross_sections import TorsoSections, stable_level, trunk_levels
 from core.landmarks.types import SIDES, Landmarks
+from core.messages import Length, Message, SideName
 
 SLIMMEST, WIDEST = 550.0, 1600.0
 """Under-bust girths of adults [mm]: the sizes of bands that are sold, some 600 to 1500, and a little more."""
@@ -51,17 +52,19 @@ OPEN = 0.25
 """One straight line is no longer than this part of an outline: else a side of the trunk is missing."""
 
 
-def refusal(why: str, placed: bool = False) -> LandmarkError:
+def refusal(why: Message, placed: bool = False) -> LandmarkError:
     """Return the error that says ``why`` there is no bust, or none with the points that were ``placed``."""
     if placed:
         return LandmarkError(
-            f"No bust can be found with the points that were placed by hand: {why}.",
-            "Place bust points on the breasts and folds under them, or take them away.",
+            Message("No bust can be found with the points that were placed by hand: {why}.", why=why),
+            Message("Place bust points on the breasts and folds under them, or take them away."),
         )
     return LandmarkError(
-        f"No bust can be found: {why}.",
-        "Open a scan of a whole upper body, say which way is up and which is the front, or place both bust "
-        "points and both folds by hand.",
+        Message("No bust can be found: {why}.", why=why),
+        Message(
+            "Open a scan of a whole upper body, say which way is up and which is the front, or "
+            "place both bust points and both folds by hand."
+        ),
     )
 
 
@@ -71,7 +74,7 @@ def check_anchor(anchor: Anchor) -> None:
     spanned = abs(anchor.ridge) <= RIDGE and anchor.middle_kink < SPANNED
     one_bump = anchor.middle_kink > ONE_BUMP * anchor.kink and not spanned
     if anchor.kink < least or one_bump:
-        raise refusal("no fold lies under a left and a right breast")
+        raise refusal(Message("no fold lies under a left and a right breast"))
 
 
 def check_placed(landmarks: Landmarks) -> None:
@@ -80,9 +83,9 @@ def check_placed(landmarks: Landmarks) -> None:
     for kind in ("bust_point", "fold"):
         left, right = (points[f"{kind}_{side}"] for side in SIDES)
         if (left.by_hand or right.by_hand) and left.position[0] <= right.position[0]:
-            raise refusal("left and right are swapped", _placed(landmarks))
+            raise refusal(Message("left and right are swapped"), _placed(landmarks))
     if _placed(landmarks) and landmarks.bust_level <= landmarks.underbust_level:
-        raise refusal("the folds lie above the bust points", _placed(landmarks))
+        raise refusal(Message("the folds lie above the bust points"), _placed(landmarks))
 
 
 def _placed(landmarks: Landmarks) -> bool:
@@ -96,7 +99,7 @@ def check(
     poles: tuple[Pole, Pole],
     missing: Sequence[str],
     landmarks: Landmarks,
-) -> tuple[str, ...]:
+) -> tuple[Message, ...]:
     """Return warnings, one sentence each; on sides ``missing`` there is no breast.
 
     Raises LandmarkError where this cannot be a bust.
@@ -121,46 +124,73 @@ def _rules(
     missing: Sequence[str],
     landmarks: Landmarks,
     full: bool,
-) -> Iterator[tuple[bool, str]]:
+) -> Iterator[tuple[bool, Message]]:
     """Give what a bust must not be, whether it is so, and why it is refused then; the first is told."""
     under, bust = stable_level(mesh, landmarks.underbust_level), trunk_levels(mesh, landmarks.bust_level)[0]
-    yield under.tape == 0.0 or bust.tape == 0.0, "the trunk is missing there"
+    yield under.tape == 0.0 or bust.tape == 0.0, Message("the trunk is missing there")
     left, right = (landmarks.position(f"bust_point_{side}") for side in SIDES)
     across, middle = left - right, 0.5 * (left + right)
     wide, deep, _ = np.ptp(under.points, axis=0)
     busts = [landmarks.points[f"bust_point_{side}"] for side in SIDES if side not in missing]
     clear = all(mark.rule == NIPPLE or mark.by_hand for mark in busts)
     more, depth = bust.tape - under.tape, landmarks.bust_level - landmarks.underbust_level
-    yield under.longest_straight > OPEN * under.tape, "the trunk is open, as if only a part of it was scanned"
-    yield not SLIMMEST < under.tape < WIDEST, f"the girth under it would be {under.tape:.0f} mm"
-    yield len(missing) > 0 and not clear, "only one side stands out of the chest"
+    yield (
+        under.longest_straight > OPEN * under.tape,
+        Message("the trunk is open, as if only a part of it was scanned"),
+    )
+    yield (
+        not SLIMMEST < under.tape < WIDEST,
+        Message("the girth under it would be {girth}", girth=Length(under.tape)),
+    )
+    yield len(missing) > 0 and not clear, Message("only one side stands out of the chest")
     slight = more <= FLATTEST_BUST and not full
-    yield slight or more >= FULLEST_BUST, "it would not be wider than the trunk under it"
-    yield not ROUNDEST < wide / deep < FLATTEST, "the trunk is not as deep as a body"
-    yield not APART[0] < across[0] < APART[1], f"its points would lie {across[0]:.0f} mm apart"
-    yield abs(across[2]) > UNEVEN and not missing, "its points would lie at very different heights"
-    yield abs(middle[0] - trunk.middle) > ASIDE and not missing, "it would lie beside the middle of the body"
-    yield max(pole.prominence for pole in poles) < FLAT, "nothing stands out of the chest"
-    yield not 0.0 < depth < DEEPEST, "no fold lies at a likely depth under it"
+    yield slight or more >= FULLEST_BUST, Message("it would not be wider than the trunk under it")
+    yield not ROUNDEST < wide / deep < FLATTEST, Message("the trunk is not as deep as a body")
+    yield (
+        not APART[0] < across[0] < APART[1],
+        Message("its points would lie {distance} apart", distance=Length(across[0])),
+    )
+    yield abs(across[2]) > UNEVEN and not missing, Message("its points would lie at very different heights")
+    yield (
+        abs(middle[0] - trunk.middle) > ASIDE and not missing,
+        Message("it would lie beside the middle of the body"),
+    )
+    yield max(pole.prominence for pole in poles) < FLAT, Message("nothing stands out of the chest")
+    yield not 0.0 < depth < DEEPEST, Message("no fold lies at a likely depth under it")
     rules = {landmarks.points[f"fold_{side}"].rule for side in SIDES}
-    yield rules == {NO_CREASE} and not (full and clear), "there is no crease under it"
+    yield rules == {NO_CREASE} and not (full and clear), Message("there is no crease under it")
 
 
-def _warnings(side: str, rule: str, missing: bool) -> list[str]:
+def _warnings(side: str, rule: Message, missing: bool) -> list[Message]:
     if missing:
-        return [f"On the {side} side no breast stands out of the chest: its points are uncertain."]
+        return [
+            Message(
+                "On the {side} side no breast stands out of the chest: its points are uncertain.",
+                side=SideName(side),
+            )
+        ]
     if rule in HIDDEN:
-        return [f"The scan has a hole where the fold of the {side} breast lies: its height is estimated."]
+        return [
+            Message(
+                "The scan has a hole where the fold of the {side} breast lies: its height is estimated.",
+                side=SideName(side),
+            )
+        ]
     if rule == UNSEEN:
-        return [f"No fold shows under the {side} breast: its height is estimated."]
+        return [
+            Message("No fold shows under the {side} breast: its height is estimated.", side=SideName(side))
+        ]
     return []
 
 
-def placed_warnings(landmarks: Landmarks) -> tuple[str, ...]:
+def placed_warnings(landmarks: Landmarks) -> tuple[Message, ...]:
     """Return one sentence for each side on which the fold lies above the bust point by hand."""
     pairs = {side: [landmarks.points[f"{name}_{side}"] for name in ("bust_point", "fold")] for side in SIDES}
     return tuple(
-        f"The fold of the {side} breast lies above its bust point, as placed by hand: please check both."
+        Message(
+            "The fold of the {side} breast lies above its bust point, as placed by hand: please check both.",
+            side=SideName(side),
+        )
         for side, (bust, fold) in pairs.items()
         if (bust.by_hand or fold.by_hand) and fold.position[2] > bust.position[2]
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from core.landmarks.bust_point import ACROSS, NIPPLE
 from core.landmarks.types import CERTAIN, SIDES, Landmarks
+from core.messages import Message, SideName
 from core.scan.body import Body
 from core.scan.edited_body import mirror_sentence
 
@@ -11,20 +12,20 @@ ESSENTIAL = ("bust_point", "fold")
 """The landmarks, a pair each, that the control mesh hangs on: doubts about others would only distract."""
 
 
-def collect_warnings(body: Body, landmarks: Landmarks) -> list[str]:
+def collect_warnings(body: Body, landmarks: Landmarks) -> list[Message]:
     """Return one sentence for each thing that should be looked at. Source: ours."""
-    unsure = "It is not certain how this scan is to be understood: please check unit, up and front."
+    unsure = Message("It is not certain how this scan is to be understood: please check unit, up and front.")
     return [unsure] * (not body.pose.is_certain) + edit_warnings(body) + landmark_warnings(landmarks)
 
 
-def edit_warnings(body: Body) -> list[str]:
+def edit_warnings(body: Body) -> list[Message]:
     """Return what edits of the scan leave to be looked at."""
-    filled = "Holes of the scan are filled by hand: what is measured there is an estimate."
+    filled = Message("Holes of the scan are filled by hand: what is measured there is an estimate.")
     mirrored = [mirror_sentence(body.edits.kept)] if body.edits.kept else []
     return mirrored + [filled] * (len(body.estimated) > 0)
 
 
-def landmark_warnings(landmarks: Landmarks) -> list[str]:
+def landmark_warnings(landmarks: Landmarks) -> list[Message]:
     """Return what should be looked at on the landmarks alone; a side without a breast is named once."""
     said = [sentence for kind in ESSENTIAL for sentence in _doubt(kind, _untold(landmarks, kind), landmarks)]
     return [*said, *landmarks.warnings]
@@ -51,19 +52,28 @@ def uncertain_sides(landmarks: Landmarks, kind: str) -> list[str]:
     return [side for side, mark in found.items() if mark and not mark.by_hand and mark.confidence < CERTAIN]
 
 
-def _doubt(kind: str, sides: list[str], landmarks: Landmarks) -> list[str]:
+def _doubt(kind: str, sides: list[str], landmarks: Landmarks) -> list[Message]:
     if not sides:
         return []
     if kind == "fold":
-        one = f"The fold under the {sides[0]} breast could not be seen clearly: please check it."
-        two = "The folds under both breasts could not be seen clearly: please check them."
+        one = Message(
+            "The fold under the {side} breast could not be seen clearly: please check it.",
+            side=SideName(sides[0]),
+        )
+        two = Message("The folds under both breasts could not be seen clearly: please check them.")
         return [two if len(sides) == 2 else one]
     shown = [side for side in sides if landmarks.points[f"bust_point_{side}"].rule == NIPPLE]
     if shown:
-        one = f"The nipple of the {shown[0]} breast is not clearly seen: please check its bust point."
-        two = "The nipples are not clearly seen: please check both bust points."
+        one = Message(
+            "The nipple of the {side} breast is not clearly seen: please check its bust point.",
+            side=SideName(shown[0]),
+        )
+        two = Message("The nipples are not clearly seen: please check both bust points.")
         rest = _doubt(kind, [side for side in sides if side not in shown], landmarks)
         return [two if len(shown) == 2 else one, *rest]
-    one = f"No nipple stands out clearly on the {sides[0]} breast: please check its bust point."
-    two = "No nipple stands out clearly: the bust points follow the shape of the breasts."
+    one = Message(
+        "No nipple stands out clearly on the {side} breast: please check its bust point.",
+        side=SideName(sides[0]),
+    )
+    two = Message("No nipple stands out clearly: the bust points follow the shape of the breasts.")
     return [two if len(sides) == 2 else one]

@@ -17,16 +17,17 @@ from core.measurements.breast_volume import foremost
 from core.measurements.definitions import Measure, definition_of, missing
 from core.measurements.girths import UNSURE_LEVEL
 from core.measurements.subject import Subject, shows_breast
+from core.messages import EMPTY, Message
 
-NO_MARK = "The scan does not show the landmarks that it is taken from."
-NO_BREAST = "No breast stands out on this side."
-NO_FOLD = "The fold under the breast does not show."
-UNSURE_FOLD = "The fold under the breast is uncertain, and its volume with it: an estimate."
-NO_WAY = "There is no way over the skin between its two places."
-NO_ROOT = "The ends of the root of the breast were not found."
-OPEN_ROOT = "The skin round the root of the breast does not show far enough."
-UNSEEN_CHEST = "The chest behind the breast and the top of its root do not show: an estimate."
-HOLED = "A hole of the scan lies on its way: an estimate."
+NO_MARK = Message("The scan does not show the landmarks that it is taken from.")
+NO_BREAST = Message("No breast stands out on this side.")
+NO_FOLD = Message("The fold under the breast does not show.")
+UNSURE_FOLD = Message("The fold under the breast is uncertain, and its volume with it: an estimate.")
+NO_WAY = Message("There is no way over the skin between its two places.")
+NO_ROOT = Message("The ends of the root of the breast were not found.")
+OPEN_ROOT = Message("The skin round the root of the breast does not show far enough.")
+UNSEEN_CHEST = Message("The chest behind the breast and the top of its root do not show: an estimate.")
+HOLED = Message("A hole of the scan lies on its way: an estimate.")
 
 
 OF_A_CUP = ("bust_point_to_fold", "cup_depth", "cup_width", "root_length")
@@ -67,7 +68,7 @@ def over_skin(key: str, subject: Subject, marks: list[Landmark | None]) -> Measu
         return Measure(key, None, "mm", confidence=0.0, note=NO_WAY)
     round_hole = _along_border(subject.mesh, way)
     sure = min(mark.confidence for mark in ends)
-    return Measure(key, _length(way), "mm", (way,), sure, round_hole, note=HOLED * round_hole)
+    return Measure(key, _length(way), "mm", (way,), sure, round_hole, note=HOLED if round_hole else EMPTY)
 
 
 def _along_border(mesh: Mesh, way: Points) -> bool:

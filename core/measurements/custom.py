@@ -12,11 +12,12 @@ from core.measurements.definitions import Measure
 from core.measurements.girths import over_gaps
 from core.measurements.subject import Subject
 from core.measurements.tape import tape_ring
+from core.messages import Message
 
 OWN = "own:"
 """The keys of the designer's own measures are this and their name."""
 
-NO_TRUNK = "The scan shows no trunk at that height."
+NO_TRUNK = Message("The scan shows no trunk at that height.")
 
 
 def measure_custom(subject: Subject, own: Iterable[CustomMeasurement]) -> Iterator[Measure]:

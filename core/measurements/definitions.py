@@ -8,6 +8,7 @@ from types import MappingProxyType
 
 from core.geometry.mesh import Points
 from core.landmarks.types import SIDES
+from core.messages import EMPTY, Length, Message
 
 
 @dataclass(frozen=True)
@@ -20,11 +21,11 @@ class Definition:
     """
 
     key: str
-    title: str
+    title: Message
     unit: str
     iso: str
-    text: str
-    group: str
+    text: Message
+    group: Message
     sided: bool = False
 
 
@@ -44,190 +45,242 @@ class Measure:
     confidence: float = 1.0
     estimate: bool = False
     plus_minus: float = 0.0
-    note: str = ""
-    text: str = ""
+    note: Message = EMPTY
+    text: Message = EMPTY
 
 
-GIRTHS, CUPS, BUST = "Girths", "Cups", "Bust"
-AREAS, BOTH = "Sections and volumes", "Left and right"
+GIRTHS, CUPS, BUST = Message("Girths"), Message("Cups"), Message("Bust")
+AREAS, BOTH = Message("Sections and volumes"), Message("Left and right")
 
-TAPE = "A tape lies level round the trunk and bridges hollows; arms are left out."
+TAPE = Message("A tape lies level round the trunk and bridges hollows; arms are left out.")
 """How a tape lies, said of every girth."""
 
-_SKIN = "The same level, but along the skin into every hollow."
+_SKIN = Message("The same level, but along the skin into every hollow.")
 
 _TABLE = (
     Definition(
         "bust_girth",
-        "Bust girth",
+        Message("Bust girth"),
         "mm",
         "Bust girth",
-        f"At the mean height of the bust points. {TAPE} The standard measures over a brassiere.",
+        Message(
+            "At the mean height of the bust points. {tape} The standard measures over a brassiere.", tape=TAPE
+        ),
         GIRTHS,
     ),
-    Definition("bust_girth_skin", "Bust outline", "mm", "", f"Ours. {_SKIN}", GIRTHS),
+    Definition(
+        "bust_girth_skin", Message("Bust outline"), "mm", "", Message("Ours. {text}", text=_SKIN), GIRTHS
+    ),
     Definition(
         "underbust_girth",
-        "Under-bust girth",
+        Message("Under-bust girth"),
         "mm",
         "Under bust girth",
-        f"Directly below the breasts, at the first height where no breast is nicked any more. {TAPE}",
+        Message(
+            "Directly below the breasts, at the first height where no breast is nicked any more. {tape}",
+            tape=TAPE,
+        ),
         GIRTHS,
     ),
-    Definition("underbust_girth_skin", "Under-bust outline", "mm", "", f"Ours. {_SKIN}", GIRTHS),
+    Definition(
+        "underbust_girth_skin",
+        Message("Under-bust outline"),
+        "mm",
+        "",
+        Message("Ours. {text}", text=_SKIN),
+        GIRTHS,
+    ),
     Definition(
         "high_bust_girth",
-        "High bust girth",
+        Message("High bust girth"),
         "mm",
         "",
-        f"Ours: level, just below the lower one of the armpits. {TAPE}",
+        Message("Ours: level, just below the lower one of the armpits. {tape}", tape=TAPE),
         GIRTHS,
     ),
-    Definition("high_bust_girth_skin", "High bust outline", "mm", "", f"Ours. {_SKIN}", GIRTHS),
+    Definition(
+        "high_bust_girth_skin",
+        Message("High bust outline"),
+        "mm",
+        "",
+        Message("Ours. {text}", text=_SKIN),
+        GIRTHS,
+    ),
     Definition(
         "waist_girth",
-        "Waist girth (narrowest)",
+        Message("Waist girth (narrowest)"),
         "mm",
         "Waist girth",
-        f"Where the trunk is narrowest. {TAPE} The standard goes midway between lowest rib and hip bone, "
-        "which a scan does not show.",
+        Message(
+            "Where the trunk is narrowest. {tape} The standard goes midway between lowest rib "
+            "and hip bone, which a scan does not show.",
+            tape=TAPE,
+        ),
         GIRTHS,
     ),
-    Definition("waist_girth_skin", "Waist outline (narrowest)", "mm", "", f"Ours. {_SKIN}", GIRTHS),
     Definition(
-        "hip_girth",
-        "Hip girth",
-        "mm",
-        "Hip girth",
-        f"Where the trunk is widest round below the waist. {TAPE} The standard goes over the greatest "
-        "prominence of the buttocks.",
-        GIRTHS,
-    ),
-    Definition("hip_girth_skin", "Hip outline", "mm", "", f"Ours. {_SKIN}", GIRTHS),
-    Definition(
-        "bust_point_distance",
-        "Bust point distance",
+        "waist_girth_skin",
+        Message("Waist outline (narrowest)"),
         "mm",
         "",
-        "Straight from bust point to bust point.",
+        Message("Ours. {text}", text=_SKIN),
+        GIRTHS,
+    ),
+    Definition(
+        "hip_girth",
+        Message("Hip girth"),
+        "mm",
+        "Hip girth",
+        Message(
+            "Where the trunk is widest round below the waist. {tape} The standard goes over the "
+            "greatest prominence of the buttocks.",
+            tape=TAPE,
+        ),
+        GIRTHS,
+    ),
+    Definition(
+        "hip_girth_skin", Message("Hip outline"), "mm", "", Message("Ours. {text}", text=_SKIN), GIRTHS
+    ),
+    Definition(
+        "bust_point_distance",
+        Message("Bust point distance"),
+        "mm",
+        "",
+        Message("Straight from bust point to bust point."),
         BUST,
     ),
     Definition(
         "bust_point_to_fold",
-        "Bust point to fold",
+        Message("Bust point to fold"),
         "mm",
         "",
-        "The shortest way over the skin from the bust point to the fold below it.",
+        Message("The shortest way over the skin from the bust point to the fold below it."),
         CUPS,
         True,
     ),
     Definition(
         "cup_depth",
-        "Cup depth",
+        Message("Cup depth"),
         "mm",
         "",
-        "Ours: how far the bust point stands out, level, from the straight line between the inner and the "
-        "outer end of the root.",
+        Message(
+            "Ours: how far the bust point stands out, level, from the straight line between the "
+            "inner and the outer end of the root."
+        ),
         CUPS,
         True,
     ),
     Definition(
         "cup_width",
-        "Cup width",
+        Message("Cup width"),
         "mm",
         "",
-        "Ours: straight from the inner to the outer end of the root, at the height of the bust point.",
+        Message(
+            "Ours: straight from the inner to the outer end of the root, at the height of the bust point."
+        ),
         CUPS,
         True,
     ),
     Definition(
         "root_length",
-        "Root length",
+        Message("Root length"),
         "mm",
         "",
-        "Ours: along the root of the breast where a wire lies, from its inner end down through the fold to "
-        "its outer end.",
+        Message(
+            "Ours: along the root of the breast where a wire lies, from its inner end down "
+            "through the fold to its outer end."
+        ),
         CUPS,
         True,
     ),
     Definition(
         "bust_height",
-        "Bust height over under-bust",
+        Message("Bust height over under-bust"),
         "mm",
         "",
-        "Ours: the mean height of the bust points over the under-bust level, which follows the skin: it "
-        "rises with the breast, so this may fall while the bust points are lifted. The standard measures "
-        "from the ground, which few scans show.",
+        Message(
+            "Ours: the mean height of the bust points over the under-bust level, which follows "
+            "the skin: it rises with the breast, so this may fall while the bust points are "
+            "lifted. The standard measures from the ground, which few scans show."
+        ),
         BUST,
     ),
     Definition(
         "bust_protrusion",
-        "Bust protrusion",
+        Message("Bust protrusion"),
         "mm",
         "",
-        "Ours: how far the foremost places of both breasts lie, in the mean, before the middle of the chest "
-        "at the under-bust level.",
+        Message(
+            "Ours: how far the foremost places of both breasts lie, in the mean, before the "
+            "middle of the chest at the under-bust level."
+        ),
         BUST,
     ),
     Definition(
         "apex_lift",
-        "Lift of the apex",
+        Message("Lift of the apex"),
         "mm",
         "",
-        "Ours: how much higher the foremost places of the breasts lie, in the mean, than at rest.",
+        Message("Ours: how much higher the foremost places of the breasts lie, in the mean, than at rest."),
         BUST,
     ),
     Definition(
         "section_area_bust",
-        "Area at the bust",
+        Message("Area at the bust"),
         "cm2",
         "",
-        "Ours: what the skin encloses at the level of the bust girth.",
+        Message("Ours: what the skin encloses at the level of the bust girth."),
         AREAS,
     ),
     Definition(
         "section_area_underbust",
-        "Area under the bust",
+        Message("Area under the bust"),
         "cm2",
         "",
-        "Ours: what the skin encloses at the level of the under-bust girth.",
+        Message("Ours: what the skin encloses at the level of the under-bust girth."),
         AREAS,
     ),
     Definition(
         "breast_volume",
-        "Breast volume",
+        Message("Breast volume"),
         "ml",
         "",
-        "Ours, an estimate: between the skin within the root and a smooth chest that goes on from the skin "
-        "round it: what stands out, less than all of the breast. No skin shows the top of the root: it is "
-        "taken half as high over its ends as it is wide; ± tells what 15 mm lower would make. "
-        "Reshaped, what the skin of that side has gained is added.",
+        Message(
+            "Ours, an estimate: between the skin within the root and a smooth chest that goes on "
+            "from the skin round it: what stands out, less than all of the breast. No skin shows "
+            "the top of the root: it is taken half as high over its ends as it is wide; ± tells "
+            "what {lower} lower would make. Reshaped, what the skin of that side has gained is "
+            "added.",
+            lower=Length(15.0),
+        ),
         AREAS,
         True,
     ),
     Definition(
         "asymmetry_height",
-        "Left bust point higher",
+        Message("Left bust point higher"),
         "mm",
         "",
-        "Ours: how much higher the left bust point lies than the right one.",
+        Message("Ours: how much higher the left bust point lies than the right one."),
         BOTH,
     ),
     Definition(
         "asymmetry_forward",
-        "Left bust point further out",
+        Message("Left bust point further out"),
         "mm",
         "",
-        "Ours: how much further forward the left bust point lies than the right one.",
+        Message("Ours: how much further forward the left bust point lies than the right one."),
         BOTH,
     ),
     Definition(
         "asymmetry_volume",
-        "Left breast larger",
+        Message("Left breast larger"),
         "ml",
         "",
-        "Ours, an estimate: the volume of the left breast less that of the right one. How far off is "
-        "not known; what Left and right tells is surer.",
+        Message(
+            "Ours, an estimate: the volume of the left breast less that of the right one. How "
+            "far off is not known; what Left and right tells is surer."
+        ),
         BOTH,
     ),
 )
@@ -249,6 +302,6 @@ def definition_of(key: str) -> tuple[Definition, str]:
     return DEFINITIONS[name], side
 
 
-def missing(key: str, why: str) -> Measure:
+def missing(key: str, why: Message) -> Measure:
     """Return a measure that the scan does not show, with the reason."""
     return Measure(key, None, definition_of(key)[0].unit, confidence=0.0, note=why)

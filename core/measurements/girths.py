@@ -10,27 +10,28 @@ from core.landmarks.types import CERTAIN
 from core.measurements.definitions import Measure, missing
 from core.measurements.subject import Subject
 from core.measurements.tape import enclosed, skin_ring, tape_ring
+from core.messages import EMPTY, Message
 
 NAMES = ("bust", "underbust", "high_bust", "waist", "hip")
 
 WHY = {
-    "bust": "The scan shows no trunk at the level of the bust points.",
-    "underbust": "The scan shows no trunk below the breasts.",
-    "high_bust": "The scan does not show both armpits, or the arms hang too close.",
-    "waist": "The scan shows no waist: it ends too high, or the trunk is nowhere narrower.",
-    "hip": "The scan shows no hip: it ends above it, or the trunk does not widen.",
+    "bust": Message("The scan shows no trunk at the level of the bust points."),
+    "underbust": Message("The scan shows no trunk below the breasts."),
+    "high_bust": Message("The scan does not show both armpits, or the arms hang too close."),
+    "waist": Message("The scan shows no waist: it ends too high, or the trunk is nowhere narrower."),
+    "hip": Message("The scan shows no hip: it ends above it, or the trunk does not widen."),
 }
 """Why a girth may be missing."""
 
-UNSURE_LEVEL = "The fold under the breast is uncertain: an estimate."
+UNSURE_LEVEL = Message("The fold under the breast is uncertain: an estimate.")
 
-NARROWEST = (
-    "At the narrowest place: the waist between lowest rib and hip bone does not show, and its girth may "
-    "differ by several centimetres, which the ± does not include."
+NARROWEST = Message(
+    "At the narrowest place: the waist between lowest rib and hip bone does not show, "
+    "and its girth may differ by several centimetres, which the ± does not include."
 )
 """What is said of the girth of the waist."""
 
-OVER_GAPS = "It goes over a hole of the scan or over a joined arm: an estimate."
+OVER_GAPS = Message("It goes over a hole of the scan or over a joined arm: an estimate.")
 
 
 def girth_measures(subject: Subject) -> Iterator[Measure]:
@@ -49,12 +50,12 @@ def girth_measures(subject: Subject) -> Iterator[Measure]:
             values[f"section_area_{name}"] = (enclosed(skin) / 100.0, skin, "cm2")
         bridged, note = over_gaps(level)
         unsure = name == "underbust" and sure.get(name, 1.0) < CERTAIN
-        note = note or UNSURE_LEVEL * unsure or NARROWEST * (name == "waist")
+        note = note or (UNSURE_LEVEL if unsure else NARROWEST if name == "waist" else note)
         for key, (value, ring, unit) in values.items():
             yield Measure(key, value, unit, (ring,), sure.get(name, 1.0), bridged or unsure, note=note)
 
 
-def over_gaps(level: Level) -> tuple[bool, str]:
+def over_gaps(level: Level) -> tuple[bool, Message]:
     """Tell whether much of an outline is no skin, and say so."""
     bridged = level.bridged_mm > MUCH
-    return bridged, OVER_GAPS * bridged
+    return bridged, OVER_GAPS if bridged else EMPTY

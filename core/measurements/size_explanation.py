@@ -5,69 +5,87 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from core.measurements.size_table import BAND, UNDERBUST, Scale, SizeTable
+from core.messages import Message
 
 
 class _Words(NamedTuple):
-    inside: str
-    below: str
-    above: str
+    inside: Message
+    below: Message
+    above: Message
 
 
 _BAND_WORDS = _Words(
-    "Under-bust {} gives band {} ({} to {}).",
-    "Under-bust {} lies below the smallest band, {}, which begins at {}.",
-    "Under-bust {} lies above the largest band, {}, which ends at {}.",
+    Message("Under-bust {value} gives band {name} ({low} to {high})."),
+    Message("Under-bust {value} lies below the smallest band, {name}, which begins at {low}."),
+    Message("Under-bust {value} lies above the largest band, {name}, which ends at {high}."),
 )
 _CUP_WORDS = {
     UNDERBUST: _Words(
-        "Bust less under-bust {} gives cup {} ({} to {}).",
-        "Bust less under-bust {} lies below the smallest cup, {}, which begins at {}.",
-        "Bust less under-bust {} lies above the largest cup, {}, which ends at {}.",
+        Message("Bust less under-bust {value} gives cup {name} ({low} to {high})."),
+        Message("Bust less under-bust {value} lies below the smallest cup, {name}, which begins at {low}."),
+        Message("Bust less under-bust {value} lies above the largest cup, {name}, which ends at {high}."),
     ),
     BAND: _Words(
-        "Bust less band {} gives cup {} ({} to {}).",
-        "Bust less band {} lies below the smallest cup, {}, which begins at {}.",
-        "Bust less band {} lies above the largest cup, {}, which ends at {}.",
+        Message("Bust less band {value} gives cup {name} ({low} to {high})."),
+        Message("Bust less band {value} lies below the smallest cup, {name}, which begins at {low}."),
+        Message("Bust less band {value} lies above the largest cup, {name}, which ends at {high}."),
     ),
 }
 
 
-def plain(value: float) -> str:
+def short(value: float) -> str:
     """Return a number as short as it can be written, to a hundredth."""
     return f"{round(value, 2) + 0.0:.2f}".rstrip("0").rstrip(".")
 
 
-def allowance_sentence(table: SizeTable, underbust: float, allowance: float) -> str:
+def allowance_sentence(table: SizeTable, underbust: float, allowance: float) -> Message:
     """Say what is taken off the under-bust girth for a tape that is worn tight; both [unit of the table]."""
-    told = (f"{plain(value)} {table.unit}" for value in (underbust, allowance, underbust - allowance))
-    return "Under-bust {} less {} for a tape that is worn tight: {}.".format(*told)
+    value, taken, left = (
+        f"{short(each)} {table.unit}" for each in (underbust, allowance, underbust - allowance)
+    )
+    return Message(
+        "Under-bust {value} less {taken} for a tape that is worn tight: {left}.",
+        value=value,
+        taken=taken,
+        left=left,
+    )
 
 
-def band_sentences(table: SizeTable, value: float) -> tuple[str, ...]:
+def band_sentences(table: SizeTable, value: float) -> tuple[Message, ...]:
     """Say which band an under-bust girth [unit of the table] gives, and why."""
     return _sentences(_BAND_WORDS, table.bands, value, table.unit)
 
 
-def cup_sentences(table: SizeTable, value: float) -> tuple[str, ...]:
+def cup_sentences(table: SizeTable, value: float) -> tuple[Message, ...]:
     """Say which cup a difference of girths [unit of the table] gives, and why."""
     return _sentences(_CUP_WORDS[table.cup_from], table.cups, value, table.unit)
 
 
-def _sentences(words: _Words, scale: Scale, value: float, unit: str) -> tuple[str, ...]:
-    place, told = scale.place(value), f"{plain(value)} {unit}"
+def _sentences(words: _Words, scale: Scale, value: float, unit: str) -> tuple[Message, ...]:
+    place, told = scale.place(value), f"{short(value)} {unit}"
     step = scale.step(place)
     if step is None:
         if place < 0:
-            return (words.below.format(told, scale.steps[0].name, plain(scale.borders[0])),)
-        return (words.above.format(told, scale.steps[-1].name, plain(scale.borders[-1])),)
+            first = scale.steps[0].name
+            return (words.below.fill(value=told, name=first, low=short(scale.borders[0])),)
+        return (words.above.fill(value=told, name=scale.steps[-1].name, high=short(scale.borders[-1])),)
     # The borders that decide, in gaps of the source too: how far the next step is counts from them.
-    rule = words.inside.format(told, step.name, *map(plain, scale.ends(place)))
-    return (rule,) if step.is_listed(value) else (rule, _gap(step.name, plain(step.least), plain(step.most)))
+    low, high = map(short, scale.ends(place))
+    rule = words.inside.fill(value=told, name=step.name, low=low, high=high)
+    return (rule,) if step.is_listed(value) else (rule, _gap(step.name, short(step.least), short(step.most)))
 
 
-def _gap(name: str, least: str, most: str) -> str:
+def _gap(name: str, least: str, most: str) -> Message:
     """Say that a value lies in no range of the source, but next to this one, which may be a single number."""
-    rest = "what lies between two steps goes to the nearest."
     if least == most:
-        return f"The table itself names {least} for {name}; {rest}"
-    return f"The table itself names {least} to {most} for {name}; {rest}"
+        return Message(
+            "The table itself names {value} for {name}; what lies between two steps goes to the nearest.",
+            value=least,
+            name=name,
+        )
+    return Message(
+        "The table itself names {low} to {high} for {name}; what lies between two steps goes to the nearest.",
+        low=least,
+        high=most,
+        name=name,
+    )

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from core.document.printable_name import is_printable
-from core.errors import SizeError
+from core.errors import SizeError, reason_of
 from core.files.regular_file import read_text
 from core.measurements.size_table import (
     BAND,
@@ -22,6 +22,7 @@ from core.measurements.size_table import (
     Source,
     Step,
 )
+from core.messages import Message
 
 FORMAT = 1
 """The newest format of a table of sizes that is read."""
@@ -44,9 +45,11 @@ def read_table(path: Path) -> SizeTable:
     try:
         return table_of(path.stem, read_text(path, _LARGEST))
     except (OSError, ValueError) as problem:
-        why = getattr(problem, "strerror", None) or problem
         raise SizeError(
-            f"The table of sizes {path.name} cannot be read: {why}.", "Correct the file or remove it."
+            Message(
+                "The table of sizes {name} cannot be read: {why}.", name=path.name, why=reason_of(problem)
+            ),
+            Message("Correct the file or remove it."),
         ) from problem
 
 

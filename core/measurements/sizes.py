@@ -20,6 +20,7 @@ from core.errors import SizeError
 from core.measurements.size_explanation import allowance_sentence, band_sentences, cup_sentences
 from core.measurements.size_table import BAND, LocalizedText, Scale, SizeTable
 from core.measurements.size_table_file import read_table, table_of
+from core.messages import Message, length_of
 
 ALLOWANCE = WORN_TIGHT
 """What may be taken off the under-bust girth for a tape that is worn tight [mm]: an estimate, not a norm."""
@@ -75,7 +76,7 @@ class SizeAnswer:
     cup: str
     neighbours: tuple[Neighbour, ...]
     sisters: tuple[Sister, ...]
-    rule: tuple[str, ...]
+    rule: tuple[Message, ...]
 
     @property
     def inside(self) -> bool:
@@ -139,9 +140,9 @@ def neighbours_of(answer: SizeAnswer, underbust_off: float, bust_off: float) -> 
 
 
 def sizes_text(answer: SizeAnswer, language: str = "en") -> dict[str, Any]:
-    """Return an answer as plain data for JSON, lengths in mm; the texts of the table in ``language``.
+    """Return an answer as data, lengths in mm; the texts of the table in ``language``.
 
-    The sentences of the rule are those of the core, in English: whoever shows them says them in other words.
+    The ``rule`` holds messages: for JSON see ``core.messages.plain``.
     """
     table = answer.table
     return {
@@ -208,7 +209,10 @@ def user_tables() -> tuple[list[SizeTable], list[SizeError]]:
     for path in sorted(user_folder().glob("*.json")):
         try:
             if path.stem in _ORDER:
-                raise SizeError(f"Busk has a table {path.stem} itself.", f"Give {path.name} another name.")
+                raise SizeError(
+                    Message("Busk has a table {name} itself.", name=path.stem),
+                    Message("Give {name} another name.", name=path.name),
+                )
             tables.append(read_table(path))
         except SizeError as problem:
             problems.append(problem)
@@ -218,12 +222,17 @@ def user_tables() -> tuple[list[SizeTable], list[SizeError]]:
 def _check(underbust_mm: float, bust_mm: float, allowance_mm: float) -> None:
     for girth in (underbust_mm, bust_mm):
         if not (isfinite(girth) and 0.0 < girth <= _LONGEST):
-            raise SizeError(f"No body has a girth of {girth:g} mm.", "Look at the landmarks and the unit.")
+            raise SizeError(
+                Message("No body has a girth of {girth}.", girth=length_of(girth)),
+                Message("Look at the landmarks and the unit."),
+            )
     low, high = ALLOWANCE
     if not low <= allowance_mm <= high:
         raise SizeError(
-            f"{allowance_mm:g} mm cannot be taken off for a tape that is worn tight.",
-            f"Choose {low:g} to {high:g}.",
+            Message(
+                "{value} cannot be taken off for a tape that is worn tight.", value=length_of(allowance_mm)
+            ),
+            Message("Choose {low} to {high}.", low=f"{low:g}", high=f"{high:g}"),
         )
 
 

@@ -19,6 +19,7 @@ from core.measurements.custom import OWN, measure_custom
 from core.measurements.definitions import KEYS, Measure, definition_of, missing
 from core.measurements.girths import girth_measures
 from core.measurements.subject import Subject, subject_of
+from core.messages import Message
 from core.pipeline.build import Stages
 from core.scan.body import Body
 
@@ -134,7 +135,7 @@ def measure_rows(before: Measures, after: Measures | None = None) -> list[dict[s
     return rows
 
 
-def _words(measure: Measure) -> tuple[str, str, str, str]:
+def _words(measure: Measure) -> tuple[Message | str, str, str, Message]:
     """Return title, side, name in the standard and definition of a measure."""
     if measure.key.startswith(OWN):
         return measure.key.removeprefix(OWN), "", "", measure.text

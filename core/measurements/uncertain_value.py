@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from math import exp, hypot
 
 from core.geometry.mesh import Floats
+from core.messages import Message
 
 BEFORE, AFTER, CHANGE = "before", "after", "change"
 LIFT, OUT = "lift", "out"
@@ -77,7 +78,7 @@ class OutputUncertainties:
     failed: int = 0
     values: Mapping[str, float] = field(default_factory=dict)
     bare: bool = False
-    cautions: tuple[str, ...] = ()
+    cautions: tuple[Message, ...] = ()
 
     @property
     def whole(self) -> bool:

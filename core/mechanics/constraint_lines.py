@@ -17,6 +17,7 @@ from scipy import sparse
 from core.errors import LineError
 from core.geometry.mesh import Floats, Indices, Points, frozen
 from core.length_text import millimetres, parse_length
+from core.messages import Length, LengthRange, LineName, Message
 
 RATIO_LIMITS = (0.5, 1.3)
 """Lengths that can be asked for, as parts of the rest length; outside nothing sensible can come out."""
@@ -129,8 +130,8 @@ def length_ratio(text: str, name: str, rest_mm: float, whole_mm: float, unit: st
     typed, ratio = _typed(text, unit), parse_ratio(text, rest_mm, unit)
     if typed is None or ratio is None:
         raise LineError(
-            f"'{text}' is not a length for {name}.",
-            "Write 97% of the rest length, -20mm shorter, or 400mm absolute.",
+            Message("'{text}' is not a length for {line}.", text=text, line=LineName(name)),
+            Message("Write 97% of the rest length, -20mm shorter, or 400mm absolute."),
         )
     low, high = RATIO_LIMITS
     if low <= ratio <= high:
@@ -140,12 +141,29 @@ def length_ratio(text: str, name: str, rest_mm: float, whole_mm: float, unit: st
     absolute = not typed[0] and typed[2] != "%"
     if absolute and back > 0.0 and short <= rest <= long:
         raise LineError(
-            f"The front part of {name} goes from {short:.0f} to {long:.0f} mm, "
-            f"its whole band from {short + back:.0f} to {long + back:.0f} mm.",
-            f"Lengths are those of the front part: for that whole band, write {rest:.1f}mm.",
+            Message(
+                "The front part of {line} goes from {range}, its whole band from {short} to {long}.",
+                range=LengthRange(short, long),
+                line=LineName(name),
+                short=f"{short + back:.0f}",
+                long=Length(long + back),
+            ),
+            Message(
+                "Lengths are those of the front part: for that whole band, write {length}mm.",
+                length=f"{rest:.1f}",
+            ),
         )
     raise LineError(
-        f"{text.strip()} asks {name} for {100 * ratio:.1f} % of its rest length.",
-        f"Stay between {100 * low:.0f} and {100 * high:.0f} %: "
-        f"{short:.0f} to {long:.0f} mm of the front part.",
+        Message(
+            "{text} asks {line} for {percent} % of its rest length.",
+            text=text.strip(),
+            line=LineName(name),
+            percent=f"{100 * ratio:.1f}",
+        ),
+        Message(
+            "Stay between {low} and {high} %: {range} of the front part.",
+            range=LengthRange(short, long),
+            low=f"{100 * low:.0f}",
+            high=f"{100 * high:.0f}",
+        ),
     )

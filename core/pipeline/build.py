@@ -29,6 +29,7 @@ from core.mechanics.gain_limit import gain_limit
 from core.mechanics.iteration import LineTargets, Observables
 from core.mechanics.model import ConstrainedModel, constrained_model
 from core.mechanics.options import ModelOptions
+from core.messages import LineName, Message
 from core.pipeline.build_shares import PARTS, SHARES, UNKNOWN
 from core.pipeline.elastic_model import solve_elastic_model
 from core.pipeline.line_routes import LineRoute, line_routes, strap_tails
@@ -261,8 +262,8 @@ def _bind(body: Mesh, control: ControlMesh, fade: Floats, weights: Weights, scal
     loose = len(movable_border_triangles(control.mesh, control.fixed))
     if loose:
         raise FitError(
-            f"Triangles at the border of the control mesh can move: {loose}.",
-            "Choose a template whose two outermost rings of points are fixed.",
+            Message("Triangles at the border of the control mesh can move: {count}.", count=loose),
+            Message("Choose a template whose two outermost rings of points are fixed."),
         )
     # Single precision is exact to 1e-4 mm here, far below what a scan resolves, and read in half the time.
     return bind(
@@ -291,7 +292,8 @@ def _model(
     unknown = sorted(worn - set(control.line_names))
     if unknown:
         raise LineError(
-            f"There is no line '{unknown[0]}'.", f"The lines are: {', '.join(control.line_names)}."
+            Message("There is no line '{line}'.", line=LineName(unknown[0])),
+            Message("The lines are: {lines}.", lines=", ".join(control.line_names)),
         )
     return constrained_model(
         control,

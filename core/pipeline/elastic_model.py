@@ -12,6 +12,7 @@ from core.mechanics.exact_solution import BodyChange, solve_body_exact, solve_ex
 from core.mechanics.force_units import newtons_per_unit
 from core.mechanics.model import ConstrainedModel
 from core.mechanics.newton import Equilibrium
+from core.messages import LineName, Message
 
 
 def solve_elastic_model(
@@ -36,7 +37,7 @@ def solve_elastic_model(
     fitted = fit_elastics(wish, _solver(tuple(ratios.values()), body_change))
     for name, elongation in fitted.elongations.items():
         if elongation > elastics[name].max_elongation:
-            raise elastics[name].overstretch_error(elongation, name, worn.get(name))
+            raise elastics[name].overstretch_error(elongation, LineName(name), worn.get(name))
     if not fitted.agreed:
         raise _no_agreement(fitted)
     return fitted.model
@@ -53,6 +54,6 @@ def _solver(
 def _no_agreement(fitted: FittedModel) -> LineError:
     """Return what to say when the body and the elastics do not come to rest together."""
     return LineError(
-        f"No balance was found with {', '.join(fitted.elongations)} made of elastic.",
-        "Set the lines nearer to 100 %, or choose no elastic.",
+        Message("No balance was found with {lines} made of elastic.", lines=", ".join(fitted.elongations)),
+        Message("Set the lines nearer to 100 %, or choose no elastic."),
     )

@@ -14,6 +14,7 @@ from core.mechanics.exact_solution import NEWTON_LIMIT, rates_at_body_volume, so
 from core.mechanics.newton import Equilibrium
 from core.mechanics.potential import Potential
 from core.mechanics.sensitivity import Rates, Sensitivities
+from core.messages import LineName, Message
 from core.pipeline.build import Stages, line_targets
 
 
@@ -26,19 +27,23 @@ class NoEquilibriumError(LineError):
 
 
 _NOT_FOUND = (
-    "No balance was found with the lines at these lengths.",
-    "Set them nearer to 100 %, or let turns hold the volume.",
+    Message("No balance was found with the lines at these lengths."),
+    Message("Set them nearer to 100 %, or let turns hold the volume."),
 )
 
 
-def _cannot_hold(design: Design) -> tuple[str, str]:
+def _cannot_hold(design: Design) -> tuple[Message, Message]:
     line = max(design.lines, key=lambda line: abs(math.log(line.ratio)), default=ActiveLine("The line", 1.0))
     late = design.line_force == "explicit"
     return (
-        f"{line.name} cannot be held at {100 * line.ratio:.1f} % of its rest length.",
-        "Let the force of lines act in step, or let lines spring back."
+        Message(
+            "{line} cannot be held at {percent} % of its rest length.",
+            line=LineName(line.name),
+            percent=f"{100 * line.ratio:.1f}",
+        ),
+        Message("Let the force of lines act in step, or let lines spring back.")
         if late
-        else "Set it nearer to 100 %, or let lines spring back.",
+        else Message("Set it nearer to 100 %, or let lines spring back."),
     )
 
 

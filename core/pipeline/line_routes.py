@@ -11,6 +11,7 @@ from core.control_mesh.skin_projection import points_on_skin
 from core.control_mesh.straps import BAND, NO_TAIL, Tail, strap_tail
 from core.document.lines import CustomLine
 from core.geometry.mesh import Mesh, Points, frozen
+from core.messages import Message
 
 NO_BACK = NO_TAIL
 
@@ -38,7 +39,7 @@ def strap_tails(
         if line.over_shoulder:
             end = control.upper_end(line.name)
             if end @ control.fixed < 1.0 - 1e-9:
-                problem = "Its upper end can move: lead it up to the edge of the control mesh."
+                problem = Message("Its upper end can move: lead it up to the edge of the control mesh.")
                 tails[line.name] = Tail(0.0, NO_TAIL, problem=problem)
             else:
                 tails[line.name] = strap_tail(skin, end @ control.mesh.vertices, backs[BAND].path)

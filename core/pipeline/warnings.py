@@ -6,6 +6,7 @@ from typing import Protocol
 
 from core.geometry.mesh import Points
 from core.mechanics.convergence import Convergence
+from core.messages import LineName, Message, join
 from core.pipeline.build import Stages
 
 
@@ -41,21 +42,28 @@ def controlled_volume(shown: ShownState) -> tuple[float, float]:
     return 100.0 * change / rest, change / 1000.0
 
 
-def shape_warnings(shown: ShownState) -> list[str]:
+def shape_warnings(shown: ShownState) -> list[Message]:
     """Return in a sentence what is wrong with a folded or overstrained shape."""
     condition, state = shown.verdict.condition, shown.verdict.state
     if condition is None or state not in ("folded", "overstrained"):
         return []
     if state == "folded":
         turn = f"{condition.largest_rotation:.0f}"
-        said = f"The shape is folded: a triangle of the control mesh has turned by {turn} degrees."
+        said = Message(
+            "The shape is folded: a triangle of the control mesh has turned by {degrees} degrees.",
+            degrees=turn,
+        )
     else:
         low, high = f"{100.0 * condition.shortest:.0f}", f"{100.0 * condition.longest:.0f}"
-        said = f"The shape is overstrained: edges of the mesh have {low} to {high} % of their rest lengths."
-    return [" ".join((said, "It does not tell how a body would look."))]
+        said = Message(
+            "The shape is overstrained: edges of the mesh have {low} to {high} % of their rest lengths.",
+            low=low,
+            high=high,
+        )
+    return [join((said, Message("It does not tell how a body would look.")))]
 
 
-def immovable_lines(stages: Stages) -> list[str]:
+def immovable_lines(stages: Stages) -> list[Message]:
     """Return a sentence for each line that is worn where no length can move anything.
 
     One that is made of an elastic is there to be cut: of it there is nothing to be told.
@@ -63,16 +71,26 @@ def immovable_lines(stages: Stages) -> list[str]:
     own = {line.name for line in stages.design.own_lines}
     still = [line.name for line in stages.model.lines if not line.constrains]
     return [
-        f"{name} lies on points that do not move: it is measured, and no length that is set moves it."
+        Message(
+            "{name} lies on points that do not move: it is measured, and no length that is set moves it.",
+            name=LineName(name),
+        )
         if name in own
-        else f"{name} lies on the rib cage: it is measured, and no length that is set moves it."
+        else Message(
+            "{name} lies on the rib cage: it is measured, and no length that is set moves it.",
+            name=LineName(name),
+        )
         for name in still
         if name in stages.design.active_lines() and name not in stages.design.active_elastics()
     ]
 
 
-def warnings(stages: Stages) -> list[str]:
+def warnings(stages: Stages) -> list[Message]:
     """Return in sentences what did not go as well as it should on the way to the model."""
     patch = stages.patch
-    faded = [] if patch.rule == "flood" else [f"The reshaped part fades by distance: {patch.reason}"]
+    faded = (
+        []
+        if patch.rule == "flood"
+        else [Message("The reshaped part fades by distance: {why}", why=patch.reason)]
+    )
     return [*stages.control.warnings, *faded]

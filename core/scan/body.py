@@ -10,6 +10,7 @@ import numpy as np
 
 from core.errors import ScanError
 from core.geometry.mesh import Faces, Indices, Mesh, Points
+from core.messages import Message
 from core.progress import Progress, quiet
 from core.scan.edits import UNEDITED, ScanEdits
 from core.scan.orientation.pose import STANDING, Pose, estimate_pose
@@ -40,7 +41,7 @@ class Body:
 
     mesh: Mesh
     pose: Pose
-    repairs: tuple[str, ...]
+    repairs: tuple[Message, ...]
     name: str
     rebuilt: bool = False
     edits: ScanEdits = UNEDITED
@@ -136,11 +137,13 @@ def _body_of(
     said = scan.notes
     shape = scan.vertices, scan.faces
     if rebuilt:
-        said = (f"Laid a surface through {len(scan.vertices):,} points.", *said)
+        said = (Message("Laid a surface through {count} points.", count=f"{len(scan.vertices):,}"), *said)
         shape = _surface(name, scan, progress)
     vertices, faces, repairs = repair(*shape, progress)
     if len(faces) == 0:
-        raise ScanError(f"{name} has no sound triangles.", "Export the scan again.")
+        raise ScanError(
+            Message("{file} has no sound triangles.", file=name), Message("Export the scan again.")
+        )
     progress(STANDING, 0.0)
     try:
         pose = estimate_pose(vertices, faces, unit=unit, up=up, front=front, progress=progress)
@@ -165,12 +168,12 @@ def _colours(mesh: Mesh, scan: RawScan, pose: Pose) -> Colours | None:
     return transfer_colors(mesh.vertices, scan.vertices @ pose.file_to_mm[:3, :3].T, scan.colours)
 
 
-def _off_the_stand(skin: EditableMesh, level: float) -> tuple[EditableMesh, tuple[str, ...]]:
+def _off_the_stand(skin: EditableMesh, level: float) -> tuple[EditableMesh, tuple[Message, ...]]:
     """Cut away what lies under a level [mm], and say so."""
     body = skin.vertices[:, 2] > level
     if body.all():
         return skin, ()
-    return skin.with_vertices(body).compact(), ("Cut away the stand that the body is mounted on.",)
+    return skin.with_vertices(body).compact(), (Message("Cut away the stand that the body is mounted on."),)
 
 
 def raw_pose(vertices: Points, unit: str | None) -> Pose:
@@ -179,7 +182,7 @@ def raw_pose(vertices: Points, unit: str | None) -> Pose:
     likely = min(MILLIMETRES, key=lambda each: abs(np.log(height * MILLIMETRES[each] / TORSO)))
     unit = unit if unit in MILLIMETRES else likely
     scale = np.diag([*[MILLIMETRES[unit]] * 3, 1.0])
-    return Pose(unit, "+z", "-y", scale, False, "It is shown as it lies in its file.", 0.0)
+    return Pose(unit, "+z", "-y", scale, False, Message("It is shown as it lies in its file."), 0.0)
 
 
 def scan_name(name: str) -> str:
@@ -191,13 +194,17 @@ def scan_name(name: str) -> str:
 def _surface(name: str, scan: RawScan, progress: Progress) -> tuple[Points, Faces]:
     if len(scan.vertices) < FEWEST_POINTS:
         raise ScanError(
-            f"{name} has no sound triangles, and too few points for a surface: {len(scan.vertices):,}.",
-            f"Scan with at least {FEWEST_POINTS:,} points, better 30,000.",
+            Message(
+                "{file} has no sound triangles, and too few points for a surface: {count}.",
+                file=name,
+                count=f"{len(scan.vertices):,}",
+            ),
+            Message("Scan with at least {few} points, better 30,000.", few=f"{FEWEST_POINTS:,}"),
         )
     try:
         return reconstruct_surface(scan.vertices, scan.normals, progress)
     except (ArithmeticError, ValueError, IndexError) as problem:
         raise ScanError(
-            f"No surface can be laid through the points of {name}.",
-            "Mesh the points first, in the program of the scanner.",
+            Message("No surface can be laid through the points of {file}.", file=name),
+            Message("Mesh the points first, in the program of the scanner."),
         ) from problem

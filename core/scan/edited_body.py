@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 
 from core.errors import LandmarkError
 from core.geometry.mesh import Flags, Mesh, Points
+from core.messages import Message
 from core.progress import Progress, quiet
 from core.scan.body import Body
 from core.scan.edits import LEAST_HEIGHT, UNEDITED, ScanEdits
@@ -18,13 +19,13 @@ from core.scan.readers.colors import transfer_colors, without_colors
 from core.scan.repair.clipping import clip_above, mirrored_half
 from core.scan.repair.holes import Hole, hole_sentences
 from core.scan.repair.large_holes import fill_large_holes
-from core.scan.repair.repair import count_text
+from core.scan.repair.repair import hole_count
 
 NEAR = 25.0
 """The centre of a hole is recognised within this distance, or half the hole's length [mm]."""
 
-NO_BUST = "The edited scan shows no bust."
-KEEP_MORE = "Crop less: keep the body from the waist to the neck."
+NO_BUST = Message("The edited scan shows no bust.")
+KEEP_MORE = Message("Crop less: keep the body from the waist to the neck.")
 
 
 def apply_edits(body: Body, edits: ScanEdits, progress: Progress = quiet) -> Body:
@@ -40,9 +41,9 @@ def apply_edits(body: Body, edits: ScanEdits, progress: Progress = quiet) -> Bod
 
 def _edited(body: Body, edits: ScanEdits) -> Body:
     mesh, levels = _cropped(body, edits)
-    sentences: list[str] = []
+    sentences: list[Message] = []
     if levels:
-        sentences.append("Cropped by hand.")
+        sentences.append(Message("Cropped by hand."))
     scanned = mesh.vertices
     if edits.kept:
         sign = 1.0 if edits.kept == "left" else -1.0
@@ -56,9 +57,13 @@ def _edited(body: Body, edits: ScanEdits) -> Body:
         chosen = _chosen(last.holes, edits)
         mesh, estimated, unfilled = fill_large_holes(mesh, chosen)
         if done := len(chosen) - unfilled:
-            sentences.append(f"Filled {count_text(done, 'hole')} by hand: the skin there is an estimate.")
+            sentences.append(
+                Message("Filled {holes} by hand: the skin there is an estimate.", holes=hole_count(done))
+            )
         if unfilled:
-            sentences.append(f"Holes whose border touches itself cannot be filled: {unfilled}.")
+            sentences.append(
+                Message("Holes whose border touches itself cannot be filled: {count}.", count=unfilled)
+            )
         if colours is not None:
             colours = np.concatenate([colours, without_colors(len(estimated))])
         last = replace(last, mesh=mesh, estimated=estimated, colours=colours)
@@ -67,11 +72,11 @@ def _edited(body: Body, edits: ScanEdits) -> Body:
     return replace(last, repairs=(*kept, *sentences, *hole_sentences(mesh, last.holes)))
 
 
-def mirror_sentence(kept: str) -> str:
+def mirror_sentence(kept: str) -> Message:
     """Return the warning that one half of a body is no scan of it."""
     if kept == "left":
-        return "The right half is a mirror image of the left one: left and right do not differ."
-    return "The left half is a mirror image of the right one: left and right do not differ."
+        return Message("The right half is a mirror image of the left one: left and right do not differ.")
+    return Message("The left half is a mirror image of the right one: left and right do not differ.")
 
 
 def _cropped(body: Body, edits: ScanEdits) -> tuple[Mesh, tuple[float, ...]]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from core.errors import UserError
 from core.geometry.mesh import MAX_COORDINATE
+from core.messages import Length, Message
 
 SIDES = ("left", "right")
 """The sides of a body that can be kept and mirrored; left is +x."""
@@ -38,19 +39,29 @@ class ScanEdits:
     def __post_init__(self) -> None:
         levels = [level for level in (self.low, self.high) if level is not None]
         if not all(0.0 <= level < MAX_COORDINATE for level in levels):
-            raise UserError("The height of a crop is out of range.", "Give a height of 0 mm or more.")
+            raise UserError(
+                Message("The height of a crop is out of range."), Message("Give a height of 0 mm or more.")
+            )
         if len(levels) == 2 and levels[1] - levels[0] < LEAST_HEIGHT:
-            raise UserError("The crop leaves no body.", f"Keep at least {LEAST_HEIGHT:.0f} mm of its height.")
+            raise UserError(
+                Message("The crop leaves no body."),
+                Message("Keep at least {least} of its height.", least=Length(LEAST_HEIGHT)),
+            )
         if self.kept not in ("", *SIDES):
-            raise UserError(f"A body has no side '{self.kept}'.", "Choose left or right.")
+            raise UserError(
+                Message("A body has no side '{kept}'.", kept=self.kept), Message("Choose left or right.")
+            )
         if len(self.filled) > MOST_FILLED:
             raise UserError(
-                f"Too many holes are filled one by one: {len(self.filled)}.", "Fill all of them at once."
+                Message("Too many holes are filled one by one: {count}.", count=len(self.filled)),
+                Message("Fill all of them at once."),
             )
         if not all(
             np.shape(place) == (3,) and (np.abs(place) < MAX_COORDINATE).all() for place in self.filled
         ):
-            raise UserError("The centre of a hole needs three numbers.", "Give x, y and z in mm.")
+            raise UserError(
+                Message("The centre of a hole needs three numbers."), Message("Give x, y and z in mm.")
+            )
 
     def with_filled(self, centre: tuple[float, float, float]) -> ScanEdits:
         """Return the edits with one more hole filled, by its centre [mm]."""
@@ -70,5 +81,7 @@ def hole_centre(text: str) -> tuple[float, float, float]:
     try:
         x, y, z = map(float, text.replace("\N{MINUS SIGN}", "-").split(","))
     except ValueError:
-        raise UserError("The centre of a hole needs three numbers.", "Give x, y and z in mm.") from None
+        raise UserError(
+            Message("The centre of a hole needs three numbers."), Message("Give x, y and z in mm.")
+        ) from None
     return x, y, z

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from core.errors import UserError
+from core.messages import Message
 from core.scan.edits import UNEDITED, ScanEdits
 
 _LONGEST_WORD = 100  # letters of a unit or an axis
@@ -30,7 +31,9 @@ class ScanSource:
 
     def __post_init__(self) -> None:
         if any(len(word or "") > _LONGEST_WORD for word in (self.unit, self.up, self.front)):
-            raise UserError("The unit, up or front of the scan cannot be used.", "Choose it again.")
+            raise UserError(
+                Message("The unit, up or front of the scan cannot be used."), Message("Choose it again.")
+            )
 
     def set_up(self, **told: str | None) -> ScanSource:
         """Return the source with another unit, up or front, without edits, which refer to the former."""

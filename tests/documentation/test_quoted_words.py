@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from page_commands import PAGES, ROOT
 
-from app.i18n.catalog import read_words, say, speaking, tr
-from app.presenters.elastics import kind_title
+from app.i18n.catalog import tr_context, translations, using_language
+from app.presenters.messages import elastic_kind, preset_title
 from app.presenters.samples import SAMPLES
 from core.document.presets import built_in as presets
 from core.garment.elastic_library import built_in as elastics
@@ -32,10 +32,10 @@ def labels_of(path: Path) -> list[str]:
 @cache
 def labels_in_window(language: str) -> set[str]:
     """Return the texts of the window, and the names of presets, elastics and samples."""
-    pairs = [*read_words("ja").items(), *read_words("ja_messages").items()]
-    with speaking(language):
-        names = {say(each.title) for each in presets()} | {kind_title(each) for each in elastics()}
-        names |= {tr(title) for title in SAMPLES.values()}
+    pairs = [(english, forms[0]) for (_, english), forms in translations("ja").items()]
+    with using_language(language):
+        names = {preset_title(each) for each in presets()} | {elastic_kind(each.name) for each in elastics()}
+        names |= {tr_context("sample", title) for title in SAMPLES.values()}
     return {pair[language != "en"].replace("\n", "") for pair in pairs} | names
 
 

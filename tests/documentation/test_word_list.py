@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.i18n.catalog import read_words
+from app.i18n.catalog import translations
 
 ROOT = Path(__file__).parents[2]
 
@@ -28,7 +28,7 @@ def refused() -> list[tuple[str, str]]:
 
 
 def sentences() -> list[str]:
-    return [*read_words("ja").values(), *read_words("ja_messages").values()]
+    return [text for forms in translations("ja").values() for text in forms]
 
 
 def test_the_list_refuses_words() -> None:

@@ -42,7 +42,7 @@ def test_a_vibration_is_told_at_once_and_ended_by_one_button() -> None:
         window.session.choose_control("conventional")
         window.session.change({"gain": 1.7}, "gain")
         yield settled(window)
-        assert "does not come to rest" in notice_of(window).sentence
+        assert "does not come to rest" in str(notice_of(window).sentence)
         assert notice_of(window).tone == "bad", "as the verdict"
         assert words(window) == [], "what was not tried is not offered"
         yield lambda: told(window)
@@ -172,7 +172,7 @@ def test_asked_before_the_verdict_is_known_he_says_what_presses(monkeypatch: pyt
         known.set()
     ((seen, sentence),) = asked
     assert seen == "bad", "not calm beside a red verdict"
-    assert "Mid-bust presses with" in sentence
+    assert "Mid-bust presses with" in str(sentence)
 
 
 def test_what_is_asked_before_the_first_frame_is_answered_with_it() -> None:
@@ -253,7 +253,7 @@ def test_the_pill_opens_what_the_button_ends_and_what_will_still_be_strained() -
         window.lines_controller.commit_length("mid-bust", 0.848)
         yield lambda: told(window)
         said = words(window)[1]
-        assert "the second high pressure, strained skin" in notice_of(window).hint, "it is told before"
+        assert "the second high pressure, strained skin" in str(notice_of(window).hint), "it is told before"
         assert said.startswith("Lengthen Mid-bust by ")
         window.notices.buttons[1].click()
         yield settled(window)

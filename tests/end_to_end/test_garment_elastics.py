@@ -43,7 +43,7 @@ def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(
         sheet.import_asked.emit()
         refusal = sheet.notices.notice()
         assert refusal is not None
-        assert "Line 5 of the table Roll 8 has no two numbers" in refusal.sentence
+        assert "Line 5 of the table Roll 8 has no two numbers" in str(refusal.sentence)
         assert not user_folder().exists()
         chosen[0] = good
         sheet.import_asked.emit()
@@ -63,7 +63,7 @@ def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(
         sheet.import_asked.emit()
         refusal = sheet.notices.notice()
         assert refusal is not None
-        assert "Line 6" in refusal.sentence, "a table that is not filled in is none"
+        assert "Line 6" in str(refusal.sentence), "a table that is not filled in is none"
         sheet.table.mark("Roll 7")
         sheet.delete.click()
         assert "Roll 7" not in sheet.views

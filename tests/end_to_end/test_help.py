@@ -13,7 +13,7 @@ from window_tools import Script, run_main, undrawn
 
 from app.gui.features.help import user_guide as guide
 from app.gui.main_window import MainWindow
-from app.i18n.catalog import speaking
+from app.i18n.catalog import using_language
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -107,7 +107,7 @@ def where_nothing_opens_it_the_window_says_where_it_is(window: MainWindow) -> No
 
 
 def test_a_window_that_speaks_japanese_opens_the_japanese_part() -> None:
-    with speaking("ja"):
+    with using_language("ja"):
         assert {guide.fitting_page(at).partition("#")[0] for at in guide.PAGES} == {"ja/screens"}
         assert guide.fitting_page("garment") == "ja/screens#裁断"
         assert (guide.fitting_page(""), guide.first_page()) == ("ja/index", "ja/quick-start")

@@ -13,7 +13,6 @@ from window_tools import Script, drag, run_main, settled, undrawn
 from app.gui.main_window import MainWindow
 from app.gui.session.document_editor import DocumentEditor
 from app.gui.widgets.notification_bar import Notification
-from app.presenters.lines import titled
 from core.analysis.length_limits.zones import LengthLimits, Reason, Zone
 from core.document.design import Design, ScanSource
 from core.document.document import Document
@@ -255,19 +254,9 @@ class _Editing(DocumentEditor):
 def test_a_locked_line_is_not_dragged_and_says_so_when_it_is_let_go(qapp: QApplication) -> None:
     editing = _Editing(Design(ScanSource("x")).with_line_settings(LineSettings("mid-bust", locked=True)))
     said: list[str] = []
-    editing.failed.connect(lambda problem: said.append(problem.message))
+    editing.failed.connect(lambda problem: said.append(str(problem.message)))
     editing.preview_line("mid-bust", 0.9)
     assert (editing._preview, said) == (None, [])
     editing.commit_line("mid-bust", "Mid-bust", 0.9)
     assert said == ["The line mid-bust is locked."]
     assert not editing.undo_stack.canUndo()
-
-
-def test_a_sentence_names_a_line_by_the_title_that_it_was_given() -> None:
-    design = Design(ScanSource("x")).with_line_settings(LineSettings("strap left", title="lift tape"))
-    said = "strap left cannot be held; the line strap left is locked, strap left-over is not."
-    told = "Lift tape, left cannot be held; the line lift tape, left is locked, strap left-over is not."
-    assert titled(said, design) == told
-    assert titled(said, None) == said
-    held = "full-bust cannot be held at 50.0 % of its rest length."
-    assert titled(held, design) == "Full bust cannot be held at 50.0 % of its rest length."

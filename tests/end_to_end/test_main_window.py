@@ -14,6 +14,7 @@ from window_tools import Script, drag, points, run_main, run_undrawn, settled
 from app.gui.main_window import MainWindow
 from app.rendering.camera import VIEWS
 from core.errors import ProjectError
+from core.messages import Message
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -142,7 +143,7 @@ def test_an_edit_that_cannot_be_carried_out_is_taken_back() -> None:
         yield settled(window)
         assert window.session.design == design
         assert not window.session.undo_stack.canUndo()
-        window.session.not_saved.emit(ProjectError("Not written."))
+        window.session.not_saved.emit(ProjectError(Message("Not written.")))
         drag(window, "mid-bust", -10)
         yield settled(window)
         assert window.notices.notice().sentence == "Not written.", "the refusal alone is of the past"

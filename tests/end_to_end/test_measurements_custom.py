@@ -151,7 +151,7 @@ def test_a_girth_lies_where_the_skin_is_clicked_or_off_a_landmark() -> None:
         (view,) = (each for each in window.result.measured if each.own)
         height = f"{level.level:.0f} mm above the lowest point of the scan"
         assert height in view.tip
-        assert height in level.text, "the command line says the same"
+        assert height in str(level.text), "the command line says the same"
         window.custom_measures_controller.begin()
         form.kind.button("girth").click()
         form.at.chosen.emit("fold_left")

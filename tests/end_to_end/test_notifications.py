@@ -8,6 +8,7 @@ from window_tools import Script, drag, run_undrawn, settled
 from app.gui.main_window import MainWindow
 from app.gui.widgets.notification_bar import SCAN
 from core.errors import UserError
+from core.messages import Message
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -46,7 +47,7 @@ def they_float(window: MainWindow) -> Script:
 
 def they_go_with_their_cause(window: MainWindow) -> Script:
     notices, session = window.notices, window.session
-    for error in (UserError("Refused.", ""), RuntimeError("a fault")):
+    for error in (UserError(Message("Refused.")), RuntimeError("a fault")):
         drag(window, "mid-bust", -10)
         yield settled(window)
         window.notifications.error(error)

@@ -15,7 +15,7 @@ from app.gui.features.help.command_palette import plain
 from app.gui.main_window import MainWindow
 from app.gui.widgets.coach_mark import _beside
 from app.i18n.catalog import use_language
-from app.presenters.lines import line_title
+from app.presenters.messages import line_title
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

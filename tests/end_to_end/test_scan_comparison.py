@@ -16,13 +16,14 @@ from worn_pair import write_worn_pair
 import app.gui.features.scan_comparison.controller
 from app.gui.features.scan_comparison.page import ScanComparisonPage, ScanComparisonView
 from app.gui.main_window import MainWindow
-from app.i18n.catalog import speaking
+from app.i18n.catalog import using_language
 from app.presenters.samples import sample_design
 from app.presenters.scan_comparison import bust_words, parameter_title
 from core.analysis.calibration.api import Residuals, ResidualSummary, calibrate, compare
 from core.control_mesh.template import read_template
 from core.document.line_notation import ready_made_lines
 from core.errors import UserError
+from core.messages import Message
 
 
 @pytest.fixture(scope="module")
@@ -183,7 +184,7 @@ def test_a_number_that_linked_lines_share_is_called_as_their_row() -> None:
     assert parameter_title("length of strap left", linked) == "Length of Straps"
     assert parameter_title("stiffness of strap right", apart) == "Stiffness of Strap (right)"
     assert parameter_title("stiffness of mid-bust", linked) == "Stiffness of Mid-bust"
-    with speaking("ja"):
+    with using_language("ja"):
         assert "左" not in parameter_title("stiffness of strap left", linked)
 
 
@@ -200,7 +201,7 @@ def test_what_is_begun_with_another_thickness_is_never_shown(
     def failing(*args: object, **told: object) -> object:
         gate.wait(30.0)
         if told["thickness"] == 2.0:
-            raise UserError("The worn scan shows too little.", "Scan the front too.")
+            raise UserError(Message("The worn scan shows too little."), Message("Scan the front too."))
         return calibrate(*args, **told)
 
     def script(window: MainWindow) -> Script:

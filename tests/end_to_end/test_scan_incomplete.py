@@ -25,6 +25,7 @@ from core.document.design import Design, ScanSource
 from core.errors import LandmarkError, ScanError
 from core.landmarks.detect import find_landmarks
 from core.landmarks.manual import in_mm
+from core.messages import Message
 from core.pipeline.build import IncompleteBuildError
 from core.scan.body import Body
 from core.scan.orientation.pose import estimate_pose
@@ -36,7 +37,7 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 def nothing_unless_placed(body: Body, placed: Any, needed: int = 1, **_: Any) -> Any:
     """A ``detect_landmarks`` that finds no bust before so many points are placed."""
     if len(placed) < needed:
-        raise LandmarkError("No bust is here.", "Place its points.")
+        raise LandmarkError(Message("No bust is here."), Message("Place its points."))
     return find_landmarks(body)
 
 
@@ -237,7 +238,7 @@ def test_a_refused_scan_is_shown_as_it_lies_and_can_be_told_how_it_stands(
 ) -> None:
     def refuse(vertices: Any, faces: Any, **told: Any) -> Any:
         if told["up"] is None:
-            raise ScanError("This is no body.", "Say which way is up.")
+            raise ScanError(Message("This is no body."), Message("Say which way is up."))
         return estimate_pose(vertices, faces, **told)
 
     monkeypatch.setattr(core.scan.body, "estimate_pose", refuse)

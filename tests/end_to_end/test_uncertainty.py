@@ -13,6 +13,7 @@ from app.gui.main_window import MainWindow
 from app.presenters.uncertainty import limitation_sentences
 from core.errors import UserError
 from core.measurements.uncertain_value import OutputUncertainties
+from core.messages import Message
 from core.progress import Progress
 
 pytestmark = pytest.mark.usefixtures("landmarks_known")
@@ -106,7 +107,10 @@ def test_where_it_is_given_up_there_is_none_and_the_reason_stands_there(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def refused(*_: object) -> object:
-        raise UserError("No balance was found with the lines at these lengths.", "Set them nearer to 100 %.")
+        raise UserError(
+            Message("No balance was found with the lines at these lengths."),
+            Message("Set them nearer to 100 %."),
+        )
 
     monkeypatch.setattr(core.analysis.uncertainty.estimate.UncertaintyEstimator, "estimate", refused)
 

@@ -19,6 +19,7 @@ from core.document.design import Design
 from core.errors import LineError
 from core.garment.cut_list import cut_list
 from core.garment.elastic_library import find_elastic
+from core.messages import Message
 from core.pipeline.live_solver import Frame
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -140,7 +141,7 @@ def what_cannot_be_solved_is_told_once(window: MainWindow, monkeypatch: pytest.M
 
     def refuse(*_: object) -> None:
         asked.append(1)
-        raise LineError("No balance holds this.", "Set it longer.")
+        raise LineError(Message("No balance holds this."), Message("Set it longer."))
 
     monkeypatch.setattr(app.gui.features.variants.controller, "converged_frame", refuse)
     window.variants_controller.choose("A")

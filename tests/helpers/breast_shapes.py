@@ -10,6 +10,7 @@ from core.geometry.mesh import Mesh
 from core.landmarks.types import Landmark, Landmarks
 from core.measurements.breast_root import Root, Side, side_of
 from core.measurements.chest_wall import UnrolledTorso
+from core.messages import Message
 
 DEEP = 110.0
 """How far a chest lies before the axis of the trunk [mm]."""
@@ -87,5 +88,5 @@ def _landmarks(bust: np.ndarray, loop: np.ndarray) -> Landmarks:
         "root_outer_left": loop[half],
         "fold_left": loop[half // 2],
     }
-    points = {name: Landmark(name, place, 1.0, "known") for name, place in places.items()}
+    points = {name: Landmark(name, place, 1.0, Message("known")) for name, place in places.items()}
     return Landmarks(MappingProxyType(points), float(bust[2]), float(loop[:, 2].min()))

@@ -10,6 +10,7 @@ import numpy as np
 
 from core.geometry.mesh import Mesh
 from core.landmarks.types import Landmark, Landmarks
+from core.messages import Message
 from core.scan.body import Body, read_scan
 
 HERE = Path(__file__).parents[1]
@@ -31,7 +32,7 @@ def body_of(mesh) -> Body:
 
 def landmarks_at(places) -> Landmarks:
     """Landmarks at given places by name."""
-    points = {name: Landmark(name, place, 1.0, "given") for name, place in places.items()}
+    points = {name: Landmark(name, place, 1.0, Message("given")) for name, place in places.items()}
     bust = np.mean([points[f"bust_point_{side}"].position[2] for side in ("left", "right")])
     return Landmarks(
         MappingProxyType(points), float(bust), float(min(p.position[2] for p in points.values()))

@@ -34,6 +34,7 @@ from core.analysis.calibration.api import (
 )
 from core.document.design import ScanSource
 from core.errors import UserError
+from core.messages import Message
 from core.pipeline.build import Stages
 from core.scan.orientation.unit_detection import MILLIMETRES
 
@@ -74,8 +75,10 @@ def run(options: Namespace) -> int:
     check_project_name(options.out)
     if not 0.0 <= options.thickness <= THICKEST:
         raise UserError(
-            f"The fabric thickness {options.thickness:g} mm is out of range.",
-            f"Enter a thickness from 0 to {THICKEST:g} mm.",
+            Message(
+                "The fabric thickness {thickness} mm is out of range.", thickness=f"{options.thickness:g}"
+            ),
+            Message("Enter a thickness from 0 to {THICKEST} mm.", THICKEST=f"{THICKEST:g}"),
         )
     stages = stages_of(options)
     require_active_line(stages)  # before half a minute is spent on reading

@@ -19,6 +19,7 @@ from core.errors import LineError, UserError
 from core.garment.cut_list import CutList, CutRow, cut_list
 from core.garment.elastic_library import library
 from core.garment.elastic_options import KEEP_CUT, KEEP_FIT, elastic_option
+from core.messages import LineName, Message, plain
 from core.pipeline.build import Stages, build
 
 COLUMNS = tuple(field.name for field in fields(CutRow))
@@ -65,13 +66,13 @@ def _text(found: Cut) -> str:
     heading, *rows = as_table(found.solved.solution.stages, found.cuts, None)
     first, *lines = table_lines([[row[at] for at in _SHOWN] for row in (heading, *rows)])
     lines = [text for line, row in zip(lines, rows, strict=True) for text in (line, f"  {row[_NOTE]}")]
-    notes = [*filter(str.strip, lines), *found.cuts.notes]
+    notes = [*filter(str.strip, lines), *map(str, found.cuts.notes)]
     return "\n".join([*found.solved.verdict, *found.solved.effect, "", first, *notes])
 
 
 def _json(found: Cut) -> str:
     whole = {**found.cuts.as_data(), "assessment": found.solved.assessment.as_data()}
-    whole |= {"warnings": found.solved.warnings, "versions": {"busk": __version__}}
+    whole |= {"warnings": plain(found.solved.warnings), "versions": {"busk": __version__}}
     return json.dumps(whole, indent=1, ensure_ascii=False)
 
 
@@ -89,7 +90,10 @@ def elastics_text(stages: Stages, name: str, *, keep_fit: bool = False) -> str:
     line = next((each.name for each in stages.model.lines if each.name.lower() == name.strip().lower()), None)
     if line is None:
         known = ", ".join(each.name for each in stages.model.lines)
-        raise LineError(f"There is no line '{name}'.", f"Available lines: {known}.")
+        raise LineError(
+            Message("There is no line '{line}'.", line=LineName(name)),
+            Message("Available lines: {known}.", known=known),
+        )
     names, rigid = design.linked_pair(line), None
     rows = [["", "elong. %", "cut mm", "body mm", "lift mm", ""]]
     for elastic in (None, *library().values()):
@@ -103,6 +107,6 @@ def elastics_text(stages: Stages, name: str, *, keep_fit: bool = False) -> str:
 
 def _refused(_: object) -> str:
     raise UserError(
-        "The list of elastics is available as text only.",
-        "Remove --json, --csv and file names with these endings.",
+        Message("The list of elastics is available as text only."),
+        Message("Remove --json, --csv and file names with these endings."),
     )

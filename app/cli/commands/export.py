@@ -14,8 +14,9 @@ from app.presenters.assessment import assessment_lines
 from app.presenters.export import ExportOptions, ExportSource
 from app.presenters.export_preview import check, prepare_export
 from app.presenters.scan import KINDS as SCANS
-from core.errors import UserError
+from core.errors import UserError, reason_of
 from core.garment.assessment import assess
+from core.messages import Message
 from core.pipeline.build import build
 from core.pipeline.warnings import shape_warnings
 from core.progress import in_one_go, quiet
@@ -76,11 +77,16 @@ def run(options: Namespace) -> int:
 def _check(files: Mapping[str, str], manner: ExportOptions) -> None:
     """Raise UserError if a file cannot be written."""
     if not files:
-        raise UserError("No output specified.", "Specify a file, for example --body anna.glb.")
+        raise UserError(
+            Message("No output specified."), Message("Specify a file, for example --body anna.glb.")
+        )
     names = list(files.values())
     twice = [name for name in names if names.count(name) > 1]
     if twice:
-        raise UserError(f"{twice[0]} is specified for two outputs.", "Use a different file for each output.")
+        raise UserError(
+            Message("{value} is specified for two outputs.", value=twice[0]),
+            Message("Use a different file for each output."),
+        )
     for kind, name in files.items():
         check(kind, name, manner)
 
@@ -92,7 +98,10 @@ def _write(kind: str, name: str, outcome: ExportSource, manner: ExportOptions) -
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
     except OSError as why:
-        raise UserError(f"{name} cannot be written: {why.strerror}.", "Choose another folder.") from why
+        raise UserError(
+            Message("{file} cannot be written: {problem}.", file=name, problem=reason_of(why)),
+            Message("Choose another folder."),
+        ) from why
     drawn = in_one_go(ready.draw()) if ready.draw else None
     written = ready.write(target, drawn, quiet) or [target]
     place = name if len(written) == 1 else f"{written[0].name} to {written[-1].name}"

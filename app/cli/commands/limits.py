@@ -12,11 +12,12 @@ from app.cli.options import add_forms, add_lines, add_scan
 from app.cli.output import finish
 from app.presenters.assessment import assessment_lines
 from app.presenters.length_limits import legend_entries
-from app.presenters.lines import line_title
+from app.presenters.messages import line_title
 from core.analysis.length_limits.limits import Length, Limits, all_limits
 from core.analysis.length_limits.zones import LengthLimits, to_length_limits
 from core.garment.assessment import Assessment, assess
 from core.garment.pressure_limits import pressure_limits
+from core.messages import plain
 from core.pipeline.build import Stages
 from core.pipeline.solve import solve
 from core.pipeline.warnings import immovable_lines
@@ -69,7 +70,7 @@ def _text(found: Sequence[Limits], stages: Stages, assessment: Assessment) -> It
         yield from (
             f"  {tone}: {words.replace(_NO_BREAK, ' ')}" for tone, words in legend_entries(zones).items()
         )
-    yield from immovable_lines(stages)
+    yield from map(str, immovable_lines(stages))
 
 
 def _present(limits: Limits, stages: Stages) -> str:
@@ -102,7 +103,7 @@ def limits_data(found: Sequence[Limits], stages: Stages) -> dict[str, Any]:
             }
             for limits in found
         },
-        "notes": immovable_lines(stages),
+        "notes": plain(immovable_lines(stages)),
         "definition": "each line and its linked partner, shorter and longer than 100 %, other lines as set; "
         f"% of rest_mm. On the control mesh: {'; '.join(criteria)}. Further limits: {'; '.join(others)}. "
         "Limits caused by other lines also apply at 100 %",

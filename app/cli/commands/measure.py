@@ -22,6 +22,7 @@ from core.export.csv_cells import csv_text
 from core.garment.assessment import assess
 from core.landmarks.warnings import collect_warnings
 from core.measurements.table import before_after, measure_rows, measures
+from core.messages import Message, plain
 from core.pipeline.build import build, detect_landmarks, read_body
 from core.pipeline.warnings import shape_warnings
 
@@ -38,7 +39,7 @@ class Measured:
     rows: list[dict[str, Any]]
     views: list[MeasureView]
     converged: bool
-    warnings: list[str]
+    warnings: list[Message]
     verdict: tuple[str, ...] = ()
 
 
@@ -63,7 +64,7 @@ def _measured_scan(design: Design) -> Measured:
     _, body = read_body(design.scan)
     landmarks = detect_landmarks(body, design.placed)
     before = measures(body.smoothed, landmarks, design.own_measures)
-    rows, views = measure_rows(before), measured_views(before, None, design.own_measures)
+    rows, views = measure_rows(before), measured_views(before, None)
     return Measured(rows, views, True, collect_warnings(body, landmarks))
 
 
@@ -73,7 +74,7 @@ def _measured(design: Design) -> Measured:
     both = before_after(stages, solution.control_points)
     warnings = [*collect_warnings(stages.body, stages.landmarks), *shape_warnings(solution)]
     verdict = tuple(assessment_lines(assess(solution), stages.design))
-    views = measured_views(*both, stages.design.own_measures)
+    views = measured_views(*both)
     return Measured(measure_rows(*both), views, is_converged(solution), warnings, verdict)
 
 
@@ -91,7 +92,7 @@ def _cells(view: MeasureView, solved: bool) -> tuple[str, ...]:
 
 def _json(found: Measured) -> str:
     table = {row["key"]: {key: value for key, value in row.items() if key != "key"} for row in found.rows}
-    whole = {"measures": table, "warnings": found.warnings, "versions": {"busk": __version__}}
+    whole = {"measures": plain(table), "warnings": plain(found.warnings), "versions": {"busk": __version__}}
     return json.dumps(whole, indent=1, ensure_ascii=False)
 
 

@@ -16,6 +16,7 @@ from app.rendering.display import off_screen
 from core.document.design import Design
 from core.errors import UserError
 from core.files.atomic_write import atomic_path
+from core.messages import Message
 from core.progress import in_one_go, quiet
 
 if TYPE_CHECKING:
@@ -70,7 +71,10 @@ def draw_picture(
 
     side = {"side": "left"}.get(view, view)
     if side not in VIEWS:
-        raise UserError(f"There is no view '{view}'.", f"Choose one of: {', '.join(VIEWS)}, side.")
+        raise UserError(
+            Message("There is no view '{view}'.", view=view),
+            Message("Choose one of: {choices}, side.", choices=", ".join(VIEWS)),
+        )
     solution = solve(build(design))
     outcome = ExportSource(solution.stages, solution.control_points)
     ready = prepare_export("picture", out, outcome, ExportOptions(view=side, size=size, dark=dark))
@@ -146,9 +150,14 @@ def save_window(window: MainWindow, out: Path) -> None:
 
 def _check_name(out: Path) -> None:
     if out.suffix.lower() != ".png":
-        raise UserError(f"'{out}' is not a picture file name.", "Choose a name ending in .png.")
+        raise UserError(
+            Message("'{out}' is not a picture file name.", out=out), Message("Choose a name ending in .png.")
+        )
     if not out.parent.is_dir():
-        raise UserError(f"Folder {out.parent} does not exist.", "Make it, or choose another one.")
+        raise UserError(
+            Message("Folder {parent} does not exist.", parent=out.parent),
+            Message("Make it, or choose another one."),
+        )
 
 
 def wait_until(ready: Callable[[], bool], turn: Callable[[], None]) -> None:
@@ -156,6 +165,6 @@ def wait_until(ready: Callable[[], bool], turn: Callable[[], None]) -> None:
     patience, longest = time.process_time() + _PATIENCE, time.monotonic() + _LONGEST
     while not ready():
         if time.process_time() > patience or time.monotonic() > longest:
-            raise UserError("The rendering timed out.", "Try again, or report the problem.")
+            raise UserError(Message("The rendering timed out."), Message("Try again, or report the problem."))
         turn()
         time.sleep(0.005)

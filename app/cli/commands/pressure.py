@@ -11,11 +11,12 @@ from app.cli.design import design_of
 from app.cli.options import add_forms, add_lines, add_scan, form_of
 from app.cli.output import csv_text, finish, table_lines, write_output
 from app.cli.solved_design import SolvedDesign, solve_design
-from app.presenters.lines import line_title
+from app.presenters.messages import line_title
 from app.presenters.pressure import place_words, rating_limits, rating_text, total_words
 from core import __version__
 from core.document.design import Design
 from core.garment.pressure_list import PressureList, PressureRow, pressure_list
+from core.messages import plain
 
 COLUMNS = tuple(field.name for field in fields(PressureRow))
 _HEADING = ("", "mean kPa", "mmHg", "max kPa", "mmHg", "rating", "force N", "bridged mm", "maximum at")
@@ -82,7 +83,7 @@ def _limits() -> Iterator[str]:
 
 def _json(found: Pressures) -> str:
     whole = {**found.listed.as_data(), "assessment": found.solved.assessment.as_data()}
-    whole |= {"warnings": found.solved.warnings, "versions": {"busk": __version__}}
+    whole |= {"warnings": plain(found.solved.warnings), "versions": {"busk": __version__}}
     return json.dumps(whole, indent=1, ensure_ascii=False)
 
 

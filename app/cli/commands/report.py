@@ -25,6 +25,7 @@ from core.export.report_data import Heading, Report, make_report, with_uncertain
 from core.export.report_data_file import report_csv, report_json
 from core.files.atomic_write import write_text
 from core.measurements.sizes import sizes
+from core.messages import Message
 from core.pipeline.solve import Solution
 from core.progress import in_one_go
 
@@ -108,7 +109,7 @@ def write_report(
         if name:
             write_text(Path(name), text(sheet), code)
     faults = _write(solution, sheet, how)
-    return solved, [*dict.fromkeys((*solved.warnings, *sheet.doubts, *sheet.warnings)), *faults]
+    return solved, [*dict.fromkeys(map(str, (*solved.warnings, *sheet.doubts, *sheet.warnings))), *faults]
 
 
 def _check(how: ReportOptions) -> None:
@@ -116,15 +117,24 @@ def _check(how: ReportOptions) -> None:
     for name, ending in ((how.out, ".pdf"), (how.json, ".json"), (how.csv, ".csv")):
         if name and Path(name).suffix.lower() != ending:
             raise UserError(
-                f"'{name}' does not have the required ending.", f"Choose a name ending in {ending}."
+                Message("'{name}' does not have the required ending.", name=name),
+                Message("Choose a name ending in {ending}.", ending=ending),
             )
         if name and not Path(name).parent.is_dir():
-            raise UserError(f"Folder {Path(name).parent} does not exist.", "Make it, or choose another one.")
+            raise UserError(
+                Message("Folder {parent} does not exist.", parent=Path(name).parent),
+                Message("Make it, or choose another one."),
+            )
     if not how.out:
-        raise UserError("The output folder has no name.", "Specify a file: --out report.pdf.")
+        raise UserError(
+            Message("The output folder has no name."), Message("Specify a file: --out report.pdf.")
+        )
     known = sizes(750.0, 900.0, how.allowance or 0.0)
     if how.system not in known:
-        raise UserError(f"Unknown size system '{how.system}'.", f"Choose one of: {', '.join(known)}.")
+        raise UserError(
+            Message("Unknown size system '{system}'.", system=how.system),
+            Message("Choose one of: {choices}.", choices=", ".join(known)),
+        )
 
 
 def _heading(source: str, design: Design, how: ReportOptions) -> Heading:

@@ -53,9 +53,9 @@ def run(options: Namespace) -> int:
     values = write_solution(solution, out, {"assessment": assessment.as_data()})
     text = [*assessment_lines(assessment, design), *_lines(values), _end(values, solution, out)]
     unclear = collect_warnings(stages.body, stages.landmarks)
-    warnings = [*unclear, *immovable_lines(stages), *shape_warnings(solution)]
-    warnings += [DIVERGED] * (motion == "diverging")
-    return finish("\n".join(text), is_converged(solution), warnings)
+    warnings = (*unclear, *immovable_lines(stages), *shape_warnings(solution))
+    diverged = [DIVERGED] * (motion == "diverging")
+    return finish("\n".join(text), is_converged(solution), (*warnings, *diverged))
 
 
 def _lines(values: Mapping[str, Any]) -> Iterator[str]:

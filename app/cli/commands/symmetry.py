@@ -25,6 +25,7 @@ from core.document.design import Design
 from core.errors import UserError
 from core.garment.assessment import Assessment, assess
 from core.landmarks.warnings import edit_warnings
+from core.messages import Message, plain
 from core.pipeline.build import Stages, build
 from core.pipeline.solve import solve
 from core.pipeline.warnings import shape_warnings
@@ -54,7 +55,7 @@ class Symmetry:
     stages: Stages
     compared: BeforeAfter
     converged: bool
-    warnings: list[str]
+    warnings: list[Message]
     assessment: Assessment
     made: BalanceResult | None = None
     as_set: SideDifference | None = None
@@ -85,7 +86,7 @@ def add_options(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Print the comparison, and save the balanced design. Raises UserError."""
     if options.out and not options.balance:
-        raise UserError("No result to save.", "Add --balance to compute balanced lengths.")
+        raise UserError(Message("No result to save."), Message("Add --balance to compute balanced lengths."))
     check_project_name(options.out)
     found = compare(stages_of(options), balance=options.balance)
     save_design(options.input, options.out, found.design, found.stages)
@@ -119,7 +120,7 @@ def _text(found: Symmetry) -> Iterator[str]:
         balanced = symmetry_view(BeforeAfter(made.rest, made.after, ()), found.stages)
         rows = [[*row, view.after] for row, view in zip(rows, balanced.views, strict=True)]
         heading.append("balanced" if made.is_balanced else "nearest")
-    yield from (*table_lines([heading, *rows]), "", summary.says, *found.compared.notes)
+    yield from (*table_lines([heading, *rows]), "", summary.says, *map(str, found.compared.notes))
     if made is not None:
         yield from ("", *_balance(found, made))
     if found.out:
@@ -172,7 +173,7 @@ def symmetry_data(found: Symmetry) -> dict[str, Any]:
         "rows": {row.key: {**asdict(row), "title": TITLES[row.key]} for row in rows},
         "answer": "exact" if made else found.stages.design.volume,
         "settled": found.converged,
-        "notes": list(found.compared.notes),
+        "notes": plain(found.compared.notes),
         "made": None
         if made is None
         else {

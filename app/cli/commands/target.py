@@ -40,6 +40,7 @@ from core.errors import LineError, UserError
 from core.garment.assessment import Assessment, assess
 from core.geometry.mesh import Floats
 from core.mechanics.constraint_lines import Line, length_ratio
+from core.messages import Message
 from core.pipeline.build import Stages, build
 from core.pipeline.solve import solve
 
@@ -119,14 +120,19 @@ def find_lengths(options: Namespace) -> TargetResult:
     """Compute the lengths: requests that are not valid are refused before. Raises UserError."""
     goals, curves = goals_of(options.target or []), [_curve(each) for each in options.profile or []]
     if not goals and not curves:
-        raise UserError("No target specified.", "Specify a target: --target lift=5mm.")
+        raise UserError(Message("No target specified."), Message("Specify a target: --target lift=5mm."))
     limit = options.pressure
     if limit is not None and not (0.0 < limit < _HARDEST or limit == np.inf):
-        raise UserError("The pressure limit is out of range.", f"Enter kPa between 0 and {_HARDEST:g}.")
+        raise UserError(
+            Message("The pressure limit is out of range."),
+            Message("Enter kPa between 0 and {most}.", most=f"{_HARDEST:g}"),
+        )
     check_project_name(options.out)
     stages = with_lines_and_elastics(build(design_of(options)), options.line or [], options.elastic or [])
     if not stages.design.lines and not options.optional:
-        raise LineError("No active lines.", "Activate the lines to use: --line mid-bust=100%.")
+        raise LineError(
+            Message("No active lines."), Message("Activate the lines to use: --line mid-bust=100%.")
+        )
     chosen = stages.design.active_lines()
     active = {line.name.lower(): line for line in stages.model.lines if line.name in chosen}
     locked = [_active(active, name, name).name for name in options.lock or []]
@@ -147,12 +153,18 @@ def goals_of(texts: Sequence[str]) -> tuple[Goal, ...]:
         name = " ".join(match[1].split()) if match else ""
         if match is None or name not in NAMES:
             names = ", ".join(NAMES)
-            raise UserError(f"'{text}' is not a target.", f"Enter NAME=12mm. Names: {names}.")
+            raise UserError(
+                Message("'{text}' is not a target.", text=text),
+                Message("Enter NAME=12mm. Names: {names}.", names=names),
+            )
         value = float(match[2].replace(",", ".")) * _MM[match[3]]
         if abs(value) > _LARGEST:
-            raise UserError(f"'{text}' is not a valid body length.", "Enter millimetres, or append cm or in.")
+            raise UserError(
+                Message("'{text}' is not a valid body length.", text=text),
+                Message("Enter millimetres, or append cm or in."),
+            )
         if name in goals:
-            raise UserError(f"{name} is specified twice.", "Specify it once.")
+            raise UserError(Message("{name} is specified twice.", name=name), Message("Specify it once."))
         goals[name] = Goal(name, value, match[4] or "normal")
     return tuple(goals.values())
 
@@ -163,8 +175,8 @@ def _curve(request: str) -> tuple[str, str, Floats]:
     section = match[1].lower() if match else "left"
     named, equals, _ = request.partition("=")
     if match is None and equals and not Path(request).exists():
-        hint = "Specify left, right, or x in mm: 60=FILE.csv."
-        raise UserError(f"There is no section '{named.strip()}'.", hint)
+        hint = Message("Specify left, right, or x in mm: 60=FILE.csv.")
+        raise UserError(Message("There is no section '{name}'.", name=named.strip()), hint)
     priority = (match[2] or "normal").lower() if match else "normal"
     return section, priority, read_profile(request[match.end() :] if match else request)
 
@@ -180,7 +192,8 @@ def _inactive(stages: Stages, requests: Sequence[str]) -> tuple[str, ...]:
         if request.strip().lower() not in known:
             names = ", ".join(known) or "none"
             raise LineError(
-                f"'{request}' is not an inactive line that moves the body.", f"Inactive lines: {names}."
+                Message("'{request}' is not an inactive line that moves the body.", request=request),
+                Message("Inactive lines: {names}.", names=names),
             )
         chosen += known[request.strip().lower()]
     return tuple(dict.fromkeys(chosen))
@@ -189,7 +202,10 @@ def _inactive(stages: Stages, requests: Sequence[str]) -> tuple[str, ...]:
 def _active(active: Mapping[str, Line], name: str, request: str) -> Line:
     if name.strip().lower() not in active:
         names = ", ".join(line.name for line in active.values())
-        raise LineError(f"'{request}' is not an active line.", f"Active lines: {names}.")
+        raise LineError(
+            Message("'{request}' is not an active line.", request=request),
+            Message("Active lines: {names}.", names=names),
+        )
     return active[name.strip().lower()]
 
 

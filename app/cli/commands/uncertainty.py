@@ -33,6 +33,7 @@ from core.measurements.uncertain_value import (
     format_range,
     format_uncertainty,
 )
+from core.messages import plain
 
 COLUMNS = ("key", "title", "unit", "value", "plus_minus", "low", "high", *SOURCES, "other_contact")
 KINDS = {BEFORE: "before", AFTER: "after", CHANGE: "difference"}
@@ -89,7 +90,7 @@ def run(options: Namespace) -> int:
 
 def _of_measures(rows: Sequence[Mapping[str, Any]]) -> Iterator[Value]:
     for row in rows:
-        title = f"{row['title']}, {row['side']}" if row["side"] else row["title"]
+        title = f"{row['title']}, {row['side']}" if row["side"] else str(row["title"])
         for kind, column in KINDS.items():
             yield Value(f"{kind}:{row['key']}", title, row["unit"], row[column])
 
@@ -156,7 +157,7 @@ def _meaning(found: Uncertainties) -> Iterator[str]:
         yield "(a to b): asymmetric range of a parameter known to a factor only."
     if not spread.bare:
         yield ("The skin contact is a model option and not included in ±: the real value is between the two.")
-    yield from spread.cautions
+    yield from map(str, spread.cautions)
     if spread.failed:
         yield f"Excluded, no solution: {spread.failed} samples."
     yield "Not included:"
@@ -180,10 +181,10 @@ def _json(found: Uncertainties) -> str:
         "contact": spread.contact,
         "failed": spread.failed,
         "sources": {name: words.en for name, words in origins().items()},
-        "left_out": [*NOT_MODELLED, *LEFT_OUT],
-        "cautions": list(spread.cautions),
+        "left_out": plain([*NOT_MODELLED, *LEFT_OUT]),
+        "cautions": plain(spread.cautions),
         "assessment": found.solved.assessment.as_data(),
-        "warnings": found.solved.warnings,
+        "warnings": plain(found.solved.warnings),
         "versions": {"busk": __version__},
     }
     return json.dumps(whole, indent=1, ensure_ascii=False)

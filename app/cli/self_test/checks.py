@@ -52,7 +52,7 @@ def versions(bench: SelfTestFixture) -> str:
 
 def shipped_files(bench: SelfTestFixture) -> str:
     """Read all tables, words, icons, samples and licences, and find the user guide."""
-    from app.i18n.catalog import read_words  # noqa: PLC0415 (this part reports what cannot be imported)
+    from app.i18n.catalog import translations  # noqa: PLC0415 (this part reports what cannot be imported)
     from app.i18n.licences import licences  # noqa: PLC0415
     from core.control_mesh.template import TEMPLATES, read_template  # noqa: PLC0415
     from core.document import presets  # noqa: PLC0415
@@ -68,7 +68,7 @@ def shipped_files(bench: SelfTestFixture) -> str:
         "size charts": _count("size charts", sizes, 7),
         "letter sizes": _count("letter sizes", lambda: letter_sizes().tables, 1),
         "rating limits": _count("rating limits", lambda: [pressure_limits()], 1),
-        "words": _count("words", lambda: [*read_words("ja"), *read_words("ja_messages")], 1000),
+        "words": _count("words", lambda: [*translations("ja")], 1000),
         "icons": _count("icons", lambda: list(_home().glob("resources/icons/*.svg")), 40),
         "samples": _count("samples", lambda: list(_home().glob("resources/samples/*.ply")), 2),
         "licences": _count("licences", lambda: [text for _, text in licences() if len(text) > 500], 3),

@@ -19,6 +19,7 @@ import platformdirs
 
 from app.presenters.samples import sample_design
 from core.errors import UserError
+from core.messages import Message
 
 if TYPE_CHECKING:
     from app.gui.main_window import MainWindow
@@ -169,8 +170,8 @@ def isolated(folder: Path) -> Iterator[None]:
         places = (platformdirs.user_data_path("Busk"), platformdirs.user_state_path("Busk"))
         if not all(place.is_relative_to(folder) for place in places):
             raise UserError(
-                "The self-test could not be isolated from user files and was not started.",
-                "Report this with the version and the machine.",
+                Message("The self-test could not be isolated from user files and was not started."),
+                Message("Report this with the version and the machine."),
             )
         with _settings_in(folder / "config"):
             yield

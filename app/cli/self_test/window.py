@@ -35,12 +35,12 @@ def fonts(bench: SelfTestFixture) -> str:
     from PySide6.QtGui import QRawFont  # noqa: PLC0415 (brings Qt along)
 
     from app.gui.theme.stylesheet import load_fonts  # noqa: PLC0415
-    from app.i18n.catalog import read_words  # noqa: PLC0415
+    from app.i18n.catalog import translations  # noqa: PLC0415
 
     loaded = load_fonts()
     missing = [family for family in _DRAWN if family not in loaded]
     check(not missing, f"{', '.join(missing)} is not among the bundled fonts: {loaded}")
-    words = [text for name in ("ja", "ja_messages") for text in read_words(name).values()]
+    words = [text for forms in translations("ja").values() for text in forms]
     letters = {chr(code) for code in range(33, 127)} | {x for x in "".join(words) if not x.isspace()}
     bundled = []
     for file in (resources.files("resources") / "fonts").iterdir():

@@ -14,7 +14,7 @@ from app.gui.session.app_folders import show_folder, shown_folder
 from app.gui.session.session import Session
 from app.gui.widgets.notification_bar import FAULT, REFUSED, Action, NotificationBar
 from app.i18n.catalog import tr
-from app.presenters.lines import titled
+from app.presenters.messages import Text, render
 from app.presenters.status import error_text, solver_error_text
 from core.document.design import Design
 from core.errors import UserError
@@ -44,8 +44,8 @@ class Notifications(QObject):
     def show(
         self,
         tone: str,
-        sentence: str,
-        hint: str = "",
+        sentence: Text,
+        hint: Text = "",
         actions: Sequence[Action] = (),
         lasting: bool = False,
         details: str = "",
@@ -54,17 +54,19 @@ class Notifications(QObject):
         """Show a notification in the tone ok, info, warn or bad; ``details`` unfold."""
         self._bar.show_notice(tone, sentence, hint, actions, lasting, details, topic)
 
-    def done(self, sentence: str, hint: str = "") -> None:
+    def done(self, sentence: Text, hint: Text = "") -> None:
         """Confirm what was done."""
         self.show("ok", sentence, hint)
 
     def info(
-        self, sentence: str, hint: str = "", actions: Sequence[Action] = (), *, lasting: bool = False
+        self, sentence: Text, hint: Text = "", actions: Sequence[Action] = (), *, lasting: bool = False
     ) -> None:
         """Inform about something."""
         self.show("info", sentence, hint, actions, lasting)
 
-    def warn(self, sentence: str, hint: str = "", actions: Sequence[Action] = (), *, topic: str = "") -> None:
+    def warn(
+        self, sentence: Text, hint: Text = "", actions: Sequence[Action] = (), *, topic: str = ""
+    ) -> None:
         """Warn until the notification is closed or its topic withdrawn."""
         self.show("warn", sentence, hint, actions, lasting=True, topic=topic)
 
@@ -78,7 +80,7 @@ class Notifications(QObject):
             # Only the last refusal counts.
             topic = topic or REFUSED
             self.withdraw(topic)
-            message = titled(error.message, self._session.design)
+            message = render(error.message, self._session.design)
             self.show("bad", message, error.hint, lasting=True, topic=topic)
             return
         logging.error("unexpected fault", exc_info=error)
@@ -110,7 +112,7 @@ class Notifications(QObject):
         """Take away the notifications of a topic."""
         self._bar.withdraw(topic)
 
-    def keep_only(self, topic: str, sentences: Collection[str]) -> None:
+    def keep_only(self, topic: str, sentences: Collection[Text]) -> None:
         """Take away the notifications of a topic whose sentence no longer holds."""
         self._bar.keep_only(topic, sentences)
 

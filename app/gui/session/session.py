@@ -12,7 +12,6 @@ from app.gui.session.background_save import BackgroundSave
 from app.gui.session.document_editor import DocumentEditor
 from app.gui.session.edit_command import Edit
 from app.gui.session.solver_bridge import SolverBridge
-from app.i18n.catalog import tr
 from core.document.design import Design, ScanSource
 from core.document.document import Document
 from core.document.storage.backups import backup_before_write
@@ -26,6 +25,7 @@ from core.document.storage.project_file import (
 )
 from core.document.storage.recovery import RecoveredDocument
 from core.errors import UserError
+from core.messages import Message
 from core.pipeline.build import IncompleteBuildError
 from core.pipeline.live_solver import Failure, Frame
 
@@ -239,8 +239,8 @@ class Session(DocumentEditor):
         self._revision = self._solving.submit(design, fresh)
         if opening is not None:
             name = opening.path.name if opening.path else opening.document.design.scan.name
-            said = tr("{name} was not opened, as you went on working.").format(name=name)
-            self.failed.emit(UserError(said, tr("Open it once more when you are done.")))
+            said = Message("{name} was not opened, as you went on working.", name=name)
+            self.failed.emit(UserError(said, Message("Open it once more when you are done.")))
 
     def _answer(self, frame: Frame) -> None:
         if frame.revision < self._oldest:

@@ -10,7 +10,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QFont, QFontDatabase, QPalette
 from PySide6.QtWidgets import QApplication, QLabel, QWidget
 
-from app.i18n.catalog import held_together, let_apart
+from app.i18n.catalog import add_word_joiners, strip_word_joiners
 from app.rendering.palette import DARK, LIGHT, Tokens
 
 FAMILIES = ("Inter", "Inter Variable", "Noto Sans JP")
@@ -66,11 +66,11 @@ class Sentence(QLabel):
 
     def setText(self, text: str) -> None:  # noqa: N802 - Qt names it
         """Show a text."""
-        super().setText(held_together(text))
+        super().setText(add_word_joiners(text))
 
     def text(self) -> str:
         """Return it as it was said."""
-        return let_apart(super().text())
+        return strip_word_joiners(super().text())
 
 
 def label(text: str = "", role: str = "body", tabular: bool = False, kind: type[QLabel] = QLabel) -> QLabel:

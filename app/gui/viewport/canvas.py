@@ -26,9 +26,9 @@ from PySide6.QtWidgets import QWidget
 
 from app.gui.theme.stylesheet import tokens_of
 from app.gui.viewport.opengl import is_safe_mode
-from app.i18n.catalog import tr
 from app.rendering.appearance import APPEARANCES
 from core.errors import UserError
+from core.messages import Message
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -74,8 +74,8 @@ def load_libraries() -> None:
         trouble = _trouble_of_loading(is_painted())
     if trouble is not None:
         raise UserError(
-            tr("There is no 3D view: the libraries that it needs cannot be loaded."),
-            tr(
+            Message("There is no 3D view: the libraries that it needs cannot be loaded."),
+            Message(
                 "'busk self-test' tells what is missing; 'busk --safe-mode' does without the graphics driver."
             ),
         ) from trouble

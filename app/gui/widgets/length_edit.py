@@ -9,8 +9,9 @@ from PySide6.QtGui import QFocusEvent
 from app.gui.theme.stylesheet import font
 from app.gui.widgets.inline_edit import InlineEdit
 from app.gui.widgets.tooltip import set_tip
-from app.i18n.catalog import joined, number, say, tr
+from app.i18n.catalog import number, tr
 from app.i18n.lengths import length_number, shown_unit
+from app.presenters.messages import render
 from core.errors import LineError
 from core.mechanics.constraint_lines import length_ratio
 
@@ -77,7 +78,7 @@ class NumberField(InlineEdit):
         try:
             return length_ratio(text, self._line, self._rest_mm, self._whole_mm, self._unit)
         except LineError as refused:
-            raise ValueError(joined((say(refused.message), say(refused.hint)))) from None
+            raise ValueError(render(refused.text)) from None
 
     def _take(self, value: float) -> None:
         self._ratio = value

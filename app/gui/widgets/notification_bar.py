@@ -17,7 +17,8 @@ from app.gui.theme.stylesheet import faded, label, tokens_of
 from app.gui.widgets.basic import FloatingPanel, IconLabel, ToolButton, button
 from app.gui.widgets.dialog import reading
 from app.gui.widgets.tooltip import set_tip
-from app.i18n.catalog import held_together, say, tr
+from app.i18n.catalog import add_word_joiners, tr
+from app.presenters.messages import Text, render
 
 Action = tuple[str, Callable[[], None]]
 """The word on a button and what it does."""
@@ -72,8 +73,8 @@ class NotificationBar(FloatingPanel):
     def show_notice(
         self,
         tone: str,
-        sentence: str,
-        hint: str = "",
+        sentence: Text,
+        hint: Text = "",
         actions: Sequence[Action] = (),
         lasting: bool = False,
         details: str = "",
@@ -84,8 +85,9 @@ class NotificationBar(FloatingPanel):
         ``details`` unfold when they are asked for; by what it is ``about`` it can be withdrawn.
         A sentence that already stands or waits there is not said twice.
         """
-        notice = Notification(tone, sentence, hint, tuple(actions), lasting, details, about)
-        if any(each.sentence == sentence for each in (self._shown, *self._waiting) if each):
+        text = render(sentence)
+        notice = Notification(tone, text, render(hint), tuple(actions), lasting, details, about)
+        if any(each.sentence == text for each in (self._shown, *self._waiting) if each):
             return
         if self._shown is None or (lasting and tone != "bad"):
             self._waiting.append(notice)
@@ -124,11 +126,12 @@ class NotificationBar(FloatingPanel):
             self.close_notice()
         self._show_waiting()
 
-    def keep_only(self, about: str, sentences: Collection[str]) -> None:
+    def keep_only(self, about: str, sentences: Collection[Text]) -> None:
         """Take away the notices about something whose sentence holds no longer."""
-        self._waiting = deque(e for e in self._waiting if e.about != about or e.sentence in sentences)
+        texts = set(map(render, sentences))
+        self._waiting = deque(e for e in self._waiting if e.about != about or e.sentence in texts)
         shown = self._shown
-        if shown is not None and shown.about == about and shown.sentence not in sentences:
+        if shown is not None and shown.about == about and shown.sentence not in texts:
             self.close_notice()
         self._show_waiting()
 
@@ -209,7 +212,7 @@ class NotificationBar(FloatingPanel):
             return
         notice = self._shown = self._waiting.popleft()
         self._icon.show_icon(TONE_ICONS[notice.tone], notice.tone)
-        said, hint = (held_together(escape(say(each))) for each in (notice.sentence, notice.hint))
+        said, hint = (add_word_joiners(escape(each)) for each in (notice.sentence, notice.hint))
         self._words.setText(f'<span style="font-weight:600">{said}</span>&nbsp; {hint}')
         self._set_buttons(notice.actions)
         self.details.setPlainText(notice.details)

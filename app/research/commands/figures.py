@@ -14,6 +14,7 @@ from app.research.fig_6_to_10 import figure_6, figure_7, figure_8, figure_9, fig
 from app.research.figure_style import Figure, print_style
 from app.research.page import write_page
 from core.errors import UserError
+from core.messages import Message
 
 FIGURES: dict[str, Callable[[Study], Figure]] = {
     "1": figure_1,
@@ -65,7 +66,10 @@ def make_some(numbers: Collection[str], out: Path, tell: Callable[[str], None] =
     """Write the figures with these ``numbers`` to ``out``, without the page. Raises UserError."""
     unknown = sorted(set(numbers) - FIGURES.keys())
     if unknown:
-        raise UserError(f"Unknown figure {unknown[0]}.", f"Choose among: {', '.join(FIGURES)}.")
+        raise UserError(
+            Message("Unknown figure {value}.", value=unknown[0]),
+            Message("Choose among: {choices}.", choices=", ".join(FIGURES)),
+        )
     study = Study()
     for number in FIGURES:
         if number in numbers:

@@ -26,6 +26,7 @@ from core.document.calibration_record import Calibration, FittedParameter
 from core.document.design import Design
 from core.errors import UserError
 from core.geometry.mesh import Points
+from core.messages import Message
 from core.pipeline.build import Stages
 from core.progress import Progress, quiet
 
@@ -93,7 +94,9 @@ class CalibrationResult:
 def require_active_line(stages: Stages) -> None:
     """Raise UserError if no line that moves the body is worn."""
     if not len(stages.model.acting_lines):
-        raise UserError("No line that moves the body is worn.", "Wear the lines of the garment first.")
+        raise UserError(
+            Message("No line that moves the body is worn."), Message("Wear the lines of the garment first.")
+        )
 
 
 def calibrate(
@@ -119,8 +122,12 @@ def calibrate(
     seen = is_valid(first.gaps)
     if seen.sum() < FEWEST:
         raise UserError(
-            f"The worn scan shows {seen.sum():.0f} places of the skin that moves; {FEWEST} are needed.",
-            "Scan the front of the body too.",
+            Message(
+                "The worn scan shows {count} places of the skin that moves; {least} are needed.",
+                count=f"{seen.sum():.0f}",
+                least=FEWEST,
+            ),
+            Message("Scan the front of the body too."),
         )
     here = fit.minimize(stages.design, np.ones(len(numbers), dtype=bool))
     stays = unidentifiable(_sure(fit, here), numbers)

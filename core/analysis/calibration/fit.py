@@ -28,6 +28,7 @@ from core.errors import LineError, UserError
 from core.geometry.mesh import Flags, Floats, Points
 from core.mechanics.newton import Equilibrium
 from core.mechanics.sensitivity import Sensitivities
+from core.messages import Message
 from core.pipeline.build import Stages, build
 from core.pipeline.exact import NoEquilibriumError, exact_solution
 from core.progress import Progress
@@ -192,7 +193,9 @@ def residual_jacobian(
     try:
         moved = point_sensitivities(stages, answer, numbers)
     except ValueError as unbounded:
-        raise LineError("The body moves without bound there.", "Set the lines longer.") from unbounded
+        raise LineError(
+            Message("The body moves without bound there."), Message("Set the lines longer.")
+        ) from unbounded
     for column, free in enumerate(moved.T):
         way = np.zeros_like(points)
         way[stages.model.tensegric.free] = free.reshape(-1, 3)

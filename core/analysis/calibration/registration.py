@@ -21,6 +21,7 @@ from core.errors import LandmarkError, ScanError
 from core.geometry.mesh import Floats, Mesh, Points
 from core.landmarks.detect import find_landmarks
 from core.landmarks.types import Landmarks
+from core.messages import Length, Message
 from core.pipeline.build import Stages
 from core.progress import Progress, quiet
 from core.scan.body import Body
@@ -250,8 +251,12 @@ def _refuse_other_size(body: Body, worn: Body) -> None:
     if 0.5 < times < 2.0:
         return
     raise ScanError(
-        f"The worn scan is {times:.2g} times as large as the first one: it was read in {worn.pose.unit}.",
-        "Tell its unit.",
+        Message(
+            "The worn scan is {times} times as large as the first one: it was read in {unit}.",
+            times=f"{times:.2g}",
+            unit=worn.pose.unit,
+        ),
+        Message("Tell its unit."),
     )
 
 
@@ -264,13 +269,22 @@ def _extent(mesh: Mesh) -> float:
 def _refuse_other_body(found: Alignment) -> None:
     if found.seen < LEAST_SEEN:
         raise ScanError(
-            f"The worn scan shows {100.0 * found.seen:.0f} % of the skin that no line moves; "
-            f"{100.0 * LEAST_SEEN:.0f} % are needed to lay it on the first.",
-            "Scan the back, the ribs and the shoulders too.",
+            Message(
+                "The worn scan shows {seen} % of the skin that no line moves; {least} % are needed "
+                "to lay it on the first.",
+                seen=f"{100.0 * found.seen:.0f}",
+                least=f"{100.0 * LEAST_SEEN:.0f}",
+            ),
+            Message("Scan the back, the ribs and the shoulders too."),
         )
     if found.met < LEAST_MET:
         raise ScanError(
-            f"The worn scan does not fit the first: {100.0 * found.met:.0f} % of the skin that no line moves "
-            f"lies within {MET:.0f} mm of it, {100.0 * LEAST_MET:.0f} % are needed.",
-            "Take a scan of the same person in the same posture, arms as before.",
+            Message(
+                "The worn scan does not fit the first: {met} % of the skin that no line moves lies "
+                "within {mm} of it, {least} % are needed.",
+                met=f"{100.0 * found.met:.0f}",
+                mm=Length(MET),
+                least=f"{100.0 * LEAST_MET:.0f}",
+            ),
+            Message("Take a scan of the same person in the same posture, arms as before."),
         )

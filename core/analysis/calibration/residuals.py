@@ -16,6 +16,7 @@ from core.geometry.mesh import Floats, Mesh, Points
 from core.geometry.mirror_plane import mirror
 from core.landmarks.detect import find_landmarks
 from core.landmarks.types import CERTAIN, SIDES, Landmark
+from core.messages import Message
 from core.pipeline.build import Stages
 from core.scan.body import Body
 
@@ -99,8 +100,8 @@ def require_not_mirrored(stages: Stages, worn: FittingScan) -> None:
     off, mirrored = (summarize(residuals_at(stages, points, skin, 0.0)).rms for skin in skins)
     if off > max(_OFF, _MIRRORED * mirrored):
         raise ScanError(
-            "The worn scan looks like the mirror image of the first: its left lies on her right.",
-            "Export it again without mirroring it.",
+            Message("The worn scan looks like the mirror image of the first: its left lies on her right."),
+            Message("Export it again without mirroring it."),
         )
 
 

@@ -14,6 +14,7 @@ from core.analysis.inverse_design.quantities import Goal, profile_name, skin_of
 from core.errors import UserError
 from core.files.regular_file import read_text
 from core.geometry.mesh import Floats
+from core.messages import LengthRange, Message
 from core.pipeline.build import Stages
 
 _MOST = 60
@@ -35,14 +36,21 @@ def read_profile(path: str) -> Floats:
         text = read_text(Path(path), _BYTES, "utf-8-sig")
     except (OSError, UnicodeDecodeError) as why:
         if isinstance(why, OSError) and why.errno == errno.EFBIG:
-            raise UserError(f"{path} is too large for a profile.", "A few dozen rows are enough.") from why
-        raise UserError(f"{path} cannot be read as a table.", "Give a CSV file in UTF-8.") from why
+            raise UserError(
+                Message("{path} is too large for a profile.", path=path),
+                Message("A few dozen rows are enough."),
+            ) from why
+        raise UserError(
+            Message("{path} cannot be read as a table.", path=path), Message("Give a CSV file in UTF-8.")
+        ) from why
     first = text.partition("\n")[0]
     sign = next((each for each in (";", "\t") if each in first), ",")
     try:
         table = list(csv.reader(text.splitlines(), delimiter=sign))
     except csv.Error as why:  # a cell without an end
-        raise UserError(f"{path} cannot be read as a table.", "Give a CSV file in UTF-8.") from why
+        raise UserError(
+            Message("{path} cannot be read as a table.", path=path), Message("Give a CSV file in UTF-8.")
+        ) from why
     rows = [[cell.strip() for cell in row] for row in table if row]
     head = [cell.lower() for cell in rows[0]] if rows else []
     if {"y_mm", "z_mm"} <= set(head):
@@ -50,8 +58,11 @@ def read_profile(path: str) -> Floats:
     columns = [next((head.index(name) for name in names if name in head), -1) for names in (_HEIGHT, _OUT)]
     if min(columns) < 0:
         raise UserError(
-            f"{path} has no columns height_mm and out_mm.",
-            "Write them over two columns: the height on the body and how far the skin is to stand out there.",
+            Message("{path} has no columns height_mm and out_mm.", path=path),
+            Message(
+                "Write them over two columns: the height on the body and how far the skin is to "
+                "stand out there."
+            ),
         )
     found = np.array([[_number(path, row, column) for column in columns] for row in rows[1:]])
     return _in_order(path, found)
@@ -68,8 +79,11 @@ def profile_goals(stages: Stages, section: str, curve: Floats) -> tuple[Goal, ..
     inside = inside[inside[:, 0] > overhang_height(stages, section, inside)]
     if not len(inside):
         raise UserError(
-            f"No height of the profile lies where the body can be reshaped, {low:.0f} to {high:.0f} mm.",
-            "Heights are those of the body as Busk shows it, in millimetres.",
+            Message(
+                "No height of the profile lies where the body can be reshaped, {range}.",
+                range=LengthRange(low, high),
+            ),
+            Message("Heights are those of the body as Busk shows it, in millimetres."),
         )
     chosen = inside[:: -(-len(inside) // _MOST)]
     return tuple(Goal(profile_name(section, height), out) for height, out in chosen.tolist())
@@ -117,7 +131,9 @@ def _outline(path: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> F
     curve = [row[head.index("curve")] if "curve" in head else "" for row in kept]
     joined = np.array([one == other for one, other in pairwise(curve)], dtype=bool)
     if not joined.any():
-        raise UserError(f"{path} has no curve in it.", "Export the section once more.")
+        raise UserError(
+            Message("{path} has no curve in it.", path=path), Message("Export the section once more.")
+        )
     a, b = (np.stack([z[each], -y[each]], axis=1)[joined] for each in (slice(None, -1), slice(1, None)))
     return _in_order(path, _foremost(a, b, _STEP))
 
@@ -129,14 +145,21 @@ def _number(path: str, row: Sequence[str], column: int) -> float:
     except ValueError:
         value = np.nan
     if not np.isfinite(value) or abs(value) > 10_000.0:
-        raise UserError(f"'{text}' in {path} is no length.", "Write millimetres, one number a cell.")
+        raise UserError(
+            Message("'{text}' in {path} is no length.", text=text, path=path),
+            Message("Write millimetres, one number a cell."),
+        )
     return value
 
 
 def _in_order(path: str, found: Floats) -> Floats:
     if not len(found):
-        raise UserError(f"{path} has no heights in it.", "Write one row for each height.")
+        raise UserError(
+            Message("{path} has no heights in it.", path=path), Message("Write one row for each height.")
+        )
     found = found[np.argsort(found[:, 0])]
     if len(found) > 1 and np.diff(found[:, 0]).min() < 1e-6:
-        raise UserError(f"{path} has a height twice.", "Write one row for each height.")
+        raise UserError(
+            Message("{path} has a height twice.", path=path), Message("Write one row for each height.")
+        )
     return np.asarray(found)

@@ -13,6 +13,7 @@ from scipy import sparse
 from core.deformation.tffd import Binding
 from core.errors import UserError
 from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points
+from core.messages import Length, Message
 from core.pipeline.build import Stages
 from core.pipeline.observables import Tapes
 
@@ -302,7 +303,8 @@ def profile_reader(stages: Stages, names: Sequence[str]) -> ReadMany:
     for name, match in zip(names, found, strict=True):
         if match is None:
             raise UserError(
-                f"'{name}' names no place of a profile.", "Name the section and a height: profile left 1150."
+                Message("'{name}' names no place of a profile.", name=name),
+                Message("Name the section and a height: profile left 1150."),
             )
     known = [match for match in found if match is not None]
     at, heights = section_at(stages, known[0][1]), np.array([float(match[2]) for match in known])
@@ -313,8 +315,12 @@ def profile_reader(stages: Stages, names: Sequence[str]) -> ReadMany:
         if np.isnan(values).any():
             height = heights[int(np.flatnonzero(np.isnan(values))[0])]
             raise UserError(
-                f"There is no skin at a height of {height:.0f} mm on the section at x = {at:.0f} mm.",
-                "Heights are those of the body as Busk shows it, in millimetres.",
+                Message(
+                    "There is no skin at a height of {height} on the section at x = {at}.",
+                    height=Length(height),
+                    at=Length(at),
+                ),
+                Message("Heights are those of the body as Busk shows it, in millimetres."),
             )
         return values, slopes
 
@@ -348,7 +354,10 @@ def reading(stages: Stages, name: str) -> Read:
     for family in FAMILIES:
         if family.has(name):
             return family.read(stages, name)
-    raise UserError(f"'{name}' cannot be asked for.", f"Ask for one of: {', '.join(NAMES)}.")
+    raise UserError(
+        Message("'{name}' cannot be asked for.", name=name),
+        Message("Ask for one of: {names}.", names=", ".join(NAMES)),
+    )
 
 
 def tolerance(name: str) -> float:

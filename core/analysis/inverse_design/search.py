@@ -27,6 +27,7 @@ from core.geometry.mesh import Floats
 from core.mechanics.constraint_lines import RATIO_LIMITS
 from core.mechanics.exact_solution import NEWTON_LIMIT
 from core.mechanics.force_units import newtons_per_unit
+from core.messages import Message
 from core.pipeline.active_lines import free_lines
 from core.pipeline.build import Stages
 from core.pipeline.exact import NoEquilibriumError
@@ -82,7 +83,8 @@ class Search:
         self._groups = free_lines(stages, bounds.kept)
         if not goals or not self._groups:
             raise UserError(
-                "No line that moves the body may change.", "Wear one that is not locked, and name a figure."
+                Message("No line that moves the body may change."),
+                Message("Wear one that is not locked, and name a figure."),
             )
         read = QuantityReaders(stages).reader([goal.name for goal in goals]) if read is None else read
         self._answers = LinearizedSolutions(stages, self._groups, read)

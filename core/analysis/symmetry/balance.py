@@ -15,6 +15,7 @@ from core.errors import UserError
 from core.geometry.mesh import Points
 from core.landmarks.types import SIDES
 from core.measurements.subject import shows_breast
+from core.messages import Message
 from core.pipeline.build import Stages, build
 from core.pipeline.solve import solve
 from core.progress import Progress, quiet
@@ -94,7 +95,7 @@ def balance_sides(
     UserError if a breast is missing, no worn line can move one side alone, or nothing balances; Cancelled.
     """
     if not all(shows_breast(stages.landmarks, side) for side in SIDES):
-        raise UserError(NO_BREAST, "Place its bust point, or change lines by hand.")
+        raise UserError(NO_BREAST, Message("Place its bust point, or change lines by hand."))
     exact = build(replace(stages.design, volume="exact"), stages, progress)
     names: tuple[str, ...] = ()
     if not moves_one_side(exact):
@@ -103,8 +104,8 @@ def balance_sides(
         exact = build(split_sides(exact.design, template), exact, progress)
     if not moves_one_side(exact):
         raise UserError(
-            "No worn line can move one side alone.",
-            "Wear a line that is not locked: one across both sides is split, a pair set apart.",
+            Message("No worn line can move one side alone."),
+            Message("Wear a line that is not locked: one across both sides is split, a pair set apart."),
         )
     best = _best(exact, names, lambda goals: solve_targets(exact, goals, shortest, kept, progress))
     design = replace(best.result.design, volume=stages.design.volume)

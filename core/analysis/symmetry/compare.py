@@ -17,10 +17,11 @@ from core.geometry.mesh import Points
 from core.landmarks.types import SIDES
 from core.measurements.subject import shows_breast
 from core.measurements.table import smoothed_moves
+from core.messages import Message
 from core.pipeline.build import Stages
 from core.scan.body import Body
 
-NO_BREAST = "On one side no breast stands out: its bust point only mirrors the other one."
+NO_BREAST = Message("On one side no breast stands out: its bust point only mirrors the other one.")
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ class BeforeAfter:
 
     before: SideDifference
     after: SideDifference
-    notes: tuple[str, ...]
+    notes: tuple[Message, ...]
 
 
 def compare_sides(stages: Stages, control_points: Points) -> BeforeAfter:

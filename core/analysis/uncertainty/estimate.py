@@ -37,17 +37,19 @@ from core.measurements.uncertain_value import (
     Uncertainty,
 )
 from core.mechanics.options import CONTACTS
+from core.messages import Message
 from core.pipeline.build import Stages
 from core.progress import Progress, quiet
 
-SLIDING = (
-    "Lines that slide answer less evenly than the ± says: on two bodies it held nine of ten draws of the "
-    "lift, not 95 %, and single ones lay far outside."
+SLIDING = Message(
+    "Lines that slide answer less evenly than the ± says: on two bodies it held nine of "
+    "ten draws of the lift, not 95 %, and single ones lay far outside."
 )
 
-WAIST = (
-    "The waist girth is measured where the trunk is narrowest: the anatomical waist may be elsewhere, and "
-    "its girth may differ by several centimetres, which the ± does not include."
+WAIST = Message(
+    "The waist girth is measured where the trunk is narrowest: the anatomical waist may "
+    "be elsewhere, and its girth may differ by several centimetres, which the ± does not "
+    "include."
 )
 
 _UNTOLD = tuple(f"{kind}:asymmetry_volume" for kind in (BEFORE, AFTER))
@@ -106,7 +108,7 @@ def estimate_uncertainty(
     return UncertaintyEstimator(PerturbedSolutions(stages), sizes).estimate(progress)
 
 
-def cautions(design: Design, doubts: Mapping[str, object]) -> Iterator[str]:
+def cautions(design: Design, doubts: Mapping[str, object]) -> Iterator[Message]:
     """Yield where the ± of a design says less than it seems to, of the figures that have ``doubts``."""
     if f"{BEFORE}:waist_girth" in doubts:
         yield WAIST

@@ -13,6 +13,7 @@ from core.landmarks.bust_point import SMOOTH
 from core.landmarks.types import CERTAIN, Landmark
 from core.measurements.size_table import LocalizedText
 from core.measurements.uncertain_value import SOURCES
+from core.messages import Message
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,10 @@ class InputUncertainty:
     def __post_init__(self) -> None:
         for name in NUMBERS:
             if not 0.0 <= getattr(self, name) <= 20.0:
-                raise UserError(f"{name} cannot be {getattr(self, name):g}.", "It goes from 0 to 20.")
+                raise UserError(
+                    Message("{name} cannot be {number}.", name=name, number=f"{getattr(self, name):g}"),
+                    Message("It goes from 0 to 20."),
+                )
 
     def scaled(self, share: float) -> InputUncertainty:
         """Return all sources so many times as large."""
@@ -76,11 +80,17 @@ def with_overrides(texts: Sequence[str], base: InputUncertainty) -> InputUncerta
         name, _, value = text.partition("=")
         name = name.strip().replace("-", "_")
         if name not in NUMBERS:
-            raise UserError(f"Nothing called '{name}' is assumed.", f"Choose one of: {', '.join(NUMBERS)}.")
+            raise UserError(
+                Message("Nothing called '{name}' is assumed.", name=name),
+                Message("Choose one of: {choices}.", choices=", ".join(NUMBERS)),
+            )
         try:
             told[name] = float(value)
         except ValueError:
-            raise UserError(f"'{value}' is no number for {name}.", f"Write {name}=2.") from None
+            raise UserError(
+                Message("'{value}' is no number for {name}.", value=value, name=name),
+                Message("Write {name}=2.", name=name),
+            ) from None
     return replace(base, **told)
 
 

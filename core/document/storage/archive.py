@@ -11,8 +11,9 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from core.document.document_limits import too_large
-from core.errors import ProjectError
+from core.errors import ProjectError, reason_of
 from core.files.regular_file import open_regular
+from core.messages import Message
 
 HEADROOM = 64_000_000
 """So many bytes more than ``_RATIO`` times what it takes in its file may a member hold."""
@@ -22,7 +23,7 @@ _RATIO = 10
 
 _AT_ONCE = 1 << 20
 _BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError)
-_HINT = "Open a backup, or start again from the scan."
+_HINT = Message("Open a backup, or start again from the scan.")
 
 
 class _Sparing(io.BufferedReader):
@@ -43,13 +44,17 @@ def project_archive(path: Path) -> Iterator[zipfile.ZipFile]:
         with _Sparing(io.FileIO(open_regular(path))) as file, zipfile.ZipFile(file) as archive:
             yield archive
     except FileNotFoundError:
-        raise ProjectError(f"There is no project {path}.", "Check the name, or choose another one.") from None
+        raise ProjectError(
+            Message("There is no project {file}.", file=str(path)),
+            Message("Check the name, or choose another one."),
+        ) from None
     except OSError as problem:
         raise ProjectError(
-            f"{path.name} cannot be read: {problem.strerror or problem}.", "Check the file, or open a backup."
+            Message("{file} cannot be read: {problem}.", file=path.name, problem=reason_of(problem)),
+            Message("Check the file, or open a backup."),
         ) from problem
     except _BROKEN as problem:
-        raise ProjectError(f"{path.name} is not a whole Busk project.", _HINT) from problem
+        raise ProjectError(Message("{file} is not a whole Busk project.", file=path.name), _HINT) from problem
 
 
 def member_bytes(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
@@ -60,10 +65,14 @@ def member_bytes(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
     try:
         member = archive.getinfo(name)
     except KeyError:
-        raise ProjectError("This file is no Busk project.", "Open a .busk file or a scan.") from None
+        raise ProjectError(
+            Message("This file is no Busk project."), Message("Open a .busk file or a scan.")
+        ) from None
     # Other ways of packing are not unpacked piece by piece.
     if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-        raise ProjectError(f"{name} of this project is packed in a way that Busk does not read.", _HINT)
+        raise ProjectError(
+            Message("{name} of this project is packed in a way that Busk does not read.", name=name), _HINT
+        )
     packed = min(member.compress_size, os.fstat(archive.fp.fileno()).st_size)  # type: ignore[union-attr]
     within, out = min(most, HEADROOM + _RATIO * packed), io.BytesIO()
     with archive.open(member) as stream:

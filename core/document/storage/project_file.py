@@ -17,6 +17,7 @@ from core.document.document_text import DESIGN, VARIANTS, from_texts, to_texts
 from core.document.storage.archive import member_bytes, project_archive
 from core.errors import ProjectError, ScanError, UserError
 from core.files.atomic_write import atomic_path
+from core.messages import Message
 from core.progress import Progress, quiet
 from core.scan.readers.registry import scan_bytes
 
@@ -77,7 +78,8 @@ def open_project(path: str | os.PathLike[str]) -> Document:
         member = document.design.scan.member
         if member not in archive.namelist():
             raise ProjectError(
-                f"{source.name} holds no scan.", "Open a backup, or start again from the scan."
+                Message("{file} holds no scan.", file=source.name),
+                Message("Open a backup, or start again from the scan."),
             )
     return with_scan(document, str(source.absolute()), member)
 
@@ -91,7 +93,7 @@ def with_scan(document: Document, path: str, member: str) -> Document:
 def read_scan_file(source: ScanSource, progress: Progress = quiet) -> ScanFile:
     """Read the bytes of a scan, alone or inside a project. Raises ScanError, ProjectError, Cancelled."""
     if not source.path:
-        raise ScanError("No file is named.", "Choose a scan or a project.")
+        raise ScanError(Message("No file is named."), Message("Choose a scan or a project."))
     if source.member:
         with project_archive(Path(source.path)) as archive:
             return ScanFile(source.name, member_bytes(archive, source.member, LARGEST_SCAN))
@@ -138,7 +140,8 @@ def _checked_texts(document: Document) -> dict[str, bytes]:
         from_texts(texts)
     except UserError as problem:
         raise ProjectError(
-            f"This project could not be opened again: {problem.message}", "Undo the last change, then save."
+            Message("This project could not be opened again: {problem}", problem=problem.message),
+            Message("Undo the last change, then save."),
         ) from problem
     written = {name: text.encode() for name, text in texts.items()}
     for name, data in written.items():

@@ -22,9 +22,10 @@ from core.document.document_text import from_texts, to_texts
 from core.document.json_values import parsed, value_of
 from core.document.storage.file_lock import FolderLock
 from core.document.storage.project_file import ScanFile, Stamp, safe_name, with_scan
-from core.errors import ProjectError, UserError
+from core.errors import ProjectError, UserError, reason_of
 from core.files.atomic_write import atomic_path, private_folder, write_text
 from core.files.regular_file import read_regular, read_text
+from core.messages import Message
 
 _DOCUMENT, _PICTURE, _ASIDE = "document.json", "picture.png", ".broken"
 
@@ -201,10 +202,16 @@ def _unkept(folder: Path, problem: Exception) -> ProjectError:
     # What could not be written has been told of a file that nobody has chosen: its cause is what counts.
     cause = problem.__cause__ or problem
     return ProjectError(
-        f"Busk cannot keep your changes in {folder}: {getattr(cause, 'strerror', None) or cause}.",
-        "Make room on the disk, or save often.",
+        Message(
+            "Busk cannot keep your changes in {folder}: {reason}.",
+            folder=str(folder),
+            reason=reason_of(cause),
+        ),
+        Message("Make room on the disk, or save often."),
     )
 
 
 def _unreadable(folder: Path) -> ProjectError:
-    return ProjectError(f"What was kept in {folder} cannot be read.", "Open a backup.")
+    return ProjectError(
+        Message("What was kept in {folder} cannot be read.", folder=str(folder)), Message("Open a backup.")
+    )

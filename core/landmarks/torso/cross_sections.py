@@ -24,6 +24,7 @@ from core.landmarks.torso.arm_removal import SLACK
 from core.landmarks.torso.contour_classification import kept_pieces, main_pieces, pieces_beside, split_pieces
 from core.landmarks.torso.gap_filling import bearing_bin, bridge, eroded, gaps
 from core.landmarks.torso.torso_axis import STEP, TorsoAxis, arm_segments, torso_axis
+from core.messages import Length, Message
 
 NECK = 0.5
 """A level narrower than this part of the trunk is a neck: what is above it is none of the trunk [1]."""
@@ -197,7 +198,10 @@ class TorsoSections:
         """Return the half width of the trunk [mm] and which levels show it free of arms, head and legs."""
         full = self.tape > 0.0
         if not full.any():
-            raise LandmarkError("No body is in the middle of the scan.", "Open a scan of a whole upper body.")
+            raise LandmarkError(
+                Message("No body is in the middle of the scan."),
+                Message("Open a scan of a whole upper body."),
+            )
         w = self.half_width
         alone = full & (w < 1.25 * np.median(w[full & (w >= np.median(w[full]))]))
         width, girth = np.percentile(w[alone], 70), np.percentile(self.tape[alone], 70)
@@ -208,8 +212,8 @@ class TorsoSections:
             usable &= runs == np.bincount(runs[usable]).argmax()
         if not 400.0 < girth < 2000.0:
             raise LandmarkError(
-                f"The trunk measures {girth:.0f} mm round, which no adult does.",
-                "Say in which unit the scan is.",
+                Message("The trunk measures {girth} round, which no adult does.", girth=Length(girth)),
+                Message("Say in which unit the scan is."),
             )
         return float(width), usable
 
@@ -229,7 +233,8 @@ def scan_torso(mesh: Mesh) -> TorsoSections:
     low, high = mesh.vertices[:, 2].min(), mesh.vertices[:, 2].max()
     if not 100.0 < high - low < 2500.0:
         raise LandmarkError(
-            f"The scan is {high - low:.0f} mm high, no upper body is.", "Say in which unit it is."
+            Message("The scan is {height} high, no upper body is.", height=Length(high - low)),
+            Message("Say in which unit it is."),
         )
     guide = torso_axis(mesh)
     segments, row = guide.cuts.segments[guide.keep], guide.cuts.level[guide.keep]

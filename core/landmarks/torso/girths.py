@@ -9,6 +9,7 @@ from types import MappingProxyType
 from core.geometry.mesh import Mesh
 from core.landmarks.torso.cross_sections import Level, stable_level, trunk_levels
 from core.landmarks.types import CERTAIN, SIDES, Landmarks
+from core.messages import Message
 from core.scan.body import Body
 
 FURTHER = {"waist": ("waist_front",), "hip": ("hip_front",), "armpit": ("armpit_left", "armpit_right")}
@@ -22,10 +23,12 @@ MUCH = 50.0
 """Over more than this of an outline that is no skin a girth is an estimate [mm]."""
 
 ESTIMATES = {
-    "bust": "The bust girth goes over a hole of the scan or over a joined arm: it is an estimate.",
-    "underbust": "The under-bust girth goes over a hole of the scan or over a joined arm: it is an estimate.",
+    "bust": Message("The bust girth goes over a hole of the scan or over a joined arm: it is an estimate."),
+    "underbust": Message(
+        "The under-bust girth goes over a hole of the scan or over a joined arm: it is an estimate."
+    ),
 }
-UNCERTAIN = "The under-bust girth is uncertain, as the height of the folds is."
+UNCERTAIN = Message("The under-bust girth is uncertain, as the height of the folds is.")
 
 
 @dataclass(frozen=True)
@@ -108,7 +111,7 @@ def girth_levels(landmarks: Landmarks) -> Mapping[str, float]:
     return MappingProxyType(found)
 
 
-def girth_warnings(found: Mapping[str, Girth]) -> list[str]:
+def girth_warnings(found: Mapping[str, Girth]) -> list[Message]:
     """Return one sentence for each girth of the bust that is an estimate, or whose height is uncertain."""
     estimates = [said for name, said in ESTIMATES.items() if name in found and found[name].bridged_mm > MUCH]
     return estimates + [UNCERTAIN] * ("underbust" in found and found["underbust"].confidence < CERTAIN)

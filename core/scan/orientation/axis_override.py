@@ -8,6 +8,7 @@ import numpy as np
 
 from core.errors import ScanError
 from core.geometry.mesh import Floats, unit
+from core.messages import Message
 
 AXES: dict[str, Floats] = {
     sign + name: direction * np.eye(3)[k]
@@ -46,8 +47,8 @@ def parse_axis(text: str | None) -> AxisOverride | None:
     length = float(np.linalg.norm(direction))
     if direction.shape != (3,) or not (np.isfinite(length) and length > 0.0):
         raise ScanError(
-            f"The axis {text!r} is not known.",
-            f"Choose one of {', '.join(AXES)}, or a direction like 0,0.2,1.",
+            Message("The axis {axis} is not known.", axis=f"{text!r}"),
+            Message("Choose one of {axes}, or a direction like 0,0.2,1.", axes=", ".join(AXES)),
         )
     return AxisOverride(direction / length, exact=True)
 
@@ -56,7 +57,10 @@ def parse_axes(up: str | None, front: str | None) -> tuple[AxisOverride | None, 
     """Read what was told of up and front. Raises ScanError."""
     told_up, told_front = parse_axis(up), parse_axis(front)
     if told_up and told_front and abs(told_up.direction @ told_front.direction) > 0.9:
-        raise ScanError(f"Up {up} and front {front} lie along the same axis.", "Choose two different axes.")
+        raise ScanError(
+            Message("Up {up} and front {front} lie along the same axis.", up=up or "", front=front or ""),
+            Message("Choose two different axes."),
+        )
     if told_up and told_front and told_front.exact:  # up is believed first, front lies level
         level = told_front.direction - (told_front.direction @ told_up.direction) * told_up.direction
         told_front = AxisOverride(unit(level), exact=True)

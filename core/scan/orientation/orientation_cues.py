@@ -9,6 +9,7 @@ import numpy as np
 from scipy.ndimage import convolve1d, maximum_filter1d
 
 from core.geometry.mesh import Floats
+from core.messages import Message
 from core.scan.orientation.silhouette import Silhouette
 
 USUAL_LEAN = 0.02
@@ -84,7 +85,7 @@ class TorsoFeatures:
 class Cue:
     """One thing that tells up or front: ``evaluate`` gives -1 (against) .. 1 (for); ``words`` name it."""
 
-    words: str
+    words: Message
     weight: float
     evaluate: Callable[[TorsoFeatures], float]
 
@@ -250,20 +251,20 @@ def _arms(seen: TorsoFeatures) -> float:
 
 
 CUES = (
-    Cue("the bust with the folds under it", 1.0, _bust),
-    Cue("two breasts", 0.6, _breasts),
-    Cue("the cleft of the buttocks", 1.0, _buttocks),
-    Cue("the hollow of the back", 1.0, _spine),
-    Cue("shoulders nearer to the back", 0.5, _shoulders),
-    Cue("the narrow end", 1.2, _taper),
-    Cue("where the arms join", 0.5, _arms),
-    Cue("the legs", 0.6, _legs),
-    Cue("a trunk that stands", 1.5, _upright),
+    Cue(Message("the bust with the folds under it"), 1.0, _bust),
+    Cue(Message("two breasts"), 0.6, _breasts),
+    Cue(Message("the cleft of the buttocks"), 1.0, _buttocks),
+    Cue(Message("the hollow of the back"), 1.0, _spine),
+    Cue(Message("shoulders nearer to the back"), 0.5, _shoulders),
+    Cue(Message("the narrow end"), 1.2, _taper),
+    Cue(Message("where the arms join"), 0.5, _arms),
+    Cue(Message("the legs"), 0.6, _legs),
+    Cue(Message("a trunk that stands"), 1.5, _upright),
 )
 """What tells up and front; weights are ours, from bodies deformed in many ways."""
 
 
-def score(seen: TorsoFeatures) -> tuple[float, dict[str, float]]:
+def score(seen: TorsoFeatures) -> tuple[float, dict[Message, float]]:
     """Return how well this look is that of an upper body that stands, and what each cue adds to it [1]."""
     trunk = seen.trunk
     said = {cue.words: cue.weight * _bounded(cue, seen) for cue in CUES}

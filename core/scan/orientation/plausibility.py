@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from core.errors import ScanError
+from core.messages import Message
 from core.scan.orientation.cut_planes import TOUCH, CutPlane, find_cut_planes
 from core.scan.orientation.pose_candidates import PoseCandidate
 from core.scan.orientation.symmetry_planes import Cloud
@@ -32,7 +33,7 @@ SHORT, FAINT = 300.0, 12.0
 FACING = 0.6
 """At a rim the skin runs up to the plane of the opening [cosine]; what only touches a plane faces it."""
 
-WHOLE = "Open a scan of a whole upper body, or say which way is up and which way is front."
+WHOLE = Message("Open a scan of a whole upper body, or say which way is up and which way is front.")
 
 
 def require_plausible(cloud: Cloud, readings: Sequence[PoseCandidate]) -> None:
@@ -43,23 +44,25 @@ def require_plausible(cloud: Cloud, readings: Sequence[PoseCandidate]) -> None:
     best = readings[0]
     trunk = best.seen.trunk
     if _halved(cloud, readings):
-        raise ScanError("Only a half of an upper body is here: its other half is missing.", WHOLE)
+        raise ScanError(Message("Only a half of an upper body is here: its other half is missing."), WHOLE)
     if best.residual > UNLIKE:
         raise ScanError(
-            "Left and right are not alike enough for an upper body: a half of it may be missing.", WHOLE
+            Message("Left and right are not alike enough for an upper body: a half of it may be missing."),
+            WHOLE,
         )
     if trunk.stoutness > STOUTNESS[1] and best.evidence > 0.0:
         raise ScanError(
-            "This is too flat for an upper body: the front or the back of the trunk is missing.", WHOLE
+            Message("This is too flat for an upper body: the front or the back of the trunk is missing."),
+            WHOLE,
         )
     if trunk.height[-1] < SHORT and (best.evidence < LEAST or best.seen.fold.strength < FAINT):
         raise ScanError(
-            "Too little is here for an upper body: no bust shows on a short piece of trunk.", WHOLE
+            Message("Too little is here for an upper body: no bust shows on a short piece of trunk."), WHOLE
         )
     if best.evidence < LEAST or not STOUTNESS[0] < trunk.stoutness < STOUTNESS[1]:
         raise ScanError(
-            "This does not look like an upper body: no bust was found in front of an even trunk.",
-            "Cut away all but the body, or say which way is up and which way is front.",
+            Message("This does not look like an upper body: no bust was found in front of an even trunk."),
+            Message("Cut away all but the body, or say which way is up and which way is front."),
         )
 
 

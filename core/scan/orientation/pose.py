@@ -9,6 +9,7 @@ import numpy as np
 from core.errors import ScanError
 from core.geometry.mesh import Faces, Floats, Points, frozen, unit
 from core.geometry.plane_sections import hull_perimeter
+from core.messages import Message, join
 from core.progress import Progress, quiet
 from core.scan.orientation.axis_override import AXES, AxisOverride, nearest_axis, parse_axes
 from core.scan.orientation.plausibility import LEAST, require_plausible
@@ -30,7 +31,7 @@ READINGS = 4
 RIVAL = 2.0
 """Ways to stand that score less than the best by this [1] stay rough: they cannot win."""
 
-NOTHING_ELSE = "It should hold an upper body, and little else."
+NOTHING_ELSE = Message("It should hold an upper body, and little else.")
 
 DIFFERENT = 30.0
 """Ways to stand whose up and front lie nearer than this [degrees] are one."""
@@ -52,7 +53,7 @@ class Pose:
     front: str
     file_to_mm: Floats
     is_certain: bool
-    reason: str
+    reason: Message
     margin: float
     tilt: float = 0.0
     others: tuple[Floats, ...] = ()
@@ -86,9 +87,12 @@ def estimate_pose(
     """
     unit = unit and unit.strip().lower()
     if unit is not None and unit not in MILLIMETRES:
-        raise ScanError(f"The unit {unit!r} is not known.", f"Choose one of {', '.join(MILLIMETRES)}.")
+        raise ScanError(
+            Message("The unit {unit} is not known.", unit=f"{unit!r}"),
+            Message("Choose one of {choices}.", choices=", ".join(MILLIMETRES)),
+        )
     if len(faces) == 0:
-        raise ScanError("No trunk can be made out in this scan.", NOTHING_ELSE)
+        raise ScanError(Message("No trunk can be made out in this scan."), NOTHING_ELSE)
     told_up, told_front = parse_axes(up, front)
     told = told_up is not None and told_front is not None
     cloud = sample_uniformly(vertices, faces)
@@ -110,9 +114,14 @@ def _pose(cloud: Cloud, readings: list[PoseCandidate], unit: str | None, told: b
     turns = [_turn(reading) for reading in readings]
     axes = nearest_axis(turns[0][2]), nearest_axis(-turns[0][1])
     tilt = float(np.degrees(np.arccos(min(1.0, float(np.abs(turns[0][2]).max())))))
-    reason = f"{size.reason} {_reason(best, axes, told, clear)}"
+    reason = join((size.reason, _reason(best, axes, told, clear)))
     if tilt > 0.0:
-        reason += f" The body stands {tilt:.0f} degrees off {axes[0]} in its file and was set upright."
+        lean = Message(
+            "The body stands {tilt} degrees off {up} in its file and was set upright.",
+            tilt=f"{tilt:.0f}",
+            up=axes[0],
+        )
+        reason = join((reason, lean))
     matrices = [_scaled(turn, MILLIMETRES[size.unit]) for turn in turns]
     stand = MILLIMETRES[size.unit] * best.seen.trunk.stand
     sure = clear and size.is_certain
@@ -137,7 +146,7 @@ def _readings(cloud: Cloud, up: AxisOverride | None, front: AxisOverride | None)
         planes = [_told_plane(cloud, up, front)]
     found = [stance for plane in planes for stance in rank_candidates(cloud, plane, up, front)]
     if not found:
-        raise ScanError("No trunk can be made out in this scan.", NOTHING_ELSE)
+        raise ScanError(Message("No trunk can be made out in this scan."), NOTHING_ELSE)
     chosen: list[PoseCandidate] = []
     for stance in sorted(found, key=lambda stance: -stance.score):
         if len(chosen) < READINGS and all(stance.differs(other, DIFFERENT) for other in chosen):
@@ -196,12 +205,21 @@ def _scaled(turn: Floats, factor: float) -> Floats:
     return matrix
 
 
-def _reason(best: PoseCandidate, axes: tuple[str, str], told: bool, sure: bool) -> str:
+def _reason(best: PoseCandidate, axes: tuple[str, str], told: bool, sure: bool) -> Message:
     up, front = axes
     if told:
-        words = f"That {up} is up and {front} is front was told."
-        return words if sure else words + " The shape speaks against it: please look."
+        words = Message("That {up} is up and {front} is front was told.", up=up, front=front)
+        return words if sure else join((words, Message("The shape speaks against it: please look.")))
     if not sure:
-        return f"It is not certain that {up} is up and {front} is front: please look."
+        return Message(
+            "It is not certain that {up} is up and {front} is front: please look.", up=up, front=front
+        )
     first, second, third = sorted(best.cue_scores, key=lambda words: -best.cue_scores[words])[:3]
-    return f"That {up} is up and {front} is front is told by {first}, {second} and {third}."
+    return Message(
+        "That {up} is up and {front} is front is told by {first}, {second} and {third}.",
+        up=up,
+        front=front,
+        first=first,
+        second=second,
+        third=third,
+    )

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.geometry.mesh import Floats, unit
+from core.messages import Message
 from core.scan.orientation.axis_override import AXES, AxisOverride, nearest_axis
 from core.scan.orientation.cut_planes import find_cut_planes
 from core.scan.orientation.orientation_cues import TorsoFeatures, extract_features, score
@@ -47,7 +48,7 @@ class PoseCandidate:
     residual: float
     seen: TorsoFeatures
     evidence: float
-    cue_scores: dict[str, float]
+    cue_scores: dict[Message, float]
     cut: bool = False
 
     @property

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from core.errors import ScanError
+from core.messages import Length, Message, join
 
 MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "inch": 25.4}
 
@@ -24,7 +25,7 @@ class UnitEstimate:
 
     unit: str
     is_certain: bool
-    reason: str
+    reason: Message
 
 
 def estimate_unit(girth: float, told: str | None = None) -> UnitEstimate:
@@ -35,11 +36,17 @@ def estimate_unit(girth: float, told: str | None = None) -> UnitEstimate:
     if told is not None:
         mm = girth * MILLIMETRES[told]
         if TOLD_GIRTHS[0] < mm < TOLD_GIRTHS[1]:
-            reason = f"The unit was told to be {told}: with it the trunk is {mm:.0f} mm round."
+            reason = Message(
+                "The unit was told to be {unit}: with it the trunk is {mm} round.", unit=told, mm=Length(mm)
+            )
             return UnitEstimate(told, True, reason)
         raise ScanError(
-            f"In {told} the trunk would measure {_plain(mm)} mm round, which is not the size of a body.",
-            "Check the unit, and that the scan holds an upper body.",
+            Message(
+                "In {unit} the trunk would measure {mm} round, which is not the size of a body.",
+                unit=told,
+                mm=_plain_length(mm),
+            ),
+            Message("Check the unit, and that the scan holds an upper body."),
         )
     usual, rare = (
         [unit for unit, mm in MILLIMETRES.items() if low < girth * mm < high]
@@ -47,20 +54,35 @@ def estimate_unit(girth: float, told: str | None = None) -> UnitEstimate:
     )
     if not rare:
         raise ScanError(
-            f"The trunk measures {_plain(girth)} round in the file, which is the size of a body in no unit.",
-            "Check that the scan holds an upper body, or say in which unit it is.",
+            Message(
+                "The trunk measures {girth} round in the file, which is the size of a body in no unit.",
+                girth=_plain(girth),
+            ),
+            Message("Check that the scan holds an upper body, or say in which unit it is."),
         )
     unit = (usual or rare)[0]
     mm = girth * MILLIMETRES[unit]
-    reason = f"Read in {unit}, the trunk is {mm:.0f} mm round, which is the size of a body."
+    reason = Message(
+        "Read in {unit}, the trunk is {mm} round, which is the size of a body.", unit=unit, mm=Length(mm)
+    )
     for other in rare:
         if other != unit:
-            reason += f" It might also be {other} ({girth * MILLIMETRES[other]:.0f} mm): please check it."
+            also = Message(
+                "It might also be {unit} ({mm}): please check it.",
+                unit=other,
+                mm=Length(girth * MILLIMETRES[other]),
+            )
+            reason = join((reason, also))
     return UnitEstimate(unit, len(rare) == 1, reason)
 
 
-def _plain(length: float) -> str:
-    """Return a length in words without powers of ten."""
-    if 0.01 < length < 1e6:
-        return f"{length:,.0f}" if length > 100.0 else f"{length:.3g}"
-    return "more than a million" if length > 1.0 else "almost nothing"
+def _plain(number: float) -> str | Message:
+    """Return a number in words without powers of ten."""
+    if 0.01 < number < 1e6:
+        return f"{number:,.0f}" if number > 100.0 else f"{number:.3g}"
+    return Message("more than a million") if number > 1.0 else Message("almost nothing")
+
+
+def _plain_length(mm: float) -> Length | Message:
+    """Return a length [mm] without powers of ten."""
+    return Length(mm) if 1.0 <= mm < 1e6 else Message("{number} mm", number=_plain(mm))

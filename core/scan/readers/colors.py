@@ -9,9 +9,10 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from core.geometry.mesh import MAX_COORDINATE, Floats, Points
+from core.messages import Message
 from core.scan.readers.raw_scan import Colours
 
-UNREADABLE = "The colours of the scan could not be read."
+UNREADABLE = Message("The colours of the scan could not be read.")
 
 FINEST = 2048
 """A texture is sampled with about so many pixels a side: a vertex covers several of a finer one."""

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from core.errors import ScanError
 from core.geometry.mesh import Faces, Floats, Indices
+from core.messages import Message
 from core.progress import Progress
 from core.scan.readers.colors import UNREADABLE, full_of, sampled, texture, with_colors
 from core.scan.readers.gltf_buffers import MOST_MARKS, MOST_NODES, cut_short, marks
@@ -33,7 +34,7 @@ _KINDS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126:
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 _DEEPEST = 100
-_WHOLE = "Put that file beside it, or export all as one GLB file."
+_WHOLE = Message("Put that file beside it, or export all as one GLB file.")
 
 Json = Any
 Matrix = Floats
@@ -62,14 +63,17 @@ def read_gltf(name: str, data: bytes, progress: Progress) -> RawScan:
 
 def _packed(name: str) -> ScanError:
     return ScanError(
-        f"{name} is compressed in a way that Busk does not read.", "Export it without mesh compression."
+        Message("{file} is compressed in a way that Busk does not read.", file=name),
+        Message("Export it without mesh compression."),
     )
 
 
 def _glb(name: str, data: bytes) -> tuple[bytes, memoryview]:
     """Return the two chunks of a GLB file: the description, and what it describes."""
     if int.from_bytes(data[4:8], "little") != 2:
-        raise ScanError(f"{name} is a glTF file of an old kind.", "Export it as glTF 2.0.")
+        raise ScanError(
+            Message("{file} is a glTF file of an old kind.", file=name), Message("Export it as glTF 2.0.")
+        )
     whole, chunks, at = memoryview(data), dict[bytes, memoryview](), 12
     while at + 8 <= len(data):
         size = int.from_bytes(data[at : at + 4], "little")
@@ -86,7 +90,9 @@ class _Reader:
     def __init__(self, name: str, document: Json, binary: memoryview, size: int) -> None:
         self.name, self.json = name, document
         if document["asset"]["version"].split(".")[0] != "2":
-            raise ScanError(f"{name} is a glTF file of an old kind.", "Export it as glTF 2.0.")
+            raise ScanError(
+                Message("{file} is a glTF file of an old kind.", file=name), Message("Export it as glTF 2.0.")
+            )
         needed = document.get("extensionsRequired", [])
         if any("draco" in each or "meshopt" in each for each in needed):
             raise _packed(name)
@@ -100,7 +106,7 @@ class _Reader:
             return binary
         head, comma, _ = uri[:200].partition(",")
         if not uri.startswith("data:") or not head.endswith(";base64") or not comma:
-            raise ScanError(f"{self.name} keeps its triangles in another file.", _WHOLE)
+            raise ScanError(Message("{file} keeps its triangles in another file.", file=self.name), _WHOLE)
         return base64.b64decode(uri[len(head) + 1 :], validate=True)
 
     def placed(self) -> Iterator[tuple[Json, Matrix]]:
@@ -137,7 +143,7 @@ class _Reader:
         normals = None
         if "NORMAL" in named:
             normals = vectors(self._values(named["NORMAL"])) @ np.linalg.pinv(turn)
-        colours, notes = None, tuple[str, ...]()
+        colours, notes = None, tuple[Message, ...]()
         try:
             colours = self._colours(primitive, len(vertices))
         except Exception:  # malformed in any way, they leave the shape as it is
@@ -195,7 +201,10 @@ class _Reader:
             raise ValueError("values of other vertices")
         kind, width = np.dtype(_KINDS[accessor["componentType"]]), _WIDTHS[accessor["type"]]
         if "sparse" in accessor or "bufferView" not in accessor:
-            raise ScanError(f"{self.name} is written in a way that Busk does not read.", "Export it as PLY.")
+            raise ScanError(
+                Message("{file} is written in a way that Busk does not read.", file=self.name),
+                Message("Export it as PLY."),
+            )
         view = self.json["bufferViews"][accessor["bufferView"]]
         buffer = self._buffers[view["buffer"]]
         start, row = view.get("byteOffset", 0) + accessor.get("byteOffset", 0), kind.itemsize * width

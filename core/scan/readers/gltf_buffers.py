@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from core.errors import ScanError
+from core.messages import Message
 from core.progress import Progress, quiet
 from core.scan.readers.companion_files import companion_file
 from core.scan.readers.raw_scan import AGAIN
@@ -123,4 +124,6 @@ def marks(document: bytes) -> int:
 
 def cut_short(name: str) -> ScanError:
     """Return the refusal of a file that holds less than its header tells."""
-    return ScanError(f"{name} is cut short: its header promises more than the file holds.", AGAIN)
+    return ScanError(
+        Message("{file} is cut short: its header promises more than the file holds.", file=name), AGAIN
+    )

@@ -8,6 +8,7 @@ import numpy as np
 
 from core.errors import ScanError
 from core.geometry.mesh import Faces
+from core.messages import Message
 from core.progress import Progress
 from core.scan.readers.raw_scan import AGAIN, RawScan, check_size, fans, no_faces
 from core.scan.readers.text_table import Table, whole, whole_table
@@ -24,15 +25,20 @@ def read_off(name: str, data: bytes, progress: Progress) -> RawScan:
     """
     head = _HEAD.match(data[:10_000])
     if head is None:
-        raise ScanError(f"{name} is not an OFF file.", AGAIN)
+        raise ScanError(Message("{file} is not an OFF file.", file=name), AGAIN)
     if head[4] or head[5] or b"BINARY" in head[0]:
-        raise ScanError(f"{name} is an OFF file of a rare kind.", "Export it as plain OFF or as PLY.")
+        raise ScanError(
+            Message("{file} is an OFF file of a rare kind.", file=name),
+            Message("Export it as plain OFF or as PLY."),
+        )
     found = whole_table(name, data[head.end() :], progress)
     if len(found.counts) == 0 or found.counts[0] < 2:
         raise ValueError("no counts")
     points, polygons = (int(count) for count in whole(found.numbers[:2]))
     if min(points, polygons) < 0 or 1 + points + polygons > len(found.counts):
-        raise ScanError(f"{name} is cut short: its header promises more than the file holds.", AGAIN)
+        raise ScanError(
+            Message("{file} is cut short: its header promises more than the file holds.", file=name), AGAIN
+        )
     check_size(name, points, polygons, len(data))
     rows = found.rows(1, 1 + points)
     normals = rows.columns(3, 6) if head[3] else None
@@ -49,7 +55,10 @@ def read_points(name: str, data: bytes, progress: Progress) -> RawScan:
     """
     start = _first_point(data)
     if start is None:
-        raise ScanError(f"{name} is no scan: it is a text without points.", "Choose another scan.")
+        raise ScanError(
+            Message("{file} is no scan: it is a text without points.", file=name),
+            Message("Choose another scan."),
+        )
     data = data[start : _last_point(data)]
     check_size(name, max(data.count(b"\n"), data.count(b"\r")))  # at once: a packed file may hold very many
     between = b" ," if has_decimal_commas(name, data) else b"  "
@@ -79,8 +88,8 @@ def has_decimal_commas(name: str, data: bytes) -> bool:
     elif not apart:
         return False
     raise ScanError(
-        f"In {name} a comma may stand between two numbers or within one.",
-        "Export the points with semicolons or blanks between the numbers.",
+        Message("In {file} a comma may stand between two numbers or within one.", file=name),
+        Message("Export the points with semicolons or blanks between the numbers."),
     )
 
 

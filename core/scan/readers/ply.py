@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from core.errors import ScanError
 from core.geometry.mesh import Faces, Floats, Indices, rows_of
+from core.messages import Message
 from core.progress import Progress
 from core.scan.readers.colors import full_of, with_colors
 from core.scan.readers.ply_header import COLOURS, CORNERS, NEEDED, NORMALS, PLACES, Element, Kind, read_header
@@ -108,7 +109,9 @@ def read_ply(name: str, data: bytes, progress: Progress) -> RawScan:
     order, elements, start = read_header(name, data)
     least = sum(each.rows * each.least(not order) for each in elements)
     if least > len(data) - start + (not order):  # the last number of a text needs no blank behind it
-        raise ScanError(f"{name} is cut short: its header promises more than the file holds.", AGAIN)
+        raise ScanError(
+            Message("{file} is cut short: its header promises more than the file holds.", file=name), AGAIN
+        )
     for each in elements:
         check_size(name, *((each.rows, 0) if each.name == "vertex" else (0, each.rows)))
     values = (

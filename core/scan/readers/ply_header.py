@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.errors import ScanError
+from core.messages import Message
 from core.scan.readers.raw_scan import AGAIN
 
 _TYPES = {
@@ -72,12 +73,12 @@ def read_header(name: str, data: bytes) -> tuple[str, list[Element], int]:
     newline = b"\r\n" if data[:5] == b"ply\r\n" else data[3:4]
     end = data.find(newline + b"end_header", 0, _HEAD_BYTES)
     if data[:3] != b"ply" or newline not in (b"\n", b"\r", b"\r\n") or end < 0:
-        raise ScanError(f"{name} is not a PLY file, or its header is cut short.", AGAIN)
+        raise ScanError(Message("{file} is not a PLY file, or its header is cut short.", file=name), AGAIN)
     start = data.find(newline, end + 1)
     try:
         order, elements = _elements(data[:end].decode("latin-1").replace("\r", "\n").split("\n"))
     except (IndexError, KeyError, ValueError) as problem:
-        raise ScanError(f"{name} has a header that makes no sense.", AGAIN) from problem
+        raise ScanError(Message("{file} has a header that makes no sense.", file=name), AGAIN) from problem
     return order, elements, start + len(newline) if start >= 0 else len(data)
 
 

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from core.errors import ScanError
 from core.geometry.mesh import Faces, Indices, Points, rows_of
+from core.messages import Message
 
 MOST_POINTS, MOST_TRIANGLES = 10_000_000, 5_000_000
 """What a scan may hold: with more of it the memory would not last."""
@@ -23,7 +24,7 @@ PACKED_FREE, PACKED_TIMES = 16 << 20, 50
 BLOCK = 1 << 18
 """Triangles and items of lists that are made at a time, so that what is worked out for them stays small."""
 
-AGAIN = "Export the scan again, or copy the file again."
+AGAIN = Message("Export the scan again, or copy the file again.")
 
 
 Colours = npt.NDArray[np.uint8]
@@ -42,7 +43,7 @@ class RawScan:
     faces: Faces
     normals: Points | None = None
     colours: Colours | None = None
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message, ...] = ()
 
 
 def check_size(name: str, points: int, triangles: int = 0, size: int | None = None) -> None:
@@ -53,8 +54,17 @@ def check_size(name: str, points: int, triangles: int = 0, size: int | None = No
     """
     if points > max(MOST_POINTS, 3 * triangles) or triangles > MOST_TRIANGLES:
         raise ScanError(
-            f"{name} is too fine: it holds {points:,} points and {triangles:,} triangles.",
-            f"Thin the scan to at most {MOST_POINTS:,} points and {MOST_TRIANGLES:,} triangles.",
+            Message(
+                "{file} is too fine: it holds {points} points and {triangles} triangles.",
+                file=name,
+                points=f"{points:,}",
+                triangles=f"{triangles:,}",
+            ),
+            Message(
+                "Thin the scan to at most {points} points and {triangles} triangles.",
+                points=f"{MOST_POINTS:,}",
+                triangles=f"{MOST_TRIANGLES:,}",
+            ),
         )
     if size is not None and 24 * (points + triangles) > FREE + TIMES * size:
         raise too_much(name)
@@ -64,14 +74,20 @@ def check_packed(name: str, unpacked: int, packed: int) -> None:
     """Refuse ``packed`` bytes that unpack to far more than those of a scan do. Raises ScanError."""
     if unpacked > PACKED_FREE + PACKED_TIMES * packed:
         raise ScanError(
-            f"{name} unpacks to more than {PACKED_TIMES} times its size, which no scan does.",
-            "Save the scan again without compression.",
+            Message(
+                "{file} unpacks to more than {count} times its size, which no scan does.",
+                file=name,
+                count=PACKED_TIMES,
+            ),
+            Message("Save the scan again without compression."),
         )
 
 
 def too_much(name: str) -> ScanError:
     """Return the refusal of a file with more in it than the finest body has."""
-    return ScanError(f"{name} describes more than a scan needs.", "Export the body alone.")
+    return ScanError(
+        Message("{file} describes more than a scan needs.", file=name), Message("Export the body alone.")
+    )
 
 
 def joined(parts: list[RawScan]) -> RawScan:

@@ -14,6 +14,7 @@ import numpy as np
 from core.errors import ScanError
 from core.files.regular_file import open_regular
 from core.geometry.mesh import Faces, Points
+from core.messages import Message
 from core.progress import Cancelled, Progress, quiet
 from core.scan.readers.gltf import read_gltf
 from core.scan.readers.gltf_buffers import with_buffers
@@ -56,7 +57,7 @@ LARGEST_FILE = 600_000_000
 MOST_MEMBERS = 10_000
 """A packed file may be packed in so many pieces; programs that pack in blocks need one for each 64 kB."""
 
-_THINNER = f"Thin the scan until its file is smaller than {LARGEST_FILE // 1_000_000} MB."
+_THINNER = Message("Thin the scan until its file is smaller than {size} MB.", size=LARGEST_FILE // 1_000_000)
 _STEP = 1 << 20
 
 
@@ -66,16 +67,22 @@ def scan_bytes(path: Path, progress: Progress = quiet) -> bytes:
         with open(open_regular(path), "rb") as file:
             size = os.fstat(file.fileno()).st_size
             if size > LARGEST_FILE:
-                raise ScanError(f"{path.name} is too large.", _THINNER)
+                raise ScanError(Message("{file} is too large.", file=path.name), _THINNER)
             data = file.read(size)
         if path.suffix.lower() == ".obj":
             return with_texture(path, data, LARGEST_FILE, progress)
         return with_buffers(path, data, LARGEST_FILE, progress)
     except FileNotFoundError:
-        raise ScanError(f"There is no file {path}.", "Check the name, or choose another scan.") from None
+        raise ScanError(
+            Message("There is no file {file}.", file=str(path)),
+            Message("Check the name, or choose another scan."),
+        ) from None
     except (OSError, ValueError) as problem:
-        reason = getattr(problem, "strerror", None) or "its name is no name of a file"
-        raise ScanError(f"{path.name or path} cannot be read: {reason}.", "Choose another scan.") from problem
+        reason = getattr(problem, "strerror", None) or Message("its name is no name of a file")
+        raise ScanError(
+            Message("{file} cannot be read: {problem}.", file=path.name or str(path), problem=reason),
+            Message("Choose another scan."),
+        ) from problem
 
 
 def read_triangles(name: str, data: bytes, progress: Progress = quiet) -> tuple[Points, Faces]:
@@ -92,7 +99,7 @@ def read_raw(name: str, data: bytes, progress: Progress = quiet) -> RawScan:
     """
     progress("reading", 0.0)
     if not data:
-        raise ScanError(f"{name} is empty.", AGAIN)
+        raise ScanError(Message("{file} is empty.", file=name), AGAIN)
     try:
         if data[:2] == b"\x1f\x8b":
             data = _unpacked(name, data, progress)
@@ -101,13 +108,15 @@ def read_raw(name: str, data: bytes, progress: Progress = quiet) -> RawScan:
             scan = _reader(name, data)(name, data, progress)
         check_size(name, len(scan.vertices), len(scan.faces))
         if scan.faces.size and not (scan.faces.min() >= 0 and scan.faces.max() < len(scan.vertices)):
-            raise ScanError(f"{name} has triangles with corners that do not exist.", AGAIN)
+            raise ScanError(Message("{file} has triangles with corners that do not exist.", file=name), AGAIN)
     except (ScanError, Cancelled):
         raise
     except MemoryError:
         raise no_memory(name) from None
     except Exception as problem:  # a malformed file makes a reader fail in any way
-        raise ScanError(f"{name} cannot be read: it is damaged or cut short.", AGAIN) from problem
+        raise ScanError(
+            Message("{file} cannot be read: it is damaged or cut short.", file=name), AGAIN
+        ) from problem
     progress("reading", 1.0)
     return scan
 
@@ -115,7 +124,8 @@ def read_raw(name: str, data: bytes, progress: Progress = quiet) -> RawScan:
 def no_memory(name: str) -> ScanError:
     """Return the refusal of a scan that needs more memory than there is."""
     return ScanError(
-        f"There is not enough memory for {name}.", "Close other programs, or thin the scan before opening it."
+        Message("There is not enough memory for {file}.", file=name),
+        Message("Close other programs, or thin the scan before opening it."),
     )
 
 
@@ -129,8 +139,8 @@ def _reader(name: str, data: bytes) -> Reader:
         told = "xyz"
     if told is None and ending not in _READERS:
         raise ScanError(
-            f"{name} is not a scan that can be read.",
-            "Export it as one of: PLY, OBJ, STL, OFF, glTF, VTP, XYZ.",
+            Message("{file} is not a scan that can be read.", file=name),
+            Message("Export it as one of: PLY, OBJ, STL, OFF, glTF, VTP, XYZ."),
         )
     return _READERS[told or ending]
 
@@ -151,7 +161,7 @@ def _unpacked(name: str, data: bytes, progress: Progress) -> bytes:
             held += len(parts[-1])
             check_packed(name, held, len(data))
             if held > LARGEST_FILE:
-                raise ScanError(f"{name} is too large when unpacked.", _THINNER)
+                raise ScanError(Message("{file} is too large when unpacked.", file=name), _THINNER)
         waiting = unpacker.unused_data or data[at : at + _STEP]
         at += 0 if unpacker.unused_data else _STEP
         if not waiting.strip(b"\0"):  # some programs fill up with zeros
@@ -159,5 +169,5 @@ def _unpacked(name: str, data: bytes, progress: Progress) -> bytes:
     else:
         raise ValueError("packed in too many pieces")
     if not held:
-        raise ScanError(f"{name} is empty.", AGAIN)
+        raise ScanError(Message("{file} is empty.", file=name), AGAIN)
     return b"".join(parts)

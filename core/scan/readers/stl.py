@@ -6,6 +6,7 @@ import numpy as np
 
 from core.errors import ScanError
 from core.geometry.mesh import Points
+from core.messages import Message
 from core.progress import Progress
 from core.scan.readers.raw_scan import AGAIN, RawScan, check_size
 from core.scan.readers.text_table import Growing, blocks, lines_of, table
@@ -27,7 +28,7 @@ def read_stl(name: str, data: bytes, progress: Progress) -> RawScan:
         check_size(name, 3 * count, count)
         corners = np.frombuffer(data, _ROW, count, _HEAD)["corners"].reshape(-1, 3).astype(np.float64)
     else:
-        raise ScanError(f"{name} is cut short, or it is not an STL file.", AGAIN)
+        raise ScanError(Message("{file} is cut short, or it is not an STL file.", file=name), AGAIN)
     return RawScan(corners, np.arange(len(corners)).reshape(-1, 3))
 
 
@@ -38,7 +39,7 @@ def is_binary_stl(data: bytes) -> bool:
 
 def _text_corners(name: str, data: bytes, progress: Progress) -> Points:
     if b"endsolid" not in data[-1000:].lower():
-        raise ScanError(f"{name} is cut short, or it is not an STL file.", AGAIN)
+        raise ScanError(Message("{file} is cut short, or it is not an STL file.", file=name), AGAIN)
     found = Growing("d")
     for block in blocks(name, data, progress):
         lines = lines_of(block)

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from core.errors import ScanError
 from core.geometry.mesh import Flags, Floats, Indices
+from core.messages import Message
 from core.progress import Progress
 from core.scan.readers.raw_scan import AGAIN, check_size, too_much
 
@@ -45,7 +46,11 @@ def blocks(name: str, data: bytes, progress: Progress) -> Iterator[bytes]:
             end = 1 + max(data.rfind(mark, start, start + BLOCK) for mark in (b"\n", b"\r"))
         if end <= start:
             raise ScanError(
-                f"{name} holds a line of more than {BLOCK // 1_000_000} MB: it is no scan, or it is damaged.",
+                Message(
+                    "{file} holds a line of more than {count} MB: it is no scan, or it is damaged.",
+                    file=name,
+                    count=BLOCK // 1_000_000,
+                ),
                 AGAIN,
             )
         yield data[start:end]

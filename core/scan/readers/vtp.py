@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from core.errors import ScanError
 from core.geometry.mesh import Faces, Indices
+from core.messages import Message
 from core.progress import Progress, quiet
 from core.scan.readers.raw_scan import (
     RawScan,
@@ -37,7 +38,7 @@ _DEEPEST = 20
 _MOST_PARTS = 1000
 _MOST_ARRAYS, _MOST_BLOCKS = 10_000, 100_000
 _LONGEST_TAG = 1 << 24
-_PLAIN = "Save it from its program without compression, or as PLY."
+_PLAIN = Message("Save it from its program without compression, or as PLY.")
 
 
 @dataclass(eq=False)
@@ -117,7 +118,10 @@ def read_vtp(name: str, data: bytes, progress: Progress) -> RawScan:
         if start - parser.CurrentByteIndex > _LONGEST_TAG:  # each step would look at all of it again
             raise ValueError("a tag without an end")
     if outline.head.get("type") != "PolyData" or not outline.pieces:
-        raise ScanError(f"{name} is no VTP file with a surface.", "Export the surface as VTP or PLY.")
+        raise ScanError(
+            Message("{file} is no VTP file with a surface.", file=name),
+            Message("Export the surface as VTP or PLY."),
+        )
     values = _Values(name, outline.head, data, data.find(b"_", end) + 1, b'"raw"' in data[at:end])
     parts, points, triangles = list[RawScan](), 0, 0
     for piece in outline.pieces:
@@ -154,7 +158,9 @@ class _Values:
         self._compressed = "compressor" in head
         self._name, self._data, self._start, self._raw = name, data, start, raw
         if head.get("compressor", "vtkZLibDataCompressor") != "vtkZLibDataCompressor":
-            raise ScanError(f"{name} is compressed in a way that Busk does not read.", _PLAIN)
+            raise ScanError(
+                Message("{file} is compressed in a way that Busk does not read.", file=name), _PLAIN
+            )
 
     def of(self, array: _Array, count: int) -> Values:
         """Return the ``count`` numbers of an array, shape (count,)."""

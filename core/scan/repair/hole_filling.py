@@ -9,10 +9,11 @@ from scipy.spatial import cKDTree
 
 from core.geometry.mesh import Faces, Floats, Indices, Mesh, Points, quadric_terms
 from core.geometry.triangulate import triangulate
+from core.messages import Length, Message
 from core.progress import Progress, quiet
 from core.scan.repair.editable_mesh import EditableMesh
 from core.scan.repair.holes import border_loops, find_holes, frame_of, hole_sentences, islands
-from core.scan.repair.repair import count_text
+from core.scan.repair.repair import hole_count, vertex_count
 
 CLOSED = 30.0
 """Holes up to this length are closed [mm]."""
@@ -27,15 +28,19 @@ CRACK = 30.0
 """The two sides of one border are sewn to each other only where the way between them is longer [mm]."""
 
 
-def fill_holes(mesh: Mesh, progress: Progress = quiet) -> tuple[Mesh, tuple[str, ...]]:
+def fill_holes(mesh: Mesh, progress: Progress = quiet) -> tuple[Mesh, tuple[Message, ...]]:
     """Return an upright ``mesh`` [mm] mended, and a sentence a repair and an open hole. Raises Cancelled."""
     mesh, sewn, closed = fill_small_holes(mesh, progress)
     progress("closing holes", 1.0)
     sentences = []
     if sewn:
-        sentences.append(f"Joined {count_text(sewn, 'vertex')} along seams between parts of the scan.")
+        sentences.append(
+            Message("Joined {count} along seams between parts of the scan.", count=vertex_count(sewn))
+        )
     if closed:
-        sentences.append(f"Closed {count_text(closed, 'hole')} up to {CLOSED:.0f} mm across.")
+        sentences.append(
+            Message("Closed {count} up to {size} across.", count=hole_count(closed), size=Length(CLOSED))
+        )
     return mesh, (*sentences, *hole_sentences(mesh, find_holes(mesh)))
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points, unit
+from core.messages import Message, context_message
 from core.scan.repair.editable_mesh import EditableMesh
 
 TUBE = 0.5
@@ -22,8 +23,14 @@ NAMED = 5
 """So many holes are named one by one."""
 
 AROUND = (
-    *("front", "front left", "left side", "back left"),
-    *("back", "back right", "right side", "front right"),
+    context_message("on the body", "front"),
+    context_message("on the body", "front left"),
+    context_message("on the body", "left side"),
+    context_message("on the body", "back left"),
+    context_message("on the body", "back"),
+    context_message("on the body", "back right"),
+    context_message("on the body", "right side"),
+    context_message("on the body", "front right"),
 )
 
 
@@ -42,14 +49,17 @@ class Hole:
     width: float
     opening: bool
 
-    def place(self, mesh: Mesh) -> str:
+    def place(self, mesh: Mesh) -> Message:
         """Return where on the upright body it is, in words."""
         low, high = np.percentile(mesh.vertices, (1, 99), axis=0)
         x, y, _ = self.centre - 0.5 * (low + high)
         share = (self.centre[2] - low[2]) / (high[2] - low[2])
-        height = "low" if share < 1 / 3 else "high" if share > 2 / 3 else "half way up"
         eighth = round(float(np.arctan2(x / (high[0] - low[0]), -y / (high[1] - low[1]))) / (np.pi / 4)) % 8
-        return f"{height} on the {AROUND[eighth]}"
+        if share < 1 / 3:
+            return Message("low on the {side}", side=AROUND[eighth])
+        if share > 2 / 3:
+            return Message("high on the {side}", side=AROUND[eighth])
+        return Message("half way up on the {side}", side=AROUND[eighth])
 
 
 def find_holes(mesh: Mesh) -> tuple[Hole, ...]:
@@ -136,14 +146,19 @@ def _hole(mesh: Mesh, loop: Indices, faces: Indices) -> Hole:
     return Hole(loop, places.mean(axis=0), axes[2], length, width, bool(abs(looks) < TUBE and filled))
 
 
-def hole_sentences(mesh: Mesh, holes: tuple[Hole, ...]) -> tuple[str, ...]:
+def hole_sentences(mesh: Mesh, holes: tuple[Hole, ...]) -> tuple[Message, ...]:
     """Return what the user should know of the ``holes`` of an upright skin, one sentence each."""
     open_ones = [hole for hole in holes if not hole.opening]
     named = [hole_sentence(mesh, hole) for hole in open_ones[:NAMED]]
     more = len(open_ones) - NAMED
-    return tuple(named) + ((f"{more} more holes stay open.",) if more > 0 else ())
+    return tuple(named) + ((Message("{count} more holes stay open.", count=more),) if more > 0 else ())
 
 
-def hole_sentence(mesh: Mesh, hole: Hole) -> str:
+def hole_sentence(mesh: Mesh, hole: Hole) -> Message:
     """Return the size of a hole of an upright skin, and where it is."""
-    return f"A hole of {hole.length / 10.0:.0f} x {hole.width / 10.0:.0f} cm stays open, {hole.place(mesh)}."
+    return Message(
+        "A hole of {long} x {wide} cm stays open, {place}.",
+        long=f"{hole.length / 10.0:.0f}",
+        wide=f"{hole.width / 10.0:.0f}",
+        place=hole.place(mesh),
+    )

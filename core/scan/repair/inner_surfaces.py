@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from core.geometry.mesh import Flags, Floats, Indices, Points, unit
+from core.messages import Message
 from core.scan.repair.components import SAMPLES, largest, sample_component, size_of
 from core.scan.repair.editable_mesh import EditableMesh, components, grouped
 
@@ -29,9 +30,9 @@ CELL, FINE = 0.05, 0.01
 BLOCK = 8
 """How many places are asked at a time: what is reckoned for them is to fit into the cache."""
 
-BURIED = (
-    "Much of the scan lay deep inside another part of it and was dropped: please check that the skin is "
-    "measured, and no clothes over it."
+BURIED = Message(
+    "Much of the scan lay deep inside another part of it and was dropped: please check "
+    "that the skin is measured, and no clothes over it."
 )
 """What is said if so much was inside that what is left may be no skin."""
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from core.geometry.mesh import MAX_COORDINATE, Faces, Flags, Indices, Points
+from core.messages import Message, plural_message
 from core.progress import Progress, quiet
 from core.scan.repair.components import remove_scan_stand, remove_small_components, size_of
 from core.scan.repair.editable_mesh import EditableMesh, components, first_equal
@@ -35,43 +36,62 @@ SPIKE, SHARP = 0.1, 1.2
 
 def repair(
     vertices: Points, faces: Faces, progress: Progress = quiet
-) -> tuple[Points, Faces, tuple[str, ...]]:
+) -> tuple[Points, Faces, tuple[Message, ...]]:
     """Return clean vertices, shape (n, 3), outward wound faces, shape (m, 3), and one sentence a repair.
 
     What is sound keeps its order; sound triangles come back as they are. Any unit. Raises Cancelled.
     Source: ours.
     """
-    steps: tuple[tuple[Step, str, str], ...] = (
-        (_drop_positionless, "Dropped {} without a position.", "vertex"),
-        (_drop_unused, "Dropped {} outside any face.", "vertex"),
-        (_drop_far, "Dropped {} far away from all others.", "vertex"),
-        (_merge_equal, "Merged {} with others at the same place.", "vertex"),
-        (_drop_empty_faces, "Dropped {} without an area or listed before.", "face"),
-        (remove_fins, "Dropped {} standing off the skin like a fin.", "face"),
-        (_part_sheets, "Parted the skin at {} in which two sheets touched.", "vertex"),
-        (remove_scan_stand, "Dropped {} shaped like a floor, a wall or a stand.", "piece"),
-        (remove_small_components, "Dropped {} beside the body.", "speck"),
-        (_drop_spikes, "Dropped {} sticking out of the skin like a spike.", "vertex"),
-        (_wind_outward, "Turned {} to look outward.", "face"),
-        (remove_inner, "Dropped {} inside the body or doubling its skin.", "piece"),
-        (remove_occluded, "Dropped {} of parts that reach into the body.", "face"),
+    steps: tuple[tuple[Step, Message, Callable[[int], Message]], ...] = (
+        (_drop_positionless, Message("Dropped {count} without a position."), vertex_count),
+        (_drop_unused, Message("Dropped {count} outside any face."), vertex_count),
+        (_drop_far, Message("Dropped {count} far away from all others."), vertex_count),
+        (_merge_equal, Message("Merged {count} with others at the same place."), vertex_count),
+        (_drop_empty_faces, Message("Dropped {count} without an area or listed before."), face_count),
+        (remove_fins, Message("Dropped {count} standing off the skin like a fin."), face_count),
+        (_part_sheets, Message("Parted the skin at {count} in which two sheets touched."), vertex_count),
+        (remove_scan_stand, Message("Dropped {count} shaped like a floor, a wall or a stand."), piece_count),
+        (remove_small_components, Message("Dropped {count} beside the body."), speck_count),
+        (_drop_spikes, Message("Dropped {count} sticking out of the skin like a spike."), vertex_count),
+        (_wind_outward, Message("Turned {count} to look outward."), face_count),
+        (remove_inner, Message("Dropped {count} inside the body or doubling its skin."), piece_count),
+        (remove_occluded, Message("Dropped {count} of parts that reach into the body."), face_count),
     )
     skin, sentences = EditableMesh(vertices, faces), []
-    for done, (step, words, noun) in enumerate(steps):
+    for done, (step, sentence, counted) in enumerate(steps):
         progress("repairing", done / len(steps))
         before = skin
         skin, count = step(before)
         if count:
-            sentences.append(words.format(count_text(count, noun)))
+            sentences.append(sentence.fill(count=counted(count)))
         if count and step in (remove_inner, remove_occluded) and is_enclosed(before, skin):
             sentences.append(BURIED)
     return skin.vertices, skin.faces, tuple(sentences)
 
 
-def count_text(count: int, noun: str) -> str:
-    """Return how many of something there are, in words."""
-    plural = {"vertex": "vertices"}.get(noun, noun + "s")
-    return f"{count:,} {noun if count == 1 else plural}"
+def vertex_count(count: int) -> Message:
+    """Return a number of vertices."""
+    return plural_message("{count} vertex", "{count} vertices", count)
+
+
+def face_count(count: int) -> Message:
+    """Return a number of faces."""
+    return plural_message("{count} face", "{count} faces", count)
+
+
+def piece_count(count: int) -> Message:
+    """Return a number of pieces."""
+    return plural_message("{count} piece", "{count} pieces", count)
+
+
+def speck_count(count: int) -> Message:
+    """Return a number of specks."""
+    return plural_message("{count} speck", "{count} specks", count)
+
+
+def hole_count(count: int) -> Message:
+    """Return a number of holes."""
+    return plural_message("{count} hole", "{count} holes", count)
 
 
 def _drop_positionless(skin: EditableMesh) -> tuple[EditableMesh, int]:

@@ -50,7 +50,7 @@ def test_a_project_is_measured_before_and_after(project: Path, capsys: pytest.Ca
     assert bust["difference"] == pytest.approx(bust["after"] - bust["before"])
     assert bust["difference"] < -2.0
     assert found["own:Gore"]["after"] == found["bust_point_distance"]["after"]
-    assert found["own:Gore"]["definition"] == GORE.text
+    assert found["own:Gore"]["definition"] == str(GORE.text)
     assert open_project(project).design.own_measures == (GORE,)
 
 

@@ -34,6 +34,7 @@ from app.cli.self_test.parts import (
 )
 from app.gui.theme.stylesheet import load_fonts
 from core.errors import UserError
+from core.messages import Message
 from core.pipeline.build import Stages
 
 ROOT = Path(__file__).parents[3]
@@ -72,7 +73,7 @@ def test_all_checks_pass_without_display_and_without_streams(tmp_path: Path) -> 
 
 def test_a_failed_part_hides_none_of_the_others() -> None:
     def refused(_: str) -> str:
-        raise UserError("The disk is full.", "Make room.")
+        raise UserError(Message("The disk is full."), Message("Make room."))
 
     written: list[str] = []
     parts = [

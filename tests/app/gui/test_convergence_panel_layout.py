@@ -10,7 +10,7 @@ from app.gui.layout import LOW, NARROW, TALLER
 from app.gui.plots.convergence_panel import ConvergencePanel
 from app.gui.step_navigation import StepNavigation
 from app.gui.theme.stylesheet import apply_theme, load_fonts
-from app.i18n.catalog import speaking
+from app.i18n.catalog import using_language
 from app.presenters.status import ConvergenceView
 
 NUMBERS = {
@@ -28,7 +28,7 @@ HINTS = {
 def test_a_hint_of_three_lines_keeps_off_the_controls(qtbot: QtBot, qapp: QApplication, code: str) -> None:
     load_fonts()
     apply_theme(qapp, dark=False)
-    with speaking(code):
+    with using_language(code):
         strip = ConvergencePanel()
     qtbot.addWidget(strip)
     strip.resize(1180 - NARROW - StepNavigation().width(), LOW + TALLER.get(code, 0))

@@ -14,6 +14,7 @@ from app.gui.features.landmarks.panel import LandmarksPanel
 from app.presenters.landmarks import LandmarkView, landmark_view, spot_of
 from core.landmarks.bust_point import NIPPLE
 from core.landmarks.detect import find_landmarks
+from core.landmarks.lower_breast import CREASE
 from core.landmarks.types import CERTAIN, Landmark, Landmarks
 from core.landmarks.warnings import first_warning, landmark_warnings
 from tests.core.landmarks.test_damaged_scans import body
@@ -102,7 +103,7 @@ def test_a_point_by_hand_far_from_a_sure_rule_says_so_and_a_near_one_does_not() 
     near = find_landmarks(body(sample("person")), {"bust_point_left": place + np.array([-6.0, 0.0, 0.0])})
     mark = far.points["bust_point_left"]
     assert mark.off == pytest.approx(np.linalg.norm(mark.position - place))
-    assert mark.rule == f"Placed by hand, {mark.off:.0f} mm from where the rule finds it."
+    assert str(mark.rule) == f"Placed by hand, {mark.off:.0f} mm from where the rule finds it."
     said = landmark_view(mark.name, mark)
     assert (said.tone, said.state, said.weak) == ("warn", f"by hand, {mark.off:.0f} mm off", True)
     again = landmark_view(mark.name, mark, {spot_of(mark)})
@@ -128,11 +129,11 @@ def test_a_fold_by_hand_makes_nobody_surer_of_the_lowest_point_above_it() -> Non
 def test_the_first_doubt_is_of_the_landmark_that_is_shown_and_does_not_deny_its_rule() -> None:
     points = {
         f"{kind}_{side}": Landmark(f"{kind}_{side}", np.zeros(3), sure, rule)
-        for kind, rule in (("bust_point", NIPPLE), ("fold", "A crease."))
+        for kind, rule in (("bust_point", NIPPLE), ("fold", CREASE))
         for side, sure in (("left", 0.4 if kind == "bust_point" else 0.1), ("right", 0.9))
     }
     landmarks = Landmarks(points, 1.0, 0.0)
     said = landmark_warnings(landmarks)
-    assert said[0] == "The nipple of the left breast is not clearly seen: please check its bust point."
+    assert str(said[0]) == "The nipple of the left breast is not clearly seen: please check its bust point."
     assert len(said) == 2
     assert first_warning(landmarks) == "bust_point_left"

@@ -20,6 +20,7 @@ from core.document.design import Design, ScanSource
 from core.garment.body_location import SHOULDERS, SIDES
 from core.garment.pressure_limits import AMBER, GREEN, RED, pressure_limits
 from core.garment.pressure_list import PressureList, PressureRow
+from core.messages import Message
 
 DESIGN = Design(ScanSource("anna.ply")).with_line("mid-bust", 0.8)
 ROW = PressureRow(
@@ -53,7 +54,7 @@ def test_a_row_tells_its_largest_pressure_and_more_where_it_is_pointed_at() -> N
 
 
 def test_a_line_that_is_not_known_says_why() -> None:
-    row = PressureRow("mid-bust", "mid-bust", "", notes=("It is slack: it does not press.",))
+    row = PressureRow("mid-bust", "mid-bust", "", notes=(Message("It is slack: it does not press."),))
     view = pressure_views(PressureList((row,), {}), DESIGN, stale=False)["mid-bust"]
     assert (view.kpa, view.light, view.tip) == ("", "", "It is slack: it does not press.")
     summary = pressure_summary(PressureList((row,), {}), DESIGN)

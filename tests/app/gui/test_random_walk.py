@@ -21,6 +21,7 @@ from core.document.line_notation import ready_made_lines
 from core.document.presets import built_in, with_preset
 from core.document.storage.project_file import open_project, with_scan
 from core.errors import LineError, UserError
+from core.messages import Message
 from core.pipeline.converged import converged_frame
 from core.pipeline.live_solver import Failure, Frame
 
@@ -121,7 +122,7 @@ class Walk:
         app.gui.session.edit_command.PAUSE, name = 1e9, self.chance.choice(LINES)
         if not [self.turn(name) for _ in range(4)][-1] or self.chance.random() < 0.25:
             return
-        self.session._fail(Failure(self.session._revision, LineError("It cannot be held.")))
+        self.session._fail(Failure(self.session._revision, LineError(Message("It cannot be held."))))
         self.refused += 1
         entry = self.entries[self.present]
         last = max((each for each in entry.solved if each < len(entry.documents) - 1), default=None)

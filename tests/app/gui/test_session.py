@@ -14,6 +14,7 @@ from app.gui.session.session import Session
 from core.document.storage.project_file import save_project
 from core.document.storage.recovery import Recovery, find_unsaved
 from core.errors import LineError
+from core.messages import Message
 from core.pipeline.live_solver import Failure
 
 
@@ -76,11 +77,11 @@ def test_what_a_drag_was_refused_late_is_no_news_of_the_length_it_ended_at(sessi
     session.failed.connect(lambda error: (told.append(str(error)), designs.append(session.design)))
     session.preview_line("mid-bust", 0.76)
     first = session._revision + 1
-    session._fail(Failure(first, LineError("It cannot be held at 76.")))
+    session._fail(Failure(first, LineError(Message("It cannot be held at 76."))))
     session.preview_line("mid-bust", 0.75)
     session.commit_line("mid-bust", "Mid-bust line", 0.75)
-    session._fail(Failure(first + 1, LineError("It cannot be held at 75.")))
-    session._fail(Failure(session._revision, LineError("It cannot be held at 75.")))
+    session._fail(Failure(first + 1, LineError(Message("It cannot be held at 75."))))
+    session._fail(Failure(session._revision, LineError(Message("It cannot be held at 75."))))
     # One notice, told while the design was what it is again: a frame of that does not take it away.
     assert [each.split(" at ")[1] for each in told] == ["76."]
     assert designs == [before]

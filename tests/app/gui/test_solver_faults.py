@@ -14,6 +14,7 @@ from app.gui.session.session import Session
 from core.document.storage.project_file import open_project
 from core.errors import LineError
 from core.mechanics.solver_comparison import SolverComparison
+from core.messages import Message
 from core.pipeline.live_solver import Failure
 
 LINES = ("mid-bust", "full-bust")
@@ -55,7 +56,7 @@ def is_solved(session: Session) -> bool:
 
 def refuse(session: Session) -> None:
     """Refuse what was submitted last, as the solver does."""
-    session._fail(Failure(session._revision, LineError("It cannot be held.")))
+    session._fail(Failure(session._revision, LineError(Message("It cannot be held."))))
 
 
 @pytest.fixture

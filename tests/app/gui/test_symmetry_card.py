@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QApplication, QScrollArea
 from app.gui.features.measurements.panel import ResultPanel
 from app.gui.features.symmetry.card import ElidedTitle, SymmetryCard
 from app.gui.theme.stylesheet import load_fonts
-from app.i18n.catalog import speaking
+from app.i18n.catalog import using_language
 from app.presenters.samples import sample_design
 from app.presenters.symmetry import symmetry_view
 from core.analysis.symmetry.compare import BeforeAfter, SideDifference
@@ -29,7 +29,7 @@ def test_titles_and_units_are_whole_beside_what_figures_may_be_off(words: str, q
     load_fonts()
     stages = build(sample_design("person").with_line("mid-bust", 0.97))
     now = SideDifference(-11.8, -10.3, -0.1, SKIN)
-    with speaking(words):
+    with using_language(words):
         summary = symmetry_view(BeforeAfter(now, now, ()), stages)
         card = SymmetryCard()
         views = tuple(replace(view, off="± 5.8") for view in summary.views)

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.i18n.catalog import speaking
+from app.i18n.catalog import using_language
 from app.presenters.export import ExportOptions, ExportSettings, ExportSource, exports
 from app.presenters.export_preview import prepare_export
 from core.control_mesh.template import read_template
@@ -61,7 +61,7 @@ def test_measures_of_ones_own_keep_their_names_in_files(outcome: ExportSource, t
     own = replace(outcome.stages.design, own_measures=(CustomMeasurement("Bust girth", "straight", marks),))
     stages = replace(outcome.stages, design=own)
     named = ExportSource(stages, outcome.control_points, outcome.records)
-    with speaking("ja"):
+    with using_language("ja"):
         written = write("measures", tmp_path / "a.csv", named, ExportOptions())
     titles = [title for _, title, *_ in csv.reader(written.read_text("utf-8").splitlines())]
     assert titles.count("Bust girth") == 1, "in the words of the designer"
@@ -72,7 +72,7 @@ def test_measures_of_ones_own_keep_their_names_in_files(outcome: ExportSource, t
 def test_the_axes_are_told_in_the_language_of_the_window(outcome: ExportSource, axes: str) -> None:
     manner = ExportOptions(unit="mm", axes=axes)
     assert prepare_export("body", "a.stl", outcome, manner).how == f"in mm, {axes}"
-    with speaking("ja"):
+    with using_language("ja"):
         assert prepare_export("body", "a.stl", outcome, manner).how.startswith(f"mm、{axes[0]} が上")
 
 
@@ -156,7 +156,7 @@ def test_a_dxf_of_lines_holds_closed_curves_of_the_length_that_is_told(
 def test_what_stands_on_a_strip_is_in_the_language_of_the_window(
     tmp_path: Path, outcome: ExportSource
 ) -> None:
-    with speaking("ja"):
+    with using_language("ja"):
         again = ExportSource(outcome.stages, outcome.control_points, outcome.records)
         root = ElementTree.parse(write("flat", tmp_path / "ja.svg", again, ExportOptions())).getroot()
     words = [each.text or "" for each in root.iter(f"{SVG}text")][2:]  # heading and scale bar say mm

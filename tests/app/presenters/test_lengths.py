@@ -8,7 +8,6 @@ from pytestqt.qtbot import QtBot
 from app.gui.features.lines.row import LineRow, LineView
 from app.gui.widgets.length_edit import NumberField
 from app.gui.widgets.value_edit import ValueEdit
-from app.i18n.catalog import say, use_language
 from app.i18n.lengths import length, read_length, use_unit
 from app.presenters.bust_shift import up_words
 from app.presenters.measurements import MeasureView, as_table, length_uncertainty
@@ -75,25 +74,6 @@ def test_whole_millimetres_are_inches_and_sixteenths_that_can_be_typed_again(mm:
     assert length(mm, 0) == shown
     assert length(abs(mm), 0, signed=True) == ("+" if round(abs(mm) * 16 / 25.4) else "") + shown.strip("−")
     assert read_length(shown.replace(",", "")) == pytest.approx(mm, abs=25.4 / 32 + 1e-9)
-
-
-def test_a_sentence_of_the_core_has_its_lengths_in_the_unit_in_use() -> None:
-    closed = "Closed 7 holes up to 12 mm across."
-    limits = "Stay between 50 and 130 %: 300 to 1,691 mm of the front part."
-    named = "The line Lace 20 mm cannot be 7.5 mm wide."
-    for language, unit, sentence, said in (
-        ("en", "mm", closed, closed),
-        ("en", "in", closed, "Closed 7 holes up to 1/2 in across."),
-        ("ja", "cm", closed, "1.2 cm までの穴 7 個をふさぎました。"),
-        ("en", "cm", limits, "Stay between 50 and 130 %: 30.0 to 169.1 cm of the front part."),
-        ("ja", "in", limits, "50 から 130 % まで、前部で 11 13/16 から 66 9/16 in までにしてください。"),
-        ("en", "in", named, "The line Lace 20 mm cannot be 0.30 in wide."),
-        ("en", "in", "In mm, it is 8 mm; this no table knows.", "In mm, it is 8 mm; this no table knows."),
-    ):
-        use_language(language)
-        use_unit(unit)
-        assert say(sentence).replace("\N{NO-BREAK SPACE}", " ") == said
-        assert "12 mm" in say(closed, "mm"), "files keep millimetres"
 
 
 def test_no_plus_minus_is_nothing() -> None:

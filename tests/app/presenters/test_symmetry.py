@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.i18n.catalog import speaking
+from app.i18n.catalog import using_language
 from app.presenters.samples import sample_design
 from app.presenters.symmetry import (
     SymmetryView,
@@ -152,7 +152,7 @@ def test_what_makes_it_even_is_told_from_where_to_where_with_its_price() -> None
         "Because Strap (right), Mid-bust (left) may not be longer: a longer line would have to push, "
         f"and the body would be strained more than looks natural.\n{BY_TURNS}"
     )
-    with speaking("ja"):
+    with using_language("ja"):
         said, _, why = balance_result_texts(evened(), EVEN, NOW, {"out": -3.0})
         assert said.splitlines()[1] == "右が高い：11.5 → 2.7 mm"
         assert "ストラップ（右）、バスト下部（左）は" in why

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.i18n.catalog import speaking
+from app.i18n.catalog import using_language
 from app.presenters.samples import sample_design
 from app.presenters.target_shape import (
     bust_movement_text,
@@ -77,7 +77,7 @@ GOALS = (Goal("lift", 5.0),)
 def test_an_answer_is_one_sentence(changes: dict[str, object], english: str, japanese: str) -> None:
     answer = reply(**changes)
     assert result_text(answer, GOALS) == english
-    with speaking("ja"):
+    with using_language("ja"):
         assert result_text(answer, GOALS) == japanese
 
 
@@ -88,7 +88,7 @@ def test_of_a_profile_it_is_told_how_far_it_is_off() -> None:
     because = "because these lines do not move the body that way."
     said = "Not reachable: nearest is a profile off by 3.5 mm on average (4.0 mm at most), "
     assert result_text(answer, goals) == said + because
-    with speaking("ja"):
+    with using_language("ja"):
         assert "最も近いのは 輪郭のずれが平均 3.5 mm（最大 4.0 mm）の結果。理由：" in result_text(
             answer, goals
         )
@@ -120,7 +120,7 @@ def test_changes_are_told_line_by_line_and_what_presses() -> None:
 def test_every_figure_has_a_title_of_its_own_in_both_languages() -> None:
     titles = {target_title(name) for name in NAMES}
     assert len(titles) == len(NAMES)
-    with speaking("ja"):
+    with using_language("ja"):
         assert not titles & {target_title(name) for name in NAMES}
 
 
@@ -146,7 +146,7 @@ def test_what_a_hand_draws_is_met_on_average() -> None:
     near = off_by(-0.1, 3.0)
     assert result_text(near, goals) == "Met within 0.4 mm on average, 3.0 mm at most."
     assert (is_near(near, goals), is_met(near, goals)) == (True, False)
-    with speaking("ja"):
+    with using_language("ja"):
         assert result_text(near, goals) == "平均 0.4 mm、最大 3.0 mm のずれで到達できます。"
     now = {goal.name: 200.9 for goal in goals}
     assert result_text(near, goals, None, now) == "Met within 0.4 mm on average, 3.0 mm at most."
@@ -173,7 +173,7 @@ def test_of_a_drawn_profile_it_is_told_what_it_was_off_and_how_the_bust_point_mo
         "Not reachable: nearest is a profile off by 3.5 mm on average (6.0 mm at most), 2.0 mm before, "
     )
     assert bust_movement_text(goals, now, then) == "Moves along: Bust point up +7.3 → +6.5 mm"
-    with speaking("ja"):
+    with using_language("ja"):
         assert "の結果（変更前 2.0 mm）。理由：" in result_text(off, goals, None, now)
         assert bust_movement_text(goals, now, then) == "あわせて変わるもの：BPの上昇 +7.3 → +6.5 mm"
     assert bust_movement_text([*goals, Goal("lift", 6.5)], now, then) == "", "it is asked for"

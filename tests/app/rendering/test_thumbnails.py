@@ -13,6 +13,7 @@ import pyvista as pv
 from app.rendering.scene import Scene
 from app.rendering.thumbnail import option_thumbnails, orientation_options, render_thumbnail
 from core.geometry.mesh import Mesh
+from core.messages import EMPTY
 from core.scan.body import read_scan
 from core.scan.orientation.pose import Pose
 
@@ -47,7 +48,7 @@ def test_the_near_side_is_seen_and_light_comes_from_the_front() -> None:
 def test_four_ways_are_offered_as_the_scan_would_be_told_them() -> None:
     turn = np.eye(4)
     turn[:3, :3] = 10.0 * np.array([[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-    pose = Pose("cm", "+y", "+x", turn, False, "", 0.1)
+    pose = Pose("cm", "+y", "+x", turn, False, EMPTY, 0.1)
     offered = orientation_options(pose)
     assert {way.up for way in offered} == {"+y"}
     fronts = [way.front for way in offered]
@@ -64,7 +65,7 @@ def test_a_way_askew_is_told_by_its_numbers() -> None:
     c, s = np.cos(0.3), np.sin(0.3)
     turn = np.eye(4)
     turn[:3, :3] = [[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]]
-    way = orientation_options(Pose("mm", "+z", "-y", turn, False, "", 0.1))[0]
+    way = orientation_options(Pose("mm", "+z", "-y", turn, False, EMPTY, 0.1))[0]
     assert [float(x) for x in way.up.split(",")] == pytest.approx([0.0, s, c], abs=1e-4)
     assert way.axes == ("+z", "-y")
 

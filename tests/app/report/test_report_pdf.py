@@ -27,6 +27,7 @@ from core.errors import UserError
 from core.export.report_data import Heading, Report, make_report
 from core.garment.assessment import Assessment, Finding
 from core.garment.elastic_library import find_elastic
+from core.messages import Length, Message, SideName
 from core.pipeline.build import Stages, build
 from core.pipeline.solve import solve
 
@@ -163,9 +164,9 @@ def test_what_is_missing_is_said(sheet: Report, built: Built, tmp_path: Path) ->
     plain = tuple(replace(row, elastic="", cut_mm=None, elongation=None) for row in sheet.cuts.rows)
     without = replace(sheet, cuts=replace(sheet.cuts, rows=plain))
     assert "No elastic is chosen yet" in written(handout(without), tmp_path / "plain.pdf").text()
-    found = Finding("convergence", "bad", "The calculation does not converge: it oscillates.")
+    found = Finding("convergence", "bad", Message("The calculation does not converge: it oscillates."))
     wrong = {"state": "vibrating", "lift": None, "assessment": Assessment((found,))}
-    sizeless = replace(sheet, sizes=(), no_size="The scan shows no bust.", **wrong)
+    sizeless = replace(sheet, sizes=(), no_size=Message("The scan shows no bust."), **wrong)
     text = written(handout(sizeless), tmp_path / "none.pdf").text()
     assert "The scan shows no bust." in text
     assert "Do not use The calculation does not converge: it oscillates." in text
@@ -176,7 +177,9 @@ def test_what_is_missing_is_said(sheet: Report, built: Built, tmp_path: Path) ->
     ("words", "said"), [("en", "could not be seen clearly"), ("ja", "バージスがはっきり見えません")]
 )
 def test_doubts_stand_on_the_first_page(sheet: Report, tmp_path: Path, words: str, said: str) -> None:
-    unclear = "The fold under the left breast could not be seen clearly: please check it."
+    unclear = Message(
+        "The fold under the {side} breast could not be seen clearly: please check it.", side=SideName("left")
+    )
     doubted = replace(sheet, assessment=Assessment((Finding("landmarks", "caution", unclear),)))
     page = written(handout(doubted), tmp_path / "sheet.pdf", words)
     assert said in "".join(piece.text for piece in page.pieces(0))
@@ -224,7 +227,7 @@ def test_letters_are_large_enough_for_the_bench() -> None:
 def test_a_garment_of_six_lines_is_two_pages_too(sheet: Report, tmp_path: Path) -> None:
     cuts, presses = sheet.cuts.rows * 2, sheet.pressures * 2
     rows = tuple(replace(row, line=f"own {k}", title=f"Own line {k}") for k, row in enumerate(cuts))
-    notes = [(f"It goes straight over hollows for {k} mm: it does not press there.",) for k in range(6)]
+    notes = [(Message("It goes straight over hollows for {length}.", length=Length(k)),) for k in range(6)]
     pressed = tuple(replace(row, notes=note) for row, note in zip(presses, notes, strict=True))
     six = replace(sheet, cuts=replace(sheet.cuts, rows=rows), pressures=pressed)
     for words in ("en", "ja"):

@@ -173,10 +173,10 @@ def test_of_one_body_it_says_body(folder: Path, capsys: pytest.CaptureFixture[st
 
 
 def test_who_has_no_truth_is_sent_to_the_page_of_the_guide(tmp_path: Path) -> None:
-    with pytest.raises(TruthError, match=re.escape(FORM)):
+    with pytest.raises(TruthError, match=re.escape(str(FORM))):
         read_truths(tmp_path)
     title = (ROOT / "docs/contributors/validation.md").read_text("utf-8").splitlines()[0]
-    assert title.removeprefix("# ") in FORM
+    assert title.removeprefix("# ") in str(FORM)
 
 
 def test_the_command_prints_json(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

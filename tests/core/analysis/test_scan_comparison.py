@@ -20,11 +20,12 @@ from core.errors import ScanError
 from core.geometry import closest_point
 from core.geometry.mesh import Mesh
 from core.geometry.mirror_plane import MIRROR
+from core.messages import EMPTY
 from core.pipeline.build import Stages, build
 from core.scan.body import Body
 from core.scan.orientation.pose import Pose
 
-POSE = Pose("mm", "+z", "-y", np.eye(4), True, "", 0.0)
+POSE = Pose("mm", "+z", "-y", np.eye(4), True, EMPTY, 0.0)
 
 
 @pytest.fixture(scope="module")

@@ -32,7 +32,7 @@ def test_small_hole_is_bridged_and_said(template):
     point = template.point(0, template.half - 1)
     holed = body_of(without(body.mesh, whole.mesh.vertices[point], 9.0))
     control = fit_control_mesh(template, holed, landmarks_at(places))
-    assert any("holes at 1 control points" in warning for warning in control.warnings)
+    assert any("holes at 1 control points" in str(warning) for warning in control.warnings)
     neighbours = control.mesh.vertices[[point - 1, point + 1]]
     np.testing.assert_allclose(control.mesh.vertices[point], neighbours.mean(axis=0))
     others = np.arange(len(template.row)) != point
@@ -45,8 +45,8 @@ def test_hole_in_a_fold_is_said(template):
     below_fold = whole.mesh.vertices[template.point(1, template.bust_column)] - (0.0, 0.0, 20.0)
     holed = body_of(without(body.mesh, below_fold, 12.0))
     control = fit_control_mesh(template, holed, landmarks_at(places))
-    assert any("The fold under the left breast" in warning for warning in control.warnings)
-    assert not any("right breast" in warning for warning in control.warnings)
+    assert any("The fold under the left breast" in str(warning) for warning in control.warnings)
+    assert not any("right breast" in str(warning) for warning in control.warnings)
 
 
 def test_large_hole_is_refused(template):
@@ -114,7 +114,7 @@ def test_breast_that_hangs_too_low_is_never_folded_over(template, sag):
     assert control.quality.largest_bend < 130.0
     assert corner_angles(control.mesh).min() > 12.0
     bridged = agreement(control.mesh, body.mesh).min() <= 0.3
-    assert bridged == any("bridges part of a fold" in warning for warning in control.warnings)
+    assert bridged == any("bridges part of a fold" in str(warning) for warning in control.warnings)
     assert control.warnings
 
 
@@ -151,7 +151,7 @@ def test_breast_that_cannot_be_followed_is_refused(template):
 def test_column_that_spoils_the_mesh_gives_up_its_fold_and_says_so(template):
     body, landmarks = hanging(sag=1.2)
     control = fit_control_mesh(template, body, landmarks)
-    assert any("could not be followed everywhere" in warning for warning in control.warnings)
+    assert any("could not be followed everywhere" in str(warning) for warning in control.warnings)
     assert agreement(control.mesh, body.mesh).min() > 0.3
     assert corner_angles(control.mesh).min() > 8.0
 
@@ -159,4 +159,4 @@ def test_column_that_spoils_the_mesh_gives_up_its_fold_and_says_so(template):
 def test_body_without_folds_says_so(template):
     control = fit_control_mesh(template, body_of(analytic_body(bump=0.0)), analytic_landmarks())
     assert len(control.warnings) == 2
-    assert all("could not be followed everywhere" in warning for warning in control.warnings)
+    assert all("could not be followed everywhere" in str(warning) for warning in control.warnings)

@@ -94,10 +94,10 @@ def test_poor_figures_are_told():
     assert good.warnings == ()
     poor = FitQuality(4.6, 3.0, 18.0, 9.2, 14.0, 60.0, 0, 0.1, 0.1, 4.0)
     coarse, pointed, bridged = poor.warnings
-    assert "4.6 mm" in coarse
-    assert "18 mm" in coarse
-    assert "9 degrees" in pointed
-    assert "fold" in bridged
+    assert "4.6 mm" in str(coarse)
+    assert "18 mm" in str(coarse)
+    assert "9 degrees" in str(pointed)
+    assert "fold" in str(bridged)
 
 
 def test_mesh_turned_inside_out_is_folded():

@@ -70,7 +70,7 @@ def test_smooth_step_by_hand():
 def test_the_fade_on_a_sheet_is_the_smooth_step_of_the_way_to_the_border(width):
     patch = blend_weights(SHEET, CONTROL, width)
     assert patch.rule == "flood"
-    assert patch.reason == ""
+    assert str(patch.reason) == ""
     assert patch.fade == pytest.approx(smooth_step(inside(SHEET.vertices) / width), abs=1e-12)
 
 
@@ -103,7 +103,7 @@ def test_a_broken_scan_fades_by_distance_and_says_so(cut):
     scan = without(SHEET, CUTS[cut](centres(SHEET)))
     patch = blend_weights(scan, CONTROL)
     assert patch.rule == "distance"
-    assert patch.reason.endswith(".")
+    assert str(patch.reason).endswith(".")
     assert patch.fade == pytest.approx(smooth_step(inside(scan.vertices) / 25.0), abs=1e-9)
     assert (patch.fade[inside(scan.vertices) <= 0.0] == 0.0).all()
 

@@ -98,7 +98,7 @@ def test_the_lines_of_a_design_come_back_from_their_preset(built, monkeypatch, t
     (user_folder() / "broken.json").write_text("{", encoding="utf-8")
     presets, problems = user_presets()
     assert (len(presets), len(problems)) == (1, 1)
-    assert problems[0].message.startswith("The preset broken.json cannot be read")
+    assert str(problems[0].message).startswith("The preset broken.json cannot be read")
     with pytest.raises(LineError, match="no lines"):
         preset_from(bare, "none")
 

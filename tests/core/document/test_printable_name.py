@@ -28,6 +28,7 @@ from core.export.csv_cells import cell, csv_text
 from core.export.drawings import write_strips
 from core.export.measurement_files import MeasurementTable, write_measurements
 from core.garment.elastic_csv import elastic_from_csv
+from core.messages import EMPTY
 
 BAD = ("a\ud800b", "a\x01b", "a\x1b[31mb", "a\nb", "a\x7f", "a\x9bb", "\u202egnp.exe", "\u2066a")
 BAD += ("a\u2028b", "a\uffffb", "n" * 2000)
@@ -121,7 +122,7 @@ def test_figures_and_names_stay_as_they_are(text: str) -> None:
 
 def test_drawings_and_measures_of_a_file_with_any_name_are_whole(tmp_path: Path) -> None:
     odd = "body\x1b\x01\udcf6\uffff.ply"
-    strip = Strip("strap", "strap", 100.0, 12.0, (), "")
+    strip = Strip("strap", "strap", 100.0, 12.0, (), EMPTY)
     write_strips(tmp_path / "strips.svg", [strip], odd)
     Xml.parse(tmp_path / "strips.svg")
     write_strips(tmp_path / "strips.dxf", [strip], odd)

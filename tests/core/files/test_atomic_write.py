@@ -157,7 +157,7 @@ def test_the_longest_names_can_be_written(tmp_path: Path, name: str) -> None:
 def test_a_name_that_is_too_long_is_said_to_be(tmp_path: Path) -> None:
     with pytest.raises(ProjectError) as refused:
         write(tmp_path / ("x" * 300))
-    assert refused.value.hint == "Choose a shorter name."
+    assert str(refused.value.hint) == "Choose a shorter name."
 
 
 def test_what_fails_is_told_and_nothing_is_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -40,4 +40,4 @@ def test_the_limits_are_told_with_sources_and_doubts_in_both_languages() -> None
     assert len(limits.sources) >= 4
     assert all(words.en.endswith(".") and words.ja.endswith("。") for words in texts)
     assert "estimate" in limits.doubts[0].en
-    assert any("42 %" in sentence for sentence in LEFT_OUT)
+    assert any("42 %" in str(sentence) for sentence in LEFT_OUT)

@@ -14,6 +14,7 @@ from core.landmarks.torso.cross_sections import trunk_levels
 from core.landmarks.torso.gap_filling import bridge
 from core.landmarks.torso_landmarks import torso_landmarks
 from core.landmarks.types import SIDES, Landmark, Landmarks
+from core.messages import EMPTY
 
 TRUNK = 280.0, 140.0
 """Width and depth of the trunk [mm]."""
@@ -95,7 +96,7 @@ def joined(*meshes: Mesh) -> Mesh:
 
 def armpit(body: Mesh, bust: float) -> Landmark:
     """The left armpit of a body whose bust points and folds are told."""
-    points = [Landmark(f"bust_point_{side}", np.array([x, -70.0, bust]), 1.0, "") for side, x in BUSTS]
+    points = [Landmark(f"bust_point_{side}", np.array([x, -70.0, bust]), 1.0, EMPTY) for side, x in BUSTS]
     return next(
         mark
         for mark in torso_landmarks(body, Landmarks({mark.name: mark for mark in points}, bust, bust - 30.0))

@@ -14,6 +14,7 @@ from core.geometry.mesh import Mesh
 from core.landmarks.torso.cross_sections import stable_level, trunk_levels
 from core.landmarks.torso.girths import Girth, girth_at, girth_warnings, girths
 from core.landmarks.types import Landmark, Landmarks
+from core.messages import EMPTY
 from core.scan.body import Body
 from core.scan.orientation.pose import Pose
 from core.scan.repair.denoise import denoise
@@ -106,7 +107,7 @@ def test_the_samples_measure_what_they_are_known_to(name, girth):
 def test_underbust_is_read_where_the_breast_is_no_longer_in_the_way(name):
     truth = TRUTH[name]["girths"]
     mesh = sample(name)
-    body = Body(mesh, Pose("mm", "+z", "-y", np.eye(4), True, "", 1.0), (), name)
+    body = Body(mesh, Pose("mm", "+z", "-y", np.eye(4), True, EMPTY, 1.0), (), name)
     levels = Landmarks({}, truth["bust"]["level_z"], truth["underbust"]["level_z"])
     found = girths(body, levels)
     assert set(found) == {"bust", "underbust"}
@@ -117,12 +118,12 @@ def test_underbust_is_read_where_the_breast_is_no_longer_in_the_way(name):
 def test_the_under_bust_girth_is_no_surer_than_the_folds():
     girth = Girth(0.0, 800.0, 800.0)
     assert girth_warnings({"underbust": girth}) == []
-    assert "folds" in girth_warnings({"underbust": replace(girth, confidence=0.3)})[0]
-    marks = [Landmark(name, np.zeros(3), 0.3, "") for name in ("fold_left", "fold_right")]
-    body = Body(cylinder(130.0), Pose("mm", "+z", "-y", np.eye(4), True, "", 1.0), (), "a tube")
+    assert "folds" in str(girth_warnings({"underbust": replace(girth, confidence=0.3)})[0])
+    marks = [Landmark(name, np.zeros(3), 0.3, EMPTY) for name in ("fold_left", "fold_right")]
+    body = Body(cylinder(130.0), Pose("mm", "+z", "-y", np.eye(4), True, EMPTY, 1.0), (), "a tube")
     found = girths(body, Landmarks({mark.name: mark for mark in marks}, 20.0, 0.0))
     assert found["underbust"].confidence == 0.3
-    marks = [Landmark(f"bust_point_{side}", np.zeros(3), sure, "") for side, sure in SURE.items()]
+    marks = [Landmark(f"bust_point_{side}", np.zeros(3), sure, EMPTY) for side, sure in SURE.items()]
     found = girths(body, Landmarks({mark.name: mark for mark in marks}, 20.0, 0.0))
     assert found["bust"].confidence == 0.8, "the level of the bust is as sure as its surer point"
 

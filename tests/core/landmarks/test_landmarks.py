@@ -16,6 +16,7 @@ from core.landmarks.bust_point import MIRRORED, NIPPLE, SMOOTH
 from core.landmarks.detect import find_landmarks
 from core.landmarks.nipple import relief_kernels
 from core.landmarks.types import CERTAIN, Landmarks
+from core.messages import EMPTY
 from core.scan.body import Body
 from core.scan.orientation.pose import Pose
 
@@ -33,7 +34,7 @@ def sample(name: str) -> Mesh:
 
 
 def landmarks_of(mesh: Mesh) -> Landmarks:
-    return find_landmarks(Body(mesh, Pose("mm", "+z", "-y", np.eye(4), True, "", 1.0), (), "a body"))
+    return find_landmarks(Body(mesh, Pose("mm", "+z", "-y", np.eye(4), True, EMPTY, 1.0), (), "a body"))
 
 
 @cache
@@ -231,5 +232,5 @@ NO_BUST = {
 def test_what_shows_no_bust_is_refused_in_a_sentence(what):
     with pytest.raises(LandmarkError) as refusal:
         landmarks_of(NO_BUST[what]())
-    assert refusal.value.message.endswith(".")
-    assert refusal.value.hint.endswith(".")
+    assert str(refusal.value.message).endswith(".")
+    assert str(refusal.value.hint).endswith(".")

@@ -13,7 +13,8 @@ import pytest
 import trimesh
 
 from app.cli.main import main
-from app.i18n.catalog import say, use_language
+from app.i18n.catalog import use_language
+from app.presenters.messages import render
 from core.document.design import Design, ScanSource
 from core.document.serialization import from_json, to_json
 from core.errors import LandmarkError, ProjectError
@@ -109,9 +110,9 @@ def test_what_is_wrong_with_placed_points_is_said_in_words(
 ) -> None:
     with pytest.raises(LandmarkError) as wrong:
         detect_landmarks(built("mannequin").body, (PlacedMark(name, place),))
-    assert "_" not in wrong.value.message
+    assert "_" not in str(wrong.value.message)
     use_language("ja")
-    said = say(wrong.value.message)
+    said = render(wrong.value.message)
     use_language("en")
     assert not re.search("[a-z]{3}", said)
 

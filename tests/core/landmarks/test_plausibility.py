@@ -22,6 +22,7 @@ from core.landmarks.lean import lean_hint
 from core.landmarks.plausibility import SMALL, clothes_hint, flat_hint, require_not_angular
 from core.landmarks.torso.cross_sections import stable_level, trunk_levels
 from core.landmarks.types import CERTAIN, Hint, Landmarks
+from core.messages import EMPTY, Message
 from core.scan.body import Body
 from core.scan.orientation.pose import Pose
 from core.scan.repair.clipping import clip_above
@@ -40,7 +41,7 @@ def sample(name: str = "person") -> Mesh:
 
 def body_of(vertices: Points, unit: str = "mm", name: str = "person") -> Body:
     """A body whose file was read in ``unit``: its vertices are those in mm already."""
-    pose = Pose(unit, "+z", "-y", np.diag([*np.full(3, FACTOR[unit]), 1.0]), True, "", 1.0)
+    pose = Pose(unit, "+z", "-y", np.diag([*np.full(3, FACTOR[unit]), 1.0]), True, EMPTY, 1.0)
     return Body(sample(name).moved(vertices), pose, (), "a body")
 
 
@@ -80,7 +81,7 @@ def test_a_body_of_another_size_is_doubted_and_asked_about():
 def test_a_form_at_half_scale_in_cm_is_not_taken_for_one_in_inches():
     again = find_landmarks(body_of(0.5 * 2.54 * sample().vertices, "inch"))
     assert kinds(again) == ["size"]
-    assert "half scale" in again.hints[0].sentence
+    assert "half scale" in str(again.hints[0].sentence)
 
 
 def test_a_small_body_in_inches_is_not_called_large():
@@ -88,7 +89,7 @@ def test_a_small_body_in_inches_is_not_called_large():
     points = {name: replace(mark, position=factor * mark.position) for name, mark in marks.points.items()}
     body = body_of(factor * sample().vertices, "inch")
     (hint,) = size_hint(measure_build(body.mesh, replace(marks, points=points)), body.pose)
-    assert "unusually small" in hint.sentence
+    assert "unusually small" in str(hint.sentence)
 
 
 def test_the_stature_is_that_of_a_whole_figure_alone():
@@ -103,22 +104,22 @@ def test_the_stature_is_that_of_a_whole_figure_alone():
 
 @pytest.mark.parametrize("degrees", [17.0, -17.0])
 def test_a_lean_is_told_with_its_angle_and_the_up_that_corrects_it(degrees):
-    pose = Pose("cm", "+y", "+z", 10.0 * np.array(Y_UP), True, "", 1.0)
+    pose = Pose("cm", "+y", "+z", 10.0 * np.array(Y_UP), True, EMPTY, 1.0)
     (hint,) = lean_hint(leant(degrees), pose)
     x, y, z = (float(number) for number in hint.up.split(","))
     true = np.array([0.0, np.cos(np.radians(degrees)), np.sin(np.radians(degrees))])
     assert np.array([x, y, z]) @ true > np.cos(np.radians(5.0))
-    assert ("forward" in hint.sentence) == (degrees > 0.0)
+    assert ("forward" in str(hint.sentence)) == (degrees > 0.0)
 
 
 def test_the_command_line_names_the_direction_that_corrects_a_lean():
-    leaning = replace(found("mannequin"), hints=(Hint("lean", "The trunk leans.", "-0.1,0.3,0.9"),))
+    leaning = replace(found("mannequin"), hints=(Hint("lean", Message("The trunk leans."), "-0.1,0.3,0.9"),))
     told = detection(body_of(sample("mannequin").vertices, name="mannequin"), leaning)
     assert "--up=-0.1,0.3,0.9" in landmarks_text(told)
 
 
 def test_a_lean_that_was_corrected_is_not_told():
-    pose = Pose("mm", "+z", "-y", np.eye(4), True, "", 1.0, tilt=17.0)
+    pose = Pose("mm", "+z", "-y", np.eye(4), True, EMPTY, 1.0, tilt=17.0)
     assert lean_hint(leant(17.0), pose) == ()
 
 

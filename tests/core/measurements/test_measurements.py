@@ -91,7 +91,7 @@ def test_every_measure_is_there_with_its_curves(person: tuple[Mesh, Landmarks]) 
     for key, measure in found.items():
         assert measure.unit == definition_of(key)[0].unit
         assert (measure.value is None) == bool(not measure.curves), key
-        assert measure.value is not None or measure.note.endswith(".")
+        assert measure.value is not None or str(measure.note).endswith(".")
     for name in ("bust", "underbust", "high_bust"):
         tape, skin = found[f"{name}_girth"], found[f"{name}_girth_skin"]
         assert length(tape.curves[0]) == pytest.approx(tape.value)
@@ -112,13 +112,13 @@ def test_girths_are_those_that_are_detected() -> None:
 def test_what_the_scan_does_not_show_is_missing_with_the_reason(person: tuple[Mesh, Landmarks]) -> None:
     found = measures(*person)
     assert found["waist_girth"].value is None
-    assert "no waist" in found["waist_girth"].note
+    assert "no waist" in str(found["waist_girth"].note)
     mesh, landmarks = person
     points = {name: mark for name, mark in landmarks.points.items() if not name.endswith("outer_left")}
     one = measures(mesh, replace(landmarks, points=MappingProxyType(points)))
     for key in ("cup_width_left", "root_length_left", "breast_volume_left", "asymmetry_volume"):
         assert one[key].value is None, key
-        assert one[key].note.endswith(".")
+        assert str(one[key].note).endswith(".")
     assert one["bust_protrusion"].value is None
     assert one["breast_volume_right"].value == found["breast_volume_right"].value
 
@@ -129,7 +129,7 @@ def test_a_side_without_a_breast_is_not_measured(person: tuple[Mesh, Landmarks])
     found = measures(mesh, replace(landmarks, points=MappingProxyType({**landmarks.points, **flat})))
     for key in ("cup_depth", "cup_width", "root_length", "bust_point_to_fold", "breast_volume"):
         assert found[f"{key}_right"].value is None, key
-        assert "No breast" in found[f"{key}_right"].note
+        assert "No breast" in str(found[f"{key}_right"].note)
         assert found[f"{key}_left"].value is not None, key
     assert found["asymmetry_height"].value is None
     assert found["asymmetry_volume"].value is None
@@ -141,18 +141,18 @@ def test_no_volume_is_made_of_a_fold_that_a_hole_hides(person: tuple[Mesh, Landm
     found = measures(mesh, replace(landmarks, points=MappingProxyType({**landmarks.points, **hidden})))
     assert found["breast_volume_left"].value is None
     assert found["root_length_left"].note == found["breast_volume_left"].note
-    assert "fold" in found["root_length_left"].note
+    assert "fold" in str(found["root_length_left"].note)
     assert found["bust_point_to_fold_left"].estimate
     assert found["bust_point_to_fold_left"].note == MIRRORED
     assert found["cup_width_left"].value is not None
     unsure = {"fold_left": replace(landmarks.points["fold_left"], confidence=0.3)}
     found = measures(mesh, replace(landmarks, points=MappingProxyType({**landmarks.points, **unsure})))
-    assert "uncertain" in found["breast_volume_left"].note
-    assert "uncertain" in found["asymmetry_volume"].note
+    assert "uncertain" in str(found["breast_volume_left"].note)
+    assert "uncertain" in str(found["asymmetry_volume"].note)
     sure = measures(mesh, landmarks)
     for key in ("root_length_left", "bust_point_to_fold_left", "bust_height"):
         assert found[key].estimate, key
-        assert "uncertain" in found[key].note
+        assert "uncertain" in str(found[key].note)
         assert not sure[key].estimate, key
     assert not found["root_length_right"].estimate
     unsure |= {
@@ -173,7 +173,7 @@ def test_a_hole_at_a_level_makes_an_estimate(person: tuple[Mesh, Landmarks]) -> 
     whole = measures(mesh, landmarks)
     assert found["bust_girth"].estimate
     assert not whole["bust_girth"].estimate
-    assert "hole" in found["bust_girth"].note
+    assert "hole" in str(found["bust_girth"].note)
     assert found["bust_girth"].value == pytest.approx(whole["bust_girth"].value, rel=0.02)
     assert not found["underbust_girth"].estimate
 
@@ -277,9 +277,9 @@ def test_rows_tell_all_of_it(worn: Solution) -> None:
 
 def test_definitions_stand_on_their_own() -> None:
     for each in DEFINITIONS.values():
-        assert each.text.endswith(".")
+        assert str(each.text).endswith(".")
         assert each.unit in ("mm", "cm2", "ml")
         plain = each.key in ("bust_point_distance", "bust_point_to_fold")
-        assert bool(each.iso) != each.text.startswith("Ours") or plain
+        assert bool(each.iso) != str(each.text).startswith("Ours") or plain
     with pytest.raises(KeyError):
         definition_of("own:Span")

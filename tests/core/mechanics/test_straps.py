@@ -54,7 +54,7 @@ def band(z: float) -> np.ndarray:
 def test_a_tail_runs_straight_over_the_shoulder_and_down_to_the_band():
     tail = strap_tail(shoulder(), np.array([10.0, -RADIUS, -40.0]), band(-120.0))
     quarter = BEND * RADIUS * np.sin(np.pi / (2 * BEND))  # of chords
-    assert tail.problem == ""
+    assert str(tail.problem) == ""
     assert tail.length == pytest.approx(40.0 + 2.0 * quarter + 120.0, abs=0.01)
     assert tail.top == pytest.approx(40.0 + quarter, abs=0.01)
     np.testing.assert_allclose(tail.path[0], [10.0, -RADIUS, -40.0], atol=1e-9)
@@ -73,7 +73,7 @@ def test_where_the_scan_ends_below_the_shoulder_there_is_none(covered):
         shoulder_above(skin, end)
     tail = strap_tail(skin, end, band(-120.0))
     assert (tail.length, len(tail.path)) == (0.0, 0)
-    assert "below the shoulder" in tail.problem
+    assert "below the shoulder" in str(tail.problem)
 
 
 def model_with(tail: float = TAIL, **choices) -> ConstrainedModel:

@@ -13,6 +13,7 @@ from core.document.design import Design, ScanSource
 from core.document.lines import ActiveLine
 from core.errors import LandmarkError, LineError, ScanError, UserError
 from core.landmarks.detect import find_landmarks
+from core.messages import Message
 from core.pipeline import build as pipeline
 from core.pipeline.build import IncompleteBuildError, Stages, build, line_targets
 from core.progress import Cancelled
@@ -75,7 +76,7 @@ def test_a_stuck_scan_keeps_what_was_read_and_nothing_of_the_failure(
     built: Built, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def nothing(*_: object, **__: object) -> None:
-        raise LandmarkError("No bust is here.", "Place its points.")
+        raise LandmarkError(Message("No bust is here."), Message("Place its points."))
 
     monkeypatch.setattr(pipeline, "detect_landmarks", nothing)
     design, told = replace(built("mannequin").design, lines=()), list[str]()

@@ -11,7 +11,7 @@ FLAT = [0.0] * 20
 def cue(words: str, front: list[float], back: list[float], fold: Fold) -> float:
     """Return what a cue gives for lobes at both sides, from the hips up [mm]."""
     sides = [Side(np.zeros(len(lobes)), np.array(lobes)) for lobes in (front, back)]
-    (found,) = (each for each in CUES if each.words == words)
+    (found,) = (each for each in CUES if str(each.words) == words)
     return found.evaluate(TorsoFeatures(None, fold, *sides))
 
 

@@ -186,4 +186,4 @@ def test_the_symmetry_of_a_mirrored_body_comes_with_the_warning():
     found = compare(build(Design(source)), balance=False)
     assert found.compared.before.largest_difference < 0.5
     assert mirror_sentence("right") in found.warnings
-    assert mirror_sentence("right") in symmetry_view(found.compared, found.stages).says
+    assert str(mirror_sentence("right")) in symmetry_view(found.compared, found.stages).says

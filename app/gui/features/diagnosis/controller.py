@@ -12,10 +12,10 @@ from PySide6.QtCore import QObject, QTimer
 
 from app.gui.session.jobs import Job
 from app.gui.widgets.notification_bar import REFUSED, Action
-from app.i18n.catalog import joined, say, tr
+from app.i18n.catalog import joined, tr
 from app.presenters import diagnosis as words
 from app.presenters.assessment import AssessmentView, assessment_view, tone
-from app.presenters.lines import titled
+from app.presenters.messages import render
 from app.presenters.status import display_state, explanation, oscillation_mm
 from core.analysis.diagnosis.diagnose import Diagnosis, diagnose
 from core.document.design import Design
@@ -224,10 +224,10 @@ class DiagnosisController(QObject):
         assert isinstance(found, Diagnosis)
         self._job = None
         notifications = self._context.notifications
-        said = say(titled(error.message, error.design))
+        said = render(error.message, error.design)
         fights = words.sentence(found, 0.0) if found.problem and found.forces.worst else ""
         notifications.withdraw(REFUSED)
-        hint = joined((fights, words.hint(found) if found.best_fix else say(error.hint)))
+        hint = joined((fights, words.hint(found) if found.best_fix else render(error.hint)))
         notifications.show(
             "bad",
             said,

@@ -16,10 +16,11 @@ from app.gui.session.jobs import Job
 from app.gui.session.settings import wish, wish_for
 from app.gui.widgets.file_dialogs import ask_save, free_name, last_folder
 from app.gui.widgets.message_box import ask
-from app.i18n.catalog import colon, joined, say, tr
+from app.i18n.catalog import colon, tr
 from app.presenters.assessment import AssessmentView
 from app.presenters.export import ExportOptions, ExportSettings, ExportSource, exports, format_title
 from app.presenters.export_preview import ExportPreview, prepare_export
+from app.presenters.messages import render
 from app.presenters.status import display_state, is_result, state_title
 from core.errors import UserError
 from core.files.atomic_write import still_writing_error
@@ -112,7 +113,7 @@ class ExportController(QObject):
 
     def _show_refused(self, name: str, error: Exception) -> None:
         if isinstance(error, UserError) and self.sheet is not None:
-            self.sheet.show_contents(name, "", joined((say(error.message), say(error.hint))), possible=False)
+            self.sheet.show_contents(name, "", render(error.text), possible=False)
         else:
             self._context.notifications.error(error)
 

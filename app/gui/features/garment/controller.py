@@ -9,8 +9,9 @@ from PySide6.QtCore import QObject
 
 from app.gui.features.garment.panel import GarmentPanel
 from app.gui.file_export import copy_table, save_table
-from app.i18n.catalog import number, say, tr
+from app.i18n.catalog import number, tr
 from app.presenters.cut_list import CutListView, as_table, cut_list_view
+from app.presenters.messages import render
 from app.presenters.status import invalid_reason
 from core.errors import LineError
 from core.garment.cut_list import cut_list
@@ -67,7 +68,7 @@ class GarmentController(QObject):
         try:
             cuts = cut_list(frame.stages, frame.control_points)
         except LineError as problem:
-            self._panel.set_view(CutListView(()), say(problem.message))
+            self._panel.set_view(CutListView(()), render(problem.message))
         else:
             self._panel.set_view(cut_list_view(frame, cuts), invalid_reason(frame))
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from app.i18n.catalog import say, tr
+from app.i18n.catalog import tr
+from app.presenters.messages import elastic_title
 from core.document.elastic import Elastic
 from core.errors import LineError
 from core.garment.elastic_library import built_in, user_elastics
@@ -26,6 +27,9 @@ def elastic_entries(kept: Iterable[Elastic]) -> tuple[list[Entry], list[LineErro
     return [
         (tr("No elastic"), None),
         *((each.name, each) for each in own),
-        *(((twice if each.name in known else here).format(name=say(each.name)), each) for each in brought),
-        *((say(each.name), each) for each in built_in() if known[each.name] == each),
+        *(
+            ((twice if each.name in known else here).format(name=elastic_title(each.name)), each)
+            for each in brought
+        ),
+        *((elastic_title(each.name), each) for each in built_in() if known[each.name] == each),
     ], problems

@@ -12,9 +12,10 @@ from PySide6.QtCore import QObject, Signal
 from app.gui.features.garment.elastic_chooser import ElasticChooser
 from app.gui.features.garment.elastic_list import Entry, elastic_entries
 from app.gui.session.jobs import Job
-from app.i18n.catalog import joined, say, tr
+from app.i18n.catalog import joined, tr
 from app.presenters.elastics import ChoiceView, advice_view, choice_view, mode_titles, mode_words
 from app.presenters.lines import row_title
+from app.presenters.messages import render
 from core.document.design import Design
 from core.document.elastic import Elastic
 from core.garment.elastic_options import KEEP_FIT, ElasticOption, Outcome, elastic_option, outcome_of
@@ -101,7 +102,7 @@ class ElasticOffer(QObject):
         chooser.chosen.connect(self._use)
         chooser.elastics_asked.connect(self._leave_for_library)
         chooser.finished.connect(self._closed)
-        chooser.set_problems(joined(f"{say(each.message)} {say(each.hint)}".strip() for each in problems))
+        chooser.set_problems(joined(render(each.text) for each in problems))
         self.set_mode(self.mode)
         made = {each.name: each for each in design.elastics}
         places = [at for at, (_, each) in enumerate(entries) if each == made.get(chosen or "")]

@@ -11,9 +11,10 @@ from PySide6.QtGui import QCursor, QKeyEvent
 
 from app.gui.features.landmarks.panel import LandmarksPanel
 from app.gui.widgets.tooltip import show_tip
-from app.i18n.catalog import joined, say, tr
+from app.i18n.catalog import joined, tr
 from app.i18n.lengths import arrow_step
 from app.presenters.landmarks import kind_of, landmark_title, landmark_views, other_side, spot_of, tone_of
+from app.presenters.messages import render, render_all
 from core.document.design import Design
 from core.geometry.mesh import Points
 from core.landmarks.manual import in_file, mirrored, nearest_skin
@@ -101,7 +102,7 @@ class LandmarksController(QObject):
         """Show what was found on a body."""
         context, said = self._context, landmark_warnings(stages.landmarks)
         views = landmark_views(stages.landmarks.points, context.view.pins.accepted)
-        self._panel.set_landmarks(views, said)
+        self._panel.set_landmarks(views, render_all(said))
         weak = sum(view.weak for view in views)
         context.navigation.mark_step("landmarks", "look" if weak or said else "done", weak)
         if not (weak or said):
@@ -122,7 +123,7 @@ class LandmarksController(QObject):
             if up := stages.landmarks.upright:
                 actions.insert(0, (tr("Stand upright"), lambda: self._stand_upright(up)))
             self._context.notifications.show(
-                "warn", said, joined(map(say, more)), actions, lasting=True, topic=_DOUBT
+                "warn", said, joined(map(render, more)), actions, lasting=True, topic=_DOUBT
             )
 
     def show_stuck(self, stuck: IncompleteBuildError) -> None:
@@ -130,7 +131,7 @@ class LandmarksController(QObject):
         refused = stuck.kind == "refused"
         self._carried = {}
         views = landmark_views(stuck.landmarks)
-        self._panel.set_landmarks(views, [stuck.message], placing=not refused)
+        self._panel.set_landmarks(views, [render(stuck.message)], placing=not refused)
         self._context.navigation.mark_step("landmarks", "missing" if refused else "look")
 
     def follow(self, frame: Frame) -> None:

@@ -13,9 +13,10 @@ from app.gui.features.landmarks.row import LandmarkRow
 from app.gui.theme.stylesheet import label, tokens_of
 from app.gui.widgets.basic import Disclosure, EmptyState, ToolButton, button, hairline, sentence
 from app.gui.widgets.tooltip import set_tip
-from app.i18n.catalog import joined, say, tr
+from app.i18n.catalog import joined, tr
 from app.i18n.lengths import arrow_step, length
 from app.presenters.landmarks import LandmarkView
+from app.presenters.messages import render
 
 
 def keys_in_words() -> list[tuple[str, str]]:
@@ -280,7 +281,7 @@ class Doubts(QFrame):
         do = tr("Select each: drag its pin if it lies wrong, or say that it is right.")
         self._count.setText(tr("To look at: {count}").format(count=count))
         self._count.setVisible(bool(count))
-        self._said.setText(joined([*map(say, doubts), *[do] * bool(count)]))
+        self._said.setText(joined([*map(render, doubts), *[do] * bool(count)]))
         self.setVisible(bool(doubts) or bool(count))
 
     def paintEvent(self, event: QPaintEvent) -> None:

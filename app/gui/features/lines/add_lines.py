@@ -10,7 +10,8 @@ from app.gui.features.lines.panel import LinesPanel
 from app.gui.features.lines.path_dialog import ask_own_line
 from app.gui.widgets.menu import Menu, pull_down
 from app.i18n.catalog import tr
-from app.presenters.lines import LINE_COLOURS, line_title, pair_title
+from app.presenters.lines import LINE_COLOURS, pair_title
+from app.presenters.messages import line_title
 from core.control_mesh.template import read_template
 from core.document.line_notation import ready_made_lines
 from core.document.lines import CustomLine

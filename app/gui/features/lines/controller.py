@@ -11,7 +11,8 @@ from PySide6.QtCore import QObject, Qt
 
 from app.gui.features.lines.panel import LinesPanel
 from app.i18n.catalog import number, tr
-from app.presenters.lines import Shown, kind_of, line_views, pair_title, row_title
+from app.presenters.lines import Shown, line_views, pair_title, row_title
+from app.presenters.messages import kind_of
 from app.presenters.pressure import line_pressure_view
 from core.control_mesh.template import read_template
 from core.document.design import Design

@@ -15,7 +15,8 @@ from app.gui.features.lines.path_tool import led
 from app.gui.session.jobs import Job
 from app.i18n.catalog import tr
 from app.i18n.lengths import length
-from app.presenters.lines import LINE_COLOURS, kind_of, line_colours, row_title
+from app.presenters.lines import LINE_COLOURS, line_colours, row_title
+from app.presenters.messages import kind_of
 from core.control_mesh.path_snapping import Snapped, snap
 from core.control_mesh.template import read_template
 from core.document.free_lines import FreeCurve, free_curve

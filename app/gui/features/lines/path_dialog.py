@@ -19,13 +19,15 @@ from PySide6.QtWidgets import (
 
 from app.gui.theme.stylesheet import font, tokens_of
 from app.gui.widgets.basic import Segment, sentence
-from app.i18n.catalog import say, tr
+from app.i18n.catalog import tr
 from app.presenters.lines import OWN_COLOURS
+from app.presenters.messages import render
 from core.control_mesh.embedding import Cell
 from core.control_mesh.template import Template
 from core.document.line_notation import format_point, parse_line, path_cells
 from core.document.lines import CustomLine
 from core.errors import UserError
+from core.messages import Message
 
 _STEP, _EDGE, _REACH = 34, 30, 15
 
@@ -166,7 +168,8 @@ class LineDialog(QDialog):
     def _read(self) -> None:
         """Understand what is written, and show it on the map."""
         text = self.points.text().strip().strip(",")
-        line, said = None, ""
+        line: CustomLine | None = None
+        said: Message | str = ""
         try:
             closed = ",closed" if self.ends.button("closed").isChecked() else ""
             line = parse_line(f"{self.name.text()}={text}{closed}", self._template)
@@ -175,7 +178,7 @@ class LineDialog(QDialog):
         except UserError as error:
             said = error.message if text.count(",") + text.count(":") else ""
         self.line = line
-        self._said.setText(say(said))
+        self._said.setText(render(said))
         self._add.setEnabled(line is not None)
         self.map.show_path(path_cells(line, self._template) if line else self._so_far(text))
 

@@ -12,8 +12,9 @@ from app.gui.features.lines.panel import LinesPanel
 from app.gui.widgets.menu import pull_down
 from app.gui.widgets.message_box import ask, ask_name
 from app.gui.widgets.tooltip import set_tip
-from app.i18n.catalog import listed, say, tr
+from app.i18n.catalog import listed, tr
 from app.presenters.lines import row_title
+from app.presenters.messages import preset_note, preset_title, render
 from core.document.design import Design
 from core.document.lines import LONGEST_TITLE
 from core.document.presets import (
@@ -55,13 +56,13 @@ class PresetsController(QObject):
         self._known = (*built_in(), *own)
         for group in (built_in(), own):
             for preset in group:
-                action = menu.addAction(say(preset.title), partial(self.wear, preset))
-                set_tip(action, say(preset.leaves_out) if preset.leaves_out else "")
+                action = menu.addAction(preset_title(preset), partial(self.wear, preset))
+                set_tip(action, preset_note(preset) if preset.leaves_out else "")
                 action.setEnabled(opened)
             menu.addSeparator()
         for problem in problems:
-            action = menu.addAction(say(problem.message))
-            set_tip(action, say(problem.hint))
+            action = menu.addAction(render(problem.message))
+            set_tip(action, render(problem.hint))
             action.setEnabled(False)
         menu.addAction(tr("Save lines as preset…"), self.ask).setEnabled(opened)
 
@@ -77,8 +78,8 @@ class PresetsController(QObject):
     def show_worn(self, design: Design) -> None:
         """Say over the list which preset is worn, and what it leaves out."""
         worn = next((each for each in self._known if _goes(each, design) and is_active(design, each)), None)
-        leaves_out = say(worn.leaves_out) if worn is not None and worn.leaves_out else ""
-        self._head.show_preset(say(worn.title) if worn is not None else "", leaves_out)
+        leaves_out = preset_note(worn) if worn is not None and worn.leaves_out else ""
+        self._head.show_preset(preset_title(worn) if worn is not None else "", leaves_out)
 
     def wear(self, preset: Preset) -> None:
         """Wear the lines of a preset in place of the present ones; say what it leaves out."""
@@ -86,7 +87,7 @@ class PresetsController(QObject):
         before = session.design
         if before is None:
             return
-        step, title = session.undo_stack.index(), say(preset.title)
+        step, title = session.undo_stack.index(), preset_title(preset)
         session.edit(lambda design: with_preset(design, preset), tr("Preset {name}").format(name=title))
         self._context.navigation.show_step("lines")
         if session.design is None or session.design is before:
@@ -95,7 +96,7 @@ class PresetsController(QObject):
         if led:
             said = tr("Led as in the preset {name}: {lines}").format(name=title, lines=led)
             undo = tr("Undo"), partial(session.undo_stack.setIndex, step)
-            self._context.notifications.info(said, say(preset.leaves_out), [undo])
+            self._context.notifications.info(said, preset_note(preset), [undo])
 
     def ask(self) -> None:
         """Ask for a name, and keep the present lines as a preset."""

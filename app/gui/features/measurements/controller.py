@@ -124,7 +124,7 @@ class MeasurementsController(QObject):
         self._rest, self._worn = cast(tuple[Measures, Measures], found)
         frame = self._asked
         assert frame is not None  # a job that was let go of does not come here
-        self._views = measured_views(self._rest, self._worn, frame.stages.design.own_measures)
+        self._views = measured_views(self._rest, self._worn)
         self._panel.set_measured(self._spread(self._views))
         self._show_sizes()
         self._show_mark()

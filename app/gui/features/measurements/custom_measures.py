@@ -11,9 +11,10 @@ from PySide6.QtCore import QObject, QPointF, Signal
 from app.gui.features.measurements.panel import ResultPanel
 from app.gui.session.jobs import Job
 from app.gui.viewport.drawing_tool import DrawingTool
-from app.i18n.catalog import say, tr
+from app.i18n.catalog import tr
 from app.presenters.landmarks import landmark_title
 from app.presenters.measurements import Draft, from_draft, suggested_name, to_draft, value_texts
+from app.presenters.messages import render
 from core.document.custom_measures import CustomMeasurement
 from core.errors import UserError
 from core.landmarks.types import NAMES
@@ -155,7 +156,7 @@ class CustomMeasuresController(QObject):
         try:
             wished = self._wished()
         except UserError as refusal:
-            self._show(None, say(refusal.message))
+            self._show(None, render(refusal.message))
             return
         if wished is None:
             self._show(None)

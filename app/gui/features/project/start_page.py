@@ -15,7 +15,7 @@ from app.gui.theme.icons import icon
 from app.gui.theme.stylesheet import label, set_tag, tokens_of
 from app.gui.widgets.basic import EmptyState, IconLabel, button, hairline, sentence
 from app.gui.widgets.tooltip import set_tip
-from app.i18n.catalog import tr
+from app.i18n.catalog import tr, tr_context
 from app.presenters.samples import SAMPLES
 
 _LEFT, _LEFT_IF_NARROW, _NARROW = 400, 340, 1150
@@ -119,7 +119,7 @@ class StartPage(QWidget):
         samples = QHBoxLayout()
         samples.setSpacing(8)
         for name, title in SAMPLES.items():
-            each = button(tr(title))
+            each = button(tr_context("sample", title))
             each.clicked.connect(lambda _=False, chosen=name: self.sample_asked.emit(chosen))
             samples.addWidget(each, 1)
         return samples

@@ -19,8 +19,9 @@ from app.gui.file_export import write_file
 from app.gui.session.jobs import Job
 from app.gui.session.settings import wish
 from app.gui.widgets.file_dialogs import ask_save
-from app.i18n.catalog import language, say, tr
+from app.i18n.catalog import language, tr
 from app.presenters.lines import line_colours
+from app.presenters.messages import render
 from app.rendering.ambient_occlusion import bake_occlusion
 from app.report.document import ReportDocument
 from app.report.pages import Pages, pages_of
@@ -32,6 +33,7 @@ from core.export.report_data import Heading, Report, make_report
 from core.export.report_data_file import report_csv, report_json
 from core.files.atomic_write import write_text
 from core.geometry.mesh import Floats
+from core.messages import Message
 from core.pipeline.converged import converged_frame
 from core.pipeline.live_solver import Frame
 from core.progress import Progress
@@ -191,7 +193,7 @@ class ReportController(QObject):
     def _fail(self, error: Exception) -> None:
         self._job = None
         if isinstance(error, UserError):
-            self._refused = f"{say(error.message)} {say(error.hint)}"
+            self._refused = render(error.text)
         else:
             self._context.notifications.error(error)
             self._refused = tr("The sheet could not be made.")
@@ -285,7 +287,7 @@ class ReportController(QObject):
             return
         painter = QPainter()
         if not painter.begin(printer):
-            said = tr("The sheet could not be printed."), tr("Choose another printer.")
+            said = Message("The sheet could not be printed."), Message("Choose another printer.")
             self._context.notifications.error(ProjectError(*said), "print")
             return
         wished = range(pages.count)

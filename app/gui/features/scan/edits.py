@@ -12,8 +12,9 @@ from app.gui.theme.stylesheet import label
 from app.gui.widgets.basic import Segment, button, hairline, sentence
 from app.gui.widgets.tooltip import set_tip
 from app.gui.widgets.value_edit import ValueEdit
-from app.i18n.catalog import joined, say, tr
+from app.i18n.catalog import tr
 from app.i18n.lengths import length
+from app.presenters.messages import render
 from app.presenters.scan import EditsView, HoleView
 from core.errors import UserError
 from core.scan.edits import UNEDITED, ScanEdits
@@ -31,7 +32,7 @@ class LevelField(ValueEdit):
         try:
             self._check(value)
         except UserError as refused:
-            raise ValueError(joined((say(refused.message), say(refused.hint)))) from None
+            raise ValueError(render(refused.text)) from None
         return value
 
 

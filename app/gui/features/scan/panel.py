@@ -14,7 +14,8 @@ from app.gui.features.scan.lean_editor import LeanEditor
 from app.gui.theme.stylesheet import label, set_tag
 from app.gui.widgets.basic import EmptyState, Segment, button, hairline, sentence
 from app.gui.widgets.tooltip import set_tip
-from app.i18n.catalog import number, say, tr
+from app.i18n.catalog import number, tr, tr_context
+from app.presenters.messages import render
 from app.presenters.scan import KINDS, LeanView, ScanView
 
 UNITS = ("mm", "cm", "m", "inch")
@@ -69,7 +70,7 @@ class ScanPanel(QWidget):
         self.fronts.set_choice(view.front)
         for axis in AXES:
             self.fronts.button(axis).setEnabled(axis[1] != view.up[1])
-        self._reason.setText(re.sub(r"(?<!\S)-(?=[xyz])", "\N{MINUS SIGN}", say(view.reason)))
+        self._reason.setText(re.sub(r"(?<!\S)-(?=[xyz])", "\N{MINUS SIGN}", render(view.reason)))
         set_tag(self._reason, "tone", "" if view.sure else "warn")
         self._forget.setVisible(bool(view.told))
         self._notes.setText("\n".join(view.notes))
@@ -92,7 +93,7 @@ class ScanPanel(QWidget):
         self._notes, self._reason = sentence(), sentence()
         self._repairs, self.edits, self.lean = sentence(), ScanEditor(), LeanEditor()
         self._repairs.setTextFormat(Qt.TextFormat.RichText)
-        self.units = self._choices("unit", [(unit, tr(unit)) for unit in UNITS])
+        self.units = self._choices("unit", [(unit, tr_context("unit", unit)) for unit in UNITS])
         axes = [(axis, axis.replace("-", "\N{MINUS SIGN}")) for axis in AXES]
         self.ups, self.fronts = self._choices("up", axes), self._choices("front", axes)
         another = button(tr("Open another scan…"))
@@ -163,4 +164,4 @@ def _stays(sentence: str) -> bool:
 
 def _listed(sentences: Sequence[str]) -> str:
     """Return sentences one under the other, with a little room between them."""
-    return "".join(f'<p style="margin:0 0 4px 0">{escape(say(each))}</p>' for each in sentences)
+    return "".join(f'<p style="margin:0 0 4px 0">{escape(each)}</p>' for each in sentences)

@@ -24,7 +24,8 @@ from app.gui.features.target_shape.targets_undo import TargetUndo
 from app.gui.features.target_shape.view_state import ViewState
 from app.gui.features.target_shape.worker import Answer, Question, TargetWorker
 from app.gui.widgets.accessibility import announce
-from app.i18n.catalog import joined, say, tr
+from app.i18n.catalog import tr
+from app.presenters.messages import render
 from app.presenters.target_shape import inactive_words, step_words
 from core.analysis.inverse_design.quantities import Goal
 from core.document.design import Design
@@ -286,7 +287,7 @@ class TargetShapeController(QObject):
         self.answer = None
         self._session.cancel_preview()
         self._show()
-        said = joined((say(problem.message), say(problem.hint)))
+        said = render(problem.text)
         self.card.show_answer(said, "warn")
 
     def _follow_design(self, _: Design) -> None:

@@ -11,7 +11,8 @@ from PySide6.QtWidgets import QWidget
 
 from app.gui.features.uncertainty.card import UncertaintyCard
 from app.gui.session.frame_cache import FrameCache
-from app.i18n.catalog import joined, say, tr
+from app.i18n.catalog import joined, tr
+from app.presenters.messages import render
 from app.presenters.status import invalid_reason, not_computed
 from app.presenters.uncertainty import limitation_sentences, source_sentences, uncertainty_view
 from core.analysis.uncertainty.estimate import UncertaintyEstimator
@@ -129,6 +130,6 @@ class UncertaintyController(QObject):
             return not_computed()
         if self._cache.is_given_up(frame):
             error = self._cache.failure(frame)
-            why = say(error.message) if isinstance(error, UserError) else ""
+            why = render(error.message) if isinstance(error, UserError) else ""
             return joined((tr("How far they may be off was not worked out."), why))
         return tr("How far they may be off is worked out once the run rests.")

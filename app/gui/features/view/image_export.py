@@ -13,6 +13,7 @@ from app.gui.session.project_thumbnail import png_of
 from app.gui.widgets.file_dialogs import ask_save
 from app.i18n.catalog import tr
 from core.errors import ProjectError
+from core.messages import Message
 
 if TYPE_CHECKING:
     from app.gui.context import AppContext
@@ -57,7 +58,7 @@ class ImageExportController(QObject):
         picture, page = self._picture(), printer.pageLayout().paintRectPixels(printer.resolution())
         painter = QPainter()
         if not painter.begin(printer):
-            said = tr("The picture could not be printed."), tr("Choose another printer.")
+            said = Message("The picture could not be printed."), Message("Choose another printer.")
             self._context.notifications.error(ProjectError(*said), "print")
             return
         painter.drawImage(fitted(picture.size(), page.size()), picture)
