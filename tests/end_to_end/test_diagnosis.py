@@ -7,7 +7,7 @@ import threading
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from window_tools import Script, run_main, run_undrawn, settled, undrawn
+from window_tools import PATIENCE, Script, run_main, run_undrawn, settled, undrawn
 
 import app.gui.features.garment.pressure_controller
 from app.gui.features.diagnosis.controller import ABOUT
@@ -150,7 +150,7 @@ def test_asked_before_the_verdict_is_known_he_says_what_presses(monkeypatch: pyt
     known, asked = threading.Event(), []
 
     def slow(*arguments: object) -> object:
-        known.wait(60.0)
+        known.wait(PATIENCE)
         return pressure_list(*arguments)  # type: ignore[arg-type]
 
     def script(window: MainWindow) -> Script:

@@ -9,7 +9,7 @@ from PySide6.QtCore import QEvent, QPoint
 from PySide6.QtGui import QHelpEvent
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
-from window_tools import Script, run_main, settled
+from window_tools import PATIENCE, Script, run_main, settled
 
 import app.gui.features.lines.limits_controller
 from app.gui.features.lines.limits_legend import LeewayKey
@@ -205,7 +205,7 @@ def test_zones_follow_an_edit_while_the_model_still_settles(monkeypatch: pytest.
 
     def noted(stages, name, progress, **how):  # type: ignore[no-untyped-def]
         order.append(name)
-        seen.wait(20.0)
+        seen.wait(PATIENCE)
         return work_out(stages, name, progress, **how)
 
     monkeypatch.setattr(app.gui.features.lines.limits_controller, "length_limits_of", noted)

@@ -10,7 +10,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLabel, QScrollArea
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import PATIENCE, Script, run_main, settled, undrawn
 from worn_pair import write_worn_pair
 
 import app.gui.features.scan_comparison.controller
@@ -195,11 +195,11 @@ def test_what_is_begun_with_another_thickness_is_never_shown(
     gate = threading.Event()
 
     def held_up(*args: object, **told: object) -> object:
-        gate.wait(30.0)
+        gate.wait(PATIENCE)
         return compare(*args, **told)
 
     def failing(*args: object, **told: object) -> object:
-        gate.wait(30.0)
+        gate.wait(PATIENCE)
         if told["thickness"] == 2.0:
             raise UserError(Message("The worn scan shows too little."), Message("Scan the front too."))
         return calibrate(*args, **told)

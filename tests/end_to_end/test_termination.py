@@ -49,7 +49,6 @@ def test_a_signal_ends_the_program_and_the_last_edit_is_kept(
 ) -> None:
     for kind in ("STATE", "DATA", "CONFIG"):
         monkeypatch.setenv(f"XDG_{kind}_HOME", str(tmp_path / kind))
-    monkeypatch.setenv("PYTHONPATH", str(FILE.parents[1] / "helpers"))
     command = [sys.executable, str(FILE), str(mannequin)]
     helpers = os.pathsep.join(str(FILE.parents[at] / name) for at, name in ((2, ""), (1, "helpers")))
     env = {**os.environ, "PYTHONPATH": helpers}

@@ -6,7 +6,7 @@ import threading
 
 import numpy as np
 import pytest
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import PATIENCE, Script, run_main, settled, undrawn
 
 import core.analysis.uncertainty.estimate
 from app.gui.main_window import MainWindow
@@ -81,7 +81,7 @@ def test_nothing_is_shown_before_all_sources_are_in(monkeypatch: pytest.MonkeyPa
     ) -> OutputUncertainties:
         self.estimate_partial(progress)
         reached.set()
-        go.wait(60.0)
+        go.wait(PATIENCE)
         return known(self, progress)
 
     monkeypatch.setattr(core.analysis.uncertainty.estimate.UncertaintyEstimator, "estimate", waiting)
