@@ -18,7 +18,7 @@ from app.cli.commands.picture import wait_until
 from app.gui.features.help.command_palette import CommandPalette
 from app.gui.features.project.recent_files import forget_file, recent_files
 from app.gui.main_window import MainWindow
-from app.gui.session.settings import wish_for
+from app.gui.session.settings import set_setting
 from app.i18n.catalog import language
 from app.presenters.samples import lifted_sample, sample_design, sample_path
 from core.document.design import Design, ScanSource
@@ -229,7 +229,7 @@ def verdict(window: MainWindow) -> QWidget:
 
 def preferring(window: MainWindow) -> None:
     """Open the preferences, the language of the window chosen."""
-    wish_for("language", language())
+    set_setting("language", language())
     window.preferences_controller.show()
 
 

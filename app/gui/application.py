@@ -21,7 +21,7 @@ from PySide6.QtGui import QFileOpenEvent, QGuiApplication
 from PySide6.QtWidgets import QApplication
 
 from app.gui.session.log_file import LimitedLog, trim
-from app.gui.session.settings import wish
+from app.gui.session.settings import get_setting
 from app.gui.theme.icons import program_icon
 from app.gui.theme.stylesheet import apply_theme, load_fonts
 from app.i18n.catalog import use_language
@@ -102,10 +102,10 @@ def application(
         # How a desktop knows to which menu entry, and so to which picture, a window belongs.
         existing.setDesktopFileName("busk")
         existing.setWindowIcon(program_icon())
-    use_words(existing, language or wish("language"))
-    use_unit(unit or wish("unit"))
+    use_words(existing, language or get_setting("language"))
+    use_unit(unit or get_setting("unit"))
     load_fonts()
-    apply_theme(existing, chosen_dark(wish("theme")) if dark is None else dark)
+    apply_theme(existing, chosen_dark(get_setting("theme")) if dark is None else dark)
     return existing
 
 

@@ -42,7 +42,7 @@ from app.gui.features.lines.presets import PresetsController
 from app.gui.features.maps.controller import MapsController
 from app.gui.features.measurements.controller import MeasurementsController
 from app.gui.features.measurements.custom_measures import CustomMeasuresController
-from app.gui.features.measurements.panel import ResultPanel
+from app.gui.features.measurements.panel import MeasurementsPanel
 from app.gui.features.model.controller import ModelController
 from app.gui.features.model.panel import ModelPanel, ModelRow
 from app.gui.features.preferences.controller import PreferencesController
@@ -121,7 +121,7 @@ class MainWindow(QMainWindow):
             StatusBar(),
         )
         self.scan, self.landmarks = ScanPanel(), LandmarksPanel()
-        self.lines, self.result, self.garment = LinesPanel(), ResultPanel(), GarmentPanel()
+        self.lines, self.result, self.garment = LinesPanel(), MeasurementsPanel(), GarmentPanel()
         self.model, self.door = ModelPanel(), ModelRow()
         self.ask_door = NavigationRow(
             tr("Ask for the result"), tr("Say where the bust is to be; Busk finds the lengths")
@@ -383,7 +383,7 @@ class MainWindow(QMainWindow):
         do.reset_layout.triggered.connect(layout.reset)
         for step, action in do.steps.items():
             action.triggered.connect(lambda _=False, step=step: layout.go_on_in(step))
-        self.model.left.connect(lambda: layout.go_on_in("lines"))
+        self.model.closed.connect(lambda: layout.go_on_in("lines"))
         project = self.project_controller
         project.titled.connect(self.show_title)
         project.save_state.connect(self.status.set_saved)
@@ -392,7 +392,7 @@ class MainWindow(QMainWindow):
         """Connect the view with its tools, and with what is selected."""
         view, selection = self.view, self.selection
         view.tools.view_chosen.connect(view.viewport.set_view)
-        view.tools.fit_asked.connect(view.viewport.frame_all)
+        view.tools.fit_requested.connect(view.viewport.frame_all)
         view.tools.toggled.connect(view.set_layer)
         view.compare.way_chosen.connect(view.compare_by)
         view.compare.toggled.connect(view.set_layer)
@@ -404,12 +404,12 @@ class MainWindow(QMainWindow):
             maps.chosen.connect(changed.show_map)
         maps.chosen.connect(self.view_controller.show_map)
         for source in (self.symmetry_controller, self.scan_comparison_controller, self.view_controller):
-            source.map_asked.connect(maps.choose)
+            source.map_requested.connect(maps.choose)
         self.view_controller.material_shown.connect(maps.refresh)
         self.preferences_controller.material_chosen.connect(self.view_controller.choose_material)
         self.symmetry_controller.changed.connect(maps.refresh)
         self.pressure_controller.changed.connect(maps.refresh)
-        self.pressure_controller.place_asked.connect(maps.look_at_most)
+        self.pressure_controller.place_requested.connect(maps.look_at_most)
         self.scan_comparison_controller.compared.connect(maps.refresh)
         self.landmarks.landmark_selected.connect(sections.follow_landmark)
         for follow in (maps.follow, sections.follow):
@@ -421,8 +421,8 @@ class MainWindow(QMainWindow):
         scan.found.connect(landmarks.show_found)
         scan.checked.connect(landmarks.show_unclear)
         scan.incomplete_shown.connect(landmarks.show_stuck)
-        landmarks.upright_asked.connect(scan.stand_upright)
-        self.scan.open_asked.connect(self.project_controller.open)
+        landmarks.upright_requested.connect(scan.stand_upright)
+        self.scan.open_requested.connect(self.project_controller.open)
         self.project_controller.opening.connect(self.lines.show_opening)
         uncertainty, symmetry, result = self.uncertainty_controller, self.symmetry_controller, self.result
         self.sections_controller.switched.connect(uncertainty.follow)
@@ -443,16 +443,16 @@ class MainWindow(QMainWindow):
         ):
             self.pressure_controller.changed.connect(follow)
         self.assessment_controller.assessed.connect(self.strip.set_verdict)
-        self.strip.why_asked.connect(self.diagnosis_controller.ask)
+        self.strip.why_requested.connect(self.diagnosis_controller.ask)
         self.limits_controller.changed.connect(self.lines_controller.show_rows)
-        self.lines.elastic_asked.connect(self.elastic_assignment_controller.show)
+        self.lines.elastic_requested.connect(self.elastic_assignment_controller.show)
         target_shape = self.target_shape_controller
         symmetry.targets_proposed.connect(target_shape.begin)
         self.ask_door.clicked.connect(lambda _: target_shape.begin())
         target_shape.closed.connect(self.lines_controller.show_rows)
-        target_shape.presets_asked.connect(self.presets_controller.show_menu)
+        target_shape.presets_requested.connect(self.presets_controller.show_menu)
         self.lines_page.currentChanged.connect(lambda at: self.recovery_controller.set_aside(at > 0))
-        self.start_controller.page.guide_asked.connect(self.help_controller.show_first_steps)
+        self.start_controller.page.guide_requested.connect(self.help_controller.show_first_steps)
 
     def _show_status(self, frame: Frame) -> None:
         self.status.set_volume(*controlled_volume(frame))
@@ -460,7 +460,7 @@ class MainWindow(QMainWindow):
 
     def _close_panel(self) -> bool:
         """Leave a panel that takes the place of another one; returns whether one did."""
-        panels = {"model": self.model.left, "worn": self.scan_comparison_controller.page.closed}
+        panels = {"model": self.model.closed, "worn": self.scan_comparison_controller.page.closed}
         left = panels.get(self.navigation.panel)
         if left is not None:
             left.emit()

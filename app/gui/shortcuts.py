@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from app.gui.features.help.command_palette import Command, plain
+from app.gui.features.help.command_palette import Command, normalized
 from app.gui.features.landmarks import panel as landmarks
 from app.gui.features.lines import panel as lines
 from app.gui.features.measurements import table as measure_table
@@ -35,4 +35,4 @@ def keys_of_parts() -> Iterator[Command]:
     for where, keys in parts:
         for key, what in keys:
             words = (*in_all_languages(what), *in_all_languages(where), key)
-            yield Command(what, where, key, plain(" ".join(words)))
+            yield Command(what, where, key, normalized(" ".join(words)))

@@ -23,7 +23,7 @@ _SETTLED = 250
 
 
 @dataclass(frozen=True)
-class Stop:
+class TourStop:
     """A stop of the tour: ``place`` is what its sentence is about, ``report`` whether it opens the report."""
 
     title: str
@@ -40,7 +40,7 @@ class Tour(QObject):
         self._window = window
         self._place = -1
         self.mark = CoachMark(window)
-        self.mark.went.connect(self._go)
+        self.mark.advanced.connect(self._go)
         self.mark.skipped.connect(self.end)
         self._points = QTimer(self, interval=_SETTLED, singleShot=True)
         self._points.timeout.connect(self._point)
@@ -108,15 +108,15 @@ class Tour(QObject):
             room = self._window.rect().adjusted(0, self._window.top.geometry().bottom() + 1, 0, 0)
             self.mark.point_at(self._stops()[self._place].place(), room, self._clear())
 
-    def _stops(self) -> tuple[Stop, ...]:
+    def _stops(self) -> tuple[TourStop, ...]:
         return (*self._stops_beside_the_body(), *self._stops_of_the_result())
 
-    def _stops_beside_the_body(self) -> tuple[Stop, ...]:
+    def _stops_beside_the_body(self) -> tuple[TourStop, ...]:
         window = self._window
         frame = window.session.frame
         assert frame is not None, "a tour is of a body"
         return (
-            Stop(
+            TourStop(
                 tr("Before and after"),
                 tr(
                     "Compared with the original body, the bust points are {move}. "
@@ -124,7 +124,7 @@ class Tour(QObject):
                 ).format(move=up_words(bust_shift(frame).mean.up)),
                 lambda: self._place_of(window.view.compare),
             ),
-            Stop(
+            TourStop(
                 tr("Four steps"),
                 tr(
                     "From the scan to the result: open any step at any time. "
@@ -132,7 +132,7 @@ class Tour(QObject):
                 ),
                 lambda: self._place_of(*window.rail.items.values()),
             ),
-            Stop(
+            TourStop(
                 tr("Drag a line"),
                 tr(
                     "Drag the round handle a little to the left: the line gets shorter and presses more. "
@@ -142,9 +142,9 @@ class Tour(QObject):
             ),
         )
 
-    def _stops_of_the_result(self) -> tuple[Stop, ...]:
+    def _stops_of_the_result(self) -> tuple[TourStop, ...]:
         return (
-            Stop(
+            TourStop(
                 tr("Overall verdict"),
                 tr(
                     "The worst result of all checks: convergence, skin strain, contact pressure and fit. "
@@ -153,7 +153,7 @@ class Tour(QObject):
                 ),
                 self._verdict_place,
             ),
-            Stop(
+            TourStop(
                 tr("Fitting sheet"),
                 tr(
                     "The verdict, the lift and what to cut, with pictures: print it or save it as a PDF. "

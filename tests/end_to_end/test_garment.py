@@ -73,7 +73,7 @@ def test_one_elastic_is_chosen_for_all_and_taken_off_again_without_moving_the_bo
         yield at_rest(window)
         before = cut_rows(window)
         assert window.garment.offer.isVisible()
-        window.garment.offer.asked.emit()
+        window.garment.offer.requested.emit()
         yield from pick(window, "Strap 15 mm")
         yield made_of(window, "mid-bust", "full-bust", "under-bust")
         assert not window.garment.offer.isVisible()
@@ -236,18 +236,18 @@ def test_newtons_go_with_the_stiffness_of_tissue_and_the_list_leaves_as_a_table(
             2.0 * before, rel=2e-3
         )  # as far as turns settle
         assert "1060" in window.garment.tissue.notes.text()
-        window.garment.copy_asked.emit()
+        window.garment.copy_requested.emit()
         heading, row = QGuiApplication.clipboard().text().splitlines()
         told = row.split("\t")[heading.split("\t").index("Tension N")]
         assert told == f"{cut_rows(window)['mid-bust'].tension_n:.1f}"
         window.session.preview_line("mid-bust", 0.9)
         yield lambda: window.garment.stale
-        window.garment.copy_asked.emit()
+        window.garment.copy_requested.emit()
         copied = QGuiApplication.clipboard().text().splitlines()[1].split("\t")
         assert copied[heading.split("\t").index("Tension N")] == told, "of a body at rest alone"
         path = tmp_path / "cuts.csv"
         monkeypatch.setattr(tables, "ask_save", lambda *_: str(path))
-        window.garment.table_asked.emit()
+        window.garment.table_requested.emit()
         assert path.read_text("utf-8-sig").splitlines()[0].split(",") == heading.split("\t")
 
     run_undrawn([], script)

@@ -73,7 +73,7 @@ def test_the_loss_of_lift_is_shown_before_it_is_chosen() -> None:
         yield at_rest(window)
         window.garment.rows["strap left"].elastic.click()
         chooser = chooser_of(window)
-        chooser.mode_asked.emit(KEEP_CUT)
+        chooser.mode_requested.emit(KEEP_CUT)
         yield from mark(window, "Strap 15 mm")
         view = chooser.views()[chooser.current]
         rigid = float(chooser.views()[0].lift)

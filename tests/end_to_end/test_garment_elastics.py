@@ -34,19 +34,19 @@ def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(
         monkeypatch.setattr(elastics_desk, "ask_table", lambda *_: str(chosen[0]))
         monkeypatch.setattr(elastics_desk, "ask_save", lambda *_: str(empty))
         monkeypatch.setattr(elastics_desk, "ask", lambda *_: "delete")
-        window.garment.elastics_asked.emit()
+        window.garment.elastics_requested.emit()
         sheet = window.elastics_desk.sheet
         assert sheet is not None
         yield sheet.isVisible
         shipped = sheet.table.topLevelItemCount()
         assert not sheet.delete.isEnabled()
-        sheet.import_asked.emit()
+        sheet.import_requested.emit()
         refusal = sheet.notices.notice()
         assert refusal is not None
         assert "Line 5 of the table Roll 8 has no two numbers" in str(refusal.sentence)
         assert not user_folder().exists()
         chosen[0] = good
-        sheet.import_asked.emit()
+        sheet.import_requested.emit()
         assert sheet.marked == "Roll 7"
         notice = sheet.notices.notice()
         assert notice is not None
@@ -55,12 +55,12 @@ def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(
         assert sheet.views["Roll 7"].forces == ("1.3", "2.5", "3.7", "4.9")
         assert "4.9 N at 80 %" in sheet.curve.accessibleName()
         assert sheet.table.topLevelItemCount() == shipped + 1
-        sheet.export_asked.emit("Roll 7")
+        sheet.export_requested.emit("Roll 7")
         assert read_elastic(empty) == read_elastic(good)
-        sheet.template_asked.emit()
+        sheet.template_requested.emit()
         assert empty.read_text("utf-8-sig") == TEMPLATE
         chosen[0] = empty
-        sheet.import_asked.emit()
+        sheet.import_requested.emit()
         refusal = sheet.notices.notice()
         assert refusal is not None
         assert "Line 6" in str(refusal.sentence), "a table that is not filled in is none"
@@ -189,11 +189,11 @@ def test_one_that_is_called_as_ours_gets_a_name_of_its_own_and_none_is_called_me
     def script(window: MainWindow) -> Script:
         yield settled(window)
         monkeypatch.setattr(elastics_desk, "ask_table", lambda *_: str(table))
-        window.garment.elastics_asked.emit()
+        window.garment.elastics_requested.emit()
         sheet = window.elastics_desk.sheet
         assert sheet is not None
         yield sheet.isVisible
-        sheet.import_asked.emit()
+        sheet.import_requested.emit()
         assert sheet.marked == "Strap 15 mm, own"
         assert not sheet.views["Strap 15 mm"].own
         assert "does not say" in sheet.mark.text()

@@ -227,7 +227,7 @@ def test_an_opened_line_of_elastic_tells_what_it_presses_with(asked: list[float]
 
 
 def the_copied_list_has_it_in_the_order_of_the_panel(window: MainWindow, kpa: float) -> None:
-    window.garment.copy_asked.emit()
+    window.garment.copy_requested.emit()
     heading, *rows = (line.split("\t") for line in QGuiApplication.clipboard().text().splitlines())
     at = heading.index("Largest pressure kPa")
     assert [(row[0], row[at]) for row in rows] == [("Mid-bust", f"{kpa:.1f}")]

@@ -12,7 +12,7 @@ from pytestqt.qtbot import QtBot
 from window_tools import PATIENCE, Script, run_main, settled
 
 import app.gui.features.lines.limits_controller
-from app.gui.features.lines.limits_legend import LeewayKey
+from app.gui.features.lines.limits_legend import LimitsLegend
 from app.gui.features.lines.slider import LengthSlider
 from app.gui.features.lines.slider_groove import _zones, wall_of
 from app.gui.main_window import MainWindow
@@ -111,7 +111,7 @@ def test_an_opened_row_has_a_key_to_its_zones(qtbot: QtBot) -> None:
     }
     free = LengthLimits("waist", (Zone("green", 0.5, 1.3),))
     assert legend_entries(free) == {"green": "Valid shape (without pressure) at any length"}
-    shown = LeewayKey()
+    shown = LimitsLegend()
     qtbot.addWidget(shown)
     for leeway, ratio, lit in (
         (LEEWAY, 0.9, ("amber", "warn")),
@@ -128,7 +128,7 @@ def test_an_opened_row_has_a_key_to_its_zones(qtbot: QtBot) -> None:
 
 
 def test_the_key_says_where_green_is_no_word_on_pressure(qtbot: QtBot) -> None:
-    shown = LeewayKey()
+    shown = LimitsLegend()
     qtbot.addWidget(shown)
     green = Zone("green", 0.5, 1.3)
     words = shown.rows["green"][1]

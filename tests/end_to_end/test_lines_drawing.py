@@ -148,7 +148,7 @@ def test_a_diagonal_stays_what_was_drawn_and_can_be_drawn_anew() -> None:
         window.session.commit_line("line 1 left", "Line 1", 0.95)
         yield settled(window)
         assert window.session.frame.lengths["line 1 left"] < 0.99 * found_length(window, "line 1 left")
-        window.lines.rows["line 1 left"].details.asked.emit("path")
+        window.lines.rows["line 1 left"].details.requested.emit("path")
         assert drawing.at_work
         click(window, at(2, 2), at(5, 2))
         window.view.viewport.setFocus()
@@ -173,7 +173,7 @@ def found_length(window: MainWindow, name: str) -> float:
 def led_elsewhere(window: MainWindow, path: tuple[int, ...]) -> Script:
     """Drag one point of the line to its neighbour, and take its last one out; the mirror image follows."""
     canvas = window.view.viewport.overlay.parentWidget()
-    window.lines.rows["line 1 left"].details.asked.emit("path")
+    window.lines.rows["line 1 left"].details.requested.emit("path")
     here, there = spot(window, path[2]), spot(window, at(4, 3))
     QTest.mousePress(canvas, Qt.MouseButton.LeftButton, pos=here)
     for part in (0.4, 1.0):

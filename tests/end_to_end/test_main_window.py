@@ -138,7 +138,7 @@ def test_an_edit_that_cannot_be_carried_out_is_taken_back() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
         design = window.session.design
-        window.scan.told.emit("unit", "m")
+        window.scan.value_set.emit("unit", "m")
         yield lambda: window.notices.notice() is not None
         yield settled(window)
         assert window.session.design == design

@@ -196,7 +196,7 @@ def test_the_section_plane_cuts_before_and_after(answered: Path) -> None:
         assert np.abs(moved[:, 0].max() - after[:, 0].max()) > 0.05  # live
         assert scene.section.curve[:, 0] == pytest.approx(bust[0], abs=1e-3)
 
-        panel.through_asked.emit("right")
+        panel.through_requested.emit("right")
         right = frame.stages.landmarks.position("bust_point_right")
         assert panel.place.text() == f"{right[0]:.1f}".replace("-", "−")
         panel.axis_chosen.emit("z")

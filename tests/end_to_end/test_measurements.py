@@ -11,9 +11,9 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QLineEdit
 from window_tools import Script, run_main, settled, undrawn
 
-from app.gui.features.measurements.table import MeasureTable
+from app.gui.features.measurements.table import MeasurementsTable
 from app.gui.main_window import MainWindow
-from app.gui.session.settings import wish
+from app.gui.session.settings import get_setting
 from app.presenters.measurements import as_table
 from core.measurements.letter_sizes import letter_sizes
 from core.measurements.sizes import sizes
@@ -118,7 +118,7 @@ def test_band_and_cup_follow_the_system_and_the_allowance_that_are_remembered() 
         assert "0 to 20" in card.allowance.accessibleDescription()
 
     run_main([], script)
-    assert wish("size_system") == "uk"
+    assert get_setting("size_system") == "uk"
 
 
 def typed(field: QLineEdit, text: str) -> None:
@@ -133,7 +133,7 @@ def test_a_measure_is_shown_on_the_body_until_esc_and_framed_at_a_double_click()
         yield settled(window)
         window.navigation.show_step("result")
         yield lambda: measured(window)
-        scene, table = window.view.viewport.scene, window.result.findChild(MeasureTable)
+        scene, table = window.view.viewport.scene, window.result.findChild(MeasurementsTable)
         view = scene.view
         click(table, "bust_girth")
         assert (window.result.mark, scene.measure.shown) == ("bust_girth", True)
@@ -178,7 +178,7 @@ def test_what_is_opened_is_scrolled_to_with_all_that_it_tells() -> None:
         yield settled(window)
         window.navigation.show_step("result")
         yield lambda: measured(window)
-        table = window.result.findChild(MeasureTable)
+        table = window.result.findChild(MeasurementsTable)
         for key in ("waist_girth", "asymmetry_volume"):
             closed = table.place_of(key).height()
             window.result.sizes.button("uk" if key == "waist_girth" else "jp").click()  # it grows or shrinks
@@ -215,5 +215,5 @@ def test_side_by_side_and_wiped_each_body_has_its_own_curve() -> None:
     run_main([], script)
 
 
-def click(table: MeasureTable, key: str) -> None:
+def click(table: MeasurementsTable, key: str) -> None:
     QTest.mouseClick(table, Qt.MouseButton.LeftButton, pos=table.place_of(key).center())

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 from window_tools import Script, run_main, settled, undrawn
 
 from app.gui import file_export as tables
-from app.gui.features.measurements.table import MeasureTable
+from app.gui.features.measurements.table import MeasurementsTable
 from app.gui.main_window import MainWindow
 from app.gui.widgets.landmark_combo import LandmarkCombo
 from core.document.custom_measures import CustomMeasurement
@@ -141,7 +141,7 @@ def test_a_girth_lies_where_the_skin_is_clicked_or_off_a_landmark() -> None:
         assert skin is not None
         QTest.mouseClick(canvas(window), Qt.MouseButton.LeftButton, pos=middle)
         yield form.keep.isEnabled
-        form.kept.emit()
+        form.accepted.emit()
         (level,) = own(window)
         assert (level.kind, level.marks) == ("girth", ())
         assert window.session.frame is not None
@@ -157,7 +157,7 @@ def test_a_girth_lies_where_the_skin_is_clicked_or_off_a_landmark() -> None:
         form.at.chosen.emit("fold_left")
         typed(form.level, "-30")
         yield form.keep.isEnabled
-        form.kept.emit()
+        form.accepted.emit()
         assert own(window)[1] == CustomMeasurement(
             "Girth, Under-bust fold left −30 mm", "girth", ("fold_left",), -30.0
         )
@@ -179,7 +179,7 @@ def test_one_is_changed_renamed_and_deleted_by_keys_each_one_step() -> None:
         window.session.edit(lambda design: design.with_custom_measurement(GORE), "Gore")
         window.navigation.show_step("result")
         yield lambda: listed(window, "Gore")
-        table, form = window.result.findChild(MeasureTable), window.result.editor
+        table, form = window.result.findChild(MeasurementsTable), window.result.editor
         window.result.select("own:Gore")
         assert table.tools.isVisible()
         window.activateWindow()  # else the keys of the menus are asleep
@@ -246,7 +246,7 @@ def test_one_is_made_by_keys_alone_and_all_of_the_form_has_a_name_and_room(langu
             CustomMeasurement(suggested, "straight", ("bust_point_left", "bust_point_right")),
         )
         yield lambda: listed(window, suggested)
-        assert window.focusWidget() is window.result.findChild(MeasureTable)
+        assert window.focusWidget() is window.result.findChild(MeasurementsTable)
         yield from all_have_a_name_and_room(window)
 
     run_main([], script)
@@ -282,13 +282,13 @@ def test_own_measures_are_copied_and_written_with_all_others(
         window.session.edit(lambda design: design.with_custom_measurement(GORE), "Gore")
         window.navigation.show_step("result")
         yield lambda: listed(window, "Gore")
-        window.result.table_asked.emit()
+        window.result.table_requested.emit()
         yield path.exists
         rows = csv.reader(path.read_text(encoding="utf-8-sig").splitlines())
         (row,) = (row for row in rows if row[:1] == ["Gore"])
         view = next(view for view in window.result.measured if view.own)
         assert np.allclose([float(row[3]), float(row[4])], [view.before or 0, view.after or 0], atol=0.06)
-        window.result.copy_asked.emit()
+        window.result.copy_requested.emit()
         assert "Gore\t" in QApplication.clipboard().text()
 
     run_main([], script)

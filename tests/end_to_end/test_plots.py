@@ -111,7 +111,7 @@ def measures_are_worked_out_only_where_they_are_seen(window: MainWindow) -> None
 
 
 def the_saved_table_holds_every_turn(window: MainWindow, folder: Path) -> None:
-    window.strip.export_asked.emit("csv")
+    window.strip.export_requested.emit("csv")
     with open(folder / "mannequin-turns.csv", newline="", encoding="utf-8-sig") as file:
         heading, *rows = csv.reader(file)
     frame = window.session.frame
@@ -131,7 +131,7 @@ def what_is_plotted_is_saved_as_it_is_seen(window: MainWindow, folder: Path) -> 
     ml.trigger()
     assert QSettings().value("plot/error") == "error_ml"
     for kind in ("png", "svg"):
-        window.strip.export_asked.emit(kind)
+        window.strip.export_requested.emit(kind)
     image = QImage(str(folder / "mannequin-turns.png"))
     assert (image.width(), image.height()) == (2880, 1020)
     inked = {image.pixelColor(x, y).name() for x in range(0, 2880, 3) for y in range(0, 1020, 3)}

@@ -11,7 +11,7 @@ from window_tools import Script, run_undrawn, settled
 
 import app.gui.features.preferences.controller
 import app.gui.widgets.file_dialogs
-from app.gui.features.help.command_palette import plain
+from app.gui.features.help.command_palette import normalized
 from app.gui.main_window import MainWindow
 from app.gui.widgets.coach_mark import _beside
 from app.i18n.catalog import use_language
@@ -34,7 +34,7 @@ def test_a_language_is_found_in_any_other_and_changes_by_a_button(
         window.layout_.keep()
         assert QSettings().value("window/folded") == "false", "in a higher window they are not"
         for typed in ("japanese", "日本語", "language"):
-            found = [each for each in window.help_controller.commands() if plain(typed) in each.words]
+            found = [each for each in window.help_controller.commands() if normalized(typed) in each.words]
             assert "日本語" in [each.title for each in found], typed
         window.preferences_controller.choose("language", "ja")
         (restart,) = (b for b in window.notices.findChildren(QPushButton) if b.text() == "Restart now")

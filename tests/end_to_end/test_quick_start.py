@@ -15,7 +15,7 @@ from PySide6.QtTest import QTest
 from window_tools import Script, drag, run_main, settled, undrawn
 
 from app.gui.main_window import MainWindow
-from app.gui.widgets.elastic_button import ElasticPull
+from app.gui.widgets.elastic_button import ElasticButton
 from app.presenters.bust_shift import bust_shift, shift_between
 from app.presenters.samples import lifted_sample
 from core.document.design import ScanSource
@@ -102,7 +102,7 @@ def banded(window: MainWindow) -> Script:
     assert (design.line_contact, design.line_height) == ("sliding", 0.7)
     window.navigation.show_panel("lines")
     window.selection.select_line("mid-bust")
-    window.lines.rows["mid-bust"].details.findChild(ElasticPull).click()
+    window.lines.rows["mid-bust"].details.findChild(ElasticButton).click()
     yield from pick(window, "Power-net band 80 mm")
     yield settled(window)
     drag(window, "mid-bust", -40)

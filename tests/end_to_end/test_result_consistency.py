@@ -227,13 +227,13 @@ def test_measures_say_from_where_they_count_and_leave_as_a_table(
         assert whole.change == pytest.approx(grown, abs=0.1)
         shown = [float(whole.written(each)) for each in (whole.before, whole.after)]
         assert whole.written(whole.change) == number(shown[1] - shown[0]), "the columns agree"
-        window.result.table_asked.emit()
+        window.result.table_requested.emit()
         heading, *table = csv.reader(path.read_text(encoding="utf-8-sig").splitlines())
         assert heading == ["Measure", "Counted from", "Unit", "Before", "After", "Change", "Note"]
         assert [row[0] for row in table] == list(rows)
         cells = table[list(rows).index("Mid-bust, whole band")]
         assert cells[2:] == ["mm", *(f"{each:.1f}" for each in (whole.before, whole.after, whole.change)), ""]
-        window.result.copy_asked.emit()
+        window.result.copy_requested.emit()
         assert "\t".join(cells) + "\n" in QGuiApplication.clipboard().text()
 
     run_main([], script)

@@ -165,7 +165,7 @@ def test_a_cancelled_edit_of_the_scan_leaves_no_trace(monkeypatch: pytest.Monkey
         yield settled(window)
         design = window.session.design
         monkeypatch.setattr(core.pipeline.build, "body_of", slow)
-        window.scan.told.emit("front", "+y")
+        window.scan.value_set.emit("front", "+y")
         yield window.view.busy.isVisible
         assert window.session.undo_stack.count() == 1
         window.progress_controller.cancel()
@@ -219,7 +219,7 @@ def test_a_dragged_pin_is_a_correction_that_stays(tmp_path: Path, monkeypatch: p
         mark = session.frame.stages.landmarks.points["bust_point_left"]
         assert mark.by_hand
         assert mark.position == pytest.approx(kept[0][1], abs=1e-6)
-        window.landmarks.reset_asked.emit(("bust_point_left",))
+        window.landmarks.reset_requested.emit(("bust_point_left",))
         yield settled(window)
         assert session.design.placed == ()
         assert not session.frame.stages.landmarks.points["bust_point_left"].by_hand

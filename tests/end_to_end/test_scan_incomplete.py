@@ -184,7 +184,7 @@ def test_a_scan_whose_question_is_left_is_shown_and_can_be_told(
         second = window.session.stuck
         QTest.mouseClick(window.landmarks.reset, Qt.MouseButton.LeftButton)
         yield lambda: window.session.stuck is not second
-        window.scan.told.emit("front", "-y")
+        window.scan.value_set.emit("front", "-y")
         yield settled(window)
         assert window.session.stuck is None
 
@@ -250,7 +250,7 @@ def test_a_refused_scan_is_shown_as_it_lies_and_can_be_told_how_it_stands(
         assert notice.sentence == "This is no body."
         assert window.scan.isVisible()
         assert window.view.viewport.scene.body is not None
-        window.scan.told.emit("up", "+z")
+        window.scan.value_set.emit("up", "+z")
         yield settled(window)
         design = window.session.design
         assert design is not None

@@ -178,7 +178,7 @@ def every_part(window: MainWindow) -> Iterator[str | Callable[[], bool]]:
     yield "targets"
     window.target_shape_controller.card.cancel.click()
     yield settled(window)
-    window.garment.elastics_asked.emit()
+    window.garment.elastics_requested.emit()
     yield "elastics"
     window.elastics_controller.sheet.close()
     window.export_controller.show()

@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QAbstractButton, QApplication
 from window_tools import Script, run_main, settled
 
 from app.gui.main_window import MainWindow
-from app.gui.session.settings import wish
+from app.gui.session.settings import get_setting
 from app.gui.viewport import compare_key as flip_key
 from app.gui.viewport.split_handle import REACH
 from app.gui.viewport.viewport import Viewport
@@ -50,7 +50,7 @@ def the_body_is_of_another_material_and_the_line_is_framed(window: MainWindow) -
     assert body is not None
     far, clay = view.scene.view, body.colours.astype(int)
     window.view_controller.materials["plaster"].trigger()
-    assert wish("material") == "plaster"
+    assert get_setting("material") == "plaster"
     red, _, blue = (body.colours.astype(int) - clay).mean(axis=0)
     assert blue > red + 10.0  # clay is warm, plaster is grey
     window.view.select_line("mid-bust")

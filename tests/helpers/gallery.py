@@ -24,7 +24,7 @@ from PySide6.QtWidgets import (
 
 from app.gui.features.landmarks.panel import LandmarksPanel, LandmarkView
 from app.gui.features.lines.panel import LinesPanel, LineView
-from app.gui.features.measurements.panel import ResultPanel
+from app.gui.features.measurements.panel import MeasurementsPanel
 from app.gui.features.model.panel import ModelPanel
 from app.gui.features.scan.panel import ScanPanel
 from app.gui.plots.convergence_panel import ConvergencePanel
@@ -166,7 +166,7 @@ class Mock(QWidget):
             "scan": ScanPanel(),
             "landmarks": LandmarksPanel(),
             "lines": LinesPanel(),
-            "result": ResultPanel(),
+            "result": MeasurementsPanel(),
             "model": ModelPanel(),
         }
         for each in pages.values():

@@ -51,7 +51,7 @@ class PlotCanvas(QWidget):
 
     pointed = Signal(object)
     zoomed = Signal(object)
-    menu_asked = Signal(object)
+    menu_requested = Signal(object)
 
     def __init__(self, digits: int = 2) -> None:
         super().__init__()
@@ -151,7 +151,7 @@ class PlotCanvas(QWidget):
         self.pointed.emit(None)
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
-        self.menu_asked.emit(event.globalPos())
+        self.menu_requested.emit(event.globalPos())
 
     def event(self, event: QEvent) -> bool:
         """Take Home, which elsewhere shows all of the body."""

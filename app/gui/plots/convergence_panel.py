@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QSizePolicy, QVB
 from app.gui.plots.canvas import Turns
 from app.gui.plots.live_plot import LivePlot
 from app.gui.plots.painting import Entry, Legend, legend_entries, legend_width, run_title
-from app.gui.plots.status_chip import VerdictChip, VerdictLine
+from app.gui.plots.status_chip import StatusChip, StatusLine
 from app.gui.plots.volume_control_choice import control_segment
 from app.gui.theme.stylesheet import label
 from app.gui.widgets.basic import ToolButton, sentence
@@ -52,23 +52,23 @@ class VerdictView(Protocol):
 class ConvergencePanel(QWidget):
     """Verdict and method on the left, volume error and a height over the turns live beside it.
 
-    ``export_asked`` carries csv, png or svg; ``quantity_chosen`` the name of what a plot shows now;
-    ``why_asked`` wants to know more of a verdict that is no good.
+    ``export_requested`` carries csv, png or svg; ``quantity_chosen`` the name of what a plot shows now;
+    ``why_requested`` wants to know more of a verdict that is no good.
     """
 
     control_chosen = Signal(str)
     quantity_chosen = Signal(str)
-    export_asked = Signal(str)
+    export_requested = Signal(str)
     folded = Signal(bool)
-    why_asked = Signal()
+    why_requested = Signal()
 
     def __init__(self) -> None:
         super().__init__()
         self._state, self._settling = "stale", False
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
-        self.chip, self._small_chip = VerdictChip(), VerdictChip(small=True)
+        self.chip, self._small_chip = StatusChip(), StatusChip(small=True)
         for chip in (self.chip, self._small_chip):
-            chip.clicked.connect(self.why_asked)
+            chip.clicked.connect(self.why_requested)
         self.error_plot, self.height_plot = LivePlot(error_quantities()), LivePlot(height_quantities())
         self._run: tuple[Mapping[str, Track], str, Exact | None] = ({}, "adaptive", None)
         self._events: tuple[Event, ...] = ()
@@ -79,7 +79,7 @@ class ConvergencePanel(QWidget):
                 plot.zoomed.connect(other.show_turns)
             plot.quantity_chosen.connect(self._draw_anew)
             plot.quantity_chosen.connect(self.quantity_chosen)
-            plot.menu_asked.connect(self._show_menu)
+            plot.menu_requested.connect(self._show_menu)
         self._entries: list[Entry] = []
         self._legends = Legend(), Legend()  # beside the title of the first plot, or below both
         self.error_plot.head.addWidget(self._legends[0])
@@ -240,7 +240,7 @@ class ConvergencePanel(QWidget):
             ("png", tr("Save the plots as a picture (PNG)…")),
             ("svg", tr("Save the plots as a drawing (SVG)…")),
         ):
-            self.menu.addAction(text, partial(self.export_asked.emit, kind))
+            self.menu.addAction(text, partial(self.export_requested.emit, kind))
         self.menu.addSeparator()
         self.menu.addAction(tr("Show all turns"), partial(self.show_turns, None))
 
@@ -280,7 +280,7 @@ class ConvergencePanel(QWidget):
         row = QHBoxLayout(self._line)
         row.setContentsMargins(14, 4, 6, 4)
         row.setSpacing(12)
-        self._said = VerdictLine()
+        self._said = StatusLine()
         unfold = ToolButton("caret-up", tr("Show the plots (Ctrl+J)"), size=14, room=26)
         unfold.clicked.connect(lambda: self.set_folded(False))
         row.addWidget(self._small_chip)

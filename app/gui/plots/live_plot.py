@@ -28,7 +28,7 @@ class LivePlot(QWidget):
 
     pointed = Signal(object)
     zoomed = Signal(object)
-    menu_asked = Signal(object)
+    menu_requested = Signal(object)
     quantity_chosen = Signal(str)
 
     def __init__(self, quantities: Sequence[Quantity]) -> None:
@@ -42,7 +42,7 @@ class LivePlot(QWidget):
         column.setSpacing(0)
         self.head = QHBoxLayout()
         self.head.setContentsMargins(0, 0, 0, 0)
-        self.title = PullTitle(quantities)
+        self.title = QuantityTitle(quantities)
         self.title.chosen.connect(self.set_quantity)
         self.title.chosen.connect(self.quantity_chosen)
         self.head.addWidget(self.title)
@@ -52,7 +52,7 @@ class LivePlot(QWidget):
         for heard, told in (
             (self.canvas.pointed, self.pointed),
             (self.canvas.zoomed, self.zoomed),
-            (self.canvas.menu_asked, self.menu_asked),
+            (self.canvas.menu_requested, self.menu_requested),
         ):
             heard.connect(told)
         column.addWidget(self.canvas, 1)
@@ -110,7 +110,7 @@ class LivePlot(QWidget):
         self._range = (low - slack, high + slack)
 
 
-class PullTitle(QAbstractButton):
+class QuantityTitle(QAbstractButton):
     """Title and unit of a plot; where there is more than one quantity, pressing it shows the others."""
 
     chosen = Signal(str)

@@ -38,7 +38,7 @@ _FINEST = 22.0  # grid lines are never nearer to each other [px]
 
 
 @dataclass(frozen=True, eq=False)
-class Drawn:
+class SectionDrawing:
     """What is drawn: curves of (k, 2) places [mm] by role, and pairs of marks (former, present), each (2,).
 
     Roles: "before" is dashed, "after" strong, "other" the mirrored side, "wished" what is asked for.
@@ -55,7 +55,7 @@ class Drawn:
     most: tuple[Floats, Floats, str] | None = None
 
 
-class ProfilePlot(QWidget):
+class SectionPlot(QWidget):
     """The plot; ``pointed`` carries the place [mm] under the pointer, shape (2,), or None.
 
     The wheel zooms to the pointer, a drag moves, a double click shows all that changed again. With the
@@ -67,7 +67,7 @@ class ProfilePlot(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setMouseTracking(True)
-        self._drawn = Drawn()
+        self._drawn = SectionDrawing()
         self._centre, self._scale = np.zeros(2), 1.0  # [mm], [px/mm]
         self._moved = False
         self._last: QPointF | None = None
@@ -79,7 +79,7 @@ class ProfilePlot(QWidget):
     def sizeHint(self) -> QSize:
         return QSize(244, 190)
 
-    def show_curves(self, drawn: Drawn, *, again: bool) -> None:
+    def show_curves(self, drawn: SectionDrawing, *, again: bool) -> None:
         """Draw these; ``again`` goes back to the box that is seen first."""
         self._drawn = drawn
         if again or not self._moved:
@@ -147,7 +147,9 @@ class ProfilePlot(QWidget):
         painter.setClipping(False)
         if self._drawn.most is not None and not self._drawn.faint and self._mark is None:
             place, way, text = self._drawn.most
-            write_off(painter, self._spot(place), way, text, self._room(), tokens.accent, self._taken())
+            write_uncertainty(
+                painter, self._spot(place), way, text, self._room(), tokens.accent, self._taken()
+            )
         if self._mark is not None:
             self._paint_gap(painter, *self._mark)
         if self.hasFocus():
@@ -307,7 +309,7 @@ def paint_band(painter: QPainter, path: QPainterPath, colour: QColor, *, faint: 
     painter.strokePath(path, QPen(edge, _EDGE))
 
 
-def write_off(
+def write_uncertainty(
     painter: QPainter, spot: QPointF, way: Floats, text: str, room: QRectF, ink: str, taken: Floats
 ) -> None:
     """Write outside a place of the curve how far it may be off; ``way`` (2,) is outward, up positive.

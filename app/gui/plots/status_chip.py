@@ -25,7 +25,7 @@ _CARET = 11
 _GAP = "     "
 
 
-class VerdictChip(QAbstractButton):
+class StatusChip(QAbstractButton):
     """The pill; 32 pixels high, or 22 when ``small``. It can be pressed in the states that are TROUBLED."""
 
     def __init__(self, small: bool = False) -> None:
@@ -134,7 +134,7 @@ class VerdictChip(QAbstractButton):
         self.update()
 
 
-class VerdictLine(QLabel):
+class StatusLine(QLabel):
     """Words in parts on one line, the first ones first: what has no room is left out whole.
 
     Only the first one ends in dots, where it does not fit alone; the pointer is told all of it.

@@ -11,7 +11,7 @@ from typing import Any
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QUndoStack
 
-from app.gui.session.edit_command import Edit
+from app.gui.session.edit_command import EditCommand
 from app.i18n.catalog import number, tr
 from app.presenters.model_options import control_words
 from core.document.design import Design
@@ -46,7 +46,7 @@ class DocumentEditor(QObject):
     def preview_line(self, name: str, ratio: float) -> None:
         """Show a length while it is dragged; nothing is committed."""
         # As when it is let go: at its rest length a line is off.
-        worn = None if at_rest_length(ratio) else ratio
+        worn = None if is_original_length(ratio) else ratio
         if self.design is not None:
             # A locked line stays as it is; letting it go says why.
             with suppress(UserError):
@@ -74,7 +74,7 @@ class DocumentEditor(QObject):
         """Set a line's length as one undo step; at its rest length it is off: it does not pull."""
         if self.design is None:
             return
-        worn = None if at_rest_length(ratio) else ratio
+        worn = None if is_original_length(ratio) else ratio
         text = tr("{line} off") if worn is None else tr("{line} {percent} %")
         said = text.format(line=title, percent=number(100.0 * ratio, 1))
         self.edit(lambda design: design.with_linked(name, worn), said, what=f"length of {name}")
@@ -160,10 +160,10 @@ class DocumentEditor(QObject):
         alike = before is not None and before.is_equivalent(document.design)
         self._submit(document.design, fresh=not alike)
 
-    def _last_edit(self) -> Edit | None:
+    def _last_edit(self) -> EditCommand | None:
         """Return the edit that made the present document, if one did."""
         edit = self.undo_stack.command(self.undo_stack.index() - 1) if self.undo_stack.canUndo() else None
-        return edit if isinstance(edit, Edit) and edit.after == self.document else None
+        return edit if isinstance(edit, EditCommand) and edit.after == self.document else None
 
     def _take_back(self) -> bool:
         """Undo the step that was submitted last, and only that; redo makes it again.
@@ -199,7 +199,7 @@ class DocumentEditor(QObject):
         if self.document is not None and after != self.document:
             # A drag is an entry of its own, however soon it follows another.
             what = "" if previewing else what
-            self.undo_stack.push(Edit(self, self.document, after, text, previewing, what))
+            self.undo_stack.push(EditCommand(self, self.document, after, text, previewing, what))
 
     def _submit(self, design: Design, fresh: bool = False) -> None:
         """Have a committed design solved; ``_revision`` is that of the request."""
@@ -210,6 +210,6 @@ class DocumentEditor(QObject):
         raise NotImplementedError
 
 
-def at_rest_length(ratio: float) -> bool:
+def is_original_length(ratio: float) -> bool:
     """Tell whether a ratio is 100 % as it is shown: a line there is off."""
     return abs(ratio - 1.0) < 5e-6

@@ -16,7 +16,7 @@ PAUSE = 1.0
 """Seconds between two edits of one thing after which they are two in the history; a wheel turns faster."""
 
 
-class Edit(QUndoCommand):
+class EditCommand(QUndoCommand):
     """One edit: the document before and after. The first redo after a drag keeps the run that the preview
     began.
 
@@ -49,7 +49,11 @@ class Edit(QUndoCommand):
 
     def mergeWith(self, other: QUndoCommand) -> bool:  # noqa: N802 - Qt's name
         """Take in the edit that follows, if it goes on with this one."""
-        if not isinstance(other, Edit) or other._what != self._what or other._made - self._made > PAUSE:
+        if (
+            not isinstance(other, EditCommand)
+            or other._what != self._what
+            or other._made - self._made > PAUSE
+        ):
             return False
         if self.is_solved:
             self._solved.append((self.after, self.text()))
@@ -59,7 +63,7 @@ class Edit(QUndoCommand):
         self.setObsolete(self.after == self.before)
         return True
 
-    def split(self) -> Edit | None:
+    def split(self) -> EditCommand | None:
         """End this edit at its last solved step; returns what follows as an edit of its own, if both exist.
 
         The edit that is returned is in place: its first redo changes nothing.
@@ -67,7 +71,7 @@ class Edit(QUndoCommand):
         if not self._solved:
             return None
         after, text = self._solved.pop()
-        rest = Edit(self._session, after, self.after, self.text(), shown=False)
+        rest = EditCommand(self._session, after, self.after, self.text(), shown=False)
         rest._in_place = True
         self.after, self.is_solved = after, True
         self.setText(text)

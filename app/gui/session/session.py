@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.gui.session.background_save import BackgroundSave
 from app.gui.session.document_editor import DocumentEditor
-from app.gui.session.edit_command import Edit
+from app.gui.session.edit_command import EditCommand
 from app.gui.session.solver_bridge import SolverBridge
 from core.document.design import Design, ScanSource
 from core.document.document import Document
@@ -45,7 +45,7 @@ class Session(DocumentEditor):
     """What the window shows and asks.
 
     Verbs (open, preview, commit, save ...) are called by the window; what follows is told by signals.
-    ``working`` tells the work in hand and the share done; ``asked`` hands out the IncompleteBuildError of a
+    ``working`` tells the work in hand and the share done; ``requested`` hands out the IncompleteBuildError of a
     scan
     that was opened and cannot go on before somebody says how it stands or places its landmarks; ``saving``
     says that a project is being written, or no longer, and ``not_saved`` why this has failed. ``failure`` is
@@ -56,7 +56,7 @@ class Session(DocumentEditor):
 
     opened = Signal(object)
     frame_ready = Signal(object)
-    asked = Signal(object)
+    requested = Signal(object)
     working = Signal(str, float)
     saving = Signal(bool)
     saved = Signal(str)
@@ -203,7 +203,7 @@ class Session(DocumentEditor):
             return
         stack, shown = self.undo_stack, self.frame.stages.design
         undone = stack.command(stack.index()) if opening is None and stack.canRedo() else None
-        if isinstance(undone, Edit) and undone.after.design is shown:
+        if isinstance(undone, EditCommand) and undone.after.design is shown:
             stack.redo()
         elif opening is not None or not self._take_back():
             self._submit(self.document.design)
@@ -279,7 +279,7 @@ class Session(DocumentEditor):
                 self._submit(self.design)
             stuck = failure.error
             if isinstance(stuck, IncompleteBuildError) and (self.design is None or stuck.kind == "unsure"):
-                self.asked.emit(stuck)
+                self.requested.emit(stuck)
                 return
         elif failure.revision < self._revision:
             return  # of what was tried before the last decision, which has an answer of its own

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import QSettings
 
-UNTIL_THEN = {
+DEFAULTS = {
     "theme": "system",
     "language": "en",
     "unit": "mm",  # of lengths in the window, one of app.i18n.lengths.UNITS
@@ -20,16 +20,16 @@ UNTIL_THEN = {
 """Every wish by its key in the settings, with the answer that holds until the user gives another."""
 
 
-def wish(key: str) -> str:
+def get_setting(key: str) -> str:
     """Return what the user wishes, as text."""
-    return str(QSettings().value(key, UNTIL_THEN[key]))
+    return str(QSettings().value(key, DEFAULTS[key]))
 
 
-def wish_for(key: str, value: str) -> None:
+def set_setting(key: str, value: str) -> None:
     """Keep a wish for now and for later sessions."""
     QSettings().setValue(key, value)
 
 
 def wants_motion() -> bool:
     """Tell whether things may glide where they could jump."""
-    return wish("motion") == "full"
+    return get_setting("motion") == "full"

@@ -13,12 +13,12 @@ FINE = 0.1
 class BandHandle(QObject):
     """What a pointer pulls at; ``cursor_of`` tells how it looks over a band, None where that is not pulled.
 
-    ``taken`` names the band, ``pulled`` carries how far it went up since [px], a tenth of it with Shift, and
+    ``taken`` names the band, ``dragged`` carries how far it went up since [px], a tenth of it with Shift, and
     whether that was held; ``dropped`` says that the hand is open again.
     """
 
     taken = Signal(str)
-    pulled = Signal(float, bool)
+    dragged = Signal(float, bool)
     dropped = Signal()
 
     def __init__(self, parent: QObject) -> None:
@@ -41,4 +41,4 @@ class BandHandle(QObject):
     def pull(self, step: QPointF, held: Qt.KeyboardModifier) -> None:
         """Pull on by so many pixels, y downwards."""
         fine = bool(held & Qt.KeyboardModifier.ShiftModifier)
-        self.pulled.emit(-step.y() * (FINE if fine else 1.0), fine)
+        self.dragged.emit(-step.y() * (FINE if fine else 1.0), fine)

@@ -33,7 +33,7 @@ def keys_in_words() -> list[tuple[str, str]]:
 class DrawingTool(QObject):
     """Listens before the pointer of ``view`` does, while it is ``at_work``.
 
-    ``clicked`` and ``hovered`` carry places on the canvas, ``asked`` one of: keep, back, leave. What
+    ``clicked`` and ``hovered`` carry places on the canvas, ``requested`` one of: keep, back, leave. What
     ``grabs`` takes hold of is ``dragged``, then ``dropped``; any other drag is left to the view.
     """
 
@@ -41,7 +41,7 @@ class DrawingTool(QObject):
     hovered = Signal(QPointF)
     dragged = Signal(QPointF)
     dropped = Signal(QPointF)
-    asked = Signal(str)
+    requested = Signal(str)
 
     def __init__(self, view: QWidget, canvas: QWidget) -> None:
         super().__init__(view)
@@ -72,7 +72,7 @@ class DrawingTool(QObject):
         if isinstance(event, QKeyEvent) and event.key() in _KEYS:
             event.accept()  # of a shortcut: the key is wanted here
             if event.type() == QEvent.Type.KeyPress:
-                self.asked.emit(_KEYS[Qt.Key(event.key())])
+                self.requested.emit(_KEYS[Qt.Key(event.key())])
             return event.type() != QEvent.Type.KeyRelease
         if watched is self._canvas and isinstance(event, QMouseEvent) and not self._passing:
             return self._mouse(event)
@@ -82,7 +82,7 @@ class DrawingTool(QObject):
         kind, of_left = event.type(), event.button() == Qt.MouseButton.LeftButton
         left = of_left and not event.modifiers()
         if kind == QEvent.Type.MouseButtonDblClick and left:
-            self.asked.emit("keep")
+            self.requested.emit("keep")
             return True
         if kind == QEvent.Type.MouseButtonPress and left:
             self._pressed = _copy(event)

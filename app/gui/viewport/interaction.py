@@ -33,7 +33,7 @@ _HELD = Qt.KeyboardModifier.ShiftModifier | Qt.KeyboardModifier.ControlModifier
 _CLICK = 3.0  # pixels that the pointer may stray within a click
 
 
-class Pointer(QObject):
+class PointerInteraction(QObject):
     """Reads the pointer over a canvas, from when it can ``look_at`` a scene on it.
 
     ``turned`` asks for a view from the same distance, ``shifted`` for one that frames something else, and

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from PySide6.QtCore import Qt
 
-from app.gui.session.settings import wish
+from app.gui.session.settings import get_setting
 from app.i18n.catalog import tr
 
 ORBIT, PAN, ZOOM = "orbit", "pan", "zoom"
@@ -57,7 +57,7 @@ PRESETS = {
 
 def chosen_gestures() -> MouseBindings:
     """Return the gestures of the preset that the user has wished for."""
-    return PRESETS.get(wish("mouse"), PRESETS["busk"])
+    return PRESETS.get(get_setting("mouse"), PRESETS["busk"])
 
 
 def gestures_in_words(gestures: MouseBindings) -> list[tuple[str, str]]:

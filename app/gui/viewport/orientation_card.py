@@ -32,10 +32,10 @@ class OrientationChoice:
 
 
 class OrientationCard(FloatingPanel):
-    """Asks once, calmly; ``answered`` with (up, front), ``left`` when it is closed without an answer."""
+    """Asks once, calmly; ``answered`` with (up, front), ``closed`` when it is closed without an answer."""
 
     answered = Signal(str, str)
-    left = Signal()
+    closed = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -75,7 +75,7 @@ class OrientationCard(FloatingPanel):
 
     def _leave(self) -> None:
         self.hide()
-        self.left.emit()
+        self.closed.emit()
 
 
 class OrientationButton(QAbstractButton):

@@ -28,11 +28,11 @@ _FLATTEST = 0.35  # a normal seen shorter than this points at the eye: the drag 
 class PlaneHandle(Handle):
     """A knob that stands on the plane's sheet and stays there until the camera moves.
 
-    ``pulled`` carries each step along the normal [mm], a tenth of it while Shift is held. Where the normal
+    ``dragged`` carries each step along the normal [mm], a tenth of it while Shift is held. Where the normal
     points at the eye, up is away from it.
     """
 
-    pulled = Signal(float)
+    dragged = Signal(float)
 
     def __init__(self, viewport: Viewport) -> None:
         name = tr("Handle of the section plane")
@@ -115,7 +115,7 @@ class PlaneHandle(Handle):
     # -- the hand
 
     def _pull(self, over: Floats) -> None:
-        self.pulled.emit(float(self._way @ over) / max(float(self._way @ self._way), 1e-6))
+        self.dragged.emit(float(self._way @ over) / max(float(self._way @ self._way), 1e-6))
 
     def open_hand(self) -> None:
         self._last = None

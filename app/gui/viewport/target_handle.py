@@ -29,11 +29,11 @@ class TargetHandle(Handle):
 
     ``name`` is heard. A ``small`` one has neither arrows nor thread.
 
-    ``pulled`` carries each step up and out [mm]: of the two ways those that do not point at the eye. Arrow
+    ``dragged`` carries each step up and out [mm]: of the two ways those that do not point at the eye. Arrow
     keys are such steps too, between ``taken`` and ``dropped``.
     """
 
-    pulled = Signal(float, float)
+    dragged = Signal(float, float)
 
     def __init__(self, viewport: Viewport, side: str, name: str, *, small: bool = False) -> None:
         self._size = SMALL if small else SIZE
@@ -81,7 +81,7 @@ class TargetHandle(Handle):
 
     def _pull(self, over: Floats) -> None:
         up, out = np.linalg.lstsq(self._ways, over, rcond=1e-6)[0] if self._ways.any() else (0.0, 0.0)
-        self.pulled.emit(float(up), float(out))
+        self.dragged.emit(float(up), float(out))
 
     # -- the hand
 
@@ -107,7 +107,7 @@ class TargetHandle(Handle):
             event.ignore()
             return
         self.taken.emit()
-        self.pulled.emit(*step)
+        self.dragged.emit(*step)
         self.dropped.emit()
 
     # -- painting

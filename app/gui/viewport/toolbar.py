@@ -61,12 +61,12 @@ class ViewTools(Toolbar):
     """Where to look from, the projection and the layers.
 
     ``view_chosen`` carries one of ``VIEWS``; ``toggled`` perspective, control-mesh, landmarks or bands with
-    its state; ``fit_asked`` and ``picture_asked`` nothing.
+    its state; ``fit_requested`` and ``picture_requested`` nothing.
     """
 
     view_chosen = Signal(str)
-    fit_asked = Signal()
-    picture_asked = Signal()
+    fit_requested = Signal()
+    picture_requested = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -84,7 +84,7 @@ class ViewTools(Toolbar):
         self._rule()
         self._add_layer("perspective", "perspective", tr("Perspective"), "O")
         self._add("fit", "corners-out", tr("Fit all"), "Home")
-        self.actions_by_name["fit"].triggered.connect(self.fit_asked)
+        self.actions_by_name["fit"].triggered.connect(self.fit_requested)
         self._rule()
         self._add_layer("control-mesh", "control-mesh", tr("Control mesh"), "K")
         self._add_layer("landmarks", "map-pin", tr("Landmarks"), "M")
@@ -97,7 +97,7 @@ class ViewTools(Toolbar):
         colours.setEnabled(False)
         colours.triggered.connect(lambda on: self.toggled.emit("colours", on))
         self._add("picture", "camera", tr("Save a picture"), "Ctrl+Shift+P")
-        self.actions_by_name["picture"].triggered.connect(self.picture_asked)
+        self.actions_by_name["picture"].triggered.connect(self.picture_requested)
 
     def set_view(self, name: str | None) -> None:
         """Show which view the camera is in, or that it is in none; nothing is emitted."""

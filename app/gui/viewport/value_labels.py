@@ -32,11 +32,11 @@ class ValueFlags(QWidget):
     """A transparent sheet over one viewport.
 
     ``pinned`` carries the place that was clicked on, (3,) [mm], and the line on it, if there is one;
-    ``pulled`` the number of the flag that was clicked on.
+    ``dragged`` the number of the flag that was clicked on.
     """
 
     pinned = Signal(object, str)
-    pulled = Signal(int)
+    dragged = Signal(int)
 
     def __init__(self, viewport: Viewport) -> None:
         super().__init__(viewport)
@@ -90,7 +90,7 @@ class ValueFlags(QWidget):
         spots = self._spots()
         away = [float(np.hypot(spot.x() - at.x(), spot.y() - at.y())) for spot in spots]
         if away and min(away) < _REACH:
-            self.pulled.emit(int(np.argmin(away)))
+            self.dragged.emit(int(np.argmin(away)))
             return
         scene, width, height = self._viewport.scene, self._viewport.width(), self._viewport.height()
         start, sight = scene.view.ray(at.x(), at.y(), width, height)

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from app.gui.theme.stylesheet import tokens_of
 from app.gui.viewport.camera_animation import CameraAnimation
 from app.gui.viewport.canvas import Canvas
-from app.gui.viewport.interaction import Pointer
+from app.gui.viewport.interaction import PointerInteraction
 from app.gui.viewport.labels import Labels
 from app.gui.viewport.overlay import Overlay, Pin
 from app.rendering.appearance import CLAY
@@ -60,7 +60,7 @@ class Viewport(QWidget):
         layout.addWidget(self._canvas)
         self.overlay = Overlay(self._canvas)
         self._labels = Labels(self.overlay)
-        self._pointer = Pointer(self._canvas, self.overlay)
+        self._pointer = PointerInteraction(self._canvas, self.overlay)
         self._scene: Scene | None = None
         self._rest = QTimer(self, singleShot=True, interval=REST)
         self._rest.timeout.connect(self._refine)

@@ -269,9 +269,9 @@ class OverlayCard(FloatingPanel):
 
 
 class EmptyState(QFrame):
-    """What is missing and what to do, where nothing can be shown yet; ``asked`` at its button."""
+    """What is missing and what to do, where nothing can be shown yet; ``requested`` at its button."""
 
-    asked = Signal()
+    requested = Signal()
 
     def __init__(self, drawing: str, missing: str, hint: str, ask: str = "") -> None:
         super().__init__()
@@ -286,7 +286,7 @@ class EmptyState(QFrame):
         column.addWidget(self._hint)
         if ask:
             press = button(ask)
-            press.clicked.connect(self.asked)
+            press.clicked.connect(self.requested)
             column.addSpacing(6)
             column.addWidget(press, alignment=Qt.AlignmentFlag.AlignLeft)
 

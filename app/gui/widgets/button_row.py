@@ -11,7 +11,7 @@ from app.gui.widgets.basic import button
 from app.gui.widgets.tooltip import set_tip
 
 
-def press_row(choices: Iterable[tuple[str, str, SignalInstance]], top: int = 0) -> QWidget:
+def button_row(choices: Iterable[tuple[str, str, SignalInstance]], top: int = 0) -> QWidget:
     """Return buttons from the left: text, tip and what is emitted; ``top`` is the room over them [px]."""
     holder = QWidget()
     row = QHBoxLayout(holder)

@@ -23,7 +23,7 @@ class CoachMark(OverlayCard):
     The space bar is left to the window: it may be what the step speaks of.
     """
 
-    went = Signal(int)
+    advanced = Signal(int)
     skipped = Signal()
 
     def __init__(self, parent: QWidget) -> None:
@@ -103,11 +103,11 @@ class CoachMark(OverlayCard):
             super().keyPressEvent(event)
 
     def _on(self) -> None:
-        self.went.emit(1)
+        self.advanced.emit(1)
 
     def _back(self) -> None:
         if not self.back.isHidden():
-            self.went.emit(-1)
+            self.advanced.emit(-1)
 
 
 class Ring(QWidget):

@@ -99,7 +99,7 @@ class Dialog(QDialog):
         return self.add_button(tr("Close"), self.accept, "primary")
 
 
-def reading(text: str, name: str, *, code: bool = False) -> QPlainTextEdit:
+def text_viewer(text: str, name: str, *, code: bool = False) -> QPlainTextEdit:
     """Return text to read and to copy, for ears called ``name``; ``code`` keeps its columns."""
     result = QPlainTextEdit(text)
     result.setReadOnly(True)

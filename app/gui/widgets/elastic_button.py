@@ -13,7 +13,7 @@ from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 
 
-class ElasticPull(QPushButton):
+class ElasticButton(QPushButton):
     """A word that opens the choice of elastics; of one that does not fit the width at its end stays."""
 
     def __init__(self) -> None:

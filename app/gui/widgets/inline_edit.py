@@ -34,7 +34,7 @@ def keys_in_words() -> list[tuple[str, str]]:
     return [("Enter", tr("Take what is typed")), ("Esc", tr("Leave it as it was"))]
 
 
-def read_figure(text: str) -> float | None:
+def read_number(text: str) -> float | None:
     """Return the figure that was typed, with or without a unit, or None if it is none."""
     plain = unicodedata.normalize("NFKC", text).replace("\N{MINUS SIGN}", "-")
     match = _FIGURE.match(plain)
@@ -49,12 +49,12 @@ def forget_refused() -> None:
 
 
 class InlineEdit(QLineEdit):
-    """The part of a field that is alike for every kind of value; ``left`` at Enter, once taken, or Esc.
+    """The part of a field that is alike for every kind of value; ``closed`` at Enter, once taken, or Esc.
 
     What cannot be is ringed in red, and a card under the field says why until something else is typed.
     """
 
-    left = Signal()
+    closed = Signal()
 
     def __init__(self, unit: str = "") -> None:
         super().__init__()
@@ -86,10 +86,10 @@ class InlineEdit(QLineEdit):
         if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
             self._enter()
             if not self.isModified():
-                self.left.emit()
+                self.closed.emit()
         elif event.key() == Qt.Key.Key_Escape:
             self._show()
-            self.left.emit()
+            self.closed.emit()
         else:
             super().keyPressEvent(event)
 

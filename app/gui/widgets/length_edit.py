@@ -19,7 +19,7 @@ _FOCUS = Qt.FocusReason
 _BY_KEY = (_FOCUS.TabFocusReason, _FOCUS.BacktabFocusReason, _FOCUS.ShortcutFocusReason)
 
 
-class NumberField(InlineEdit):
+class LengthEdit(InlineEdit):
     """A number with its unit.
 
     ``opened`` when typing may begin, ``entered`` (share of the rest length) when another length was typed.

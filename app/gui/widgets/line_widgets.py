@@ -19,7 +19,7 @@ from PySide6.QtWidgets import QLineEdit, QSizePolicy, QWidget
 
 from app.gui.theme.stylesheet import font, tokens_of
 from app.gui.widgets.basic import ElidedLabel
-from app.gui.widgets.inline_edit import InlineEdit, read_figure
+from app.gui.widgets.inline_edit import InlineEdit, read_number
 from app.gui.widgets.menu import Menu
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr
@@ -88,11 +88,11 @@ LEAST = 32
 class LineTitle(ElidedLabel):
     """The name of a line, where there is no room for it its beginning; ``renamed`` when another was typed.
 
-    A double click, or ``begin``, opens it for typing; ``left`` when that is over.
+    A double click, or ``begin``, opens it for typing; ``closed`` when that is over.
     """
 
     renamed = Signal(str)
-    left = Signal()
+    closed = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -103,7 +103,7 @@ class LineTitle(ElidedLabel):
         self._editor = _Editor(self)
         self._editor.hide()
         self._editor.editingFinished.connect(self._end)
-        self._editor.left.connect(self._leave)
+        self._editor.closed.connect(self._leave)
 
     def begin(self) -> None:
         """Let another name be typed."""
@@ -139,13 +139,13 @@ class LineTitle(ElidedLabel):
         was_there = self._editor.hasFocus()
         self._editor.hide()
         if was_there:
-            self.left.emit()
+            self.closed.emit()
 
 
 class _Editor(QLineEdit):
-    """A line's name while it is typed; ``left`` at Esc."""
+    """A line's name while it is typed; ``closed`` at Esc."""
 
-    left = Signal()
+    closed = Signal()
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
@@ -155,7 +155,7 @@ class _Editor(QLineEdit):
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if event.key() == Qt.Key.Key_Escape:
-            self.left.emit()
+            self.closed.emit()
             return
         super().keyPressEvent(event)
         if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
@@ -195,7 +195,7 @@ class StiffnessField(InlineEdit):
 
     def _read(self, text: str) -> float | None:
         plain, (low, high) = text.strip().replace(",", "."), RANGES["line_stiffness"]
-        stiffness = (read_figure(plain) or 0.0) if plain else None
+        stiffness = (read_number(plain) or 0.0) if plain else None
         if stiffness is not None and not low <= stiffness <= high:
             said = tr("A stiffness goes from {low} to {high}; left empty it is that of the model.")
             raise ValueError(said.format(low=low, high=number(high, 0)))

@@ -15,7 +15,7 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout
 
 from app.gui.theme.stylesheet import faded, label, tokens_of
 from app.gui.widgets.basic import FloatingPanel, IconLabel, ToolButton, button
-from app.gui.widgets.dialog import reading
+from app.gui.widgets.dialog import text_viewer
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import add_word_joiners, tr
 from app.presenters.messages import Text, render
@@ -201,7 +201,7 @@ class NotificationBar(FloatingPanel):
         close = ToolButton("x", tr("Close"), size=14, room=28)
         close.clicked.connect(self.close_notice)
         row.addWidget(close)
-        self.details = reading("", tr("Details"), code=True)
+        self.details = text_viewer("", tr("Details"), code=True)
         self.details.document().documentLayout().documentSizeChanged.connect(self._fit_details)
         column.addWidget(self.details)
 

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSizePolicy, QWidget
 from app.gui.theme.icons import paint_icon
 from app.gui.theme.stylesheet import font, tokens_of
 from app.gui.widgets.basic import Segment
-from app.gui.widgets.inline_edit import InlineEdit, read_figure
+from app.gui.widgets.inline_edit import InlineEdit, read_number
 from app.gui.widgets.menu import Menu
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr
@@ -159,7 +159,7 @@ class AmountEdit(InlineEdit):
     def _read(self, text: str) -> float | None:
         if not text.strip() and self._amount.key == "gain":
             return None
-        figure, (low, high) = read_figure(text), self._amount.limits
+        figure, (low, high) = read_number(text), self._amount.limits
         if figure is None:
             raise ValueError(tr("“{text}” is no number.").format(text=text))
         if not low <= figure / self._amount.scale <= high:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from PySide6.QtCore import QSize, Qt, Signal
 
 from app.gui.theme.stylesheet import font
-from app.gui.widgets.inline_edit import InlineEdit, read_figure
+from app.gui.widgets.inline_edit import InlineEdit, read_number
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length_number, read_length, shown_unit, widest_length
@@ -59,7 +59,7 @@ class ValueEdit(InlineEdit):
         return written(self._value, self._digits, self._signed).replace(",", "")
 
     def _read(self, text: str) -> float:
-        value = read_length(text) if self._of == "mm" else read_figure(text)
+        value = read_length(text) if self._of == "mm" else read_number(text)
         if value is None:
             raise ValueError(tr("“{text}” is no number.").format(text=text))
         return value

@@ -135,7 +135,7 @@ def test_a_folder_is_told_without_the_name_of_its_owner(monkeypatch: pytest.Monk
     monkeypatch.setattr(machine, "folders", lambda: [("Log", Path("/houses/anna/log"))])
     monkeypatch.setattr(sys, "executable", "/houses/anna/busk/.venv/bin/python")
     widget = QWidget()
-    text = str(machine.machine_facts(widget))
+    text = str(machine.system_info(widget))
     widget.deleteLater()
     assert "~/log" in text
     assert "anna" not in text

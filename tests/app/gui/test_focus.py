@@ -11,7 +11,7 @@ from pytestqt.qtbot import QtBot
 
 from app.gui.features.preferences.dialog import PreferencesDialog
 from app.gui.menus import Menus
-from app.gui.session.settings import UNTIL_THEN
+from app.gui.session.settings import DEFAULTS
 from app.gui.widgets.focus_chain import next_stop, stops
 from app.gui.widgets.option_field import field_of
 from app.gui.widgets.splitter import Splitter
@@ -47,7 +47,7 @@ def test_tab_goes_round_in_the_preferences_both_ways_and_the_focus_comes_back(
     window: QWidget, qtbot: QtBot
 ) -> None:
     button(window, "right 1").setFocus()
-    sheet = PreferencesDialog(window, dict(UNTIL_THEN))
+    sheet = PreferencesDialog(window, dict(DEFAULTS))
     sheet.open()
     qtbot.waitUntil(sheet.isActiveWindow)
     order = stops(sheet)

@@ -79,7 +79,7 @@ def test_a_row_says_everything_to_ears(qtbot: QtBot) -> None:
 def test_what_is_asked_carries_the_line(qtbot: QtBot) -> None:
     panel = panel_of(qtbot, STRAP, BAND)
     strap, band = panel.rows.values()
-    with qtbot.waitSignal(panel.elastic_asked) as asked:
+    with qtbot.waitSignal(panel.elastic_requested) as asked:
         strap.elastic.click()
     assert asked.args == ["strap left"]
     with qtbot.waitSignal(panel.selected) as selected:

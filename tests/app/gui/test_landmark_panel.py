@@ -40,7 +40,7 @@ def panel(qtbot: QtBot) -> LandmarksPanel:
 def test_the_row_with_the_keyboard_is_the_one_whose_pin_enter_takes(panel: LandmarksPanel) -> None:
     chosen: list[str] = []
     panel.landmark_selected.connect(chosen.append)
-    panel.keys_asked.connect(lambda: chosen.append("keys"))
+    panel.keys_requested.connect(lambda: chosen.append("keys"))
     panel.select("fold_left")
     panel.rows["fold_right"].setFocus(Qt.FocusReason.TabFocusReason)
     QTest.keyClick(panel.rows["fold_right"], Qt.Key.Key_Return)
@@ -52,7 +52,7 @@ def test_the_row_with_the_keyboard_is_the_one_whose_pin_enter_takes(panel: Landm
 def test_enter_on_a_button_never_takes_a_pin(panel: LandmarksPanel, qtbot: QtBot) -> None:
     panel.select("fold_left")
     panel.right.setFocus()
-    with qtbot.assertNotEmitted(panel.keys_asked):
+    with qtbot.assertNotEmitted(panel.keys_requested):
         QTest.keyClick(panel.right, Qt.Key.Key_Return)
 
 

@@ -10,9 +10,9 @@ from PySide6.QtWidgets import QApplication
 
 from app.gui.features.maps.color_bar import BAR
 from app.gui.features.maps.legend import Legend
-from app.gui.features.sections.panel import STEPS, ProfilePanel
-from app.gui.plots.section_plot import Drawn, ProfilePlot, grid_step
-from app.gui.widgets.inline_edit import read_figure
+from app.gui.features.sections.panel import STEPS, SectionPanel
+from app.gui.plots.section_plot import SectionDrawing, SectionPlot, grid_step
+from app.gui.widgets.inline_edit import read_number
 from app.presenters.bust_shift import BustShift, BustStep
 from app.presenters.maps import MAPS, automatic_range, map_kinds, ramp_of, section_words, sides_words
 from app.rendering.appearance import rgb
@@ -34,7 +34,7 @@ def heard(signal: object) -> list[object]:
 
 
 def test_figures_are_read_with_sign_unit_and_full_width_digits() -> None:
-    assert [read_figure(text) for text in ("12", "+3,5 mm", "−7", "１２", "- 4", "mm", "", "1e5x9")] == [
+    assert [read_number(text) for text in ("12", "+3,5 mm", "−7", "１２", "- 4", "mm", "", "1e5x9")] == [
         12.0,
         3.5,
         -7.0,
@@ -134,10 +134,10 @@ def test_sides_are_compared_in_words() -> None:
 
 
 def test_both_axes_of_the_plot_are_alike_and_the_wheel_keeps_the_place(qapp: QApplication) -> None:
-    plot = ProfilePlot()
+    plot = SectionPlot()
     plot.resize(300, 200)
     home = np.array([[100.0, 200.0], [200.0, 400.0]])
-    plot.show_curves(Drawn({"before": [home]}, (), home), again=True)
+    plot.show_curves(SectionDrawing({"before": [home]}, (), home), again=True)
     low, high = plot.to_pixels(home)
     assert abs(high[0] - low[0]) * 2.0 == pytest.approx(abs(high[1] - low[1]))  # a millimetre is a millimetre
     assert plot.to_mm(QPointF(*low)) == pytest.approx(home[0])
@@ -150,7 +150,7 @@ def test_both_axes_of_the_plot_are_alike_and_the_wheel_keeps_the_place(qapp: QAp
     QTest.mouseMove(plot, QPoint(150, 90))
     QTest.mouseRelease(plot, Qt.MouseButton.LeftButton, pos=QPoint(150, 90))
     assert plot.to_pixels(home)[0] == pytest.approx(low + np.array([30.0, 0.0]))
-    plot.show_curves(Drawn({"before": [home]}, (), home), again=False)
+    plot.show_curves(SectionDrawing({"before": [home]}, (), home), again=False)
     assert plot.to_pixels(home)[0] == pytest.approx(
         low + np.array([30.0, 0.0])
     )  # a new frame leaves it where it is
@@ -161,7 +161,7 @@ def test_both_axes_of_the_plot_are_alike_and_the_wheel_keeps_the_place(qapp: QAp
 
 
 def test_the_plane_is_moved_by_slider_and_by_figure(qapp: QApplication) -> None:
-    panel = ProfilePanel()
+    panel = SectionPanel()
     moved = heard(panel.moved)
     panel.show_plane("x", 104.6, -190.0, 190.0)
     assert moved == []

@@ -8,7 +8,7 @@ from PySide6.QtCore import QRect
 from PySide6.QtGui import QImage
 from pytestqt.qtbot import QtBot
 
-from app.gui.features.measurements.table import HEAD, TOP, MeasureTable
+from app.gui.features.measurements.table import HEAD, TOP, MeasurementsTable
 from app.gui.features.measurements.table_row import ROW, cells
 from app.presenters.measurements import MeasureView, as_table
 from app.presenters.uncertainty import with_uncertainty
@@ -19,21 +19,21 @@ LINE = MeasureView("Mid-bust", "mm", 422.3, 410.9, "along the line, side to side
 
 
 @pytest.fixture
-def table(qtbot: QtBot) -> MeasureTable:
-    table = MeasureTable()
+def table(qtbot: QtBot) -> MeasurementsTable:
+    table = MeasurementsTable()
     qtbot.addWidget(table)
     table.resize(300, 400)
     return table
 
 
-def darkness(table: MeasureTable, place: QRect) -> int:
+def darkness(table: MeasurementsTable, place: QRect) -> int:
     """How much darker than its ground the darkest spot of a place is."""
     shown: QImage = table.grab(place).toImage()
     spots = [shown.pixelColor(x, y).lightness() for x in range(shown.width()) for y in range(shown.height())]
     return max(spots) - min(spots)
 
 
-def test_the_unit_stands_beside_the_name_of_a_group_and_in_no_column(table: MeasureTable) -> None:
+def test_the_unit_stands_beside_the_name_of_a_group_and_in_no_column(table: MeasurementsTable) -> None:
     table.set_rows([GIRTH])
     column = cells(table.width(), TOP, HEAD)[1].toRect().adjusted(0, 4, 0, -4)
     assert darkness(table, column) == 0, "the column After"
@@ -41,7 +41,7 @@ def test_the_unit_stands_beside_the_name_of_a_group_and_in_no_column(table: Meas
     assert darkness(table, beside) > 40
 
 
-def test_what_is_no_result_is_pale_and_has_no_bar(table: MeasureTable) -> None:
+def test_what_is_no_result_is_pale_and_has_no_bar(table: MeasurementsTable) -> None:
     before, after, change, bar = (cell.toRect() for cell in cells(table.width(), TOP + HEAD, ROW))
     shown = {}
     for doubtful in (False, True):

@@ -13,7 +13,7 @@ from pytestqt.qtbot import QtBot
 
 from app.gui.features.lines.slider import LengthSlider
 from app.gui.plots.convergence_panel import ConvergencePanel
-from app.gui.plots.status_chip import SHORTEST_SHOW_MS, VerdictChip
+from app.gui.plots.status_chip import SHORTEST_SHOW_MS, StatusChip
 from app.gui.status_bar import StatusBar
 from app.gui.step_navigation import StepNavigation
 from app.gui.theme.stylesheet import tokens_of
@@ -60,7 +60,7 @@ def rail_item() -> tuple[QWidget, Callable[[str], None]]:
 
 
 def chip() -> tuple[QWidget, Callable[[str], None]]:
-    pill = VerdictChip()
+    pill = StatusChip()
     return pill, pill.set_state
 
 
@@ -151,7 +151,7 @@ def test_before_and_after_are_asked_for(qtbot: QtBot) -> None:
 
 
 def test_a_chip_does_not_flicker(qtbot: QtBot) -> None:
-    chip = VerdictChip()
+    chip = StatusChip()
     qtbot.addWidget(chip)
     chip.set_state("stale")
     chip.set_state("vibrating")
@@ -164,7 +164,7 @@ def test_a_chip_does_not_flicker(qtbot: QtBot) -> None:
 
 
 def test_a_chip_turns_only_while_it_settles_and_is_seen(qtbot: QtBot) -> None:
-    chip = VerdictChip()
+    chip = StatusChip()
     qtbot.addWidget(chip)
     chip.set_state("settling")
     qtbot.waitUntil(lambda: chip.state() == "settling")

@@ -8,7 +8,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication, QScrollArea
 
-from app.gui.features.measurements.panel import ResultPanel
+from app.gui.features.measurements.panel import MeasurementsPanel
 from app.gui.features.symmetry.card import ElidedTitle, SymmetryCard
 from app.gui.theme.stylesheet import load_fonts
 from app.i18n.catalog import using_language
@@ -49,7 +49,7 @@ def test_titles_and_units_are_whole_beside_what_figures_may_be_off(words: str, q
 
 
 def test_a_click_beside_figures_puts_no_frame_round_all_of_them(qapp: QApplication) -> None:
-    panel = ResultPanel()
+    panel = MeasurementsPanel()
     areas = [area for area in panel.findChildren(QScrollArea) if area.accessibleName() == "Measures"]
     assert [area.focusPolicy() for area in areas] == [Qt.FocusPolicy.TabFocus]
     panel.deleteLater()

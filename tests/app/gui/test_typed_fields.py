@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from app.gui.widgets.inline_edit import Refusal
-from app.gui.widgets.length_edit import NumberField
+from app.gui.widgets.length_edit import LengthEdit
 from app.gui.widgets.line_widgets import StiffnessField
 from app.gui.widgets.value_edit import ValueEdit
 
@@ -43,9 +43,9 @@ def test_what_is_no_length_is_refused(text: str) -> None:
         number_field("%")._read(text)
 
 
-def number_field(unit: str) -> NumberField:
+def number_field(unit: str) -> LengthEdit:
     """Return the field of a line that is 400 mm long, of a band of 700 mm."""
-    field = NumberField(unit)
+    field = LengthEdit(unit)
     field.name_line("Waist")
     field.show_length(1.0, 400.0, 700.0)
     return field

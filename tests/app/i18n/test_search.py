@@ -6,7 +6,7 @@ import pytest
 from PySide6.QtCore import Qt
 from window_tools import Script, run_main, settled, undrawn
 
-from app.gui.features.help.command_palette import CommandPalette, plain
+from app.gui.features.help.command_palette import CommandPalette, normalized
 from app.gui.main_window import MainWindow
 from app.i18n.search_terms import SYNONYMS
 
@@ -48,4 +48,4 @@ def test_what_a_designer_types_is_found() -> None:
 
 
 def test_letters_of_any_width_are_the_same() -> None:
-    assert plain("ＳＴＬ Ｆile") == "stl file"
+    assert normalized("ＳＴＬ Ｆile") == "stl file"

@@ -6,7 +6,7 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.gui.features.lines.row import LineRow, LineView
-from app.gui.widgets.length_edit import NumberField
+from app.gui.widgets.length_edit import LengthEdit
 from app.gui.widgets.value_edit import ValueEdit
 from app.i18n.lengths import length, read_length, use_unit
 from app.presenters.bust_shift import up_words
@@ -97,7 +97,7 @@ def test_fields_show_and_take_the_unit_in_use(qtbot: QtBot) -> None:
     place.show_value(254.0)
     assert place.text() == "10.00"
     assert (place._read("10"), place._read("250mm")) == (254.0, 250.0)
-    of_line = NumberField("mm")
+    of_line = LengthEdit("mm")
     qtbot.addWidget(of_line)
     of_line.name_line("Waist")
     of_line.entered.connect(heard.append)

@@ -42,7 +42,7 @@ class ConvergenceController(QObject):
         panel.tools.insertWidget(1, tool)
         context.session.design_changed.connect(lambda design: panel.set_control(design.volume))
         panel.control_chosen.connect(context.session.choose_control)
-        panel.export_asked.connect(self.export)
+        panel.export_requested.connect(self.export)
         panel.quantity_chosen.connect(self.keep_quantity)
         self.slow.toggled.connect(self.set_slow)
         panel.folded.connect(lambda folded: context.actions.strip.setChecked(not folded))

@@ -13,7 +13,7 @@ from PySide6.QtCore import QObject
 from app.gui.features.export.dialog import ExportDialog
 from app.gui.features.export.worker import ExportWorker
 from app.gui.session.jobs import Job
-from app.gui.session.settings import wish, wish_for
+from app.gui.session.settings import get_setting, set_setting
 from app.gui.widgets.file_dialogs import ask_save, free_name, last_folder
 from app.gui.widgets.message_box import ask
 from app.i18n.catalog import colon, tr
@@ -42,7 +42,7 @@ class ExportController(QObject):
     def __init__(self, context: AppContext, assess: Callable[[Frame], AssessmentView]) -> None:
         super().__init__(context.session)
         self._context, self._assess = context, assess
-        self._choices = ExportSettings(wish("export"))
+        self._choices = ExportSettings(get_setting("export"))
         self.sheet: ExportDialog | None = None
         self._outcome: ExportSource | None = None
         self._job: Job | None = None
@@ -55,7 +55,7 @@ class ExportController(QObject):
         sheet = self.sheet = ExportDialog(self._context.window, exports())
         sheet.chosen.connect(self._choose_export)
         sheet.changed.connect(self._choose)
-        sheet.save_asked.connect(self._save)
+        sheet.save_requested.connect(self._save)
         sheet.finished.connect(self._forget)
         self._refresh()
         sheet.open()
@@ -87,7 +87,7 @@ class ExportController(QObject):
 
     def _refresh(self) -> None:
         """Show the choices of what is to be exported, and what they come to."""
-        wish_for("export", self._choices.text)
+        set_setting("export", self._choices.text)
         export = self._choices.export
         if self.sheet is not None:
             settings = self._choices.settings(export.what)

@@ -36,12 +36,12 @@ class ExportDialog(Dialog):
     """All that can be exported.
 
     ``chosen`` carries the word of something else to export, ``changed`` key and value of a choice for it;
-    ``save_asked`` wants a file.
+    ``save_requested`` wants a file.
     """
 
     chosen = Signal(str)
     changed = Signal(str, str)
-    save_asked = Signal()
+    save_requested = Signal()
 
     def __init__(self, parent: QWidget, exports: Sequence[Export]) -> None:
         super().__init__(parent, tr("Export"), SIZE)

@@ -34,10 +34,10 @@ class GarmentController(QObject):
         self._shown: Frame | None = None
         panel.opened.connect(self.refresh)
         panel.selected.connect(context.selection.select_line)
-        panel.lines_asked.connect(lambda: context.navigation.show_panel("lines"))
+        panel.lines_requested.connect(lambda: context.navigation.show_panel("lines"))
         panel.tissue.entered.connect(self._set_tissue)
-        panel.copy_asked.connect(lambda: copy_table(context, self._as_table()))
-        panel.table_asked.connect(
+        panel.copy_requested.connect(lambda: copy_table(context, self._as_table()))
+        panel.table_requested.connect(
             lambda: save_table(context, self._as_table(), tr("Save the cut list"), "cut-list")
         )
 

@@ -36,12 +36,12 @@ class ElasticAssignmentController(QObject):
         super().__init__(context.session)
         self._context, self._session = context, context.session
         self.offer = ElasticOffer(context, self._use)
-        self.offer.library_asked.connect(panel.elastics_asked)
+        self.offer.library_requested.connect(panel.elastics_requested)
         self._job: Job | None = None
         self._asked: Design | None = None
         self._variant, self._index = "", 0
-        panel.elastic_asked.connect(self.show)
-        panel.all_asked.connect(self.show_all)
+        panel.elastic_requested.connect(self.show)
+        panel.all_requested.connect(self.show_all)
         panel.stretched.connect(self.stretch)
         self._session.opened.connect(lambda *_: self._let_go())
         self._session.undo_stack.indexChanged.connect(self._follow)

@@ -32,19 +32,19 @@ _RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 class ElasticChooser(Dialog):
     """The elastics for some lines; ``chosen`` carries a row and whether it is used at its limit.
 
-    ``mode_asked`` names what is to be kept, ``marked`` the row that advice is wanted for.
+    ``mode_requested`` names what is to be kept, ``marked`` the row that advice is wanted for.
     """
 
     chosen = Signal(int, bool)
-    mode_asked = Signal(str)
+    mode_requested = Signal(str)
     marked = Signal(int)
-    elastics_asked = Signal()
+    elastics_requested = Signal()
 
     def __init__(self, parent: QWidget, title: str, modes: Sequence[tuple[str, str]]) -> None:
         super().__init__(parent, title, (980, 620))
         self.modes, self.meaning = Segment(modes), sentence("", "secondary")
         self.modes.setVisible(bool(modes))
-        self.modes.chosen.connect(self.mode_asked)
+        self.modes.chosen.connect(self.mode_requested)
         self.table, self.advice = _Table(), sentence("", "secondary")
         self.problems = sentence("", "caption")
         self._offers = QHBoxLayout()

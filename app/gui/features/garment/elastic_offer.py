@@ -77,9 +77,9 @@ class _Offer:
 
 
 class ElasticOffer(QObject):
-    """Open the chooser and fill it; ``use`` takes what is chosen in it, ``library_asked`` asks for more."""
+    """Open the chooser and fill it; ``use`` takes what is chosen in it, ``library_requested`` asks for more."""
 
-    library_asked = Signal()
+    library_requested = Signal()
 
     def __init__(self, context: AppContext, use: Use) -> None:
         super().__init__(context.session)
@@ -97,10 +97,10 @@ class ElasticOffer(QObject):
         modes = mode_titles() if design.line_hold == "spring" else []
         title = tr("Elastic for {line}").format(line=asked.title())
         chooser = self.chooser = ElasticChooser(self._context.window, title, modes)
-        chooser.mode_asked.connect(self.set_mode)
+        chooser.mode_requested.connect(self.set_mode)
         chooser.marked.connect(lambda _: self._advise())
         chooser.chosen.connect(self._use)
-        chooser.elastics_asked.connect(self._leave_for_library)
+        chooser.elastics_requested.connect(self._leave_for_library)
         chooser.finished.connect(self._closed)
         chooser.set_problems(joined(render(each.text) for each in problems))
         self.set_mode(self.mode)
@@ -184,7 +184,7 @@ class ElasticOffer(QObject):
 
     def _leave_for_library(self) -> None:
         self.close()
-        self.library_asked.emit()
+        self.library_requested.emit()
 
     def _closed(self) -> None:
         self._context.jobs.cancel(self._job)

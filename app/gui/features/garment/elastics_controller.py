@@ -48,17 +48,17 @@ class ElasticsController(QObject):
         do.add("lines", tr("Elastics…"), tip=said, do=self.show)
         said = tr("See how long to cut each worn line, of what, and how far it is stretched")
         do.add("lines", tr("Cut list"), tip=said, do=self._show_cuts, of_document=True)
-        panel.elastics_asked.connect(self.show)
+        panel.elastics_requested.connect(self.show)
         self.sheet: ElasticsDialog | None = None
 
     def show(self) -> None:
         """Show the elastics there are."""
         self.sheet = sheet = ElasticsDialog(self._context.window)
         sheet.finished.connect(self._forget)
-        sheet.import_asked.connect(self.bring_in)
-        sheet.export_asked.connect(self.hand_on)
-        sheet.template_asked.connect(self.save_template)
-        sheet.delete_asked.connect(self.take_away)
+        sheet.import_requested.connect(self.bring_in)
+        sheet.export_requested.connect(self.hand_on)
+        sheet.template_requested.connect(self.save_template)
+        sheet.delete_requested.connect(self.take_away)
         self._fill()
         sheet.open()
 

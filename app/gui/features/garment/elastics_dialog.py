@@ -30,12 +30,12 @@ _NAME = Qt.ItemDataRole.UserRole
 
 
 class ElasticsDialog(Dialog):
-    """All elastics; ``export_asked`` names the marked one, ``delete_asked`` one of one's own."""
+    """All elastics; ``export_requested`` names the marked one, ``delete_requested`` one of one's own."""
 
-    import_asked = Signal()
-    export_asked = Signal(str)
-    template_asked = Signal()
-    delete_asked = Signal(str)
+    import_requested = Signal()
+    export_requested = Signal(str)
+    template_requested = Signal()
+    delete_requested = Signal(str)
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent, tr("Elastics"), (780, 600))

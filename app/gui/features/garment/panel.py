@@ -13,7 +13,7 @@ from app.gui.features.garment.row import CUT, NEWTONS, PRESSURE, GarmentRow
 from app.gui.features.garment.tissue_card import TissueCard
 from app.gui.theme.stylesheet import label, set_tag
 from app.gui.widgets.basic import EmptyState, button, sentence
-from app.gui.widgets.button_row import press_row
+from app.gui.widgets.button_row import button_row
 from app.i18n.catalog import tr
 from app.i18n.lengths import length_unit
 from app.presenters.cut_list import CutListView
@@ -24,20 +24,20 @@ class GarmentPanel(QWidget):
     """The cut list; ``cards`` takes what stands below its rows.
 
     ``opened`` when it comes to be seen, and what it shows has to be new. ``selected`` names a line,
-    ``elastic_asked`` one whose elastic is to be chosen, ``all_asked`` is for all active lines, ``stretched``
-    a line and how far its elastic shall be stretched [1]. ``copy_asked`` and ``table_asked`` are for the list
-    as text, ``elastics_asked`` for the elastics there are.
+    ``elastic_requested`` one whose elastic is to be chosen, ``all_requested`` is for all active lines, ``stretched``
+    a line and how far its elastic shall be stretched [1]. ``copy_requested`` and ``table_requested`` are for the list
+    as text, ``elastics_requested`` for the elastics there are.
     """
 
     opened = Signal()
     selected = Signal(str)
-    elastic_asked = Signal(str)
-    all_asked = Signal()
+    elastic_requested = Signal(str)
+    all_requested = Signal()
     stretched = Signal(str, float)
-    lines_asked = Signal()
-    copy_asked = Signal()
-    table_asked = Signal()
-    elastics_asked = Signal()
+    lines_requested = Signal()
+    copy_requested = Signal()
+    table_requested = Signal()
+    elastics_requested = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -53,7 +53,7 @@ class GarmentPanel(QWidget):
             tr("A line that is set shorter pulls: then it can be cut."),
             tr("Set lines"),
         )
-        self.nothing.asked.connect(self.lines_asked)
+        self.nothing.requested.connect(self.lines_requested)
         self.offer = self._make_offer()
         self.again = self._make_again()
         self._doubt, self.tissue = sentence("", "secondary"), TissueCard()
@@ -136,7 +136,7 @@ class GarmentPanel(QWidget):
     def _make_row(self, name: str) -> GarmentRow:
         row = GarmentRow()
         row.pressed.connect(lambda: self.selected.emit(name))
-        row.elastic_asked.connect(lambda: self.elastic_asked.emit(name))
+        row.elastic_requested.connect(lambda: self.elastic_requested.emit(name))
         row.stretched.connect(lambda share: self.stretched.emit(name, share))
         return row
 
@@ -148,13 +148,13 @@ class GarmentPanel(QWidget):
             tr("Of an elastic, Busk knows how long to cut it. Choose one for all lines, or for each below."),
             tr("Choose for all lines…"),
         )
-        card.asked.connect(self.all_asked)
+        card.requested.connect(self.all_requested)
         return card
 
     def _make_again(self) -> QPushButton:
         """Make what stands under the list once a line is made of an elastic: all can be changed at once."""
         again = button(tr("Choose for all lines…"), "quiet")
-        again.clicked.connect(self.all_asked)
+        again.clicked.connect(self.all_requested)
         return again
 
     def _make_head(self) -> QWidget:
@@ -199,12 +199,12 @@ class GarmentPanel(QWidget):
         return area
 
     def _make_buttons(self) -> QWidget:
-        return press_row(
+        return button_row(
             (
                 (
                     tr("Copy"),
                     tr("Copy the cut list, to paste into a spreadsheet or a letter"),
-                    self.copy_asked,
+                    self.copy_requested,
                 ),
                 (tr("CSV…"), tr("Write the cut list to a file (CSV)"), self.table_asked),
                 (tr("Elastics…"), tr("See, bring in and hand on elastics"), self.elastics_asked),

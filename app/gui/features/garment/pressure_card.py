@@ -24,7 +24,7 @@ _ZONES = {"green": "zone_ok", "amber": "zone_warn", "red": "zone_bad"}
 _FADED = 0.4  # how strongly figures of a former shape are seen
 
 
-class LightMark(QWidget):
+class RatingMark(QWidget):
     """A light and its word: never the colour alone."""
 
     def __init__(self) -> None:
@@ -109,16 +109,16 @@ class PressureScale(QWidget):
 
 
 class PressureCard(QWidget):
-    """The summary, the scale and two folds; ``place_asked`` by a click on where it presses most."""
+    """The summary, the scale and two folds; ``place_requested`` by a click on where it presses most."""
 
-    place_asked = Signal()
+    place_requested = Signal()
 
     def __init__(self, limits: RatingLimits) -> None:
         super().__init__()
-        self.largest, self.light = label("", "heading", tabular=True), LightMark()
+        self.largest, self.light = label("", "heading", tabular=True), RatingMark()
         self.says, self.force = sentence("", "secondary"), label("", "secondary", tabular=True)
         self.place = button("", "word")
-        self.place.clicked.connect(self.place_asked)
+        self.place.clicked.connect(self.place_requested)
         self.scale = PressureScale(limits)
         self.limits = sentence(
             tr("The limits are an estimate of ours between measured ones, such as {source}.").format(
@@ -165,7 +165,7 @@ class PressureCard(QWidget):
         self._most = label(tr("Most:"), "secondary")
         self.eye = ToolButton("eye", tr("Look at it, with the map of pressure"), size=14, room=24)
         self.eye.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # the words beside it do the same by keyboard
-        self.eye.clicked.connect(self.place_asked)
+        self.eye.clicked.connect(self.place_requested)
         row = QHBoxLayout()
         row.setSpacing(0)
         row.addWidget(self._most)

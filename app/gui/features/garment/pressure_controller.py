@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 class PressureController(QObject):
     """Keep the contact pressures of frames, and show them beside the cut list.
 
-    ``changed`` is emitted when more of them are known, or will not be; ``place_asked`` when the place of the
+    ``changed`` is emitted when more of them are known, or will not be; ``place_requested`` when the place of the
     highest pressure is to be shown.
     """
 
     changed = Signal()
-    place_asked = Signal()
+    place_requested = Signal()
 
     def __init__(self, context: AppContext, panel: GarmentPanel) -> None:
         super().__init__(context.session)
@@ -51,7 +51,7 @@ class PressureController(QObject):
         self._cache.changed.connect(self.changed)
         self.changed.connect(self.follow)
         context.session.failed.connect(lambda _: self.changed.emit())
-        self.card.place_asked.connect(self.place_asked)
+        self.card.place_requested.connect(self.place_requested)
         panel.opened.connect(self._open)
 
     def of(self, frame: Frame) -> PressureList | None:

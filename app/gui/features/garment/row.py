@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QSizePolicy, QWidget
 
 from app.gui.theme.stylesheet import font, label, set_tag, tokens_of
 from app.gui.widgets.basic import ElidedLabel, sentence
-from app.gui.widgets.elastic_button import ElasticPull
+from app.gui.widgets.elastic_button import ElasticButton
 from app.gui.widgets.line_widgets import LineChip
 from app.gui.widgets.tooltip import set_tip
 from app.gui.widgets.value_edit import ValueEdit
@@ -62,14 +62,14 @@ class PressureMark(QWidget):
 
 
 class GarmentRow(QFrame):
-    """The row of one line; ``pressed`` by a click, ``elastic_asked`` at its choice of elastics.
+    """The row of one line; ``pressed`` by a click, ``elastic_requested`` at its choice of elastics.
 
     ``stretched`` carries how far its elastic shall be stretched [1], where the designer sets that.
     """
 
     pressed = Signal()
     stretched = Signal(float)
-    elastic_asked = Signal()
+    elastic_requested = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -81,9 +81,9 @@ class GarmentRow(QFrame):
         self.title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.cut = label("", "heading", tabular=True)
         self.tension, self.stretch = label("", "body", tabular=True), label("", "caption", tabular=True)
-        self.elastic, self.pressure, self.set_stretch = ElasticPull(), PressureMark(), _StretchField()
+        self.elastic, self.pressure, self.set_stretch = ElasticButton(), PressureMark(), _StretchField()
         self.set_stretch.entered.connect(lambda percent: self.stretched.emit(percent / 100.0))
-        self.elastic.clicked.connect(self.elastic_asked)
+        self.elastic.clicked.connect(self.elastic_requested)
         self.notes = sentence("", "caption")
         self._build()
 
@@ -108,7 +108,7 @@ class GarmentRow(QFrame):
         self.elastic.show_elastic(view.title, view.elastic)
         self.notes.setText("\n".join(view.notes))
         self.notes.setVisible(bool(view.notes))
-        self.setAccessibleName(spoken(view))
+        self.setAccessibleName(accessible_text(view))
 
     def set_selected(self, selected: bool) -> None:
         """Mark the row of the line that is selected on the body."""
@@ -174,7 +174,7 @@ class _StretchField(ValueEdit):
         return value
 
 
-def spoken(view: CutView) -> str:
+def accessible_text(view: CutView) -> str:
     """Return a piece for ears."""
     cut = view.cut and f"{view.cut} {length_unit()}"
     figures = (

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QStackedWidget, QWidget
 
 from app.gui.theme.stylesheet import label
 from app.gui.widgets.basic import Segment, button, sentence
-from app.gui.widgets.dialog import Dialog, reading
+from app.gui.widgets.dialog import Dialog, text_viewer
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 
@@ -30,7 +30,7 @@ class AboutDialog(Dialog):
         self.tabs = Segment([(name, title) for name, (title, _) in zip(names, licences, strict=True)])
         self.texts = QStackedWidget()
         for title, text in licences:
-            self.texts.addWidget(reading(text, title, code=True))
+            self.texts.addWidget(text_viewer(text, title, code=True))
         self.tabs.chosen.connect(lambda name: self.show_licence(int(name)))
         self.body.addSpacing(4)
         self.body.addWidget(self.tabs)
@@ -47,17 +47,17 @@ class AboutDialog(Dialog):
 class DiagnosticsDialog(Dialog):
     """Facts about program and machine, to copy for whoever is asked for help.
 
-    ``folders`` are those that the program writes to; ``folder_asked`` carries the path of one to be shown.
+    ``folders`` are those that the program writes to; ``folder_requested`` carries the path of one to be shown.
     """
 
-    folder_asked = Signal(object)
+    folder_requested = Signal(object)
 
     def __init__(self, parent: QWidget, facts: Facts, folders: Sequence[tuple[str, Path]]) -> None:
         super().__init__(parent, tr("Diagnostics"), (680, 560))
         said = tr("For a report: versions, graphics and folders. No scan, no measures, no names of files.")
         self.body.addWidget(sentence(said))
         self.text = as_text(facts)
-        self.body.addWidget(reading(self.text, tr("Diagnostics"), code=True), 1)
+        self.body.addWidget(text_viewer(self.text, tr("Diagnostics"), code=True), 1)
         self.body.addLayout(self._openers(folders))
         self.copy = self.add_button(tr("Copy"), self._copy)
         self.add_close()
@@ -74,7 +74,7 @@ class DiagnosticsDialog(Dialog):
             set_tip(opener, str(folder) if folder.is_dir() else tr("Nothing has been written there yet."))
             opener.setAccessibleName(tr("Open the folder: {name}").format(name=title))
             opener.setAutoDefault(False)
-            opener.clicked.connect(lambda _=False, folder=folder: self.folder_asked.emit(folder))
+            opener.clicked.connect(lambda _=False, folder=folder: self.folder_requested.emit(folder))
             row.addWidget(opener)
         row.addStretch(1)
         return row

@@ -28,7 +28,7 @@ class Command:
     give: Callable[[], object] | None = None
 
 
-def plain(text: str) -> str:
+def normalized(text: str) -> str:
     """Return text as it is compared: in small letters of one width."""
     return unicodedata.normalize("NFKC", text).casefold()
 
@@ -37,7 +37,7 @@ def _distance(command: Command, words: Sequence[str]) -> int:
     """Return how far a command is from what is typed: its title or another word begins so."""
     if not words:
         return 0
-    title, word = plain(command.title), words[0]
+    title, word = normalized(command.title), words[0]
     ranks = title.startswith(word), word in title, f" {word}" in command.words
     return ranks.index(True) if any(ranks) else len(ranks)
 
@@ -112,7 +112,7 @@ class CommandPalette(Dialog):
         self._find("")
 
     def _find(self, text: str) -> None:
-        words = plain(text).split()
+        words = normalized(text).split()
         found = [each for each in self._commands if all(word in each.words for word in words)]
         found.sort(key=lambda each: _distance(each, words))
         self.list.show_commands(found)

@@ -10,8 +10,8 @@ from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QWhatsThis, QWidget
 
 from app.gui.features.help.about import AboutDialog, DiagnosticsDialog
-from app.gui.features.help.command_palette import Command, CommandPalette, plain
-from app.gui.features.help.system_info import machine_facts
+from app.gui.features.help.command_palette import Command, CommandPalette, normalized
+from app.gui.features.help.system_info import system_info
 from app.gui.features.help.user_guide import first_page, fitting_page, show_page
 from app.gui.features.help.whats_this import explain
 from app.gui.session.app_folders import folders, show_folder
@@ -86,8 +86,8 @@ class HelpController(QObject):
 
     def show_machine(self) -> None:
         """Show what the program is made of, what draws for it, and where it writes."""
-        sheet = DiagnosticsDialog(self._context.window, machine_facts(self._context.window), folders())
-        sheet.folder_asked.connect(lambda folder: show_folder(folder, self._context.notifications.info))
+        sheet = DiagnosticsDialog(self._context.window, system_info(self._context.window), folders())
+        sheet.folder_requested.connect(lambda folder: show_folder(folder, self._context.notifications.info))
         sheet.open()
 
     def show_about(self) -> None:
@@ -107,4 +107,4 @@ def _command(where: str, action: QAction) -> Command:
     others = (SYNONYMS.get(each, "") for each in titles)
     words = " ".join((*titles, *in_all_languages(where), *tips, *others))
     give = action.trigger if action.isEnabled() else None
-    return Command(title.rstrip("…"), where, keys, plain(words), give)
+    return Command(title.rstrip("…"), where, keys, normalized(words), give)

@@ -7,14 +7,14 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QWidget
 
 from app.gui.widgets.basic import Disclosure, sentence
-from app.gui.widgets.dialog import Dialog, reading
+from app.gui.widgets.dialog import Dialog, text_viewer
 from app.i18n.catalog import tr
 
 
 class CrashDialog(Dialog):
     """Says that something went wrong, where the design was kept, and what can be done."""
 
-    quit_asked = Signal()
+    quit_requested = Signal()
 
     def __init__(self, parent: QWidget, kept: str, trace: str, machine: str) -> None:
         super().__init__(parent, tr("Something went wrong inside Busk"), (620, 0))
@@ -29,7 +29,7 @@ class CrashDialog(Dialog):
         self.body.addWidget(sentence(tr("You can go on. If it happens again, start Busk anew.")))
         self._unfold = Disclosure(tr("Details for a report"))
         self._unfold.setAccessibleName(tr("Details for a report"))
-        self.details = reading(self.report(), tr("Details for a report"), code=True)
+        self.details = text_viewer(self.report(), tr("Details for a report"), code=True)
         self.details.setMinimumHeight(220)
         self.details.hide()
         self._unfold.toggled.connect(self._show_details)
@@ -60,4 +60,4 @@ class CrashDialog(Dialog):
 
     def _quit(self) -> None:
         self.accept()
-        self.quit_asked.emit()
+        self.quit_requested.emit()

@@ -15,7 +15,7 @@ from PySide6.QtCore import QObject, Qt, Signal
 
 from app.gui.features.help.about import as_text
 from app.gui.features.help.crash_dialog import CrashDialog
-from app.gui.features.help.system_info import machine_facts
+from app.gui.features.help.system_info import system_info
 from app.gui.widgets.notification_bar import REFUSED
 from app.i18n.catalog import tr
 from core.errors import UserError, as_exception
@@ -83,7 +83,7 @@ class CrashHandler(QObject):
         sheet = self.sheet = CrashDialog(
             self._context.window, self._keep_aside(), trace, self._about_machine()
         )
-        sheet.quit_asked.connect(self._context.window.close)
+        sheet.quit_requested.connect(self._context.window.close)
         sheet.finished.connect(self._forget)
         sheet.open()
 
@@ -103,7 +103,7 @@ class CrashHandler(QObject):
 
     def _about_machine(self) -> str:
         try:
-            return as_text(machine_facts(self._context.window))
+            return as_text(system_info(self._context.window))
         except Exception:
             logging.exception("the machine could not be looked at")
             return tr("not known")

@@ -21,7 +21,7 @@ LIBRARIES = ("PySide6-Essentials", "vtk", "pyvista", "pyvistaqt", "numpy", "scip
 Group = tuple[str, list[tuple[str, str]]]
 
 
-def machine_facts(window: QWidget) -> list[Group]:
+def system_info(window: QWidget) -> list[Group]:
     """Return what the program is made of, what draws for it, and where it writes."""
     screen = window.screen()
     size, scale = screen.geometry(), window.devicePixelRatioF()

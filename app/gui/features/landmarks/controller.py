@@ -48,12 +48,12 @@ class LandmarksController(QObject):
 
     A pin that is carried, by the pointer or by keys, is previewed: the model is fitted again with its newest
     place. Putting it down is one undo step, with its mirror image if both sides are linked.
-    ``upright_asked`` carries the direction of the file that is up; ``carrying_changed`` is emitted when a pin
+    ``upright_requested`` carries the direction of the file that is up; ``carrying_changed`` is emitted when a pin
     is taken, put down or let go.
     """
 
     carrying_changed = Signal()
-    upright_asked = Signal(str)
+    upright_requested = Signal(str)
 
     def __init__(self, context: AppContext, panel: LandmarksPanel) -> None:
         super().__init__(context.session)
@@ -71,10 +71,10 @@ class LandmarksController(QObject):
     def _connect(self) -> None:
         panel, viewport = self._panel, self._context.view.viewport
         panel.landmark_selected.connect(self.take)
-        panel.reset_asked.connect(self.reset)
+        panel.reset_requested.connect(self.reset)
         panel.confirmed.connect(self.confirm)
-        panel.place_asked.connect(self.put_pin)
-        panel.keys_asked.connect(self.move_by_keys)
+        panel.place_requested.connect(self.put_pin)
+        panel.keys_requested.connect(self.move_by_keys)
         panel.hovered.connect(self.hover)
         panel.linked.connect(self.link)
         viewport.pin_pressed.connect(self.take)
@@ -141,7 +141,7 @@ class LandmarksController(QObject):
 
     def _stand_upright(self, up: str) -> None:
         self._context.notifications.withdraw(_DOUBT)
-        self.upright_asked.emit(up)
+        self.upright_requested.emit(up)
 
     def _look_at(self, landmark: str) -> None:
         self._context.navigation.show_step("landmarks")

@@ -43,18 +43,18 @@ class _Area(QScrollArea):
 class LandmarksPanel(QWidget):
     """All landmarks, one row each; under them the rule of the selected one.
 
-    ``reset_asked`` names the landmarks, a tuple, that are to be found again, ``confirmed`` those that are
-    right; ``place_asked`` one that was not found and is to be placed; ``hovered`` the one under the pointer,
-    or none. ``keys_asked``: the selected one is to be moved by keys. ``linked`` tells whether the other side
+    ``reset_requested`` names the landmarks, a tuple, that are to be found again, ``confirmed`` those that are
+    right; ``place_requested`` one that was not found and is to be placed; ``hovered`` the one under the pointer,
+    or none. ``keys_requested``: the selected one is to be moved by keys. ``linked`` tells whether the other side
     goes with one.
     """
 
     landmark_selected = Signal(str)
-    place_asked = Signal(str)
-    reset_asked = Signal(object)
+    place_requested = Signal(str)
+    reset_requested = Signal(object)
     confirmed = Signal(object)
     hovered = Signal(str)
-    keys_asked = Signal()
+    keys_requested = Signal()
     linked = Signal(bool)
 
     def __init__(self) -> None:
@@ -67,7 +67,7 @@ class LandmarksPanel(QWidget):
         column.setSpacing(2)
         self._summary = sentence()
         self._summary.setContentsMargins(4, 2, 0, 6)
-        self._doubts = Doubts()
+        self._doubts = LandmarkWarnings()
         self._empty = EmptyState(
             "map-pin", tr("No landmarks yet"), tr("They are found on the scan. Open one first.")
         )
@@ -135,10 +135,10 @@ class LandmarksPanel(QWidget):
         self.place, self.right = button(tr("Place it")), button(tr("It is right"))
         set_tip(self.right, tr("Keep it where it was found, and ask no more"))
         self.reset, self.reset_all = button(tr("Find it again")), button(tr("Find all again"), "quiet")
-        self.place.clicked.connect(lambda: self.place_asked.emit(self._selected))
+        self.place.clicked.connect(lambda: self.place_requested.emit(self._selected))
         self.right.clicked.connect(self._confirm)
-        self.reset.clicked.connect(lambda: self.reset_asked.emit((self._selected,)))
-        self.reset_all.clicked.connect(lambda: self.reset_asked.emit(self._placed()))
+        self.reset.clicked.connect(lambda: self.reset_requested.emit((self._selected,)))
+        self.reset_all.clicked.connect(lambda: self.reset_requested.emit(self._placed()))
         # Each answer has a place of its own: none may lie where another was under the pointer a moment ago.
         buttons = QHBoxLayout()
         buttons.addWidget(self.place)
@@ -208,7 +208,7 @@ class LandmarksPanel(QWidget):
         names = [name for name, row in self.rows.items() if row.isVisible()]
         chosen = self.rows.get(self._selected or "")
         if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and chosen is not None and chosen.hasFocus():
-            self.keys_asked.emit()
+            self.keys_requested.emit()
             return
         if step is None or not names:
             super().keyPressEvent(event)
@@ -264,7 +264,7 @@ class LandmarksPanel(QWidget):
         self.landmark_selected.emit(name)
 
 
-class Doubts(QFrame):
+class LandmarkWarnings(QFrame):
     """What wants a look, and what to do about it; it takes no room while all is well."""
 
     def __init__(self) -> None:

@@ -27,7 +27,7 @@ class AddLinesController(QObject):
         super().__init__(context.session)
         self._context, self._head = context, panel.head
         self.menu = Menu(context.window)
-        panel.add_asked.connect(self.show_menu)
+        panel.add_requested.connect(self.show_menu)
         context.actions.own_line.triggered.connect(self.ask)
         for name, action in context.actions.add_lines.items():
             action.triggered.connect(lambda _=False, name=name: self.add(name))

@@ -10,7 +10,7 @@ from PySide6.QtGui import QCursor, QHelpEvent
 
 from app.gui.features.lines.panel import LinesPanel
 from app.gui.features.lines.row import LineRow, locked_tip
-from app.gui.features.lines.slider_groove import LONGEST, RESISTANCE, SHORTEST, resisted, wall_of
+from app.gui.features.lines.slider_groove import LONGEST, RESISTANCE, SHORTEST, resisted_ratio, wall_of
 from app.gui.viewport.band_drag import BandHandle
 from app.gui.widgets.tooltip import hide_tip, show_tip
 from app.i18n.catalog import tr
@@ -52,7 +52,7 @@ class BandDragController(QObject):
         assert grip is not None
         grip.cursor_of = self._cursor_of
         grip.taken.connect(self._take)
-        grip.pulled.connect(self._pull)
+        grip.dragged.connect(self._pull)
         grip.dropped.connect(self._drop)
         # What is undone or opened meanwhile is another length than the hand has taken hold of.
         context.session.design_changed.connect(lambda _: self._open_hand())
@@ -113,7 +113,7 @@ class BandDragController(QObject):
             return
         self._way += pixels
         wanted = self._start - STEP * self._way
-        ratio = resisted(wanted, self._wall, STEP * RESISTANCE)
+        ratio = resisted_ratio(wanted, self._wall, STEP * RESISTANCE)
         self._tell(stopped=ratio != wanted and ratio == self._wall)
         ratio = min(max(ratio, min(SHORTEST, self._start)), max(LONGEST, self._start))
         ratio = round(ratio, 4 if fine else 3)

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QCheckBox, QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
-from app.gui.features.lines.limits_legend import LeewayKey
+from app.gui.features.lines.limits_legend import LimitsLegend
 from app.gui.theme.stylesheet import font, label, set_tag
 from app.gui.widgets.basic import ToolButton, hairline, sentence
-from app.gui.widgets.elastic_button import ElasticPull
+from app.gui.widgets.elastic_button import ElasticButton
 from app.gui.widgets.line_widgets import PaletteMenu, StiffnessField
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr
@@ -24,13 +24,13 @@ _OFF = 5e-6  # a set length nearer to the rest length than this means that the l
 class LineDetails(QWidget):
     """The lower part of an opened row; a linked pair has one line of figures for each side.
 
-    ``decided`` carries what was decided and its value: colour, linked, stiffness, over_shoulder; ``asked``
-    one of: reset, rename, path, remove. ``elastic_asked``: an elastic is to be chosen.
+    ``decided`` carries what was decided and its value: colour, linked, stiffness, over_shoulder; ``requested``
+    one of: reset, rename, path, remove. ``elastic_requested``: an elastic is to be chosen.
     """
 
     decided = Signal(str, object)
-    asked = Signal(str)
-    elastic_asked = Signal()
+    requested = Signal(str)
+    elastic_requested = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -53,7 +53,7 @@ class LineDetails(QWidget):
         column.addSpacing(5)
         column.addWidget(hairline())
         column.addSpacing(4)
-        self._key = LeewayKey()
+        self._key = LimitsLegend()
         column.addWidget(self._key)
         self._part, self._whole = sentence("", "caption"), sentence("", "caption")
         column.addWidget(self._part)
@@ -64,8 +64,8 @@ class LineDetails(QWidget):
         self.over.clicked.connect(lambda over: self.decided.emit("over_shoulder", over))
         column.addWidget(self.over)
         outside.addWidget(self._set)
-        self._elastic = ElasticPull()
-        self._elastic.clicked.connect(self.elastic_asked)
+        self._elastic = ElasticButton()
+        self._elastic.clicked.connect(self.elastic_requested)
         made = QHBoxLayout()
         made.setContentsMargins(0, 3, 0, 0)
         made.addWidget(label(tr("Elastic"), "caption"))
@@ -184,7 +184,7 @@ class LineDetails(QWidget):
         elif name == "link":
             self.decided.emit("linked", not self._linked)
         else:
-            self.asked.emit(name)
+            self.requested.emit(name)
 
     def _show_whole(self, view: LineView, ratio: float) -> None:
         whole_mm = view.whole_mm - view.rest_mm + ratio * view.rest_mm

@@ -15,11 +15,11 @@ WIDTH = 232
 
 
 class DrawCard(FloatingPanel):
-    """Says what to do; ``kept``, ``back``, ``left`` and ``moved`` at its buttons."""
+    """Says what to do; ``accepted``, ``back``, ``closed`` and ``moved`` at its buttons."""
 
-    kept = Signal()
+    accepted = Signal()
     back = Signal()
-    left = Signal()
+    closed = Signal()
     moved = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -30,7 +30,7 @@ class DrawCard(FloatingPanel):
         self._title = label("", "heading")
         head.addWidget(self._title, 1)
         close = ToolButton("x", tr("Leave without a change (Esc)"), size=14, room=26)
-        close.clicked.connect(self.left)
+        close.clicked.connect(self.closed)
         head.addWidget(close)
         self._what, self._keys = sentence(""), sentence("", "caption")
         self._words = self._what, self._keys
@@ -48,7 +48,7 @@ class DrawCard(FloatingPanel):
         self.keep, self.undo = button(tr("Keep line"), "primary"), button(tr("One step back"), "quiet")
         for each in (self.keep, self.undo, self.move_):
             each.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click leaves the keys to the hand that draws
-        self.keep.clicked.connect(self.kept)
+        self.keep.clicked.connect(self.accepted)
         self.undo.clicked.connect(self.back)
         column.addLayout(head)
         for part in (self._what, self.move_, self._keys, self.snap, self.both):

@@ -11,7 +11,7 @@ from PySide6.QtCore import QObject, QPointF, QSignalBlocker
 from app.gui.features.lines.add_lines import AddLinesController
 from app.gui.features.lines.drawing_base import DrawingBase
 from app.gui.features.lines.panel import LinesPanel
-from app.gui.features.lines.path_tool import led
+from app.gui.features.lines.path_tool import with_new_path
 from app.gui.session.jobs import Job
 from app.i18n.catalog import tr
 from app.i18n.lengths import length
@@ -41,7 +41,7 @@ class LineDrawTool(QObject):
         super().__init__(context.session)
         self._context, self._add = context, add
         self._sketching = DrawingBase(context, self)
-        panel.draw_asked.connect(self.begin)
+        panel.draw_requested.connect(self.begin)
         context.actions.draw_line.triggered.connect(self.begin)
         self._ways: tuple[Body, SurfacePaths] | None = None
         self._job: Job | None = None
@@ -54,10 +54,12 @@ class LineDrawTool(QObject):
         hand, card = self._sketching.hand, self._sketching.card
         hand.clicked.connect(self._click)
         hand.hovered.connect(self._hover)
-        hand.asked.connect(lambda what: {"keep": self.go_on, "back": self.back, "leave": self.leave}[what]())
-        card.kept.connect(self.go_on)
+        hand.requested.connect(
+            lambda what: {"keep": self.go_on, "back": self.back, "leave": self.leave}[what]()
+        )
+        card.accepted.connect(self.go_on)
         card.back.connect(self.back)
-        card.left.connect(self.leave)
+        card.closed.connect(self.leave)
         card.moved.connect(self._move)
         card.snap.toggled.connect(self._choose)
         self._sketching.lost.connect(self.leave)
@@ -222,7 +224,7 @@ class LineDrawTool(QObject):
             after = CustomLine(again.name, points, found.closed, places, over)
             self.leave()
             text = tr("{line} led elsewhere").format(line=row_title(again.name, design))
-            session.edit(lambda before: led(before, again, after), text)
+            session.edit(lambda before: with_new_path(before, again, after), text)
             return
         template = read_template(design.template)
         taken = {*LINE_COLOURS, *(kind_of(line.name) for line in design.own_lines)}

@@ -16,21 +16,21 @@ from app.i18n.catalog import tr
 _WIDEST = 170  # room for the title of a preset [px]
 
 
-class LineHead(QWidget):
+class LinesHeader(QWidget):
     """The pull-down of presets, with what the worn one leaves out, and three tools.
 
-    Signals: ``presets_asked``, ``reset_asked``, ``draw_asked``, ``add_asked``.
+    Signals: ``presets_requested``, ``reset_requested``, ``draw_requested``, ``add_requested``.
     """
 
-    presets_asked = Signal()
-    reset_asked = Signal()
-    draw_asked = Signal()
-    add_asked = Signal()
+    presets_requested = Signal()
+    reset_requested = Signal()
+    draw_requested = Signal()
+    add_requested = Signal()
 
     def __init__(self) -> None:
         super().__init__()
         self.presets = _PullDown()
-        self.presets.clicked.connect(self.presets_asked)
+        self.presets.clicked.connect(self.presets_requested)
         self.reset = ToolButton(
             "arrow-counter-clockwise",
             tr("Set all lines back to their length at rest, but for locked ones (Ctrl+R)"),
@@ -39,9 +39,9 @@ class LineHead(QWidget):
         self.add = _in_words(tr("Add"), tr("Add lines: a pair, or through control points"))
         self.note = sentence("", "caption")
         for tool, signal in (
-            (self.reset, self.reset_asked),
-            (self.draw, self.draw_asked),
-            (self.add, self.add_asked),
+            (self.reset, self.reset_requested),
+            (self.draw, self.draw_requested),
+            (self.add, self.add_requested),
         ):
             tool.clicked.connect(signal)
         column, row = QVBoxLayout(self), QHBoxLayout()

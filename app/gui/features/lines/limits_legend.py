@@ -40,7 +40,7 @@ class Swatch(QWidget):
         paint_zone(painter, tokens_of(self), QRectF(0.0, top, self.width(), GROOVE_HEIGHT), self._tone)
 
 
-class LeewayKey(QWidget):
+class LimitsLegend(QWidget):
     """A row for each kind of zone that a line has: a swatch and words; the one it stands in is told apart.
 
     Beneath them is the ``pressure`` at the present length. A length in a green zone whose pressure is too

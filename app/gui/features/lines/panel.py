@@ -9,7 +9,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QKeyEvent, QShowEvent
 from PySide6.QtWidgets import QApplication, QFrame, QScrollArea, QVBoxLayout, QWidget
 
-from app.gui.features.lines.header import LineHead
+from app.gui.features.lines.header import LinesHeader
 from app.gui.features.lines.row import LineRow, LineView
 from app.gui.widgets.basic import EmptyState, sentence
 from app.i18n.catalog import tr
@@ -44,7 +44,7 @@ class LinesPanel(QWidget):
     """All lines, one row each, a linked pair in one; lengths in the signals are shares of those at rest [1].
 
     Signals name a line, a pair by its left one; ``decided`` carries one of its traits and the value,
-    ``elastic_asked`` one whose elastic is to be chosen; ``opened`` when the list comes to be seen.
+    ``elastic_requested`` one whose elastic is to be chosen; ``opened`` when the list comes to be seen.
     """
 
     opened = Signal()
@@ -56,11 +56,11 @@ class LinesPanel(QWidget):
     visibility_changed = Signal(str, bool)
     decided = Signal(str, str, object)
     removed = Signal(str)
-    path_asked = Signal(str)
-    elastic_asked = Signal(str)
-    draw_asked = Signal()
-    add_asked = Signal()
-    presets_asked = Signal()
+    path_requested = Signal(str)
+    elastic_requested = Signal(str)
+    draw_requested = Signal()
+    add_requested = Signal()
+    presets_requested = Signal()
     reset_all = Signal()
 
     def __init__(self) -> None:
@@ -72,11 +72,11 @@ class LinesPanel(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
-        self.head = LineHead()
-        self.head.reset_asked.connect(self.reset_all)
-        self.head.draw_asked.connect(self.draw_asked)
-        self.head.add_asked.connect(self.add_asked)
-        self.head.presets_asked.connect(self.presets_asked)
+        self.head = LinesHeader()
+        self.head.reset_requested.connect(self.reset_all)
+        self.head.draw_requested.connect(self.draw_requested)
+        self.head.add_requested.connect(self.add_requested)
+        self.head.presets_requested.connect(self.presets_requested)
         column.addWidget(self.head)
         self._empty = EmptyState("lines", *_no_lines())
         frame = QVBoxLayout()
@@ -203,8 +203,8 @@ class LinesPanel(QWidget):
         row.pressed.connect(lambda: self._choose(name))
         row.removed.connect(lambda: self.removed.emit(name))
         row.decided.connect(lambda trait, value: self.decided.emit(name, trait, value))
-        row.path_asked.connect(lambda: self.path_asked.emit(name))
-        row.elastic_asked.connect(lambda: self.elastic_asked.emit(name))
+        row.path_requested.connect(lambda: self.path_requested.emit(name))
+        row.elastic_requested.connect(lambda: self.elastic_requested.emit(name))
         row.visibility_changed.connect(lambda visible: self.visibility_changed.emit(name, visible))
 
     def _choose(self, name: str) -> None:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _REACH = 16.0  # how near to a control point a click means it [px]
 
 
-def led(design: Design, line: CustomLine, after: CustomLine) -> Design:
+def with_new_path(design: Design, line: CustomLine, after: CustomLine) -> Design:
     """Return the design with an own line led elsewhere, and a linked partner that mirrors it likewise."""
     template, partner = read_template(design.template), partner_of(line.name)
     changed = design.with_custom_line(after)
@@ -48,7 +48,7 @@ class LinePathTool(QObject):
         super().__init__(context.session)
         self._context, self._draw_again = context, draw_again
         self._sketching = DrawingBase(context, self)
-        panel.path_asked.connect(self.begin)
+        panel.path_requested.connect(self.begin)
         self._line: CustomLine | None = None
         self._steps: list[tuple[int, ...]] = []
         self._held, self._mesh_shown = -1, False
@@ -57,10 +57,12 @@ class LinePathTool(QObject):
         hand.clicked.connect(self._click)
         hand.dragged.connect(lambda at: self._drag(at, keep=False))
         hand.dropped.connect(lambda at: self._drag(at, keep=True))
-        hand.asked.connect(lambda what: {"keep": self.keep, "back": self.back, "leave": self.leave}[what]())
-        card.kept.connect(self.keep)
+        hand.requested.connect(
+            lambda what: {"keep": self.keep, "back": self.back, "leave": self.leave}[what]()
+        )
+        card.accepted.connect(self.keep)
         card.back.connect(self.back)
-        card.left.connect(self.leave)
+        card.closed.connect(self.leave)
         self._sketching.lost.connect(self.leave)
         context.navigation.tool_started.connect(self.leave)
         context.session.design_changed.connect(self._check)
@@ -109,7 +111,7 @@ class LinePathTool(QObject):
         self.leave()
         if path != line.points:
             text = tr("{line} led elsewhere").format(line=row_title(line.name, design))
-            session.edit(lambda before: led(before, line, replace(line, points=path)), text)
+            session.edit(lambda before: with_new_path(before, line, replace(line, points=path)), text)
 
     def _check(self, design: Design) -> None:
         """Leave the line once it is no longer the one that was begun with: it was undone, or removed."""

@@ -39,7 +39,7 @@ class PresetsController(QObject):
     def __init__(self, context: AppContext, panel: LinesPanel) -> None:
         super().__init__(context.session)
         self._context, self._head = context, panel.head
-        panel.presets_asked.connect(self.show_menu)
+        panel.presets_requested.connect(self.show_menu)
         self._known: tuple[Preset, ...] = ()
         self._menu = context.actions.submenu("lines", "presets", tr("Presets"))
         self._menu.aboutToShow.connect(self.fill)

@@ -12,7 +12,7 @@ from app.gui.features.lines.slider import LengthSlider
 from app.gui.theme.stylesheet import label, set_tag, tokens_of
 from app.gui.widgets.accessibility import speak_value
 from app.gui.widgets.basic import ToolButton, sentence
-from app.gui.widgets.length_edit import NumberField
+from app.gui.widgets.length_edit import LengthEdit
 from app.gui.widgets.line_widgets import LEAST, LineChip, LineTitle, SideMark
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr
@@ -35,16 +35,16 @@ class LineRow(QFrame):
     pressed = Signal()
     visibility_changed = Signal(bool)
     decided = Signal(str, object)
-    path_asked = Signal()
+    path_requested = Signal()
     removed = Signal()
-    elastic_asked = Signal()
+    elastic_requested = Signal()
 
     def __init__(self, view: LineView) -> None:
         super().__init__()
         self.view = view
         self._open = self._hovered = False
         self.slider = LengthSlider(view.color)
-        self.percent, self.millimetres = NumberField("%"), NumberField("mm")
+        self.percent, self.millimetres = LengthEdit("%"), LengthEdit("mm")
         self.details = LineDetails()
         self._build()
         self._connect()
@@ -200,12 +200,12 @@ class LineRow(QFrame):
         for field in (self.percent, self.millimetres):
             field.entered.connect(self._take)
             field.opened.connect(self.pressed)
-            field.left.connect(self.slider.setFocus)
+            field.closed.connect(self.slider.setFocus)
         self.title.renamed.connect(lambda title: self.decided.emit("title", title))
-        self.title.left.connect(lambda: self.take_focus(Qt.FocusReason.OtherFocusReason))
+        self.title.closed.connect(lambda: self.take_focus(Qt.FocusReason.OtherFocusReason))
         self.details.decided.connect(self.decided)
-        self.details.asked.connect(self._do)
-        self.details.elastic_asked.connect(self.elastic_asked)
+        self.details.requested.connect(self._do)
+        self.details.elastic_requested.connect(self.elastic_requested)
         self._eye.clicked.connect(lambda: self.visibility_changed.emit(not self.view.visible))
         self._link.clicked.connect(lambda: self.decided.emit("linked", True))
         self._lock.clicked.connect(lambda: self.decided.emit("locked", not self.view.locked))
@@ -216,7 +216,7 @@ class LineRow(QFrame):
         elif what == "reset":
             self._take(1.0)
         elif what == "path":
-            self.path_asked.emit()
+            self.path_requested.emit()
         else:
             self.removed.emit()
 

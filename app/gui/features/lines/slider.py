@@ -24,7 +24,7 @@ from app.gui.features.lines.slider_groove import (
     SHORTEST,
     ends_for,
     paint_groove,
-    resisted,
+    resisted_ratio,
     wall_of,
 )
 from app.gui.theme.stylesheet import tokens_of
@@ -186,7 +186,7 @@ class LengthSlider(QAbstractSlider):
 
     def _drag_to(self, x: float) -> None:
         more = self._ratio_at(x + RESISTANCE) - self._ratio_at(x)
-        ratio = resisted(self._ratio_at(x), self._wall, more)
+        ratio = resisted_ratio(self._ratio_at(x), self._wall, more)
         before = self.value()
         self.setValue(round(round(ratio * 1000) * STEPS_TO_ONE / 1000))
         if self.value() != before:

@@ -43,7 +43,7 @@ def wall_of(leeway: LengthLimits | None, ratio: float) -> float | None:
     return red if red is not None and ends_for(ratio)[0] < red <= ratio else None
 
 
-def resisted(ratio: float, wall: float | None, more: float) -> float:
+def resisted_ratio(ratio: float, wall: float | None, more: float) -> float:
     """Return what a hand gets that pulls to ``ratio``: past the wall it must pull ``more`` [1]."""
     return ratio if wall is None or ratio >= wall else min(ratio + more, wall)
 

@@ -32,9 +32,9 @@ _PULL = 120.0  # pixels that an end is dragged to make the range smaller or larg
 
 
 class LegendBar(QWidget):
-    """The colours with their numbers; an end is dragged with ``pulled``, a double click is ``freed``."""
+    """The colours with their numbers; an end is dragged with ``dragged``, a double click is ``freed``."""
 
-    pulled = Signal(bool, float)
+    dragged = Signal(bool, float)
     freed = Signal()
 
     def __init__(self) -> None:
@@ -166,9 +166,9 @@ class LegendBar(QWidget):
             down = -down  # the lower end goes the other way
         if is_high:
             fixed = 0.0 if self._signed else low
-            self.pulled.emit(True, fixed + (high - fixed) * float(np.exp(-down / _PULL)))
+            self.dragged.emit(True, fixed + (high - fixed) * float(np.exp(-down / _PULL)))
         else:
-            self.pulled.emit(False, high - (high - low) * float(np.exp(down / _PULL)))
+            self.dragged.emit(False, high - (high - low) * float(np.exp(down / _PULL)))
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         self._grip = None

@@ -11,7 +11,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.gui.features.maps.band_coloring import BandPainter, BandValues
 from app.gui.features.maps.legend import Legend
-from app.gui.features.maps.legend_placement import LegendPlace
+from app.gui.features.maps.legend_placement import LegendPlacement
 from app.gui.features.maps.values import MapValues, PressureSource, SymmetrySource, WornSource
 from app.gui.viewport.body_view import BodyView
 from app.gui.viewport.value_labels import ValueFlag, ValueFlags
@@ -68,7 +68,7 @@ class MapsController(QObject):
         self.legend.hide()
         self._view.place(self.legend, "top-right", explains=True)
         self.flags = ValueFlags(self._view.viewport)
-        self._place = LegendPlace(self._view, self.legend, self.flags)
+        self._place = LegendPlacement(self._view, self.legend, self.flags)
         self._connect()
 
     def _connect(self) -> None:
@@ -79,7 +79,7 @@ class MapsController(QObject):
         # The view must have heard of the new theme before the map is painted anew.
         self.legend.theme_changed.connect(lambda: QTimer.singleShot(0, self, self.refresh))
         self.flags.pinned.connect(self.pin)
-        self.flags.pulled.connect(self.unpin)
+        self.flags.dragged.connect(self.unpin)
         tools = self._view.tools.actions_by_name
         tools["map"].triggered.connect(self.toggle)
         tools["next-map"].triggered.connect(self.cycle)

@@ -9,7 +9,7 @@ from PySide6.QtCore import QEvent, Signal
 from PySide6.QtWidgets import QHBoxLayout, QMenu, QVBoxLayout, QWidget
 
 from app.gui.features.maps.color_bar import LegendBar
-from app.gui.plots.live_plot import PullTitle
+from app.gui.plots.live_plot import QuantityTitle
 from app.gui.theme.stylesheet import label
 from app.gui.widgets.basic import FloatingPanel, ToolButton
 from app.gui.widgets.tooltip import set_tip
@@ -48,7 +48,7 @@ class Legend(FloatingPanel):
         column.setSpacing(4)
         head = QHBoxLayout()
         head.setSpacing(4)
-        self.title = PullTitle(
+        self.title = QuantityTitle(
             [Quantity(kind.name, kind.title, shown_unit(kind.unit), 0.0) for kind in kinds]
         )
         self.title.chosen.connect(self.chosen)
@@ -60,7 +60,7 @@ class Legend(FloatingPanel):
         head.addWidget(close)
         column.addLayout(head)
         self.bar = LegendBar()
-        self.bar.pulled.connect(self._set_end)
+        self.bar.dragged.connect(self._set_end)
         self.bar.freed.connect(self.range_freed)
         self.high, self.low = self.bar.high, self.bar.low
         self.high.entered.connect(lambda value: self._set_end(True, value))

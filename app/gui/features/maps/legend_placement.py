@@ -20,7 +20,7 @@ _WORD = 20  # a label that is covered is as bad as so many places of a band
 _AIR = 6  # least distance from what it must not cover [px]
 
 
-class LegendPlace(QObject):
+class LegendPlacement(QObject):
     """Moves a legend once what is seen rests; it stays where it covers nothing, and else becomes smaller.
 
     It folds where even the smaller one would lie on another panel or reach out of the view.

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, cast
 
 from PySide6.QtCore import QObject
 
-from app.gui.features.measurements.panel import ResultPanel
+from app.gui.features.measurements.panel import MeasurementsPanel
 from app.gui.file_export import copy_table, save_table
 from app.gui.session.jobs import Job
-from app.gui.session.settings import wish, wish_for
+from app.gui.session.settings import get_setting, set_setting
 from app.i18n.catalog import tr
 from app.i18n.lengths import length
 from app.presenters.measurements import MeasureView, as_table, measure_views, measured_views
@@ -37,7 +37,7 @@ class MeasurementsController(QObject):
     def __init__(
         self,
         context: AppContext,
-        panel: ResultPanel,
+        panel: MeasurementsPanel,
         uncertainties: Callable[[], tuple[OutputUncertainties | None, bool]],
     ) -> None:
         super().__init__(context.session)
@@ -55,8 +55,8 @@ class MeasurementsController(QObject):
         panel.framed.connect(self._look_at)
         panel.opened.connect(self.refresh)
         context.view.compared.connect(self._show_mark)
-        panel.copy_asked.connect(lambda: copy_table(context, self._as_table()))
-        panel.table_asked.connect(
+        panel.copy_requested.connect(lambda: copy_table(context, self._as_table()))
+        panel.table_requested.connect(
             lambda: save_table(context, self._as_table(), tr("Save the table of measures"), "measures")
         )
         panel.sizes.chosen.connect(self._choose)
@@ -172,7 +172,7 @@ class MeasurementsController(QObject):
         return measure.curves if measure else ()
 
     def _choose(self, system: str) -> None:
-        wish_for("size_system", system)
+        set_setting("size_system", system)
         self._show_sizes()
 
     def _allow(self, mm: float) -> None:
@@ -185,7 +185,7 @@ class MeasurementsController(QObject):
         allowance = design.worn_tight_mm if design else 0.0
         self._sized = self._sure
         views, why = size_views(self._rest, allowance, self._sized) if self._rest else ([], "")
-        self._panel.sizes.set_sizes(views, wish("size_system"), allowance, why)
+        self._panel.sizes.set_sizes(views, get_setting("size_system"), allowance, why)
 
     @property
     def _sure(self) -> OutputUncertainties | None:

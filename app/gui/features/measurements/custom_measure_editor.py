@@ -20,15 +20,15 @@ from app.presenters.measurements import Draft
 from core.document.custom_measures import FURTHEST, LONGEST_NAME
 
 
-class MeasureEditor(QWidget):
+class MeasurementEditor(QWidget):
     """A form for one measure; ``changed`` whenever its ``draft`` is another one.
 
-    ``kept`` and ``left`` when it is to be kept, or not; ``removed`` when the one that is changed is to go.
+    ``accepted`` and ``closed`` when it is to be kept, or not; ``removed`` when the one that is changed is to go.
     """
 
     changed = Signal()
-    kept = Signal()
-    left = Signal()
+    accepted = Signal()
+    closed = Signal()
     removed = Signal()
 
     def __init__(self) -> None:
@@ -112,9 +112,9 @@ class MeasureEditor(QWidget):
         """Keep it by Enter, unless that presses a button; leave it by Esc."""
         enter = event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter)
         if enter and self.keep.isEnabled() and not isinstance(self.focusWidget(), QAbstractButton):
-            self.kept.emit()
+            self.accepted.emit()
         elif event.key() == Qt.Key.Key_Escape:
-            self.left.emit()
+            self.closed.emit()
         else:
             super().keyPressEvent(event)
 
@@ -143,7 +143,7 @@ class MeasureEditor(QWidget):
         row.setContentsMargins(0, 0, 0, 0)
         row.addWidget(self._title, 1)
         close = ToolButton("x", tr("Leave without a change (Esc)"), size=14, room=26)
-        close.clicked.connect(self.left)
+        close.clicked.connect(self.closed)
         row.addWidget(close)
         return head
 
@@ -169,8 +169,8 @@ class MeasureEditor(QWidget):
         self.delete, cancel = button(tr("Delete"), "quiet"), button(tr("Cancel"), "quiet")
         self.keep = button(tr("Add"), "primary")
         self.delete.clicked.connect(self.removed)
-        cancel.clicked.connect(self.left)
-        self.keep.clicked.connect(self.kept)
+        cancel.clicked.connect(self.closed)
+        self.keep.clicked.connect(self.accepted)
         row.addWidget(self.delete)
         row.addStretch(1)
         row.addWidget(cancel)

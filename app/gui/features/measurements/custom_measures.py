@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, cast
 
 from PySide6.QtCore import QObject, QPointF, Signal
 
-from app.gui.features.measurements.panel import ResultPanel
+from app.gui.features.measurements.panel import MeasurementsPanel
 from app.gui.session.jobs import Job
 from app.gui.viewport.drawing_tool import DrawingTool
 from app.i18n.catalog import tr
@@ -35,7 +35,7 @@ class CustomMeasuresController(QObject):
 
     tried = Signal(object)
 
-    def __init__(self, context: AppContext, panel: ResultPanel) -> None:
+    def __init__(self, context: AppContext, panel: MeasurementsPanel) -> None:
         super().__init__(context.session)
         self._context, self._panel, self._form = context, panel, panel.editor
         viewport = context.view.viewport
@@ -45,7 +45,7 @@ class CustomMeasuresController(QObject):
         self._hand.grabs = self._grab
         self._hand.clicked.connect(self._click)
         self._hand.dropped.connect(lambda _: self._form.show_draft(self._form.draft.picked(self._held)))
-        self._hand.asked.connect(self._answer)
+        self._hand.requested.connect(self._answer)
         self._held: str = ""
         self._former: str = ""
         self._banded = True
@@ -53,8 +53,8 @@ class CustomMeasuresController(QObject):
         self._job: Job | None = None
         self._asked: tuple[Frame, CustomMeasurement] | None = None  # whatever the measure is called
         self._form.changed.connect(self._follow)
-        self._form.kept.connect(self.keep)
-        self._form.left.connect(self.leave)
+        self._form.accepted.connect(self.keep)
+        self._form.closed.connect(self.leave)
         self._form.removed.connect(lambda: self.remove(OWN + self._former))
         panel.adding.connect(self.begin)
         panel.changing.connect(lambda key: self.begin(key.removeprefix(OWN)))

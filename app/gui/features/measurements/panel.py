@@ -9,22 +9,22 @@ from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QHideEvent, QShowEvent
 from PySide6.QtWidgets import QFrame, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
 
-from app.gui.features.measurements.custom_measure_editor import MeasureEditor
+from app.gui.features.measurements.custom_measure_editor import MeasurementEditor
 from app.gui.features.measurements.size_card import SizeCard
-from app.gui.features.measurements.table import MeasureTable
+from app.gui.features.measurements.table import MeasurementsTable
 from app.gui.theme.stylesheet import font, set_tag
 from app.gui.widgets.basic import EmptyState, button, sentence
-from app.gui.widgets.button_row import press_row
+from app.gui.widgets.button_row import button_row
 from app.i18n.catalog import tr
 from app.presenters.measurements import MeasureView
 
 
-class ResultPanel(QStackedWidget):
+class MeasurementsPanel(QStackedWidget):
     """The table of measures, or the form for one's own; ``opened`` when it comes to be seen.
 
     ``summary`` stands at the head, a line on uncertainties. ``marked`` carries the key of the measure to be
     shown on the body, empty for none; ``framed`` when it is to be looked at. ``adding`` asks for one more,
-    ``changing`` and ``removing`` carry the key of one's own. ``copy_asked`` and ``table_asked`` are for the
+    ``changing`` and ``removing`` carry the key of one's own. ``copy_requested`` and ``table_requested`` are for the
     measures as text, on the clipboard or in a file.
     """
 
@@ -35,8 +35,8 @@ class ResultPanel(QStackedWidget):
     adding = Signal()
     changing = Signal(str)
     removing = Signal(str)
-    copy_asked = Signal()
-    table_asked = Signal()
+    copy_requested = Signal()
+    table_requested = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -49,7 +49,7 @@ class ResultPanel(QStackedWidget):
         self._doubt = sentence("", "secondary")
         self._doubt.setContentsMargins(4, 2, 4, 4)
         set_tag(self._doubt, "tone", "warn")
-        self.sizes, self._table = SizeCard(), MeasureTable()
+        self.sizes, self._table = SizeCard(), MeasurementsTable()
         for name in ("framed", "changing", "removing"):
             getattr(self._table, name).connect(getattr(self, name))
         self._table.marked.connect(self._mark)
@@ -68,7 +68,7 @@ class ResultPanel(QStackedWidget):
         column.addWidget(self._make_area(), 1)
         column.addWidget(self._make_buttons())
         column.addStretch(0)
-        self.editor = MeasureEditor()
+        self.editor = MeasurementEditor()
         for each in (page, self.editor):
             self.addWidget(each)
         self.set_rows([])
@@ -155,7 +155,7 @@ class ResultPanel(QStackedWidget):
         """Show no measure on the body any more, nor one that is being made; returns whether there was one."""
         had = bool(self._table.mark) or self.editing
         if self.editing:
-            self.editor.left.emit()
+            self.editor.closed.emit()
         self._table.select("")
         return had
 
@@ -204,10 +204,10 @@ class ResultPanel(QStackedWidget):
         written = tr("Write the table to a file (CSV)")
         choices = (
             (tr("Add a measure…"), tr("Measure between two landmarks, or round the body"), self.adding),
-            (tr("Copy"), copied, self.copy_asked),
+            (tr("Copy"), copied, self.copy_requested),
             (tr("CSV…"), written, self.table_asked),
         )
-        self._buttons = press_row(choices, top=4)
+        self._buttons = button_row(choices, top=4)
         return self._buttons
 
     def showEvent(self, event: QShowEvent) -> None:

@@ -10,10 +10,10 @@ from PySide6.QtCore import QEvent, QPoint, QRect, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.gui.features.measurements.table_row import EDGE, LEFT, RIGHT, Spot, cells, paint_row
+from app.gui.features.measurements.table_row import EDGE, LEFT, RIGHT, RowGeometry, cells, paint_row
 from app.gui.theme.stylesheet import font, tokens_of
 from app.gui.widgets.accessibility import announce
-from app.gui.widgets.button_row import press_row
+from app.gui.widgets.button_row import button_row
 from app.i18n.catalog import tr
 from app.presenters.measurements import MeasureView
 
@@ -42,7 +42,7 @@ def keys_in_words() -> list[tuple[str, str]]:
     ]
 
 
-class MeasureTable(QWidget):
+class MeasurementsTable(QWidget):
     """Measures in groups; those with a key fade while they are ``stale``, all after while ``doubtful``.
 
     ``marked`` carries the key of the one that a click or an arrow key goes to and that is opened, empty for
@@ -61,12 +61,12 @@ class MeasureTable(QWidget):
         self.rows: tuple[MeasureView, ...] = ()
         self.stale, self.doubtful, self.mark = False, False, ""
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self._spots: list[Spot] = []
+        self._spots: list[RowGeometry] = []
         self._heads: list[tuple[str, str, int]] = []
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         self._change.connect(lambda: self.changing.emit(self.mark))
         self._remove.connect(lambda: self.removing.emit(self.mark))
-        self.tools = press_row(
+        self.tools = button_row(
             (
                 (tr("Change…"), tr("Change this measure (F2)"), self._change),
                 (tr("Delete"), tr("Delete this measure (Del)"), self._remove),
@@ -182,7 +182,7 @@ class MeasureTable(QWidget):
                 top += HEAD
             for view in views:
                 opened = bool(view.key) and view.key == self.mark
-                spot = Spot(view, top, self.width(), len(units) > 1 or not group, opened)
+                spot = RowGeometry(view, top, self.width(), len(units) > 1 or not group, opened)
                 self._spots.append(spot)
                 top += spot.height
         self.setFixedHeight(top + 1)

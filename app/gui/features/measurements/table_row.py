@@ -29,7 +29,7 @@ _GAP = 4  # over each paragraph of an open row
 
 
 @dataclass(frozen=True)
-class Spot:
+class RowGeometry:
     """Where a row stands: ``wide`` if its name takes a line of its own, ``opened`` if it tells its details.
 
     ``mixed`` if its unit is not that of the heading.
@@ -119,7 +119,9 @@ def cells(width: int, top: float, height: float) -> list[QRectF]:
     return result[::-1]
 
 
-def paint_row(painter: QPainter, tokens: Tokens, spot: Spot, focused: bool, doubtful: bool = False) -> None:
+def paint_row(
+    painter: QPainter, tokens: Tokens, spot: RowGeometry, focused: bool, doubtful: bool = False
+) -> None:
     """Paint a row; an opened one has a ground, and a rim if the keyboard is there.
 
     What is ``doubtful`` is no result: figures after and changes are pale, and no bar tells them.
@@ -152,7 +154,7 @@ def paint_row(painter: QPainter, tokens: Tokens, spot: Spot, focused: bool, doub
         painter.drawText(room, _WRAPPED, words)
 
 
-def _paint_figures(painter: QPainter, tokens: Tokens, spot: Spot, doubtful: bool) -> None:
+def _paint_figures(painter: QPainter, tokens: Tokens, spot: RowGeometry, doubtful: bool) -> None:
     view, places = spot.view, cells(spot.width, spot.figures, ROW)
     pale = faded(tokens.text_caption, tokens.panel, _FAINT).name() if doubtful else ""
     values = (
@@ -170,7 +172,7 @@ def _paint_figures(painter: QPainter, tokens: Tokens, spot: Spot, doubtful: bool
         _paint_bar(painter, tokens, places[-1], view.change / _full_bar(view.unit))
 
 
-def _paint_off(painter: QPainter, tokens: Tokens, spot: Spot) -> None:
+def _paint_off(painter: QPainter, tokens: Tokens, spot: RowGeometry) -> None:
     """Paint how far figures may be off, under them."""
     painter.save()
     painter.setOpacity(painter.opacity() * (_FAINT if spot.view.off_faint else 1.0))

@@ -21,7 +21,7 @@ class ModelPanel(QWidget):
     """All settings of the model. ``changed`` tells fields of the design with the name of the step."""
 
     changed = Signal(object, str)
-    left = Signal()
+    closed = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -34,7 +34,7 @@ class ModelPanel(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
-        column.addLayout(page_head(tr("How the model works"), tr("Back to the lines"), self.left))
+        column.addLayout(page_head(tr("How the model works"), tr("Back to the lines"), self.closed))
         column.addWidget(self._scroll_area(), 1)
         column.addWidget(self._foot())
         self.set_values(self._present)

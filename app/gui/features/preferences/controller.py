@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QApplication
 from app.gui.application import chosen_dark, log_folder
 from app.gui.features.preferences.dialog import PreferencesDialog
 from app.gui.session.app_folders import show_folder, start_again
-from app.gui.session.settings import UNTIL_THEN, wants_motion, wish, wish_for
+from app.gui.session.settings import DEFAULTS, get_setting, set_setting, wants_motion
 from app.gui.theme.stylesheet import apply_theme
 from app.gui.viewport.viewport import Viewport
 from app.i18n.catalog import tr
@@ -47,14 +47,14 @@ class PreferencesController(QObject):
 
     def show(self) -> None:
         """Show the preferences."""
-        sheet = PreferencesDialog(self._context.window, {key: wish(key) for key in UNTIL_THEN})
+        sheet = PreferencesDialog(self._context.window, {key: get_setting(key) for key in DEFAULTS})
         sheet.changed.connect(self.choose)
-        sheet.log_asked.connect(self.open_log)
+        sheet.log_requested.connect(self.open_log)
         sheet.open()
 
     def choose(self, key: str, value: str) -> None:
         """Keep a wish and do at once what can be done at once."""
-        wish_for(key, value)
+        set_setting(key, value)
         app = QApplication.instance()
         if key == "theme" and isinstance(app, QApplication):
             apply_theme(app, chosen_dark(value))
@@ -94,4 +94,4 @@ class PreferencesController(QObject):
             ("theme", self._context.actions.themes),
             ("language", self._context.actions.languages),
         ):
-            actions.get(wish(key), actions[UNTIL_THEN[key]]).setChecked(True)
+            actions.get(get_setting(key), actions[DEFAULTS[key]]).setChecked(True)

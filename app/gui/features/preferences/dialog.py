@@ -23,7 +23,7 @@ class PreferencesDialog(Dialog):
     """All wishes by group; ``changed`` tells the key of one and its new value, as text."""
 
     changed = Signal(str, str)
-    log_asked = Signal()
+    log_requested = Signal()
 
     def __init__(self, parent: QWidget, values: Mapping[str, str]) -> None:
         super().__init__(parent, tr("Preferences"), (600, 0))
@@ -40,7 +40,7 @@ class PreferencesDialog(Dialog):
                 self._add(grid, setting, values[setting.key])
         self.body.addLayout(grid)
         self.body.addStretch(1)
-        log = self.add_button(tr("Open the log folder"), self.log_asked.emit, "quiet")
+        log = self.add_button(tr("Open the log folder"), self.log_requested.emit, "quiet")
         set_tip(log, tr("Busk writes faults there, never a scan or its measures"))
         self.foot.removeWidget(log)
         self.foot.insertWidget(0, log)

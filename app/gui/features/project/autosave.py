@@ -17,7 +17,7 @@ from app.gui.features.project.recent_files import day_of
 from app.gui.session.background_save import BackgroundSave
 from app.gui.session.project_lock import ProjectLock
 from app.gui.session.project_thumbnail import project_picture
-from app.gui.session.settings import wish
+from app.gui.session.settings import get_setting
 from app.i18n.catalog import tr
 from core.document.document import Document
 from core.document.storage.project_file import ScanFile, Stamp
@@ -62,7 +62,7 @@ class AutosaveController(QObject):
         if not self._session.unsaved:
             self._forget()
         elif self._session.document is not self._kept and not self._clock.isActive():
-            self._clock.start(round(1000 * float(wish("autosave"))))
+            self._clock.start(round(1000 * float(get_setting("autosave"))))
 
     def keep(self) -> None:
         """Keep the document aside, in a passing thread; again until there is a picture of it."""

@@ -58,7 +58,7 @@ class ProjectController(QObject):
         for name, action in do.samples.items():
             action.triggered.connect(lambda _=False, sample=name: self.open_sample(sample))
 
-        for changed in (session.working, session.failed, session.asked):
+        for changed in (session.working, session.failed, session.requested):
             changed.connect(lambda *_: self.follow_opening())
 
     # -- what is shown

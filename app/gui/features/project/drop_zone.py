@@ -17,7 +17,7 @@ from app.presenters.scan import KINDS
 class DropZone(QFrame):
     """Says what can be dropped, with a button for those who would rather choose."""
 
-    asked = Signal()
+    requested = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -35,7 +35,7 @@ class DropZone(QFrame):
             column.addWidget(_centred(text, role))
         column.addSpacing(10)
         self.choose = button(tr("Choose a file…"), "primary")
-        self.choose.clicked.connect(self.asked)
+        self.choose.clicked.connect(self.requested)
         column.addWidget(self.choose, alignment=Qt.AlignmentFlag.AlignHCenter)
         column.addStretch(1)
 

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QMenu
 
 from app.gui.features.project.project_card import ProjectView
 from app.gui.session.project_thumbnail import STATE
-from app.gui.session.settings import wish
+from app.gui.session.settings import get_setting
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 from app.presenters.assessment import headline
@@ -71,7 +71,7 @@ def end_first_start() -> None:
 
 def file_at_start() -> str:
     """Return the file to go on with, if the user wants to go on with the last one, or an empty text."""
-    last = next(iter(recent_files()), "") if wish("start") == "last" else ""
+    last = next(iter(recent_files()), "") if get_setting("start") == "last" else ""
     return last if last and Path(last).exists() else ""
 
 

@@ -69,14 +69,14 @@ class StartController(QObject):
         session, page, project = self._context.session, self.page, self._project
         session.working.connect(self.show_work)
         session.failed.connect(lambda _: self.show_failure())
-        session.asked.connect(lambda _: self.leave_page())
-        page.open_asked.connect(project.open)
-        page.sample_asked.connect(project.open_sample)
-        page.tour_asked.connect(self.take_tour)
+        session.requested.connect(lambda _: self.leave_page())
+        page.open_requested.connect(project.open)
+        page.sample_requested.connect(project.open_sample)
+        page.tour_requested.connect(self.take_tour)
         page.project_chosen.connect(project.open_file)
-        page.locate_asked.connect(self.locate)
-        page.forget_asked.connect(self.forget)
-        page.left.connect(self.leave_page)
+        page.locate_requested.connect(self.locate)
+        page.forget_requested.connect(self.forget)
+        page.closed.connect(self.leave_page)
 
     def show_page(self) -> None:
         """Show the start page; what is open stays as it is."""

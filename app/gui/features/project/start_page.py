@@ -25,20 +25,20 @@ _SEARCH_FROM = 5  # fewer cards are seen at a glance
 
 
 class StartPage(QWidget):
-    """Asks for a file to open; ``left`` when the open document is wanted back.
+    """Asks for a file to open; ``closed`` when the open document is wanted back.
 
-    ``project_chosen``, ``locate_asked`` and ``forget_asked`` carry the path of a card, ``sample_asked`` the
+    ``project_chosen``, ``locate_requested`` and ``forget_requested`` carry the path of a card, ``sample_requested`` the
     name of a sample body.
     """
 
-    open_asked = Signal()
-    sample_asked = Signal(str)
-    tour_asked = Signal()
-    guide_asked = Signal()
+    open_requested = Signal()
+    sample_requested = Signal(str)
+    tour_requested = Signal()
+    guide_requested = Signal()
     project_chosen = Signal(str)
-    locate_asked = Signal(str)
-    forget_asked = Signal(str)
-    left = Signal()
+    locate_requested = Signal(str)
+    forget_requested = Signal(str)
+    closed = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -63,7 +63,7 @@ class StartPage(QWidget):
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if event.key() == Qt.Key.Key_Escape and not self.back.isHidden():
-            self.left.emit()
+            self.closed.emit()
         else:
             super().keyPressEvent(event)
 
@@ -87,22 +87,22 @@ class StartPage(QWidget):
         column.addWidget(heading)
         column.addSpacing(8)
         self.zone = DropZone()
-        self.zone.asked.connect(self.open_asked)
+        self.zone.requested.connect(self.open_requested)
         column.addWidget(self.zone)
         column.addSpacing(16)
         column.addWidget(label(tr("Or look at a sample"), "secondary"))
         column.addLayout(self._samples())
         tour = button(tr("Take the tour"))
-        tour.clicked.connect(self.tour_asked)
+        tour.clicked.connect(self.tour_requested)
         column.addWidget(tour)
         guide = button(tr("First customer in ten minutes"), "quiet")
         set_tip(guide, tr("In the user guide, which opens in the browser"))
-        guide.clicked.connect(self.guide_asked)
+        guide.clicked.connect(self.guide_requested)
         column.addWidget(guide)
         column.addStretch(1)
         self.back = button("", "secondary")
         set_tip(self.back, tr("Back to what is open  Esc"))
-        self.back.clicked.connect(self.left)
+        self.back.clicked.connect(self.closed)
         self.back.hide()
         column.addWidget(self.back)
         column.addSpacing(8)
@@ -120,7 +120,7 @@ class StartPage(QWidget):
         samples.setSpacing(8)
         for name, title in SAMPLES.items():
             each = button(tr_context("sample", title))
-            each.clicked.connect(lambda _=False, chosen=name: self.sample_asked.emit(chosen))
+            each.clicked.connect(lambda _=False, chosen=name: self.sample_requested.emit(chosen))
             samples.addWidget(each, 1)
         return samples
 
@@ -195,8 +195,8 @@ class _Shelf(QWidget):
         for card in self.cards:
             card.setParent(self)
             card.opened.connect(self._page.project_chosen)
-            card.located.connect(self._page.locate_asked)
-            card.forgotten.connect(self._page.forget_asked)
+            card.located.connect(self._page.locate_requested)
+            card.forgotten.connect(self._page.forget_requested)
             card.installEventFilter(self)
             card.show()
         self._place()

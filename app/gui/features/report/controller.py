@@ -17,7 +17,7 @@ from PySide6.QtPrintSupport import QPrintDialog, QPrinter
 from app.gui.features.report.page import ReportPage
 from app.gui.file_export import write_file
 from app.gui.session.jobs import Job
-from app.gui.session.settings import wish
+from app.gui.session.settings import get_setting
 from app.gui.widgets.file_dialogs import ask_save
 from app.i18n.catalog import language, tr
 from app.presenters.lines import line_colours
@@ -71,10 +71,10 @@ class ReportController(QObject):
         said = tr("Sizes, lengths to cut, measures, pressures and pictures on paper: look, save, print")
         do = context.actions
         self.action = do.add("file", tr("Report…"), "Ctrl+P", said, do=self.open, of_document=True)
-        self.page.left.connect(self.leave)
-        self.page.named.connect(self._name)
+        self.page.closed.connect(self.leave)
+        self.page.customer_changed.connect(self._name)
         self.page.language_chosen.connect(self._speak)
-        self.page.wanted.connect(self._give)
+        self.page.requested.connect(self._give)
         context.session.design_changed.connect(lambda _: self.follow())
         context.session.failed.connect(lambda _: self.follow())
 
@@ -237,7 +237,7 @@ class ReportController(QObject):
             datetime.date.today().isoformat(),
             document.customer,
             document.shown if len(document.designs) > 1 else "",
-            wish("size_system"),
+            get_setting("size_system"),
             document.design.worn_tight_mm,
         )
 

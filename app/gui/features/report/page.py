@@ -26,14 +26,14 @@ _STEP = 1.1  # of a notch of the wheel
 class ReportPage(QWidget):
     """Shows the pages of a sheet; what is wished is told by signals.
 
-    ``named`` carries whose it is, ``language_chosen`` a code; ``wanted`` "pdf", "print", "json" or "csv";
-    ``left`` when the work is to come back.
+    ``customer_changed`` carries whose it is, ``language_chosen`` a code; ``requested`` "pdf", "print", "json" or "csv";
+    ``closed`` when the work is to come back.
     """
 
-    named = Signal(str)
+    customer_changed = Signal(str)
     language_chosen = Signal(str)
-    wanted = Signal(str)
-    left = Signal()
+    requested = Signal(str)
+    closed = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -50,7 +50,7 @@ class ReportPage(QWidget):
         self.zoom.chosen.connect(self.paper.fit)
         self.zoom.set_choice("width")
         self.back = BackButton(tr("Back to the work"))
-        self.back.clicked.connect(self.left)
+        self.back.clicked.connect(self.closed)
         self.does = {
             "print": button(tr("Print…")),
             "csv": button(tr("Figures (CSV)…")),
@@ -100,11 +100,11 @@ class ReportPage(QWidget):
         if self.customer.isModified():
             self.customer.setModified(False)
             name = " ".join(self.customer.text().split())
-            self.named.emit("".join(each for each in name if each.isprintable()))
+            self.customer_changed.emit("".join(each for each in name if each.isprintable()))
 
     def _want(self, what: str) -> None:
         self.tell_name()  # a press of a button leaves the keyboard in the field: its name is not told yet
-        self.wanted.emit(what)
+        self.requested.emit(what)
 
     def _column(self) -> QWidget:
         column = QWidget()

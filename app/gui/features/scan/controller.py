@@ -57,14 +57,14 @@ class ScanController(QObject):
     def _connect(self) -> None:
         session, panel, question = self._session, self._panel, self._context.view.question
         session.failed.connect(lambda _: self.show_refused())
-        session.asked.connect(self.show_stuck)
-        panel.told.connect(self.tell)
+        session.requested.connect(self.show_stuck)
+        panel.value_set.connect(self.tell)
         panel.edits.edited.connect(self.edit)
         panel.lean.leaned.connect(self.lean)
         panel.lean.up_chosen.connect(self.stand_upright)
-        panel.front_asked.connect(self.ask)
+        panel.front_requested.connect(self.ask)
         question.answered.connect(self.answer)
-        question.left.connect(self.leave_question)
+        question.closed.connect(self.leave_question)
 
     @property
     def painting(self) -> bool:

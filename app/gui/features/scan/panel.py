@@ -26,15 +26,15 @@ AXES = tuple(f"{sign}{name}" for name in "xyz" for sign in "+-")
 
 
 class ScanPanel(QWidget):
-    """The facts of the scan; ``told`` with "unit", "up" or "front" and what it is, an empty key forgets all.
+    """The facts of the scan; ``value_set`` with "unit", "up" or "front" and what it is, an empty key forgets all.
 
-    ``open_asked`` for another file; ``front_asked`` when the pictures are wanted. ``edits`` edits the scan,
+    ``open_requested`` for another file; ``front_requested`` when the pictures are wanted. ``edits`` edits the scan,
     ``lean`` its lean.
     """
 
-    told = Signal(str, str)
-    open_asked = Signal()
-    front_asked = Signal()
+    value_set = Signal(str, str)
+    open_requested = Signal()
+    front_requested = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -46,7 +46,7 @@ class ScanPanel(QWidget):
             tr("Open a body scan, or drop one on the window: {kinds}.").format(kinds=KINDS),
             tr("Open a scan…"),
         )
-        self._empty.asked.connect(self.open_asked)
+        self._empty.requested.connect(self.open_requested)
         head = QVBoxLayout()
         head.setContentsMargins(18, 14, 18, 8)
         head.addWidget(label(tr("Scan"), "heading"))
@@ -97,7 +97,7 @@ class ScanPanel(QWidget):
         axes = [(axis, axis.replace("-", "\N{MINUS SIGN}")) for axis in AXES]
         self.ups, self.fronts = self._choices("up", axes), self._choices("front", axes)
         another = button(tr("Open another scan…"))
-        another.clicked.connect(self.open_asked)
+        another.clicked.connect(self.open_requested)
         for each in (self._file, self._triangles, self._notes):
             column.addWidget(each)
         self._group(column, tr("Unit of the file"), self.units)
@@ -126,7 +126,7 @@ class ScanPanel(QWidget):
             "front": tr("The axis of the file that the body faces"),
         }
         set_tip(result, tips[key])
-        result.chosen.connect(lambda value: self.told.emit(key, value))
+        result.chosen.connect(lambda value: self.value_set.emit(key, value))
         return result
 
     def _ways(self) -> QWidget:
@@ -136,10 +136,10 @@ class ScanPanel(QWidget):
         row.setContentsMargins(0, 3, 0, 0)
         row.setSpacing(6)
         self.pictures = button(tr("Choose by pictures…"))
-        self.pictures.clicked.connect(self.front_asked)
+        self.pictures.clicked.connect(self.front_requested)
         self._forget = button(tr("As found"), "quiet")
         set_tip(self._forget, tr("Forget what was said of unit, up and front: find them again"))
-        self._forget.clicked.connect(lambda: self.told.emit("", ""))
+        self._forget.clicked.connect(lambda: self.value_set.emit("", ""))
         for each in (self.pictures, self._forget):
             row.addWidget(each)
         row.addStretch(1)

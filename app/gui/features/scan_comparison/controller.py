@@ -40,12 +40,12 @@ _REFUSED = "the worn scan"  # what a refusal is about, which the next scan takes
 class ScanComparisonController(QObject):
     """Keep one worn scan of the body shown, and compare and calibrate with it.
 
-    ``compared`` is emitted when there is another comparison, or none, ``map_asked`` with the name of a map or
+    ``compared`` is emitted when there is another comparison, or none, ``map_requested`` with the name of a map or
     none. A calibration belongs to one design, and goes with it; the scan goes with its body.
     """
 
     compared = Signal()
-    map_asked = Signal(str)
+    map_requested = Signal(str)
 
     def __init__(self, context: AppContext) -> None:
         super().__init__(context.session)
@@ -74,7 +74,7 @@ class ScanComparisonController(QObject):
         page.closed.connect(self.close)
         page.told.connect(self._tell_unit)
         page.thickened.connect(self._thicken)
-        page.mapped.connect(lambda on: self.map_asked.emit(MAP if on else ""))
+        page.mapped.connect(lambda on: self.map_requested.emit(MAP if on else ""))
         page.calibrated.connect(self.calibrate)
         page.applied.connect(self.apply)
 
@@ -248,7 +248,7 @@ class ScanComparisonController(QObject):
             self._reading = self.worn = self._of = None
             self._path = ""
             if self._mapped:
-                self.map_asked.emit("")  # of a body that is gone
+                self.map_requested.emit("")  # of a body that is gone
             self._begin_anew()
         if self._found is not None and self._found[0] is not design:
             self._found = None

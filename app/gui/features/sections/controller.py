@@ -9,9 +9,9 @@ import numpy as np
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.gui.features.sections.marks import apex_pairs, bands, bust_points, home, most_off, side_of
-from app.gui.features.sections.panel import ProfilePanel
+from app.gui.features.sections.panel import SectionPanel
 from app.gui.file_export import write_file
-from app.gui.plots.section_plot import Drawn
+from app.gui.plots.section_plot import SectionDrawing
 from app.gui.viewport.plane_handle import PlaneHandle
 from app.gui.viewport.viewport import Viewport
 from app.gui.widgets.file_dialogs import ask_save
@@ -68,7 +68,7 @@ class SectionsController(QObject):
         self._place: Floats | None = None
         self._plot_clock = QTimer(self, interval=PLOT_INTERVAL, singleShot=True)
         self._plot_clock.timeout.connect(self._plot)
-        self.panel = ProfilePanel(self._view)
+        self.panel = SectionPanel(self._view)
         self.panel.hide()
         self._view.place(self.panel, "bottom-left")
         self._connect()
@@ -77,8 +77,8 @@ class SectionsController(QObject):
         panel = self.panel
         panel.axis_chosen.connect(self.choose_axis)
         panel.moved.connect(self.move_to)
-        panel.through_asked.connect(self.go_through)
-        panel.export_asked.connect(self.export)
+        panel.through_requested.connect(self.go_through)
+        panel.export_requested.connect(self.export)
         panel.closed.connect(lambda: self.set_on(False))
         panel.plot.pointed.connect(self._point)
         self._view.floating.rearranged.connect(self._give_room)
@@ -152,7 +152,7 @@ class SectionsController(QObject):
         if handle is None:
             handle = PlaneHandle(viewport)
             handle.taken.connect(self._take)
-            handle.pulled.connect(self._pull)
+            handle.dragged.connect(self._pull)
             handle.dropped.connect(self._open_hand)
         return handle
 
@@ -260,7 +260,7 @@ class SectionsController(QObject):
         pairs = apex_pairs(now, plane, curves["other"], curves["after"]) if sides else bust_points(now, plane)
         spread = None if sides else self._uncertainty_of(now.frame)
         shown = self._profiles_in(plane)
-        drawn = Drawn(
+        drawn = SectionDrawing(
             shown | {role: [curve.places for curve in curves[role]] for role in roles},
             pairs,
             home(now, plane),

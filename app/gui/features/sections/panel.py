@@ -9,9 +9,9 @@ from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPainterPath, QPaintEvent, QPen, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QSlider, QStyle, QStyleOptionSlider, QVBoxLayout, QWidget
 
-from app.gui.plots.live_plot import PullTitle
-from app.gui.plots.section_plot import Drawn, ProfilePlot, paint_band
-from app.gui.session.settings import wish, wish_for
+from app.gui.plots.live_plot import QuantityTitle
+from app.gui.plots.section_plot import SectionDrawing, SectionPlot, paint_band
+from app.gui.session.settings import get_setting, set_setting
 from app.gui.theme.stylesheet import font, label, tokens_of
 from app.gui.widgets.accessibility import speak_value
 from app.gui.widgets.basic import FloatingPanel, ToolButton
@@ -35,19 +35,19 @@ _FLAT = 0.78  # its height by its width
 _ROOMY = 224  # a narrower panel leaves the axis' letter to the slider
 
 
-class ProfilePanel(FloatingPanel):
+class SectionPanel(FloatingPanel):
     """Title, plot, place of the plane and what the curves are; folded, only title and place.
 
     The plot is the smaller the smaller the view is that the panel lies on.
 
-    ``axis_chosen`` carries x, y or z; ``moved`` a place on it [mm]; ``through_asked`` left or right: the bust
+    ``axis_chosen`` carries x, y or z; ``moved`` a place on it [mm]; ``through_requested`` left or right: the bust
     point that the plane is to go through.
     """
 
     axis_chosen = Signal(str)
     moved = Signal(float)
-    through_asked = Signal(str)
-    export_asked = Signal()
+    through_requested = Signal(str)
+    export_requested = Signal()
     closed = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -61,7 +61,7 @@ class ProfilePanel(FloatingPanel):
         column.setContentsMargins(6, 2, 2, 4)
         column.setSpacing(SPACING)
         column.addLayout(self._head())
-        self.plot = ProfilePlot()
+        self.plot = SectionPlot()
         self.plot.setAccessibleName(tr("Curves of the section, in {unit}").format(unit=length_unit()))
         set_tip(self.plot, tr("Wheel: zoom. Drag: move. Double click: all that changed."))
         column.addWidget(self.plot)
@@ -72,7 +72,7 @@ class ProfilePanel(FloatingPanel):
         self.readout.setWordWrap(True)
         column.addWidget(self.readout)
         self.row.addLayout(column)
-        self._by_hand, self._cramped = wish("section_folded") == "yes", False
+        self._by_hand, self._cramped = get_setting("section_folded") == "yes", False
         self._fit(WIDE)
         self._show_fold()
         if parent is not None:
@@ -139,7 +139,7 @@ class ProfilePanel(FloatingPanel):
     def _head(self) -> QHBoxLayout:
         head = QHBoxLayout()
         head.setSpacing(2)
-        self.title = PullTitle(list(self._axes.values()))
+        self.title = QuantityTitle(list(self._axes.values()))
         set_tip(self.title, tr("Choose the plane, or write its curves to a file"))
         self.title.chosen.connect(self.axis_chosen)
         menu = self.title.menu
@@ -148,10 +148,12 @@ class ProfilePanel(FloatingPanel):
             ("left", tr("Through the left bust point")),
             ("right", tr("Through the right bust point")),
         ):
-            menu.addAction(words).triggered.connect(lambda _=False, side=side: self.through_asked.emit(side))
+            menu.addAction(words).triggered.connect(
+                lambda _=False, side=side: self.through_requested.emit(side)
+            )
         menu.addSeparator()
         self.export = menu.addAction(tr("Export the curves as CSV…"))
-        self.export.triggered.connect(self.export_asked)
+        self.export.triggered.connect(self.export_requested)
         self.fold = ToolButton("caret-down", size=14, room=24)
         self.fold.clicked.connect(self._turn_fold)
         close = ToolButton("x", tr("Close the section  P"), size=14, room=24)
@@ -164,7 +166,7 @@ class ProfilePanel(FloatingPanel):
 
     def _turn_fold(self) -> None:
         self.set_folded(not self._by_hand)
-        wish_for("section_folded", "yes" if self._by_hand else "no")
+        set_setting("section_folded", "yes" if self._by_hand else "no")
 
     def show_plane(self, axis: str, at: float, low: float, high: float) -> None:
         """Show which plane it is, where [mm], and how far it can go; nothing is emitted."""
@@ -177,7 +179,7 @@ class ProfilePanel(FloatingPanel):
         self.slider.setValue(round(at / _place()))
         self.slider.blockSignals(False)
 
-    def show_curves(self, drawn: Drawn, readout: str, *, again: bool) -> None:
+    def show_curves(self, drawn: SectionDrawing, readout: str, *, again: bool) -> None:
         """Draw the curves; ``again`` shows all that changed."""
         self.plot.show_curves(drawn, again=again)
         banded = ["band"] if drawn.bands else []

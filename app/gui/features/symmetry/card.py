@@ -110,12 +110,12 @@ class _Row:
 
 
 class SymmetryCard(QWidget):
-    """The figures of left and right; ``shown`` asks for the map on the body or takes it away, ``asked`` for
+    """The figures of left and right; ``shown`` asks for the map on the body or takes it away, ``requested`` for
     what makes it even.
     """
 
     shown = Signal(bool)
-    asked = Signal()
+    requested = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -129,7 +129,7 @@ class SymmetryCard(QWidget):
         self.look.clicked.connect(lambda: self.shown.emit(not self._mapped))
         self.make = button(tr("Make even…"))
         set_tip(self.make, tr("Find the lengths at which both bust points lie alike, and ask for them"))
-        self.make.clicked.connect(self.asked)
+        self.make.clicked.connect(self.requested)
         self.summary: SymmetryView | None = None
         self._grid = QGridLayout()
         self._grid.setContentsMargins(0, 2, 0, 2)

@@ -36,12 +36,12 @@ class SymmetryController(QObject):
     """Compare left and right of frames, and show that in a card of the panel ``host`` and under the map.
 
     ``uncertainty_of`` returns the uncertainties of a frame once they are known. ``changed`` is emitted when
-    another comparison is known, ``map_asked`` with the name of a map or none, and ``targets_proposed`` with
+    another comparison is known, ``map_requested`` with the name of a map or none, and ``targets_proposed`` with
     goals, what to make of the design first, how that is called and a limit of pressure.
     """
 
     changed = Signal()
-    map_asked = Signal(str)
+    map_requested = Signal(str)
     targets_proposed = Signal(object, object, str, object)
 
     def __init__(
@@ -67,8 +67,8 @@ class SymmetryController(QObject):
         )
         self._cache.changed.connect(self.changed)
         self.changed.connect(self.follow)
-        self.card.shown.connect(lambda on: self.map_asked.emit(SIDES if on else ""))
-        self.card.asked.connect(self.balance)
+        self.card.shown.connect(lambda on: self.map_requested.emit(SIDES if on else ""))
+        self.card.requested.connect(self.balance)
 
     def of(self, frame: Frame) -> BeforeAfter | None:
         """Return how left and right of a frame differ; if that is not known yet it is computed."""

@@ -8,7 +8,7 @@ from functools import partial
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QCheckBox, QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
-from app.gui.features.target_shape.row import WishRow, WishView, columns
+from app.gui.features.target_shape.row import TargetRow, TargetView, columns
 from app.gui.theme.stylesheet import label, set_tag
 from app.gui.widgets.basic import Segment, ToolButton, button, hairline, sentence
 from app.gui.widgets.navigation_row import page_head
@@ -22,10 +22,10 @@ class TargetCard(QWidget):
     """Takes wishes and shows what comes of them; a page in the place of the lines, beside the body.
 
     Rows stand above what depends on an answer, so that none moves when one comes. ``entered`` carries a
-    wish's key and its value, ``removed`` its key; ``add_asked`` wants the menu under ``add``. ``hand_chosen``
+    wish's key and its value, ``removed`` its key; ``add_requested`` wants the menu under ``add``. ``hand_chosen``
     carries what the handles drag: "bust", "apex" or "profile"; ``linked`` whether they move both sides;
     ``prioritized`` a wish's key and its priority, ``limited`` whether a limit is on, ``optional_chosen``
-    whether lines that are off may be switched on. ``applied`` and ``left`` end it; ``helped`` is the button
+    whether lines that are off may be switched on. ``applied`` and ``closed`` end it; ``helped`` is the button
     that shows when nothing can be asked.
     """
 
@@ -34,21 +34,21 @@ class TargetCard(QWidget):
     prioritized = Signal(str, str)
     limited = Signal(bool)
     optional_chosen = Signal(bool)
-    add_asked = Signal()
+    add_requested = Signal()
     hand_chosen = Signal(str)
     linked = Signal(bool)
     applied = Signal()
-    left = Signal()
+    closed = Signal()
     helped = Signal()
 
     def __init__(self) -> None:
         super().__init__()
-        self.wishes: dict[str, WishRow] = {}
+        self.wishes: dict[str, TargetRow] = {}
         self._kind, self._tone, self._can_apply = "bust", "", False
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
-        column.addLayout(page_head(tr("Ask for the result"), tr("Leave without a change (Esc)"), self.left))
+        column.addLayout(page_head(tr("Ask for the result"), tr("Leave without a change (Esc)"), self.closed))
         column.addWidget(self._scroll_area(), 1)
         column.addWidget(hairline())
         column.addLayout(self._foot())
@@ -140,7 +140,7 @@ class TargetCard(QWidget):
         self.apply = button(tr("Apply"), "primary")
         self.apply.clicked.connect(self._take)
         self.cancel = button(tr("Cancel"), "quiet")
-        self.cancel.clicked.connect(self.left)
+        self.cancel.clicked.connect(self.closed)
         foot.addStretch(1)
         for part in (self.cancel, self.help_, self.apply):
             foot.addWidget(part)
@@ -148,7 +148,7 @@ class TargetCard(QWidget):
 
     # -- what it shows
 
-    def show_wishes(self, wishes: Sequence[WishView], hint: str = "") -> None:
+    def show_wishes(self, wishes: Sequence[TargetView], hint: str = "") -> None:
         """Show these wishes; a field that is typed into keeps what is typed."""
         if [wish.key for wish in wishes] != list(self.wishes):
             self._lay(wishes)
@@ -204,7 +204,7 @@ class TargetCard(QWidget):
             self.wishes[key].field.setFocus(Qt.FocusReason.TabFocusReason)
             self.wishes[key].field.selectAll()
 
-    def _lay(self, wishes: Sequence[WishView]) -> None:
+    def _lay(self, wishes: Sequence[TargetView]) -> None:
         """Lay out the rows of these wishes: those that are there stay what they are."""
         kept = {wish.key: self.wishes.get(wish.key) or self._made(wish) for wish in wishes}
         gone = [row for key, row in self.wishes.items() if key not in kept]
@@ -216,8 +216,8 @@ class TargetCard(QWidget):
         for row in gone:
             self._put_away(row)
 
-    def _made(self, wish: WishView) -> WishRow:
-        row = WishRow(wish)
+    def _made(self, wish: TargetView) -> TargetRow:
+        row = TargetRow(wish)
         row.field.entered.connect(partial(self.entered.emit, wish.key))
         row.field.typed.connect(self._follow_typing)
         row.prioritized.connect(partial(self.prioritized.emit, wish.key))
@@ -225,7 +225,7 @@ class TargetCard(QWidget):
         row.remove.clicked.connect(partial(self._remove, wish.key))
         return row
 
-    def _put_away(self, row: WishRow) -> None:
+    def _put_away(self, row: TargetRow) -> None:
         """Let a row go; what is typed in it asks for nothing any more, and the keyboard stays near."""
         row.field.blockSignals(True)
         had = self.focusWidget()
@@ -264,7 +264,7 @@ class TargetCard(QWidget):
 
     def _ask_more(self) -> None:
         self.commit()
-        self.add_asked.emit()
+        self.add_requested.emit()
 
     def _remove(self, key: str, _: bool = False) -> None:
         self.wishes[key].field.drop()

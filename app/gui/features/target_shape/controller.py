@@ -16,13 +16,13 @@ from app.gui.features.target_shape.card import TargetCard
 from app.gui.features.target_shape.handles import TargetHandles
 from app.gui.features.target_shape.linearization import TargetDesign
 from app.gui.features.target_shape.menu import TargetMenu
-from app.gui.features.target_shape.presenter import is_as_wished, show_answer, wish_views
+from app.gui.features.target_shape.presenter import meets_targets, show_result, target_views
 from app.gui.features.target_shape.profile_tool import ProfileTool
 from app.gui.features.target_shape.surroundings import TargetOptions
-from app.gui.features.target_shape.targets import Wishes
+from app.gui.features.target_shape.targets import Targets
 from app.gui.features.target_shape.targets_undo import TargetUndo
 from app.gui.features.target_shape.view_state import ViewState
-from app.gui.features.target_shape.worker import Answer, Question, TargetWorker
+from app.gui.features.target_shape.worker import TargetAnswer, TargetQuery, TargetWorker
 from app.gui.widgets.accessibility import announce
 from app.i18n.catalog import tr
 from app.presenters.messages import render
@@ -46,14 +46,14 @@ class TargetShapeController(QObject):
     """
 
     closed = Signal()
-    presets_asked = Signal()
+    presets_requested = Signal()
 
     def __init__(self, context: AppContext, pages: QStackedWidget, undo_group: QUndoGroup) -> None:
         super().__init__(context.session)
         self._pages = pages
         self._context, self._session = context, context.session
-        self.all_wishes = Wishes()
-        self._answer: Answer | None = None
+        self.all_wishes = Targets()
+        self._answer: TargetAnswer | None = None
         self._apply_due = False
         self.ground = TargetDesign(context.session)
         self.work = TargetWorker(context.jobs, self)
@@ -80,10 +80,10 @@ class TargetShapeController(QObject):
         do.add("lines", tr("Ask for the result…"), "A", said, do=self.begin, of_document=True)
         card.entered.connect(self.wish)
         card.removed.connect(self.drop)
-        card.add_asked.connect(self.menu.show)
+        card.add_requested.connect(self.menu.show)
         card.hand_chosen.connect(self.drawing.choose)
         card.applied.connect(self.apply)
-        card.left.connect(self.leave)
+        card.closed.connect(self.leave)
         session.design_changed.connect(self._follow_design)
         session.frame_ready.connect(lambda _: self.handles.follow())
         session.opened.connect(lambda _: self._forget())
@@ -93,12 +93,12 @@ class TargetShapeController(QObject):
     # -- what is asked for
 
     @property
-    def answer(self) -> Answer | None:
+    def answer(self) -> TargetAnswer | None:
         """The answer that is shown, if there is one."""
         return self._answer
 
     @answer.setter
-    def answer(self, answer: Answer | None) -> None:
+    def answer(self, answer: TargetAnswer | None) -> None:
         self._answer = answer
         self._session.trial = None if answer is None or answer.reply is None else answer.reply.design
 
@@ -117,7 +117,7 @@ class TargetShapeController(QObject):
         """Open the card, with ``goals`` wished for already.
 
         They are asked of what ``prepare`` makes of the design, which ``said`` tells; that is taken with them.
-        ``limit`` is that of pressure [kPa], see ``Wishes``; one that was switched off before stays off.
+        ``limit`` is that of pressure [kPa], see ``Targets``; one that was switched off before stays off.
         """
         if self._session.frame is None or self._session.design is None:
             return
@@ -126,7 +126,7 @@ class TargetShapeController(QObject):
         self._context.navigation.start_tool()
         self._context.navigation.show_step("lines")
         limit = math.inf if math.isinf(self.all_wishes.most_kpa) else limit
-        self.all_wishes, self.answer, self._apply_due = replace(Wishes.of(goals), limit=limit), None, False
+        self.all_wishes, self.answer, self._apply_due = replace(Targets.of(goals), limit=limit), None, False
         self.ground.begin(prepare, said)
         self.back.remember()
         self._pages.setCurrentWidget(self.card)
@@ -230,7 +230,7 @@ class TargetShapeController(QObject):
     def _forget(self) -> None:
         """Let another body begin with the usual limit."""
         self.end()
-        self.all_wishes = Wishes()
+        self.all_wishes = Targets()
 
     # -- questions and answers
 
@@ -249,11 +249,11 @@ class TargetShapeController(QObject):
             goals, told, limit = self.goals(), self.all_wishes.told, self.all_wishes.most_kpa
             optional = self.ground.inactive if self.all_wishes.optional else ()
             hurried = hurried and bool(goals)
-            self.work.ask(Question(design, frame.stages, goals, told, limit, hurried, optional))
+            self.work.ask(TargetQuery(design, frame.stages, goals, told, limit, hurried, optional))
             self._slow.start()
         self._show()
 
-    def _take(self, answer: Answer) -> None:
+    def _take(self, answer: TargetAnswer) -> None:
         if not self.is_open or answer.question.design is not self.ground.design:
             return
         self.answer = answer
@@ -268,10 +268,10 @@ class TargetShapeController(QObject):
         if not self.work.at_work and not answer.question.hurried:
             announce(self.card, self.card.answer.text())
             due, self._apply_due = self._apply_due, False
-            if due and is_as_wished(self.all_wishes, answer):  # what is only near was not seen yet
+            if due and meets_targets(self.all_wishes, answer):  # what is only near was not seen yet
                 self.apply()
 
-    def _show_nearer(self, question: Question, design: Design) -> None:
+    def _show_nearer(self, question: TargetQuery, design: Design) -> None:
         """Show the nearest so far on the body, while it is looked for elsewhere."""
         if self.is_open and question.design is self.ground.design and self.work.is_at(question):
             self._session.preview(design)
@@ -311,9 +311,9 @@ class TargetShapeController(QObject):
         else:
             self.card.show_optional(inactive_words(design, self.ground.inactive), self.all_wishes.optional)
             hint = self.drawing.hint()
-            self.card.show_wishes(list(wish_views(self.all_wishes, self.answer)), hint)
+            self.card.show_wishes(list(target_views(self.all_wishes, self.answer)), hint)
             said = self.ground.said
-            show_answer(self.card, design, self.all_wishes, self.answer, apart=said, busy=self._busy())
+            show_result(self.card, design, self.all_wishes, self.answer, apart=said, busy=self._busy())
         self.handles.follow()
 
     def _busy(self) -> str:

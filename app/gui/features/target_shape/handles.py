@@ -48,7 +48,7 @@ class TargetHandles(QObject):
         self._before: tuple[dict[str, float | None], dict[str, ProfileCurve]] | None = None
         self._pulled: dict[str, float] = {}  # how far the hand has gone each way since it closed [mm]
         self.profile.taken.connect(self._take_profile)
-        self.profile.pulled.connect(self._draw)
+        self.profile.dragged.connect(self._draw)
         self.profile.dropped.connect(self._drop)
 
     @property
@@ -106,7 +106,7 @@ class TargetHandles(QObject):
         for side in SIDES:
             handle = TargetHandle(self._context.view.viewport, side, _NAMES[side]())
             handle.taken.connect(self._take)
-            handle.pulled.connect(partial(self._pull, side))
+            handle.dragged.connect(partial(self._pull, side))
             handle.dropped.connect(self._drop)
             self.by_side[side] = handle
 

@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from app.gui.features.target_shape.card import TargetCard
-from app.gui.features.target_shape.row import WishView
-from app.gui.features.target_shape.targets import PRESSURE, Wishes
-from app.gui.features.target_shape.worker import Answer
+from app.gui.features.target_shape.row import TargetView
+from app.gui.features.target_shape.targets import PRESSURE, Targets
+from app.gui.features.target_shape.worker import TargetAnswer
 from app.i18n.catalog import joined, listed, tr
 from app.presenters.symmetry import balance_result_texts, has_balance_targets
 from app.presenters.target_shape import (
@@ -38,8 +38,8 @@ if TYPE_CHECKING:
     from core.analysis.inverse_design.solve import InverseResult
 
 
-def show_answer(
-    card: TargetCard, design: Design, wishes: Wishes, answer: Answer | None, *, apart: str, busy: str
+def show_result(
+    card: TargetCard, design: Design, wishes: Targets, answer: TargetAnswer | None, *, apart: str, busy: str
 ) -> None:
     """Show what came of wishes: ``busy`` is nothing, "soon" or "slow"; ``apart`` tells what is parted."""
     locked = {traits.name for traits in design.traits if traits.locked}
@@ -65,34 +65,34 @@ def show_answer(
         card.show_answer(said, tone, price, changes, note, can_apply=True)
 
 
-def is_as_wished(wishes: Wishes, answer: Answer) -> bool:
+def meets_targets(wishes: Targets, answer: TargetAnswer) -> bool:
     """Tell whether an answer is what is wished, as nearly as a tailor can tell or a hand draws."""
     reply, asked = answer.reply, answer.question.goals
     return reply is not None and (_is_met(wishes, reply, asked) or is_near(reply, asked))
 
 
-def _is_met(wishes: Wishes, reply: InverseResult, asked: Sequence[Goal]) -> bool:
+def _is_met(wishes: Targets, reply: InverseResult, asked: Sequence[Goal]) -> bool:
     return is_met(reply, asked) or (wishes.only_limit is not None and reply.agreed)
 
 
-def wish_views(wishes: Wishes, answer: Answer | None) -> Iterator[WishView]:
+def target_views(wishes: Targets, answer: TargetAnswer | None) -> Iterator[TargetView]:
     """Yield the rows of the card: each what it is now, what is asked for, what it comes to and its change."""
     now = answer.now if answer is not None else {}
     then = answer.then if answer is not None else {}
     for name, value in wishes.figures.items():
         signed, priority = is_signed(name), wishes.priorities.get(name, "normal")
         before, result = value_words(now.get(name), signed), result_words(now, then, name)
-        yield WishView(name, target_title(name), value, before, result, signed=signed, priority=priority)
+        yield TargetView(name, target_title(name), value, before, result, signed=signed, priority=priority)
     for section, goals in wishes.curves.items():
         reply = answer.reply if answer is not None else None
         words = deviation_text(answer.question.goals, reply.reached, section) if answer and reply else ""
         title, priority = profile_title(section.split()[1]), wishes.priorities.get(section, "normal")
         asked = 0.0 if goals else None
-        yield WishView(section, title, asked, words, typed=False, priority=priority)
+        yield TargetView(section, title, asked, words, typed=False, priority=priority)
     yield _pressure(wishes, answer)
 
 
-def _pressure(wishes: Wishes, answer: Answer | None) -> WishView:
+def _pressure(wishes: Targets, answer: TargetAnswer | None) -> TargetView:
     presses = answer.presses if answer is not None else {}
     reply = answer.reply if answer is not None else None
     then = reply.pressure if reply is not None else {}
@@ -100,6 +100,6 @@ def _pressure(wishes: Wishes, answer: Answer | None) -> WishView:
     tone = "bad" if result and max(then.values()) >= pressure_limits().red_kpa else ""
     on = not math.isinf(wishes.most_kpa)
     shown, title = wishes.most_kpa if on else None, tr("Pressure at most")
-    return WishView(
+    return TargetView(
         PRESSURE, title, shown, before, result, "kPa", signed=False, kept=True, priority="", on=on, tone=tone
     )

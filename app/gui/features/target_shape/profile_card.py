@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 class ProfileHandles(QObject):
     """One curve a section with its handles in a view.
 
-    ``taken`` and ``dropped`` when a hand closes and opens, ``taken`` with the section; ``pulled`` carries the
+    ``taken`` and ``dropped`` when a hand closes and opens, ``taken`` with the section; ``dragged`` carries the
     section, the number of the handle, and each step up and out [mm].
     """
 
     taken = Signal(str)
-    pulled = Signal(str, int, float, float)
+    dragged = Signal(str, int, float, float)
     dropped = Signal()
 
     def __init__(self, viewport: Viewport, parent: QObject) -> None:
@@ -75,6 +75,6 @@ class ProfileHandles(QObject):
             name = tr("Handle {number} of the profile, from below").format(number=number + 1)
             handle = TargetHandle(self._viewport, side, name, small=True)
             handle.taken.connect(partial(self.taken.emit, section))
-            handle.pulled.connect(partial(self.pulled.emit, section, number))
+            handle.dragged.connect(partial(self.dragged.emit, section, number))
             handle.dropped.connect(self.dropped)
             self.handles[section].append(handle)

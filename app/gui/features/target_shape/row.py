@@ -24,7 +24,7 @@ _UNITS = {"mm": '(mm|cm|m|in|"|)', "kPa": "(kPa|)"}
 
 
 @dataclass(frozen=True)
-class WishView:
+class TargetView:
     """One wish: its ``key``, ``title`` and ``value`` in ``unit``; without a value it is not asked for.
 
     ``now`` is what it is before, ``result`` what it comes to with its change. One that is not ``typed``, as a
@@ -56,7 +56,7 @@ class _WishField(ValueEdit):
 
     typed = Signal()
 
-    def __init__(self, view: WishView) -> None:
+    def __init__(self, view: TargetView) -> None:
         super().__init__(view.unit, view.title, signed=view.signed, widest="+1000.0")
         self._typed, self._empty = False, True
         figure = QRegularExpression(r"[\s+\-−＋－]*[\s\d.,．，/⁄¼½¾⅛⅜⅝⅞-]*" + _UNITS[view.unit])
@@ -121,7 +121,7 @@ def columns(row: QHBoxLayout, now: QWidget, field: QWidget, result: QWidget) -> 
     row.addWidget(result, 1)
 
 
-class WishRow(QWidget):
+class TargetRow(QWidget):
     """A wish: its title with priority and the cross that takes it away, then now, the field and the result.
 
     It is as high without a result as with one, so that no row moves when an answer comes. ``prioritized``
@@ -131,7 +131,7 @@ class WishRow(QWidget):
     prioritized = Signal(str)
     switched = Signal(bool)
 
-    def __init__(self, view: WishView) -> None:
+    def __init__(self, view: TargetView) -> None:
         super().__init__()
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 3, 0, 7)
@@ -152,7 +152,7 @@ class WishRow(QWidget):
             self.now.setMinimumHeight(self.field.height())
         column.addLayout(values)
 
-    def _head(self, view: WishView) -> QHBoxLayout:
+    def _head(self, view: TargetView) -> QHBoxLayout:
         head = QHBoxLayout()
         head.setSpacing(4)
         self.title = sentence(view.title, "body")
@@ -176,7 +176,7 @@ class WishRow(QWidget):
         head.addWidget(self.remove)
         return head
 
-    def show_view(self, view: WishView) -> None:
+    def show_view(self, view: TargetView) -> None:
         """Bring values and words up to date."""
         self.remove.setVisible(not view.kept)
         self.now.setText(view.now)

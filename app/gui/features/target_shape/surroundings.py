@@ -53,7 +53,7 @@ class TargetOptions(QObject):
         groups = active_line_groups(frame.stages) if frame is not None else ()
         lines = [name for group in groups for name in group]
         if not lines:
-            self._controller.presets_asked.emit()
+            self._controller.presets_requested.emit()
             return
 
         def unlocked(before: Design) -> Design:

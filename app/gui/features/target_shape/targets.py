@@ -20,7 +20,7 @@ _SOFTEST, _HARDEST = 0.2, 50.0  # limits that can be set [kPa]
 
 
 @dataclass
-class Wishes:
+class Targets:
     """Figures by name [mm], profiles by section, what of them is ``drawn``, and a ``limit`` [kPa].
 
     ``priorities`` are those of figures and sections that are not "normal"; with ``optional`` lines that are
@@ -37,7 +37,7 @@ class Wishes:
     optional: bool = False
 
     @classmethod
-    def of(cls, goals: Sequence[Goal]) -> Wishes:
+    def of(cls, goals: Sequence[Goal]) -> Targets:
         """Return the wishes for ``goals``, with the figures beside that are always told."""
         wishes = cls()
         for goal in goals:

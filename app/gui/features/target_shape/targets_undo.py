@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject
 from PySide6.QtGui import QUndoCommand, QUndoGroup, QUndoStack
 
-from app.gui.features.target_shape.targets import PRESSURE, Wishes
+from app.gui.features.target_shape.targets import PRESSURE, Targets
 from app.gui.session.session import Session
 from app.i18n.catalog import listed, tr
 from app.presenters.target_shape import target_title
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 class _State:
     """Wishes as they were once, and what the handles dragged then."""
 
-    wishes: Wishes
+    wishes: Targets
     kind: str
 
     def changed_from(self, other: _State) -> list[str]:
@@ -90,7 +90,7 @@ class TargetUndo(QObject):
         return _State(_copy(self._controller.all_wishes), self._controller.handles.kind)
 
 
-def _copy(wishes: Wishes) -> Wishes:
+def _copy(wishes: Targets) -> Targets:
     figures, priorities = dict(wishes.figures), dict(wishes.priorities)
     curves, drawn = dict(wishes.curves), dict(wishes.drawn)
     return replace(wishes, figures=figures, curves=curves, drawn=drawn, priorities=priorities)

@@ -27,7 +27,7 @@ _LONGEST = 0.999  # ratio: in the window a line at 100 % would be off, and the b
 
 
 @dataclass(frozen=True, eq=False)
-class Question:
+class TargetQuery:
     """What is asked of ``design``, which is built from ``stages``: ``goals``, within a limit [kPa].
 
     ``figures`` are those of which it is told what they are now. One in a hurry is answered near the last.
@@ -44,14 +44,14 @@ class Question:
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
+class TargetAnswer:
     """What is ``now`` [mm], what ``presses`` [kPa], by name, and the ``reply``, if anything was wished.
 
     ``then`` [mm] is what figures are in the reply, ``conflicts`` those of targets that are not all met,
     ``unlimited`` the reply without a limit of pressure, where that keeps targets from being met.
     """
 
-    question: Question
+    question: TargetQuery
     now: Mapping[str, float]
     presses: Mapping[str, float]
     reply: InverseResult | None
@@ -69,7 +69,7 @@ class _Known:
     optional: tuple[str, ...]
     asking: LineSelection
 
-    def is_of(self, question: Question) -> bool:
+    def is_of(self, question: TargetQuery) -> bool:
         """Tell whether a question is about the same design, limit and lines."""
         same = self.most_kpa == question.most_kpa and self.optional == question.optional
         return self.design is question.design and same
@@ -92,8 +92,8 @@ class TargetWorker(QObject):
         super().__init__(parent)
         self._jobs = jobs
         self._job: Job | None = None
-        self._at: Question | None = None
-        self._wanted: Question | None = None
+        self._at: TargetQuery | None = None
+        self._wanted: TargetQuery | None = None
         self._known: _Known | None = None
         self._turn = threading.Lock()  # one that was let go of ends at its next answer
 
@@ -102,11 +102,11 @@ class TargetWorker(QObject):
         """Whether the newest question is not answered yet."""
         return self._wanted is not None
 
-    def is_at(self, question: Question) -> bool:
+    def is_at(self, question: TargetQuery) -> bool:
         """Tell whether a question is the newest, and being answered."""
         return self._at is question and self._wanted is question
 
-    def ask(self, question: Question) -> None:
+    def ask(self, question: TargetQuery) -> None:
         """Answer this from now on; what is in a hurry is not broken off, as it soon ends."""
         self._wanted = question
         if self._at is not None and not self._at.hurried:
@@ -126,7 +126,7 @@ class TargetWorker(QObject):
             work, done = partial(self._answer, question), partial(self._end, question)
             self._job = self._jobs.run(tr("Finding lengths for the result"), work, done, done)
 
-    def _end(self, question: Question, outcome: object) -> None:
+    def _end(self, question: TargetQuery, outcome: object) -> None:
         self._at = None
         newest = question is self._wanted
         if newest:
@@ -139,7 +139,7 @@ class TargetWorker(QObject):
         elif newest or question.hurried:
             self.answered.emit(outcome)
 
-    def _answer(self, question: Question, progress: Progress) -> Answer:
+    def _answer(self, question: TargetQuery, progress: Progress) -> TargetAnswer:
         """Answer, in a thread of its own."""
         with self._turn:
             known = self._known
@@ -161,9 +161,11 @@ class TargetWorker(QObject):
                 self.nearer.emit(question, reply.design)  # seen at once; the conflicts take as long again
                 conflicts = known.asking.conflicts(reply, question.goals, progress)
                 unlimited = known.asking.unlimited(reply, question.goals, progress)
-            return Answer(question, dict(known.now), dict(known.presses), reply, then, conflicts, unlimited)
+            return TargetAnswer(
+                question, dict(known.now), dict(known.presses), reply, then, conflicts, unlimited
+            )
 
-    def _open(self, question: Question, progress: Progress) -> _Known:
+    def _open(self, question: TargetQuery, progress: Progress) -> _Known:
         from core.analysis.inverse_design.line_selection import LineSelection  # noqa: PLC0415
         from core.analysis.inverse_design.search import Bounds  # noqa: PLC0415 (brings a search along that no start needs)
 

@@ -11,22 +11,22 @@ from PySide6.QtWidgets import QFrame, QScrollArea, QVBoxLayout, QWidget
 
 from app.gui.theme.stylesheet import font, tokens_of
 from app.gui.widgets.basic import EmptyState, sentence
-from app.gui.widgets.button_row import press_row
+from app.gui.widgets.button_row import button_row
 from app.i18n.catalog import number, tr
 from app.presenters.status import TONES
 from app.presenters.variants import VariantRow, VariantsView, VariantTexts, VariantValues
 
 
 class VariantsPanel(QWidget):
-    """The table of variants; ``opened`` when it comes to be seen, ``beside_asked`` for their bodies.
+    """The table of variants; ``opened`` when it comes to be seen, ``beside_requested`` for their bodies.
 
-    ``copy_asked`` and ``table_asked`` are for the figures as text, on the clipboard or in a file.
+    ``copy_requested`` and ``table_requested`` are for the figures as text, on the clipboard or in a file.
     """
 
     opened = Signal()
-    beside_asked = Signal()
-    copy_asked = Signal()
-    table_asked = Signal()
+    beside_requested = Signal()
+    copy_requested = Signal()
+    table_requested = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -47,10 +47,10 @@ class VariantsPanel(QWidget):
         beside = tr("Show the bodies of all variants through linked cameras")
         copied = tr("Copy the table, to paste into a spreadsheet or a letter")
         written = tr("Write the table to a file (CSV)")
-        self._buttons = press_row(
+        self._buttons = button_row(
             (
-                (tr("Side by side"), beside, self.beside_asked),
-                (tr("Copy"), copied, self.copy_asked),
+                (tr("Side by side"), beside, self.beside_requested),
+                (tr("Copy"), copied, self.copy_requested),
                 (tr("CSV…"), written, self.table_asked),
             )
         )

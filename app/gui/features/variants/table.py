@@ -44,9 +44,9 @@ class VariantTableController(QObject):
         panel.opened.connect(self.refresh)
         context.session.design_changed.connect(lambda _: self.follow())
         variants.solved.connect(self.follow)
-        panel.beside_asked.connect(variants.flip_side_by_side)
-        panel.copy_asked.connect(self.copy)
-        panel.table_asked.connect(self.export)
+        panel.beside_requested.connect(variants.flip_side_by_side)
+        panel.copy_requested.connect(self.copy)
+        panel.table_requested.connect(self.export)
 
     def follow(self) -> None:
         """Bring the figures up to date soon, if they are seen."""

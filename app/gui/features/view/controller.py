@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 
 from app.gui.context import RESHAPED
-from app.gui.session.settings import wish, wish_for
+from app.gui.session.settings import get_setting, set_setting
 from app.gui.viewport.compare_key import CompareKey
 from app.i18n.catalog import tr
 from app.presenters.maps import map_kinds
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 class ViewController(QObject):
     """Show the body that a step is about, and add to the menu of the view what has no button on it.
 
-    ``map_asked`` carries the map that is chosen in the menu; ``material_shown`` is emitted when the body is
+    ``map_requested`` carries the map that is chosen in the menu; ``material_shown`` is emitted when the body is
     of another material.
     """
 
-    map_asked = Signal(str)
+    map_requested = Signal(str)
     material_shown = Signal()
 
     def __init__(self, context: AppContext, show_variants: Callable[[], object]) -> None:
@@ -43,7 +43,7 @@ class ViewController(QObject):
         self.materials = do.group("material", titles)
         for name, action in self.materials.items():
             action.triggered.connect(lambda _=False, name=name: self.choose_material(name))
-        self._show_material(wish("material"))
+        self._show_material(get_setting("material"))
         context.navigation.step_shown.connect(self._show_step)
 
     def _add_maps(self) -> None:
@@ -53,7 +53,7 @@ class ViewController(QObject):
         titles = {"": tr("No map")} | {kind.name: kind.title for kind in map_kinds()}
         self.maps = do.group("maps", titles)
         for name, action in self.maps.items():
-            action.triggered.connect(lambda _=False, name=name: self.map_asked.emit(name))
+            action.triggered.connect(lambda _=False, name=name: self.map_requested.emit(name))
         self.show_map("")
 
     def show_map(self, name: str) -> None:
@@ -75,7 +75,7 @@ class ViewController(QObject):
 
     def choose_material(self, name: str) -> None:
         """Show the body in another material, now and in later sessions."""
-        wish_for("material", name)
+        set_setting("material", name)
         self._show_material(name)
 
     def _show_material(self, name: str) -> None:

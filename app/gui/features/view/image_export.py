@@ -28,7 +28,7 @@ class ImageExportController(QObject):
     def __init__(self, context: AppContext) -> None:
         super().__init__(context.session)
         self._context = context
-        context.view.tools.picture_asked.connect(self.save)
+        context.view.tools.picture_requested.connect(self.save)
         do = context.actions
         do.rule("file")
         said = tr("Put what the view shows on the clipboard, finer than the screen")
