@@ -45,8 +45,8 @@ class Session(DocumentEditor):
     """What the window shows and asks.
 
     Verbs (open, preview, commit, save ...) are called by the window; what follows is told by signals.
-    ``working`` tells the work in hand and the share done; ``requested`` hands out the IncompleteBuildError of a
-    scan
+    ``working`` tells the work in hand and the share done; ``requested`` hands out the IncompleteBuildError
+    of a scan
     that was opened and cannot go on before somebody says how it stands or places its landmarks; ``saving``
     says that a project is being written, or no longer, and ``not_saved`` why this has failed. ``failure`` is
     why the frame is not that of the present document, and stays so until something else is requested.

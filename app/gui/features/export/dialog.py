@@ -60,7 +60,7 @@ class ExportDialog(Dialog):
         row.addLayout(self._right, 1)
         self.body.addLayout(row, 1)
         self.add_button(tr("Close"), self.reject)
-        self.save = self.add_button(tr("Save…"), self.save_asked.emit, "primary")
+        self.save = self.add_button(tr("Save…"), self.save_requested.emit, "primary")
 
     def show_export(self, export: Export, settings: Sequence[Choice], values: Mapping[str, str]) -> None:
         """Show something to export with its choices; the keyboard stays at the choice where it was."""

@@ -60,7 +60,7 @@ class ElasticChooser(Dialog):
         foot.addWidget(self.advice, 1)
         foot.addLayout(self._offers)
         self.body.addLayout(foot)
-        library = self.add_button(tr("Elastics…"), self.elastics_asked.emit, "quiet")
+        library = self.add_button(tr("Elastics…"), self.elastics_requested.emit, "quiet")
         set_tip(library, tr("See, bring in and hand on elastics"))
         self.foot.removeWidget(library)
         self.foot.insertWidget(0, library)

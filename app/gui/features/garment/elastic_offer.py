@@ -77,7 +77,9 @@ class _Offer:
 
 
 class ElasticOffer(QObject):
-    """Open the chooser and fill it; ``use`` takes what is chosen in it, ``library_requested`` asks for more."""
+    """Open the chooser and fill it; ``use`` takes what is chosen in it, ``library_requested`` asks for
+    more.
+    """
 
     library_requested = Signal()
 

@@ -79,13 +79,15 @@ class ElasticsDialog(Dialog):
         return row
 
     def _make_foot(self) -> None:
-        brought = self.add_button(tr("Import CSV…"), self.import_asked.emit)
+        brought = self.add_button(tr("Import CSV…"), self.import_requested.emit)
         set_tip(brought, tr("Bring in a table of your own: elongation and force, with units"))
-        handed_on = self.add_button(tr("Export CSV…"), lambda: self.export_asked.emit(self.marked), "quiet")
+        handed_on = self.add_button(
+            tr("Export CSV…"), lambda: self.export_requested.emit(self.marked), "quiet"
+        )
         set_tip(handed_on, tr("Write the marked elastic as a table, to hand it on or to change it"))
-        template = self.add_button(tr("Save a template…"), self.template_asked.emit, "quiet")
+        template = self.add_button(tr("Save a template…"), self.template_requested.emit, "quiet")
         set_tip(template, tr("Write an empty table (CSV) to fill in with what you measure"))
-        self.delete = self.add_button(tr("Delete…"), lambda: self.delete_asked.emit(self.marked), "quiet")
+        self.delete = self.add_button(tr("Delete…"), lambda: self.delete_requested.emit(self.marked), "quiet")
         set_tip(self.delete, tr("Take an elastic of your own away; projects that use it keep it"))
         for place, each in enumerate((brought, handed_on, template, self.delete)):
             self.foot.removeWidget(each)

@@ -24,9 +24,10 @@ class GarmentPanel(QWidget):
     """The cut list; ``cards`` takes what stands below its rows.
 
     ``opened`` when it comes to be seen, and what it shows has to be new. ``selected`` names a line,
-    ``elastic_requested`` one whose elastic is to be chosen, ``all_requested`` is for all active lines, ``stretched``
-    a line and how far its elastic shall be stretched [1]. ``copy_requested`` and ``table_requested`` are for the list
-    as text, ``elastics_requested`` for the elastics there are.
+    ``elastic_requested`` one whose elastic is to be chosen, ``all_requested`` is for all active lines,
+    ``stretched``
+    a line and how far its elastic shall be stretched [1]. ``copy_requested`` and ``table_requested`` are for
+    the list as text, ``elastics_requested`` for the elastics there are.
     """
 
     opened = Signal()
@@ -206,8 +207,8 @@ class GarmentPanel(QWidget):
                     tr("Copy the cut list, to paste into a spreadsheet or a letter"),
                     self.copy_requested,
                 ),
-                (tr("CSV…"), tr("Write the cut list to a file (CSV)"), self.table_asked),
-                (tr("Elastics…"), tr("See, bring in and hand on elastics"), self.elastics_asked),
+                (tr("CSV…"), tr("Write the cut list to a file (CSV)"), self.table_requested),
+                (tr("Elastics…"), tr("See, bring in and hand on elastics"), self.elastics_requested),
             ),
             top=4,
         )

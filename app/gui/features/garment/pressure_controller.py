@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 class PressureController(QObject):
     """Keep the contact pressures of frames, and show them beside the cut list.
 
-    ``changed`` is emitted when more of them are known, or will not be; ``place_requested`` when the place of the
-    highest pressure is to be shown.
+    ``changed`` is emitted when more of them are known, or will not be; ``place_requested`` when the place of
+    the highest pressure is to be shown.
     """
 
     changed = Signal()

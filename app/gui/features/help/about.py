@@ -47,7 +47,8 @@ class AboutDialog(Dialog):
 class DiagnosticsDialog(Dialog):
     """Facts about program and machine, to copy for whoever is asked for help.
 
-    ``folders`` are those that the program writes to; ``folder_requested`` carries the path of one to be shown.
+    ``folders`` are those that the program writes to; ``folder_requested`` carries the path of one to be
+    shown.
     """
 
     folder_requested = Signal(object)

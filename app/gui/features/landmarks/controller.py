@@ -48,8 +48,8 @@ class LandmarksController(QObject):
 
     A pin that is carried, by the pointer or by keys, is previewed: the model is fitted again with its newest
     place. Putting it down is one undo step, with its mirror image if both sides are linked.
-    ``upright_requested`` carries the direction of the file that is up; ``carrying_changed`` is emitted when a pin
-    is taken, put down or let go.
+    ``upright_requested`` carries the direction of the file that is up; ``carrying_changed`` is emitted when
+    a pin is taken, put down or let go.
     """
 
     carrying_changed = Signal()

@@ -44,9 +44,10 @@ class LandmarksPanel(QWidget):
     """All landmarks, one row each; under them the rule of the selected one.
 
     ``reset_requested`` names the landmarks, a tuple, that are to be found again, ``confirmed`` those that are
-    right; ``place_requested`` one that was not found and is to be placed; ``hovered`` the one under the pointer,
-    or none. ``keys_requested``: the selected one is to be moved by keys. ``linked`` tells whether the other side
-    goes with one.
+    right; ``place_requested`` one that was not found and is to be placed; ``hovered`` the one under the
+    pointer,
+    or none. ``keys_requested``: the selected one is to be moved by keys. ``linked`` tells whether the other
+    side goes with one.
     """
 
     landmark_selected = Signal(str)

@@ -24,8 +24,8 @@ _OFF = 5e-6  # a set length nearer to the rest length than this means that the l
 class LineDetails(QWidget):
     """The lower part of an opened row; a linked pair has one line of figures for each side.
 
-    ``decided`` carries what was decided and its value: colour, linked, stiffness, over_shoulder; ``requested``
-    one of: reset, rename, path, remove. ``elastic_requested``: an elastic is to be chosen.
+    ``decided`` carries what was decided and its value: colour, linked, stiffness, over_shoulder;
+    ``requested`` one of: reset, rename, path, remove. ``elastic_requested``: an elastic is to be chosen.
     """
 
     decided = Signal(str, object)

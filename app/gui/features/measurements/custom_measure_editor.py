@@ -23,7 +23,8 @@ from core.document.custom_measures import FURTHEST, LONGEST_NAME
 class MeasurementEditor(QWidget):
     """A form for one measure; ``changed`` whenever its ``draft`` is another one.
 
-    ``accepted`` and ``closed`` when it is to be kept, or not; ``removed`` when the one that is changed is to go.
+    ``accepted`` and ``closed`` when it is to be kept, or not; ``removed`` when the one that is changed is to
+    go.
     """
 
     changed = Signal()

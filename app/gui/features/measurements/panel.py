@@ -24,8 +24,8 @@ class MeasurementsPanel(QStackedWidget):
 
     ``summary`` stands at the head, a line on uncertainties. ``marked`` carries the key of the measure to be
     shown on the body, empty for none; ``framed`` when it is to be looked at. ``adding`` asks for one more,
-    ``changing`` and ``removing`` carry the key of one's own. ``copy_requested`` and ``table_requested`` are for the
-    measures as text, on the clipboard or in a file.
+    ``changing`` and ``removing`` carry the key of one's own. ``copy_requested`` and ``table_requested`` are
+    for the measures as text, on the clipboard or in a file.
     """
 
     opened = Signal()
@@ -205,7 +205,7 @@ class MeasurementsPanel(QStackedWidget):
         choices = (
             (tr("Add a measure…"), tr("Measure between two landmarks, or round the body"), self.adding),
             (tr("Copy"), copied, self.copy_requested),
-            (tr("CSV…"), written, self.table_asked),
+            (tr("CSV…"), written, self.table_requested),
         )
         self._buttons = button_row(choices, top=4)
         return self._buttons

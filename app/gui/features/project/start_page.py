@@ -27,8 +27,8 @@ _SEARCH_FROM = 5  # fewer cards are seen at a glance
 class StartPage(QWidget):
     """Asks for a file to open; ``closed`` when the open document is wanted back.
 
-    ``project_chosen``, ``locate_requested`` and ``forget_requested`` carry the path of a card, ``sample_requested`` the
-    name of a sample body.
+    ``project_chosen``, ``locate_requested`` and ``forget_requested`` carry the path of a card,
+    ``sample_requested`` the name of a sample body.
     """
 
     open_requested = Signal()

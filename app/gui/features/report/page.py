@@ -26,8 +26,8 @@ _STEP = 1.1  # of a notch of the wheel
 class ReportPage(QWidget):
     """Shows the pages of a sheet; what is wished is told by signals.
 
-    ``customer_changed`` carries whose it is, ``language_chosen`` a code; ``requested`` "pdf", "print", "json" or "csv";
-    ``closed`` when the work is to come back.
+    ``customer_changed`` carries whose it is, ``language_chosen`` a code; ``requested`` "pdf", "print",
+    "json" or "csv"; ``closed`` when the work is to come back.
     """
 
     customer_changed = Signal(str)

@@ -26,10 +26,11 @@ AXES = tuple(f"{sign}{name}" for name in "xyz" for sign in "+-")
 
 
 class ScanPanel(QWidget):
-    """The facts of the scan; ``value_set`` with "unit", "up" or "front" and what it is, an empty key forgets all.
+    """The facts of the scan; ``value_set`` with "unit", "up" or "front" and what it is, an empty key forgets
+    all.
 
-    ``open_requested`` for another file; ``front_requested`` when the pictures are wanted. ``edits`` edits the scan,
-    ``lean`` its lean.
+    ``open_requested`` for another file; ``front_requested`` when the pictures are wanted. ``edits`` edits
+    the scan, ``lean`` its lean.
     """
 
     value_set = Signal(str, str)

@@ -40,8 +40,8 @@ _REFUSED = "the worn scan"  # what a refusal is about, which the next scan takes
 class ScanComparisonController(QObject):
     """Keep one worn scan of the body shown, and compare and calibrate with it.
 
-    ``compared`` is emitted when there is another comparison, or none, ``map_requested`` with the name of a map or
-    none. A calibration belongs to one design, and goes with it; the scan goes with its body.
+    ``compared`` is emitted when there is another comparison, or none, ``map_requested`` with the name of a
+    map or none. A calibration belongs to one design, and goes with it; the scan goes with its body.
     """
 
     compared = Signal()

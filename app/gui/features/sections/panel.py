@@ -40,8 +40,8 @@ class SectionPanel(FloatingPanel):
 
     The plot is the smaller the smaller the view is that the panel lies on.
 
-    ``axis_chosen`` carries x, y or z; ``moved`` a place on it [mm]; ``through_requested`` left or right: the bust
-    point that the plane is to go through.
+    ``axis_chosen`` carries x, y or z; ``moved`` a place on it [mm]; ``through_requested`` left or right: the
+    bust point that the plane is to go through.
     """
 
     axis_chosen = Signal(str)

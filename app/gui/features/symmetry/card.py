@@ -110,8 +110,8 @@ class _Row:
 
 
 class SymmetryCard(QWidget):
-    """The figures of left and right; ``shown`` asks for the map on the body or takes it away, ``requested`` for
-    what makes it even.
+    """The figures of left and right; ``shown`` asks for the map on the body or takes it away, ``requested``
+    for what makes it even.
     """
 
     shown = Signal(bool)

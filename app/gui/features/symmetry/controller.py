@@ -36,8 +36,8 @@ class SymmetryController(QObject):
     """Compare left and right of frames, and show that in a card of the panel ``host`` and under the map.
 
     ``uncertainty_of`` returns the uncertainties of a frame once they are known. ``changed`` is emitted when
-    another comparison is known, ``map_requested`` with the name of a map or none, and ``targets_proposed`` with
-    goals, what to make of the design first, how that is called and a limit of pressure.
+    another comparison is known, ``map_requested`` with the name of a map or none, and ``targets_proposed``
+    with goals, what to make of the design first, how that is called and a limit of pressure.
     """
 
     changed = Signal()

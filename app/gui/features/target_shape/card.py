@@ -22,7 +22,8 @@ class TargetCard(QWidget):
     """Takes wishes and shows what comes of them; a page in the place of the lines, beside the body.
 
     Rows stand above what depends on an answer, so that none moves when one comes. ``entered`` carries a
-    wish's key and its value, ``removed`` its key; ``add_requested`` wants the menu under ``add``. ``hand_chosen``
+    wish's key and its value, ``removed`` its key; ``add_requested`` wants the menu under ``add``.
+    ``hand_chosen``
     carries what the handles drag: "bust", "apex" or "profile"; ``linked`` whether they move both sides;
     ``prioritized`` a wish's key and its priority, ``limited`` whether a limit is on, ``optional_chosen``
     whether lines that are off may be switched on. ``applied`` and ``closed`` end it; ``helped`` is the button

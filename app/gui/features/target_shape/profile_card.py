@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 class ProfileHandles(QObject):
     """One curve a section with its handles in a view.
 
-    ``taken`` and ``dropped`` when a hand closes and opens, ``taken`` with the section; ``dragged`` carries the
-    section, the number of the handle, and each step up and out [mm].
+    ``taken`` and ``dropped`` when a hand closes and opens, ``taken`` with the section; ``dragged`` carries
+    the section, the number of the handle, and each step up and out [mm].
     """
 
     taken = Signal(str)

@@ -51,7 +51,7 @@ class VariantsPanel(QWidget):
             (
                 (tr("Side by side"), beside, self.beside_requested),
                 (tr("Copy"), copied, self.copy_requested),
-                (tr("CSV…"), written, self.table_asked),
+                (tr("CSV…"), written, self.table_requested),
             )
         )
         column.addWidget(self._buttons)

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 class ViewController(QObject):
     """Show the body that a step is about, and add to the menu of the view what has no button on it.
 
-    ``map_requested`` carries the map that is chosen in the menu; ``material_shown`` is emitted when the body is
-    of another material.
+    ``map_requested`` carries the map that is chosen in the menu; ``material_shown`` is emitted when the body
+    is of another material.
     """
 
     map_requested = Signal(str)
