@@ -28,7 +28,7 @@ Measures = Mapping[str, Measure]
 
 
 def measures(mesh: Mesh, landmarks: Landmarks, own: Iterable[CustomMeasurement] = ()) -> Measures:
-    """Measure a body, by key; use the smoothed skin ``body.calm`` of a scan.
+    """Measure a body, by key; use the smoothed skin ``body.smoothed`` of a scan.
 
     A measurement that the scan does not show has the value None and the reason.
     """
