@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from app.cli.parser import COMMANDS, command_parser
 from core.measurements.definitions import DEFINITIONS
-from core.measurements.size_explanation import plain
+from core.measurements.size_explanation import short
 from core.measurements.size_table import Scale
 from core.measurements.sizes import built_in, sizes
 
@@ -86,7 +86,8 @@ def _option(action: argparse.Action) -> str:
     name = action.option_strings[0] if action.option_strings else ""
     value = action.metavar or "\\|".join(action.choices or ())
     more = " ..." if isinstance(action, argparse._AppendAction) else ""
-    return f"`{name} {value if action.nargs != 0 else ''}".strip() + f"{more}`"
+    words = (name, "" if action.nargs == 0 else value)
+    return f"`{' '.join(filter(None, words))}{more}`"
 
 
 def _cell(text: str) -> str:
@@ -109,7 +110,7 @@ def measurements() -> str:
     heads = ("", "measurement", "unit", "in the standard", "definition")
     rows = []
     for each in DEFINITIONS.values():
-        title = f"{each.title}, left and right" if each.sided else each.title
+        title = f"{each.title}{', left and right' if each.sided else ''}"
         picture = f"![{each.title}](../pictures/measures/{each.key}.png)"
         rows.append((picture, title, each.unit, each.iso or "-", str(each.text)))
     return table(heads, rows)
@@ -134,7 +135,7 @@ def size_rules() -> str:
 
 def _scale(scale: Scale) -> str:
     steps = [
-        f"{step.name}: {plain(step.least)}" + ("" if step.least == step.most else f" to {plain(step.most)}")
+        f"{step.name}: {short(step.least)}" + ("" if step.least == step.most else f" to {short(step.most)}")
         for step in scale.steps
     ]
     return ", ".join([*steps[:2], "…", steps[-1]]) + f"; border: {'larger' if scale.upward else 'smaller'}"
@@ -144,7 +145,7 @@ def size_example() -> str:
     """Return the size of one body in every system."""
     rows = []
     for answer in sizes(*EXAMPLE).values():
-        ups = [f"{each.label}, {plain(each.missing_mm)} mm" for each in answer.neighbours if each.up]
+        ups = [f"{each.label}, {short(each.missing_mm)} mm" for each in answer.neighbours if each.up]
         sisters = ", ".join(each.label for each in answer.sisters)
         rows.append((answer.table.system, answer.label, *ups, sisters))
     return table(("system", "size", "next band", "next cup", "sister sizes"), rows)
