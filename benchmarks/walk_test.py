@@ -21,14 +21,14 @@ from PySide6.QtCore import QSettings  # noqa: E402
 from walk_steps import Walker  # noqa: E402
 from window_tools import Script, run_main, settled, undrawn  # noqa: E402
 
-import app.gui.session.edit_command  # noqa: E402
+import app.gui.session.document_editor  # noqa: E402
 from app.gui.application import application  # noqa: E402
 from app.gui.main_window import MainWindow  # noqa: E402
 
 
 def walk(seed: int, steps: int, body: str) -> None:
     """Walk in a window of this process, and print how far off was what was shown at rest."""
-    app.gui.session.edit_command.PAUSE = -1.0  # every edit is one step, however quick
+    app.gui.session.document_editor.PAUSE = -1.0  # every edit is one step, however quick
     application()
     QSettings().setValue("autosave", 0.05)
 

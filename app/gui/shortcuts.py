@@ -11,7 +11,7 @@ from app.gui.features.measurements import table as measure_table
 from app.gui.features.project import project_card
 from app.gui.plots import canvas as plot_canvas
 from app.gui.viewport import drawing_tool as hand
-from app.gui.viewport import split_handle as wipe
+from app.gui.viewport import split_view as wipe
 from app.gui.viewport.mouse_bindings import chosen_gestures, gestures_in_words
 from app.gui.widgets import inline_edit as typed_field
 from app.gui.widgets import splitter as divider

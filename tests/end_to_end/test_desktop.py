@@ -17,7 +17,7 @@ from window_tools import Script, drag, run_main, run_undrawn, settled, undrawn
 from app.gui.application import log_folder
 from app.gui.features.help.about import AboutDialog, DiagnosticsDialog
 from app.gui.features.help.command_palette import CommandPalette
-from app.gui.features.help.crash_dialog import CrashDialog
+from app.gui.features.help.crash_handler import CrashDialog
 from app.gui.features.preferences.dialog import PreferencesDialog
 from app.gui.main_window import MainWindow
 from app.gui.widgets.dialog import Dialog

@@ -17,7 +17,7 @@ from app.gui.features.view import image_export as picture_desk
 from app.gui.features.view.image_export import fitted
 from app.gui.main_window import MainWindow
 from app.gui.viewport import screenshot as fine_picture
-from app.gui.viewport.split_handle import SplitHandle
+from app.gui.viewport.split_view import SplitHandle
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

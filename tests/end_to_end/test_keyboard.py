@@ -9,7 +9,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from window_tools import Script, run_main, settled, undrawn
 
-from app.gui.features.project.recovery_card import RecoveryView
+from app.gui.features.project.recovery import RecoveryView
 from app.gui.main_window import MainWindow
 
 pytestmark = pytest.mark.usefixtures("empty_house")

@@ -15,7 +15,7 @@ from window_tools import Script, run_main, settled, undrawn
 from app.gui import file_export as tables
 from app.gui.features.measurements.table import MeasurementsTable
 from app.gui.main_window import MainWindow
-from app.gui.widgets.landmark_combo import LandmarkCombo
+from app.gui.widgets.option_field import LandmarkCombo
 from core.document.custom_measures import CustomMeasurement
 from core.measurements.table import before_after
 from tests.end_to_end.test_accessibility import shortcomings

@@ -15,7 +15,7 @@ from PySide6.QtTest import QTest
 from window_tools import Script, drag, run_main, settled, undrawn
 
 from app.gui.main_window import MainWindow
-from app.gui.widgets.elastic_button import ElasticButton
+from app.gui.widgets.line_widgets import ElasticButton
 from app.presenters.bust_shift import bust_shift, shift_between
 from app.presenters.samples import lifted_sample
 from core.document.design import ScanSource

@@ -10,7 +10,7 @@ from PySide6.QtCore import QSettings
 from walk_steps import Walker
 from window_tools import Script, run_main, settled, undrawn
 
-import app.gui.session.edit_command
+import app.gui.session.document_editor
 from app.gui.main_window import MainWindow
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -21,7 +21,9 @@ STEPS, EVERY, SEED = 100, 100, 5
 def test_a_random_walk_through_the_window_ends_where_its_model_does(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(app.gui.session.edit_command, "PAUSE", -1.0)  # every edit is one step, however quick
+    monkeypatch.setattr(
+        app.gui.session.document_editor, "PAUSE", -1.0
+    )  # every edit is one step, however quick
     for name in ("ask_save", "ask_open", "ask_about_changes", "ask_overwrite"):
         monkeypatch.setattr(app.gui.features.project.controller, name, None)  # brought back after the walk
     QSettings().setValue("autosave", 0.05)

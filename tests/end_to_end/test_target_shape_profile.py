@@ -13,7 +13,7 @@ from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
 from app.gui.main_window import MainWindow
-from app.gui.viewport.target_curve import TargetCurve
+from app.gui.viewport.target_handle import TargetCurve
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -16,7 +16,7 @@ from window_tools import Script, run_main, settled
 from app.gui.main_window import MainWindow
 from app.gui.session.settings import get_setting
 from app.gui.viewport import compare_key as flip_key
-from app.gui.viewport.split_handle import REACH
+from app.gui.viewport.split_view import REACH
 from app.gui.viewport.viewport import Viewport
 from core.pipeline.live_solver import Frame
 

@@ -1,6 +1,7 @@
 """The strip under the view: does the model come to rest, with which force, and how far it is."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
+
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -14,14 +15,35 @@ from app.gui.plots.canvas import Turns
 from app.gui.plots.live_plot import LivePlot
 from app.gui.plots.painting import Entry, Legend, legend_entries, legend_width, run_title
 from app.gui.plots.status_chip import StatusChip, StatusLine
-from app.gui.plots.volume_control_choice import control_segment
 from app.gui.theme.stylesheet import label
-from app.gui.widgets.basic import ToolButton, sentence
+from app.gui.widgets.basic import Segment, ToolButton, sentence
 from app.gui.widgets.menu import Menu
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 from app.i18n.lengths import shown_value
 from app.presenters.plots import Curve, Event, Exact, Track, error_quantities, height_quantities, tolerance_of
+
+CONTROLS = ("adaptive", "conventional", "none", "exact")
+"""Ways to control the volume, as named in the run."""
+
+
+def control_segment() -> Segment:
+    """Return the segment of the volume controls; its choices are named as in ``CONTROLS``."""
+    titles = (tr("Adaptive"), tr("Conventional"), tr("Off"), tr("Exact"))
+    result = Segment(tuple(zip(CONTROLS, titles, strict=True)), small=True)
+    for control, tip in zip(CONTROLS, _control_tips(), strict=True):
+        set_tip(result.button(control), tip)
+    return result
+
+
+def _control_tips() -> tuple[str, str, str, str]:
+    return (
+        tr("Keeps the volume with an adaptive force: it learns in each turn how strong it must be"),
+        tr("Keeps the volume with a force in proportion to the volume error; it may vibrate"),
+        tr("Does not keep the volume"),
+        tr("Keeps the volume exactly: the balance is solved at once"),
+    )
+
 
 _HIGH, _LOW, _FOLDED = 184, 150, 36
 

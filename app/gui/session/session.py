@@ -9,8 +9,7 @@ from pathlib import Path
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.gui.session.background_save import BackgroundSave
-from app.gui.session.document_editor import DocumentEditor
-from app.gui.session.edit_command import EditCommand
+from app.gui.session.document_editor import DocumentEditor, EditCommand
 from app.gui.session.solver_bridge import SolverBridge
 from core.document.design import Design, ScanSource
 from core.document.document import Document

@@ -10,7 +10,6 @@ from PySide6.QtCore import QEvent, QObject, QPointF, Qt, Signal
 from PySide6.QtGui import QMouseEvent, QNativeGestureEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from app.gui.viewport.band_drag import BandHandle
 from app.gui.viewport.mouse_bindings import ORBIT, PAN, ZOOM, chosen_gestures
 from app.gui.viewport.overlay import Overlay
 from app.rendering.camera import View
@@ -18,6 +17,45 @@ from core.geometry.mesh import Floats
 
 if TYPE_CHECKING:
     from app.rendering.scene import Scene
+
+
+FINE = 0.1
+"""What is left of a pull while Shift is held [1]."""
+
+
+class BandHandle(QObject):
+    """What a pointer pulls at; ``cursor_of`` tells how it looks over a band, None where that is not pulled.
+
+    ``taken`` names the band, ``dragged`` carries how far it went up since [px], a tenth of it with Shift, and
+    whether that was held; ``dropped`` says that the hand is open again.
+    """
+
+    taken = Signal(str)
+    dragged = Signal(float, bool)
+    dropped = Signal()
+
+    def __init__(self, parent: QObject) -> None:
+        super().__init__(parent)
+        self.cursor_of: Callable[[str], Qt.CursorShape | None] = lambda _: None
+        self._name = ""
+
+    def reach(self, name: str) -> bool:
+        """Be ready to pull at a band, if it can be pulled; tells whether it can."""
+        self._name = name if name and self.cursor_of(name) is not None else ""
+        return bool(self._name)
+
+    def takes(self, way: QPointF) -> bool:
+        """Take what was reached for, if the pointer goes up or down; going across turns the body."""
+        held = bool(self._name) and abs(way.y()) > abs(way.x())
+        if held:
+            self.taken.emit(self._name)
+        return held
+
+    def pull(self, step: QPointF, held: Qt.KeyboardModifier) -> None:
+        """Pull on by so many pixels, y downwards."""
+        fine = bool(held & Qt.KeyboardModifier.ShiftModifier)
+        self.dragged.emit(-step.y() * (FINE if fine else 1.0), fine)
+
 
 TURN = 0.4
 """Degrees that the body turns for each pixel that the pointer is dragged."""

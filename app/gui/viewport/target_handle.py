@@ -1,11 +1,12 @@
 """A handle on the breast in a 3D view: it is dragged to where the skin is wished."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
+
 from __future__ import annotations
 
 import numpy as np
-from PySide6.QtCore import QPointF, Qt, Signal
-from PySide6.QtGui import QColor, QHideEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen
+from PySide6.QtCore import QEvent, QObject, QPointF, Qt, Signal
+from PySide6.QtGui import QColor, QHideEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QWidget
 
 from app.gui.theme.stylesheet import tokens_of
@@ -14,7 +15,7 @@ from app.gui.viewport.viewport import Viewport
 from app.i18n.catalog import tr
 from app.i18n.lengths import arrow_step, length
 from app.rendering.camera import View
-from core.geometry.mesh import Floats
+from core.geometry.mesh import Floats, Points
 
 SIZE, SMALL = 48, 26
 """Width and height of a handle with its arrows, and of one without [px]."""
@@ -181,3 +182,60 @@ class _Thread(QWidget):
         painter.setPen(QPen(QColor(tokens.accent), 1.8))
         painter.setBrush(QColor(tokens.raised))
         painter.drawEllipse(self._foot, 4.0, 4.0)
+
+
+class TargetCurve(QWidget):
+    """Two curves over one view, seen and never hit: what is wished is dashed, what is reached is not."""
+
+    def __init__(self, viewport: Viewport, side: str) -> None:
+        self._canvas = viewport.overlay.parentWidget()
+        super().__init__(self._canvas)
+        self._viewport, self._side = viewport, side
+        self._wished = self._reached = np.zeros((0, 3))
+        self._wanted = False
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        viewport.view_changed.connect(self._stand)
+        viewport.installEventFilter(self)
+        self.hide()
+
+    def show_curves(self, wished: Points, reached: Points) -> None:
+        """Draw what is wished and what is reached, each (k, 3) [mm]."""
+        self._wished, self._reached, self._wanted = wished, reached, True
+        self._stand()
+
+    def put_away(self) -> None:
+        """Show them no longer."""
+        self._wanted = False
+        self._stand()
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.Resize:
+            self._stand()
+        return False
+
+    def _stand(self) -> None:
+        shown = self._wanted and self._viewport.shows_body and faces(self._viewport.scene.view, self._side)
+        if shown and self._canvas is not None:
+            self.setGeometry(self._canvas.rect())
+        self.setVisible(shown)
+        self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        tokens, painter = tokens_of(self), QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        # A rim of the other brightness keeps the lines apart from any skin behind them.
+        for places, dashed in ((self._reached, False), (self._wished, True)):
+            line = self._line(places)
+            for width, colour in ((4.6, tokens.raised), (2.0, tokens.accent)):
+                pen = QPen(QColor(colour), width)
+                pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
+                if dashed and colour == tokens.accent:
+                    pen.setDashPattern([3.0, 2.5])
+                painter.setPen(pen)
+                painter.drawPolyline(line)
+
+    def _line(self, places: Points) -> QPolygonF:
+        view, room = self._viewport.scene.view, (self._viewport.width(), self._viewport.height())
+        spots = view.to_picture(places, *room)[:, :2] if len(places) else np.zeros((0, 2))
+        return QPolygonF([QPointF(x, y) for x, y in spots.tolist()])

@@ -1,20 +1,31 @@
 """The middle of the window: the 3D view and all that lies on it."""
 
+# ruff: noqa: N802 - Qt names its events
+
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from PySide6.QtCore import Signal
-from PySide6.QtGui import QAction, QImage, QPainter, QRegion, QResizeEvent
+from PySide6.QtCore import QRectF, Qt, Signal
+from PySide6.QtGui import (
+    QAction,
+    QColor,
+    QImage,
+    QPainter,
+    QPaintEvent,
+    QRadialGradient,
+    QRegion,
+    QResizeEvent,
+)
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.gui.session.jobs import Job, Jobs
+from app.gui.theme.stylesheet import tokens_of
 from app.gui.viewport.body_view import BodyView
 from app.gui.viewport.canvas import load_libraries
 from app.gui.viewport.comparison import ViewComparison
 from app.gui.viewport.landmark_pins import LandmarkPins
-from app.gui.viewport.opening_cover import OpeningCover
 from app.gui.viewport.orientation_card import OrientationCard
 from app.gui.viewport.split_view import SplitView
 from app.gui.viewport.toolbar import CompareTools, ViewTools
@@ -28,6 +39,49 @@ from core.geometry.mesh import Floats
 from core.landmarks.types import Landmark
 from core.pipeline.live_solver import Frame
 from core.scan.body import Body
+
+_STRENGTH = 0.55  # of the picture: not to be taken for the body that can be turned
+
+
+class OpeningCover(QWidget):
+    """Covers the view with a picture, which ends softly at its edges."""
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self._picture = QImage()
+        self.hide()
+
+    def show_picture(self, picture: QImage | None) -> None:
+        """Show a picture, or uncover the view without one."""
+        if picture is None:
+            self.hide()
+        elif self.isHidden():
+            self._picture = _faded_out(picture)
+            self.show()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Paint the picture in the middle, as high as the view."""
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
+        painter.fillRect(self.rect(), QColor(tokens_of(self).app))
+        size = self._picture.size().scaled(self.size(), Qt.AspectRatioMode.KeepAspectRatio)
+        place = QRectF((self.width() - size.width()) / 2, 0, size.width(), size.height())
+        painter.setOpacity(_STRENGTH)
+        painter.drawImage(place, self._picture)
+
+
+def _faded_out(picture: QImage) -> QImage:
+    """Return a picture that becomes transparent towards its edges."""
+    result = picture.convertToFormat(QImage.Format.Format_ARGB32_Premultiplied)
+    middle, radius = QRectF(result.rect()).center(), max(result.width(), result.height()) / 2
+    mask = QRadialGradient(middle, radius)
+    mask.setColorAt(0.75, QColor(0, 0, 0, 255))
+    mask.setColorAt(1.0, QColor(0, 0, 0, 0))
+    painter = QPainter(result)
+    painter.setCompositionMode(QPainter.CompositionMode.CompositionMode_DestinationIn)
+    painter.fillRect(result.rect(), mask)
+    painter.end()
+    return result
 
 
 class ViewArea(QWidget):
@@ -91,7 +145,7 @@ class ViewArea(QWidget):
         words = tr("Getting the 3D view ready")
         self._jobs.run(words, lambda _: load_libraries(), make, failed)
 
-    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+    def resizeEvent(self, event: QResizeEvent) -> None:
         """Keep the view covered while something is being opened."""
         super().resizeEvent(event)
         self.cover.resize(self.size())

@@ -1,8 +1,10 @@
 """Where one setting is shown and chosen: two answers side by side, a menu, or a number."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
+
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
@@ -13,7 +15,7 @@ from app.gui.theme.icons import paint_icon
 from app.gui.theme.stylesheet import font, tokens_of
 from app.gui.widgets.basic import Segment
 from app.gui.widgets.inline_edit import InlineEdit, read_number
-from app.gui.widgets.menu import Menu
+from app.gui.widgets.menu import Menu, pull_down
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr
 from app.presenters.model_options import Amount, Choice, Setting
@@ -189,3 +191,44 @@ def field_of(setting: Setting) -> Field:
 
 
 _RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
+
+
+class LandmarkCombo(OptionCombo):
+    """Shows a landmark and opens the menu of all; ``chosen`` names another one.
+
+    With ``none`` in words none of them can be chosen too: an empty name.
+    """
+
+    chosen = Signal(str)
+
+    def __init__(self, title: str, none: str = "") -> None:
+        super().__init__()
+        self._none = none
+        self._titles: Mapping[str, str] = {}
+        self._menu = Menu(self)
+        self.setAccessibleName(title)
+        set_tip(self, tr("Choose a landmark, or click it on the body"))
+        self.setMinimumHeight(28)
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self.clicked.connect(lambda: pull_down(self._menu, self))
+
+    def set_marks(self, titles: Mapping[str, str]) -> None:
+        """Offer these landmarks, by name with their titles."""
+        self._titles = titles
+        self._menu.clear()
+        group = QActionGroup(self._menu)
+        offered = {"": self._none, **titles} if self._none else titles
+        for name, title in offered.items():
+            action = group.addAction(title)
+            action.setCheckable(True)
+            action.setData(name)
+            action.triggered.connect(lambda _=False, name=name: self.chosen.emit(name))
+            self._menu.addAction(action)
+
+    def show_mark(self, name: str) -> None:
+        """Show a landmark, or that there is none yet."""
+        title = self._titles.get(name, self._none or tr("not chosen yet"))
+        self.setText(title)
+        self.setAccessibleDescription(title)
+        for action in self._menu.actions():
+            action.setChecked(action.data() == name)

@@ -13,8 +13,7 @@ from typing import Any
 from core.errors import ScanError
 from core.messages import Message
 from core.progress import Progress, quiet
-from core.scan.readers.companion_files import companion_file
-from core.scan.readers.raw_scan import AGAIN
+from core.scan.readers.raw_scan import AGAIN, companion_file
 
 MOST_NODES, MOST_MARKS = 10_000, 500_000
 """Nodes or buffers of a file, and values that its text may hold."""

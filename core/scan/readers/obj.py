@@ -11,8 +11,7 @@ from core.errors import ScanError
 from core.geometry.mesh import Faces, Floats, Indices
 from core.progress import Progress
 from core.scan.readers.colors import UNREADABLE, sampled, texture, with_colors, without_colors
-from core.scan.readers.companion_files import companion_file
-from core.scan.readers.raw_scan import FREE, TIMES, Colours, RawScan, check_size, fans
+from core.scan.readers.raw_scan import FREE, TIMES, Colours, RawScan, check_size, companion_file, fans
 from core.scan.readers.text_table import Growing, Lines, Table, blocks, lines_of, table, whole
 
 _LIBRARY = re.compile(rb"(?:^|[\n\r])[ \t]*mtllib[ \t]+([^\n\r]+)", re.IGNORECASE)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -168,3 +170,11 @@ def _pieces(corners: Indices, counts: Indices) -> Indices:
 def vectors(values: npt.NDArray[np.generic]) -> Points:
     """Return rows of three from numbers of any kind that a file may hold, shape (n, 3)."""
     return np.asarray(values, dtype=np.float64).reshape(-1, 3)
+
+
+def companion_file(path: Path, name: str) -> Path | None:
+    """Return the file in the folder of ``path`` that a plain name means, None if there is none."""
+    if not re.fullmatch(r"[^/\\:\0]{1,255}", name):
+        return None
+    file = (path.parent / name).resolve()
+    return file if file.parent == path.parent.resolve() and file.is_file() else None

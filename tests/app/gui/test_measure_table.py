@@ -8,8 +8,7 @@ from PySide6.QtCore import QRect
 from PySide6.QtGui import QImage
 from pytestqt.qtbot import QtBot
 
-from app.gui.features.measurements.table import HEAD, TOP, MeasurementsTable
-from app.gui.features.measurements.table_row import ROW, cells
+from app.gui.features.measurements.table import HEAD, ROW, TOP, MeasurementsTable, cells
 from app.presenters.measurements import MeasureView, as_table
 from app.presenters.uncertainty import with_uncertainty
 from core.measurements.uncertain_value import SOURCES, OutputUncertainties, Uncertainty

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from pytestqt.qtbot import QtBot
 
-import app.gui.session.edit_command
+import app.gui.session.document_editor
 from app.gui.session.session import Session
 from core.control_mesh.template import read_template
 from core.document.design import Design
@@ -60,7 +60,7 @@ class Walk:
         whims = {self.turn: 6, self.drag: 3, self.choose: 2, self.undo: 4, self.redo: 3, self.variant: 2}
         whims |= {self.leave: 2, self.hurry: 1, self.refuse: 2, self.treat: 2, self.draw: 2, self.dress: 1}
         self.clean = self.session.undo_stack.isClean()
-        app.gui.session.edit_command.PAUSE = self.chance.choice((-1.0, 1e9))
+        app.gui.session.document_editor.PAUSE = self.chance.choice((-1.0, 1e9))
         self.chance.choices(list(whims), list(whims.values()))[0]()
 
     def note(self, after: Document, what: str = "") -> bool:
@@ -72,7 +72,7 @@ class Walk:
             return False
         del self.entries[self.present + 1 :]
         top = self.entries[-1]
-        if not what or what != top.what or self.clean or app.gui.session.edit_command.PAUSE < 0.0:
+        if not what or what != top.what or self.clean or app.gui.session.document_editor.PAUSE < 0.0:
             self.entries.append(Entry(what, [after]))
         else:
             top.documents.append(after)
@@ -119,7 +119,7 @@ class Walk:
 
         The refused length can be made again.
         """
-        app.gui.session.edit_command.PAUSE, name = 1e9, self.chance.choice(LINES)
+        app.gui.session.document_editor.PAUSE, name = 1e9, self.chance.choice(LINES)
         if not [self.turn(name) for _ in range(4)][-1] or self.chance.random() < 0.25:
             return
         self.session._fail(Failure(self.session._revision, LineError(Message("It cannot be held."))))
@@ -228,7 +228,9 @@ class Walk:
 def test_a_random_walk_ends_where_its_model_does(
     qtbot: QtBot, tmp_path: Path, mannequin: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(app.gui.session.edit_command, "PAUSE", -1.0)  # the walk says how quick its edits are
+    monkeypatch.setattr(
+        app.gui.session.document_editor, "PAUSE", -1.0
+    )  # the walk says how quick its edits are
     session = Session()
     faults: list[Exception] = []
     session.failed.connect(faults.append)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from pytestqt.qtbot import QtBot
 
-import app.gui.session.edit_command
+import app.gui.session.document_editor
 from app.gui.session.jobs import Jobs
 from app.gui.session.session import Session
 from core.document.storage.project_file import open_project
@@ -169,7 +169,7 @@ def test_an_undo_that_is_refused_takes_nothing_else_back(session: Session, qtbot
 def test_quick_steps_that_are_refused_go_back_to_the_last_that_was_solved(
     session: Session, qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(app.gui.session.edit_command, "PAUSE", 600.0)
+    monkeypatch.setattr(app.gui.session.document_editor, "PAUSE", 600.0)
     for ratio in (0.98, 0.97):
         session.commit_line("mid-bust", "Mid-bust line", ratio)
         qtbot.waitUntil(lambda: is_solved(session))
@@ -192,7 +192,7 @@ def test_quick_steps_that_are_refused_go_back_to_the_last_that_was_solved(
 def test_a_step_that_is_refused_when_made_again_leaves_the_steps_after_it(
     session: Session, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(app.gui.session.edit_command, "PAUSE", 600.0)
+    monkeypatch.setattr(app.gui.session.document_editor, "PAUSE", 600.0)
     session.commit_line("mid-bust", "Mid-bust line", 0.98)
     qtbot.waitUntil(lambda: is_solved(session))
     session.commit_line("mid-bust", "Mid-bust line", 0.97)

@@ -1,23 +1,253 @@
 """The garment: what to cut for each worn line, of which elastic, how far stretched, with what tension."""
 
 # ruff: noqa: N802 - Qt names its events and says what they are
+
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from html import escape
 
-from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QShowEvent
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QPushButton, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtCore import QRectF, Qt, Signal
+from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent, QShowEvent
+from PySide6.QtWidgets import (
+    QFrame,
+    QGridLayout,
+    QHBoxLayout,
+    QPushButton,
+    QScrollArea,
+    QSizePolicy,
+    QVBoxLayout,
+    QWidget,
+)
 
-from app.gui.features.garment.row import CUT, NEWTONS, PRESSURE, GarmentRow
-from app.gui.features.garment.tissue_card import TissueCard
-from app.gui.theme.stylesheet import label, set_tag
-from app.gui.widgets.basic import EmptyState, button, sentence
+from app.gui.theme.stylesheet import font, label, set_tag, tokens_of
+from app.gui.widgets.basic import ElidedLabel, EmptyState, button, hairline, sentence
 from app.gui.widgets.button_row import button_row
-from app.i18n.catalog import tr
+from app.gui.widgets.line_widgets import ElasticButton, LineChip
+from app.gui.widgets.tooltip import set_tip
+from app.gui.widgets.value_edit import ValueEdit
+from app.i18n.catalog import number, tr
 from app.i18n.lengths import length_unit
-from app.presenters.cut_list import CutListView
+from app.presenters.cut_list import CutListView, CutView
 from app.presenters.pressure import PressureView
+from core.document.elastic import TISSUE_LIMITS, TISSUE_STIFFNESS
+
+
+class TissueCard(QWidget):
+    """Stiffness of tissue [N/m] with what is said of it and of the figures; ``entered`` carries another."""
+
+    entered = Signal(float)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.field = _TissueField()
+        self.field.entered.connect(self.entered)
+        self.notes = sentence("", "caption")
+        self.notes.setTextFormat(Qt.TextFormat.RichText)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(8, 4, 8, 4)
+        column.setSpacing(4)
+        row = QHBoxLayout()
+        words = label(tr("Stiffness of skin and tissue"), "secondary")
+        set_tip(words, self.field.toolTip())
+        row.addWidget(words, 1)
+        row.addWidget(self.field)
+        column.addWidget(hairline())
+        column.addLayout(row)
+        column.addWidget(self.notes)
+
+    def show_tissue(self, stiffness: float, notes: Sequence[str]) -> None:
+        """Show the stiffness, and what holds for all figures."""
+        self.field.show_value(stiffness)
+        self.notes.setText("".join(f'<p style="margin:0 0 4px 0">{escape(note)}</p>' for note in notes))
+
+
+class _TissueField(ValueEdit):
+    """A stiffness within what tissue may have."""
+
+    def __init__(self) -> None:
+        super().__init__("N/m", tr("Stiffness of skin and tissue"), digits=0, widest="2000")
+        tip = tr(
+            "Force per metre of width and strain, {low} to {high}; at first {usual}, from skin alone."
+            " It was not measured on this body: all newtons go with it, and how far elastics pull it in."
+        )
+        low, high = TISSUE_LIMITS
+        set_tip(self, tip.format(low=f"{low:g}", high=f"{high:g}", usual=f"{TISSUE_STIFFNESS:g}"))
+
+    def _read(self, text: str) -> float:
+        value, (low, high) = super()._read(text.replace("N/m", "")), TISSUE_LIMITS
+        if not low <= value <= high:
+            words = tr("Choose {low} to {high} N/m: an estimate, skins alone have 160 to 1150.")
+            raise ValueError(words.format(low=number(low, 0), high=f"{high:g}"))
+        return value
+
+
+CHIP, CUT, NEWTONS, PRESSURE = 20, 54, 52, 56
+"""Room of the columns [px]; the name has the rest."""
+
+NOTHING = "\N{EN DASH}"
+
+_RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
+
+
+class PressureMark(QWidget):
+    """How hard a line presses: kPa, and under it a light with its word."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.view = PressureView("", "", "", "")
+        self.setFixedSize(PRESSURE, 42)
+
+    def show_pressure(self, view: PressureView) -> None:
+        """Show what a line presses with."""
+        if view != self.view:
+            self.view = view
+            set_tip(self, view.tip)
+            self.setAccessibleName(f"{view.kpa} kPa {view.word}" if view.kpa else "")
+            self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Paint figure, light and word, at the right."""
+        tokens, painter, view = tokens_of(self), QPainter(self), self.view
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setFont(font("body", tabular=True))
+        painter.setPen(QColor(tokens.text if view.kpa and not view.stale else tokens.text_caption))
+        painter.drawText(QRectF(0, 0, PRESSURE, 21), _RIGHT, view.kpa or NOTHING)
+        if not view.light:
+            return
+        tone = {"green": "ok", "amber": "warn", "red": "bad"}[view.light]
+        painter.setFont(font("caption"))
+        painter.setPen(QColor(getattr(tokens, tone)))
+        word = painter.fontMetrics().elidedText(view.word, Qt.TextElideMode.ElideRight, PRESSURE - 12)
+        painter.drawText(QRectF(0, 21, PRESSURE, 18), _RIGHT, word)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(getattr(tokens, tone)))
+        painter.drawEllipse(QRectF(PRESSURE - painter.fontMetrics().horizontalAdvance(word) - 12, 26, 8, 8))
+
+
+class GarmentRow(QFrame):
+    """The row of one line; ``pressed`` by a click, ``elastic_requested`` at its choice of elastics.
+
+    ``stretched`` carries how far its elastic shall be stretched [1], where the designer sets that.
+    """
+
+    pressed = Signal()
+    stretched = Signal(float)
+    elastic_requested = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.view: CutView | None = None
+        self._selected = False
+        self._chip, self.title = LineChip(), ElidedLabel()
+        self.title.setFont(font("name"))
+        self.title.setProperty("role", "name")
+        self.title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self.cut = label("", "heading", tabular=True)
+        self.tension, self.stretch = label("", "body", tabular=True), label("", "caption", tabular=True)
+        self.elastic, self.pressure, self.set_stretch = ElasticButton(), PressureMark(), _StretchField()
+        self.set_stretch.entered.connect(lambda percent: self.stretched.emit(percent / 100.0))
+        self.elastic.clicked.connect(self.elastic_requested)
+        self.notes = sentence("", "caption")
+        self._build()
+
+    def show_view(self, view: CutView, stale: bool) -> None:
+        """Show a piece; ``stale`` figures are those of a former shape."""
+        self.view = view
+        self._chip.show_line(view.color, view.width_mm, True)
+        self.title.setText(view.title)
+        set_tip(self.title, view.title)
+        self.cut.setText(view.cut or NOTHING)
+        self.cut.setFont(font("body" if view.front_only else "heading", tabular=True))
+        self.tension.setText(view.tension or NOTHING)
+        self.stretch.setText(view.stretch)
+        self.stretch.setVisible(view.stretch_percent is None)
+        self.set_stretch.setVisible(view.stretch_percent is not None)
+        self.set_stretch.show_value(view.stretch_percent or 0.0)
+        self.set_stretch.setAccessibleName(tr("{line}: stretched by, in percent").format(line=view.title))
+        for each in (self.cut, self.tension, self.stretch):
+            far = "warn" if view.far and each is self.stretch else ""
+            set_tag(each, "tone", "faint" if stale else far)
+        set_tag(self.set_stretch, "tone", "warn" if view.far and not stale else "")
+        self.elastic.show_elastic(view.title, view.elastic)
+        self.notes.setText("\n".join(view.notes))
+        self.notes.setVisible(bool(view.notes))
+        self.setAccessibleName(accessible_text(view))
+
+    def set_selected(self, selected: bool) -> None:
+        """Mark the row of the line that is selected on the body."""
+        if selected != self._selected:
+            self._selected = selected
+            self.update()
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        """Select the line."""
+        self.pressed.emit()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Paint the selected row as a card with the line's colour at its edge."""
+        if not self._selected or self.view is None:
+            return
+        tokens, painter = tokens_of(self), QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(QColor(tokens.outline))
+        painter.setBrush(QColor(tokens.raised))
+        painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 8, 8)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(self.view.color))
+        painter.drawRoundedRect(QRectF(0, 10, 3, self.height() - 20), 1.5, 1.5)
+
+    def _build(self) -> None:
+        grid = QGridLayout(self)
+        grid.setContentsMargins(8, 6, 8, 6)
+        grid.setHorizontalSpacing(0)
+        grid.setVerticalSpacing(0)
+        for column, room in enumerate((CHIP, 0, CUT, NEWTONS)):
+            grid.setColumnMinimumWidth(column, room)
+        grid.setColumnStretch(1, 1)
+        grid.addWidget(self._chip, 0, 0)
+        grid.addWidget(self.title, 0, 1)
+        for column, each in enumerate((self.cut, self.tension), start=2):
+            grid.addWidget(each, 0, column, _RIGHT)
+        grid.setRowMinimumHeight(0, 21)
+        grid.setRowMinimumHeight(1, 21)
+        grid.addWidget(self.elastic, 1, 1, 1, 2)
+        grid.addWidget(self.stretch, 1, 3, _RIGHT)
+        grid.addWidget(self.set_stretch, 1, 3, _RIGHT)
+        grid.addWidget(self.pressure, 0, 4, 2, 1, Qt.AlignmentFlag.AlignTop)
+        grid.addWidget(self.notes, 2, 1, 1, 4)
+        self.notes.setContentsMargins(5, 2, 0, 2)
+
+
+class _StretchField(ValueEdit):
+    """How far a band that does not move the body is stretched: the designer says it."""
+
+    MOST = 100.0
+
+    def __init__(self) -> None:
+        said = tr("How far it is stretched on the body")
+        super().__init__("%", said, digits=0, signed=True, widest="+100")
+        self.setFont(font("caption", tabular=True))
+        self.setProperty("ring", "true")  # beside figures that cannot be set
+        self.setFixedSize(NEWTONS, 20)
+
+    def _read(self, text: str) -> float:
+        value = super()._read(text)
+        if not 0.0 <= value <= self.MOST:
+            raise ValueError(tr("Choose 0 to {most} %.").format(most=number(self.MOST, 0)))
+        return value
+
+
+def accessible_text(view: CutView) -> str:
+    """Return a piece for ears."""
+    cut = view.cut and f"{view.cut} {length_unit()}"
+    figures = (
+        (cut, tr("front part {value}") if view.front_only else tr("cut {value}")),
+        (view.stretch, tr("stretched by {value}")),
+        (view.tension, "{value} N"),
+    )
+    told = [words.format(value=value) for value, words in figures if value]
+    return f"{view.title}: {', '.join([*told, *view.notes])}".rstrip(": ")
 
 
 class GarmentPanel(QWidget):

@@ -10,8 +10,7 @@ from PySide6.QtWidgets import QCheckBox, QGridLayout, QHBoxLayout, QLabel, QVBox
 from app.gui.features.lines.limits_legend import LimitsLegend
 from app.gui.theme.stylesheet import font, label, set_tag
 from app.gui.widgets.basic import ToolButton, hairline, sentence
-from app.gui.widgets.elastic_button import ElasticButton
-from app.gui.widgets.line_widgets import PaletteMenu, StiffnessField
+from app.gui.widgets.line_widgets import ElasticButton, PaletteMenu, StiffnessField
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length, length_number, length_unit

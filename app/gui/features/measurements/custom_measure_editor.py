@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QAbstractButton, QFormLayout, QHBoxLayout, QLineEd
 
 from app.gui.theme.stylesheet import font, label, set_tag
 from app.gui.widgets.basic import Segment, ToolButton, button, hairline, sentence
-from app.gui.widgets.landmark_combo import LandmarkCombo
+from app.gui.widgets.option_field import LandmarkCombo
 from app.gui.widgets.tooltip import set_tip
 from app.gui.widgets.value_edit import ValueEdit
 from app.i18n.catalog import tr

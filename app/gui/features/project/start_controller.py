@@ -10,9 +10,8 @@ from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QDragEnterEvent
 
 from app.gui.features.project.controller import ProjectController
-from app.gui.features.project.drop_zone import DropVeil
 from app.gui.features.project.recent_files import forget_file, project_views, remember_file
-from app.gui.features.project.start_page import StartPage
+from app.gui.features.project.start_page import DropVeil, StartPage
 from app.gui.widgets.file_dialogs import ask_open
 from app.i18n.catalog import tr
 from app.presenters.samples import FIRST_SAMPLE, LIFTING_LINE, SAMPLES, lifted_sample, sample_path

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
-from app.gui.viewport.target_curve import TargetCurve
-from app.gui.viewport.target_handle import TargetHandle
+from app.gui.viewport.target_handle import TargetCurve, TargetHandle
 from app.i18n.catalog import tr
 from core.analysis.inverse_design.profile_curve import ProfileCurve, profile_points, section_to_space
 from core.pipeline.frame import Frame
