@@ -53,7 +53,7 @@ def main() -> None:
     for name, folder in zip(("bodies", "made"), sys.argv[1:3], strict=False):
         report = (Path(folder) / "accuracy.md").read_text(encoding="utf-8")
         counts = report.split("\n\n")[1]
-        glance = report.partition("## At a glance")[2].partition("\n## ")[0].strip()
+        glance = report.partition("## Summary")[2].partition("\n## ")[0].strip()
         put(name, f"{counts}\n\n{glance}")
     for folder in map(Path, sys.argv[3:]):
         put("people", people((folder / "landmarks.txt").read_text(encoding="utf-8")))

@@ -151,7 +151,7 @@ def offs(stages, truth, found):
     for one in found.calibration.numbers:
         number = by_name[one.name]
         stiffness = number.kind in (STIFFNESS, LINE_STIFFNESS)
-        kind = "stiffness of lines" if stiffness else number.kind.replace("_", " ")
+        kind = "line stiffness" if stiffness else number.kind.replace("_", " ")
         # One that was found for all lines is held against that of each.
         of = [Parameter(STIFFNESS, (line,)) for line in number.lines] if stiffness else [number]
         for each in of:

@@ -162,7 +162,7 @@ def main() -> None:
         "after",
         "change",
         "lift",
-        "length to cut",
+        "cut length",
         "tension",
         "largest pressure",
         "failed",

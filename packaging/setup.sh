@@ -94,7 +94,7 @@ prepare_environment() {
         fail "The Python packages could not be installed; the reason stands above." "Call make again to go on from here."
     $pip install --no-index --no-deps --no-build-isolation --editable .
     # Compiled once here, the loops are only read later; without them the program works too, only slower.
-    .venv/bin/python -c "from core import kernels; kernels.warm()" || true
+    .venv/bin/python -c "from core.geometry import kernels; kernels.warm()" || true
 }
 
 is_ready() {

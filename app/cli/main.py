@@ -52,7 +52,7 @@ def _run_window(words: Sequence[str]) -> int:
     file = None if options.file is None else path_of(options.file)
     if file == "":
         raise UserError(
-            Message("No file is named."), Message("Specify a scan or a project, or see 'busk --help'.")
+            Message("No file specified."), Message("Specify a scan or a project, or see 'busk --help'.")
         )
     if file is not None and not os.path.exists(file) and not is_seen_in_window(file):
         raise UserError(

@@ -47,12 +47,12 @@ class Actions(Menus):
         self.rule("file")
         self.save = self.add("file", tr("Save"), _KEYS.Save, of_document=True)
         self.save_as = self.add("file", tr("Save as…"), "Ctrl+Shift+S", of_document=True)
-        said = tr("Body, lines, strips, measures, pictures, a turntable: for other programs")
+        said = tr("Export body, lines, pattern strips, measurements, images or a turntable")
         self.export_any = self.add("file", tr("Export…"), "Ctrl+Shift+E", said, of_document=True)
-        said = tr("Write the reshaped body at once, as it was exported last")
+        said = tr("Export the reshaped body with the last settings")
         self.export = self.add("file", tr("Export body…"), "Ctrl+E", said, of_document=True)
         self.rule("file")
-        self.cancel = self.add("file", tr("Cancel the work in hand"), "Esc")
+        self.cancel = self.add("file", tr("Cancel current task"), "Esc")
         self.cancel.setEnabled(False)
         self.rule("file")
         self.quit = self.add("file", tr("Quit"), "Ctrl+Q")
@@ -67,21 +67,21 @@ class Actions(Menus):
         for action in (self.undo, self.redo):
             self.place("edit", action)
         self.rule("edit")
-        said = tr("Take all lines off that are not locked")
-        self.reset = self.add("edit", tr("Reset to scan"), "Ctrl+R", said, of_document=True)
+        said = tr("Deactivate all unlocked lines")
+        self.reset = self.add("edit", tr("Reset all lines"), "Ctrl+R", said, of_document=True)
 
     def _fill_view(self, view: Mapping[str, QAction]) -> None:
-        said = tr("Show the body at rest, or reshaped")
+        said = tr("Switch between original and reshaped body")
         self.flip = self.add("view", tr("Before / after"), "Space", said, of_document=True)
         self.submenu("view", "compare", tr("Compare"))
-        self.submenu("view", "looks", tr("Look from"))
+        self.submenu("view", "looks", tr("View direction"))
         self.submenu("view", "layers", tr("Show"))
         self.rule("view")
         for name, action in view.items():
             self.place(next((menu for menu, held in _VIEW_MENUS.items() if name in held), "view"), action)
         self.rule("view")
         self.submenu("view", "theme", tr("Theme"))
-        titles = {"system": tr("As the system"), "light": tr("Light"), "dark": tr("Dark")}
+        titles = {"system": tr("System default"), "light": tr("Light"), "dark": tr("Dark")}
         self.themes = self.group("theme", titles)
         self.submenu("view", "language", tr("Language"))
         self.languages = self.group("language", dict(LANGUAGES))
@@ -89,23 +89,25 @@ class Actions(Menus):
 
     def _fill_lines(self) -> None:
         titles = {
-            "straps": tr("Add straps over the bust points"),
-            "slings": tr("Add slings round the breasts"),
-            "obliques": tr("Add oblique lines from the sides"),
-            "rings": tr("Add closed rings round the bust points"),
+            "straps": tr("Add straps over bust points"),
+            "slings": tr("Add slings around breasts"),
+            "obliques": tr("Add oblique side lines"),
+            "rings": tr("Add rings around bust points"),
         }
         self.add_lines = {name: self.add("lines", title, of_document=True) for name, title in titles.items()}
         self.rule("lines")
-        said = tr("Click points on the body to draw a line; it keeps the curve or snaps to control points")
-        self.draw_line = self.add("lines", tr("Draw a line on the body"), "N", said, of_document=True)
+        said = tr(
+            "Click points on the body to draw a line. It keeps the drawn curve or snaps to control points."
+        )
+        self.draw_line = self.add("lines", tr("Draw line"), "N", said, of_document=True)
         self.own_line = self.add("lines", tr("Line through control points…"), of_document=True)
 
     def _fill_solve(self) -> None:
         titles = {
-            "adaptive": tr("Adaptive volume force"),
-            "conventional": tr("Conventional volume force"),
-            "accumulating": tr("Accumulating volume force"),
-            "exact": tr("Exact answer"),
+            "adaptive": tr("Adaptive volume control"),
+            "conventional": tr("Conventional volume control"),
+            "accumulating": tr("Integral volume control"),
+            "exact": tr("Exact solution"),
             "none": tr("No volume control"),
         }
         self.controls = self.group("solve", {name: titles[name] for name in CONTROLS})
@@ -114,8 +116,8 @@ class Actions(Menus):
         counts = {name: tr("{count} polygons").format(count=name) for name in ("168", "120")}
         self.templates = self.group("templates", counts)
         self.rule("solve")
-        said = tr("Choose how lines, skin and volume act")
-        self.model = self.add("solve", tr("How the model works…"), "Ctrl+M", said, of_document=True)
+        said = tr("Model options: line, skin and volume behaviour")
+        self.model = self.add("solve", tr("Model options…"), "Ctrl+M", said, of_document=True)
 
     def _fill_window(self) -> None:
         titles = {
@@ -130,23 +132,23 @@ class Actions(Menus):
         self.rule("window")
         self.inspector = self.add("window", tr("Inspector"), "Ctrl+I", checkable=True)
         self.strip = self.add("window", tr("Live plot"), "Ctrl+J", checkable=True)
-        said = tr("Hide all but the 3D view; Tab in the view brings the rest back")
-        self.alone = self.add("window", tr("View alone"), "Tab", said, checkable=True)
+        said = tr("Show only the 3D view (Tab to restore)")
+        self.alone = self.add("window", tr("3D view only"), "Tab", said, checkable=True)
         # Elsewhere Tab goes on to the next field: the layout gives this action to the view alone.
         self.alone.setShortcutContext(Qt.ShortcutContext.WidgetShortcut)
         self.full_screen = self.add("window", tr("Full screen"), "F11", checkable=True)
-        self.next_pane = self.add("window", tr("Next pane"), "F6", tr("Go on with the keyboard elsewhere"))
-        said = tr("Go through the menus with the arrow keys")
+        self.next_pane = self.add("window", tr("Next pane"), "F6", tr("Move keyboard focus to the next pane"))
+        said = tr("Select menus with the arrow keys")
         self.add("window", tr("Menu bar"), "F10", said, do=self.enter_bar)
         self.rule("window")
-        said = tr("Give inspector and live plot their first sizes again")
+        said = tr("Restore default panel sizes")
         self.reset_layout = self.add("window", tr("Reset layout"), tip=said)
 
     def _fill_help(self) -> None:
-        said = tr("In the browser, at the page that fits what you are doing")
+        said = tr("Open the page for the current task in the browser")
         self.guide = self.add("help", tr("User guide"), _KEYS.HelpContents, said)
-        said = tr("From a scan to lengths of elastic, click by click")
-        self.first_steps = self.add("help", tr("First customer in ten minutes"), tip=said)
+        said = tr("From a scan to a cut list, click by click")
+        self.first_steps = self.add("help", tr("Quick start"), tip=said)
         self.rule("help")
         self.about = self.add("help", tr("About Busk"))
         self.about.setMenuRole(QAction.MenuRole.AboutRole)

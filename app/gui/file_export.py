@@ -32,7 +32,7 @@ def write_file(
     except UserError as error:
         notifications.error(error, topic)
     else:
-        sentence = sentence or tr("{name} written.")
+        sentence = sentence or tr("{name} saved.")
         notifications.file_written(topic, sentence.format(name=Path(path).name), path)
 
 
@@ -50,7 +50,7 @@ def copy_table(context: AppContext, table: Table) -> None:
     """Put a table on the clipboard, its cells apart by tabs as spreadsheets take them."""
     lines = ("\t".join(str(cell(each)) for each in row) for row in table)
     QGuiApplication.clipboard().setText("".join(f"{line}\n" for line in lines))
-    context.notifications.done(tr("The table is copied."))
+    context.notifications.done(tr("Table copied."))
 
 
 def save_table(context: AppContext, table: Table, title: str, ending: str) -> None:

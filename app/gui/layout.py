@@ -51,8 +51,8 @@ class Layout(QObject):
         self.closers: Sequence[Callable[[], bool]] = ()
         self._folded_as_low = False
         self.pages = QStackedWidget()
-        self._across = Splitter(Qt.Orientation.Horizontal, tr("Width of the inspector"))
-        self._down = Splitter(Qt.Orientation.Vertical, tr("Height of the live plot"))
+        self._across = Splitter(Qt.Orientation.Horizontal, tr("Inspector width"))
+        self._down = Splitter(Qt.Orientation.Vertical, tr("Live plot height"))
         self._middle, self._right = QVBoxLayout(), QVBoxLayout()
         self._ring = FocusRing(window)
         self._build()

@@ -124,7 +124,7 @@ class MainWindow(QMainWindow):
         self.lines, self.result, self.garment = LinesPanel(), MeasurementsPanel(), GarmentPanel()
         self.model, self.door = ModelPanel(), ModelRow()
         self.ask_door = NavigationRow(
-            tr("Ask for the result"), tr("Say where the bust is to be; Busk finds the lengths")
+            tr("Target shape"), tr("Set target positions; Busk computes the line lengths")
         )
         self.history, self.variants, self.inspector = HistoryPanel(), VariantsPanel(), Inspector()
         self.lines_page = QStackedWidget()  # the lines, or what is asked for in their place
@@ -487,7 +487,7 @@ class MainWindow(QMainWindow):
         page.currentChanged.connect(lambda at: page.setFocusProxy(page.widget(at) or lines))
         page.addWidget(lines)
         self.inspector.add("lines", self.lines_page, tr("Lines"))
-        self.inspector.add("result", self.result, tr("Measures"))
+        self.inspector.add("result", self.result, tr("Measurements"))
         self.inspector.add("garment", self.garment, tr("Garment"))
         self.inspector.add("variants", self.variants, tr("Variants"))
         self.inspector.add("history", self.history, tr("History"))

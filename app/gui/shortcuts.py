@@ -21,16 +21,16 @@ from app.i18n.catalog import in_all_languages, tr
 def keys_of_parts() -> Iterator[Command]:
     """Give each key with what it does and where, and what a hand does in the view."""
     parts = (
-        (tr("In the view"), gestures_in_words(chosen_gestures())),
-        (tr("In the list of lines"), lines.keys_in_words()),
-        (tr("In a field"), typed_field.keys_in_words()),
-        (tr("While a line is drawn"), hand.keys_in_words()),
-        (tr("In the list of landmarks"), landmarks.keys_in_words()),
-        (tr("In the table of measures"), measure_table.keys_in_words()),
-        (tr("On the handle of the wipe"), wipe.keys_in_words()),
-        (tr("In the live plot"), plot_canvas.keys_in_words()),
-        (tr("Between two parts of the window"), divider.keys_in_words()),
-        (tr("On the start page"), project_card.keys_in_words()),
+        (tr("3D view"), gestures_in_words(chosen_gestures())),
+        (tr("List of lines"), lines.keys_in_words()),
+        (tr("Input fields"), typed_field.keys_in_words()),
+        (tr("Line drawing"), hand.keys_in_words()),
+        (tr("List of landmarks"), landmarks.keys_in_words()),
+        (tr("Table of measurements"), measure_table.keys_in_words()),
+        (tr("Before / after divider"), wipe.keys_in_words()),
+        (tr("Live plot"), plot_canvas.keys_in_words()),
+        (tr("Pane dividers"), divider.keys_in_words()),
+        (tr("Start page"), project_card.keys_in_words()),
     )
     for where, keys in parts:
         for key, what in keys:

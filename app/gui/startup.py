@@ -32,10 +32,9 @@ def run_window(file: str | None = None, safe: bool = False) -> int:
     """
     if not has_display() and "QT_QPA_PLATFORM" not in os.environ:
         raise UserError(
-            Message("There is no display to open a window on."),
+            Message("No display available for the window."),
             Message(
-                "Use 'busk demo --out out' for the same session in pictures, or 'busk --help' for "
-                "the commands."
+                "Use 'busk demo --out out' for an off-screen session, or 'busk --help' for the commands."
             ),
         )
     app = application()

@@ -38,7 +38,7 @@ class StatusBar(QWidget):
         job.setContentsMargins(0, 0, 0, 0)
         job.setSpacing(8)
         self._job_name, self._bar = label("", "caption"), ProgressBar()
-        self.stop = ToolButton("x", tr("Cancel this work"), size=10, room=20)
+        self.stop = ToolButton("x", tr("Cancel task"), size=10, room=20)
         self.stop.clicked.connect(self.job_cancelled)
         for each in (self._job_name, self._bar, self.stop):
             job.addWidget(each)

@@ -98,9 +98,9 @@ class StepButton(QAbstractButton):
         self._state, self._count = state, count
         said = {
             "done": tr("done"),
-            "look": tr("wants a look"),
-            "bad": tr("no result"),
-            "missing": tr("not yet possible"),
+            "look": tr("needs review"),
+            "bad": tr("not valid"),
+            "missing": tr("not available yet"),
         }
         self.setAccessibleDescription(said.get(state, ""))
         if changed:

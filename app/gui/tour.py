@@ -119,24 +119,25 @@ class Tour(QObject):
             TourStop(
                 tr("Before and after"),
                 tr(
-                    "Compared with the original body, the bust points are {move}. "
-                    "Press Space, or click Before and After, to switch between both."
+                    "The bust points moved by: {move}. Press Space, or click Before and After, "
+                    "to switch between original and reshaped body."
                 ).format(move=up_words(bust_shift(frame).mean.up)),
                 lambda: self._place_of(window.view.compare),
             ),
             TourStop(
                 tr("Four steps"),
                 tr(
-                    "From the scan to the result: open any step at any time. "
-                    "For a scan of your own, drop its file on the window or press Ctrl+O."
+                    "Open any of the steps from scan to result at any time. To open your own "
+                    "scan, drop its file on the window or press Ctrl+O."
                 ),
                 lambda: self._place_of(*window.rail.items.values()),
             ),
             TourStop(
                 tr("Drag a line"),
                 tr(
-                    "Drag the round handle a little to the left: the line gets shorter and presses more. "
-                    "Below the body you see how far the bust moves. Ctrl+Z undoes it."
+                    "Drag the round handle slightly to the left: the line becomes shorter and "
+                    "presses more. Bust movement is shown below the body. Ctrl+Z undoes the "
+                    "change."
                 ),
                 lambda: self._place_of(window.lines.rows.get(window.view.selected_line, window.lines)),
             ),
@@ -147,17 +148,17 @@ class Tour(QObject):
             TourStop(
                 tr("Overall verdict"),
                 tr(
-                    "The worst result of all checks: convergence, skin strain, contact pressure and fit. "
-                    "Click it for reasons and fixes. Pressures are estimates, rather too high: "
-                    "check them on a sample garment."
+                    "Overall verdict of all checks: convergence, skin strain, contact pressure "
+                    "and fit. Click it for reasons and fixes. Contact pressures are estimates, "
+                    "rather too high: check them on a sample garment."
                 ),
                 self._verdict_place,
             ),
             TourStop(
-                tr("Fitting sheet"),
+                tr("Fitting report"),
                 tr(
-                    "The verdict, the lift and what to cut, with pictures: print it or save it as a PDF. "
-                    "Esc returns to the body."
+                    "Verdict, bust lift and cut list with images: print the report or save it as "
+                    "a PDF. Esc returns to the body."
                 ),
                 lambda: self._place_of(self._window.report_controller.page.does["pdf"]),
                 report=True,

@@ -19,8 +19,8 @@ def licences() -> list[tuple[str, str]]:
     texts = [(resources.files("resources") / folder / name).read_text("utf-8") for folder, name in shipped]
     return [
         ("Busk", _text_of("LICENSE")),
-        (tr("What Busk uses"), _text_of("THIRD_PARTY.md")),
-        (tr("Type, icons, samples"), ("\n\n" + "-" * 80 + "\n\n").join(texts)),
+        (tr("Libraries"), _text_of("THIRD_PARTY.md")),
+        (tr("Fonts, icons, samples"), ("\n\n" + "-" * 80 + "\n\n").join(texts)),
     ]
 
 
@@ -33,4 +33,4 @@ def _text_of(name: str) -> str:
         found = metadata.distribution("busk").read_text(f"licenses/{name}")
     except metadata.PackageNotFoundError:
         found = None
-    return found or tr("{name} is not installed here.").format(name=name)
+    return found or tr("{name} is not installed.").format(name=name)

@@ -124,7 +124,7 @@ def sides_words(move: BustShift) -> tuple[str, str]:
 
 def bust_sentence(move: BustShift, offs: Offs = UNKNOWN) -> str:
     """Return a move in one line, with both sides where they differ; ``offs`` are those of the mean."""
-    said = tr("Bust point {way}").format(way=step_words(move.mean, offs))
+    said = tr("Bust points: {way}").format(way=step_words(move.mean, offs))
     if not move.differs:
         return said
     left, right = sides_words(move)

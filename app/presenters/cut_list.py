@@ -46,14 +46,14 @@ def as_table(stages: Stages, cuts: CutList, pressed: PressureList | None) -> lis
         tr("Elastic"),
         tr("Width mm"),
         tr("Cut mm"),
-        tr("Stretch %"),
+        tr("Elongation %"),
         tr("Tension N"),
-        tr("Largest pressure kPa"),
-        tr("Front on the body mm"),
-        tr("Whole on the body mm"),
+        tr("Maximum contact pressure kPa"),
+        tr("Front on body mm"),
+        tr("Full length on body mm"),
         tr("Allowance mm"),
         tr("Estimate"),
-        tr("Note"),
+        tr("Notes"),
     ]
     design = stages.design
     order = list(line_colours((line.name for line in stages.model.lines), design))
@@ -64,7 +64,7 @@ def as_table(stages: Stages, cuts: CutList, pressed: PressureList | None) -> lis
 
 def _off(name: str, design: Design, color: str) -> CutView:
     """Return the row of a band that can be cut although its line does not constrain the model."""
-    notes = (tr("On the rib cage: it moves nothing, but it can be cut."),)
+    notes = (tr("On the rib cage: no effect on the body, but can be cut."),)
     elastic = elastic_title(design.line_settings(name).elastic)
     return CutView(name, line_title(name, design), color, band_width(name, design), elastic, notes=notes)
 

@@ -33,23 +33,17 @@ def sentence(found: Diagnosis, swing: float) -> str:
         return _plain(found, swing)
     words = {
         "vibrating": tr(
-            "{one} and {other} pull against each other: the bust point swings by ±{swing} every {period} "
-            "turns."
+            "{one} and {other} conflict: the bust point oscillates by ±{swing} (period {period} iterations)."
         ),
         "volume": tr(
-            "{one} and {other} pull against each other: the volume swings by ±{percent} % every {period} "
-            "turns."
+            "{one} and {other} conflict: the volume oscillates by ±{percent} % (period {period} iterations)."
         ),
-        "diverging": tr("{one} and {other} pull against each other until the calculation runs away."),
-        "folded": tr("{one} and {other} pull against each other until the skin folds over."),
-        "overstrained": tr(
-            "{one} and {other} pull against each other: skin is pressed or stretched by over 30 %."
-        ),
-        "strained": tr(
-            "{one} and {other} pull against each other: skin is pressed or stretched by over 20 %."
-        ),
-        "settling": tr("{one} and {other} pull against each other: the calculation comes to no rest."),
-        "unreachable": tr("{one} and {other} pull against each other: no balance is found."),
+        "diverging": tr("{one} and {other} conflict: the solver diverged."),
+        "folded": tr("{one} and {other} conflict: the skin is folded."),
+        "overstrained": tr("{one} and {other} conflict: skin is compressed or stretched by over 30 %."),
+        "strained": tr("{one} and {other} conflict: skin is compressed or stretched by over 20 %."),
+        "settling": tr("{one} and {other} conflict: the solver does not converge."),
+        "unreachable": tr("{one} and {other} conflict: no equilibrium found."),
     }
     one, other = (_name(found, pull) for pull in (worst.one, worst.other))
     what = "volume" if found.problem == "vibrating" and swing < _SEEN else found.problem
@@ -60,13 +54,15 @@ def sentence(found: Diagnosis, swing: float) -> str:
 
 def _plain(found: Diagnosis, swing: float) -> str:
     words = {
-        "vibrating": tr("The calculation does not come to rest: the bust point swings by ±{swing}."),
-        "diverging": tr("The calculation runs away: the body is shown as it was before."),
-        "folded": tr("The skin folds over: this is no body any more."),
-        "overstrained": tr("Skin pressed or stretched by over 30 %: no shape to sew for."),
-        "strained": tr("Skin is pressed or stretched by over 20 %."),
-        "settling": tr("The calculation has come to no rest yet."),
-        "unreachable": tr("No balance is found with the lines at these lengths."),
+        "vibrating": tr("The solver does not converge: the bust point oscillates by ±{swing}."),
+        "diverging": tr("The solver diverged. The last valid shape is shown."),
+        "folded": tr("The skin overlaps itself: this is not a valid shape."),
+        "overstrained": tr(
+            "Skin is compressed or stretched by over 30 %: do not use this shape for production."
+        ),
+        "strained": tr("Skin is compressed or stretched by over 20 %."),
+        "settling": tr("The solver has not converged."),
+        "unreachable": tr("No equilibrium found for these line lengths."),
     }
     unseen = found.problem == "vibrating" and swing < _SEEN  # in the volume alone
     return words["settling" if unseen else found.problem].format(swing=length(swing))
@@ -76,10 +72,10 @@ def hint(found: Diagnosis) -> str:
     """Return what leads to the buttons, or what there is to do where there are none."""
     if found.fixes:
         return _leading(found)
-    said = [tr("No change of one line, of the gain or of the model was found that ends it.")]
+    said = [tr("No fix found among changes of one line, of the gain or of the model.")]
     if found.locked:
         titles = listed(line_title(name, found.stages.design) for name in found.locked)
-        said.append(tr("Locked lines stay as they are: {lines}.").format(lines=titles))
+        said.append(tr("Locked lines were not changed: {lines}.").format(lines=titles))
     return joined(said)
 
 
@@ -87,10 +83,10 @@ def _leading(found: Diagnosis) -> str:
     """Return what the changes on the buttons leave to be checked: all of them were tried."""
     first, *others = (_left(cure) for cure in shown_fixes(found))
     if others:
-        return tr("Tried: the first leaves {one}, the second {other}.").format(one=first, other=others[0])
+        return tr("Verified fixes (remaining problem: {one}; {other}):").format(one=first, other=others[0])
     if not found.fixes[0].remains:
-        return tr("Tried, and it ends this:")
-    return tr("Tried, it leaves {what}:").format(what=first)
+        return tr("Verified fix:")
+    return tr("Verified fix (remaining problem: {what}):").format(what=first)
 
 
 def shown_fixes(found: Diagnosis) -> tuple[Fix, ...]:
@@ -114,21 +110,21 @@ def _topic(finding: Finding) -> str:
         "convergence": tr("no convergence"),
         "shape": tr("strained skin"),
         "band": tr("a slack or overstretched band"),
-        "pressure": tr("high pressure") if finding.level == BAD else tr("snug pressure"),
+        "pressure": tr("high contact pressure") if finding.level == BAD else tr("snug contact pressure"),
     }[finding.topic]
 
 
 def change_words(found: Diagnosis, change: Change) -> str:
     """Return what a change does, as an undo step is called."""
     choice = {
-        ("volume", "adaptive"): tr("Use Adaptive"),
-        ("volume", "exact"): tr("Use Exact"),
-        ("line_force", "implicit"): tr("Let lines act in step"),
-        ("line_hold", "spring"): tr("Let lines spring back"),
+        ("volume", "adaptive"): tr("Use adaptive control"),
+        ("volume", "exact"): tr("Use exact solution"),
+        ("line_force", "implicit"): tr("Use implicit line force"),
+        ("line_hold", "spring"): tr("Use elastic lines"),
     }.get(change.setting, "")
     design, what = found.stages.design, ""
     if "gain" in (change.kind, change.setting[0]) and change.design.gain is not None:
-        choice = tr("Lower the gain to {gain}").format(gain=number(change.design.gain, 2))
+        choice = tr("Reduce gain to {gain}").format(gain=number(change.design.gain, 2))
     if change.kind == "length":
         ratio = change.design.ratio(change.lines[0])
         values = {
@@ -142,14 +138,14 @@ def change_words(found: Diagnosis, change: Change) -> str:
             what = tr("Set {line} to {percent} %")
         what = what.format(**values)
     elif change.kind == "together":
-        what = tr("Bring all lines up to {length} nearer to 100 %")
+        what = tr("Move all lines up to {length} closer to 100 %")
         what = what.format(length=length(found.moves_mm(change), 0))
     elif change.kind == "width":
         what = tr("Widen {line} to {length}")
         width = change.design.line_settings(change.lines[0]).width
         what = what.format(line=row_title(change.lines[0], design), length=length(width or 0.0, 0))
     elif change.kind == "off":
-        what = tr("Take {line} off").format(line=row_title(change.lines[0], design))
+        what = tr("Deactivate {line}").format(line=row_title(change.lines[0], design))
     return listed((choice, what[:1].lower() + what[1:])) if choice and what else choice or what
 
 
@@ -162,8 +158,8 @@ def details(found: Diagnosis) -> str:
 def _pair(found: Diagnosis) -> str:
     worst = found.forces.worst
     if worst is None:
-        return tr("No two of them stand out as pulling against each other.")
-    words = tr("{one} and {other}: {angle}° apart in what they do to the skin")
+        return tr("No conflicting pair found.")
+    words = tr("{one} and {other}: forces on the skin {angle}° apart")
     one, other = (_name(found, pull) for pull in (worst.one, worst.other))
     return words.format(one=one, other=other, angle=number(worst.angle, 0))
 
@@ -171,14 +167,14 @@ def _pair(found: Diagnosis) -> str:
 def _run(found: Diagnosis) -> Iterator[str]:
     verdict = found.verdict
     if verdict.period:
-        words = tr("Swings every {period} turns, volume by ±{percent} %; {grows}")
+        words = tr("Oscillation: period {period} iterations, volume ±{percent} %; {grows}")
         percent = number(100.0 * verdict.amplitude, 2)
         yield words.format(period=_period(found), percent=percent, grows=_growth(verdict.growth))
     if found.onset is not None and 1.0 + _STEADY < found.onset < float("inf"):
-        words = tr("A small swing grows by {percent} % a turn")
+        words = tr("Small oscillations increase by {percent} % per iteration")
         yield words.format(percent=number(100.0 * (found.onset - 1.0)))
     if found.gain_limit is not None:
-        words = tr("Gain {gain}: {percent} % of the {most} that this shape bears")
+        words = tr("Gain {gain}: {percent} % of the limit {most} for this shape")
         share = number(100.0 * found.stages.gain / found.gain_limit, 0)
         yield words.format(gain=number(found.stages.gain, 2), percent=share, most=number(found.gain_limit, 2))
 
@@ -186,30 +182,30 @@ def _run(found: Diagnosis) -> Iterator[str]:
 def _growth(growth: float) -> str:
     percent = number(100.0 * abs(growth - 1.0))
     if growth - 1.0 > _STEADY:
-        return tr("grows by {percent} % a turn").format(percent=percent)
+        return tr("increasing by {percent} % per iteration").format(percent=percent)
     if growth - 1.0 < -_STEADY:
-        return tr("fades by {percent} % a turn").format(percent=percent)
-    return tr("stays as large")
+        return tr("decreasing by {percent} % per iteration").format(percent=percent)
+    return tr("constant")
 
 
 def _forces(found: Diagnosis) -> Iterator[str]:
     fight = found.forces
     if fight.share < 1.0:
-        words = tr("Forces in the last balance, {percent} % of the way from rest to these lengths:")
+        words = tr("Forces in the last equilibrium, {percent} % of the way from original to set lengths:")
         yield words.format(percent=number(100.0 * fight.share, 0))
     elif fight.forces:
-        yield tr("Forces in the balance at these lengths, on the tissue that is assumed:")
+        yield tr("Forces in equilibrium at these lengths (tissue stiffness assumed):")
     for pull in fight.forces:
         yield "  " + _force(found, pull)
     if fight.forces:
-        yield "  " + tr("The skin itself: {newtons} N").format(newtons=number(fight.skin))
-        yield "  " + tr("Forces at all points added up: what a line pulls with along itself is in Garment.")
+        yield "  " + tr("Skin: {newtons} N").format(newtons=number(fight.skin))
+        yield "  " + tr("Sum of the forces at all points. For tension along a line see Garment.")
 
 
 def _force(found: Diagnosis, pull: ConstraintForce) -> str:
     name, newtons = _name(found, pull), number(pull.newtons)
     if pull.lines:
-        words = tr("{name}: {newtons} N, {angle}° to the volume")
+        words = tr("{name}: {newtons} N, {angle}° to the volume force")
         return words.format(name=name, newtons=newtons, angle=number(pull.to_volume, 0))
     name = name[:1].upper() + name[1:]
     if pull.sides is None:
@@ -221,7 +217,7 @@ def _force(found: Diagnosis, pull: ConstraintForce) -> str:
 
 def _changes(found: Diagnosis) -> Iterator[str]:
     if found.fixes:
-        yield tr("Fixes, each tried from rest and on from here, the best first:")
+        yield tr("Fixes, verified from the original and the current shape, best first:")
     for place, cure in enumerate(found.fixes, start=1):
         view = assessment_view(Assessment(cure.remains), cure.change.design)
         said = joined((tr("{headline}.").format(headline=view.headline), *(each for each, _ in view.reasons)))
@@ -239,7 +235,7 @@ def _changes(found: Diagnosis) -> Iterator[str]:
             )
             yield "     " + listed(lengths)
     if found.nearest is not None:
-        words = tr("Nearest: {change}; it ends as “{state}”")
+        words = tr("Nearest: {change}; status “{state}”")
         said = change_words(found, found.nearest.change)
         yield words.format(change=said, state=state_title(found.nearest.remaining_problem))
 
@@ -247,16 +243,16 @@ def _changes(found: Diagnosis) -> Iterator[str]:
 def _parts(cure: Fix) -> str:
     """Return which part of a double change ends what; ``cure`` knows how each did alone."""
     if _trouble(cure.option_result) == _trouble(cure.lengths_result):
-        words = tr("Neither is enough alone: it would still end as “{state}”")
+        words = tr("One change alone is not enough: status “{state}”")
         return words.format(state=state_title(cure.option_result))
     choice = {
         "gain": tr("The gain"),
-        "volume": tr("The control"),
-        "line_force": tr("The force in step"),
-        "line_hold": tr("Springing back"),
+        "volume": tr("The volume control"),
+        "line_force": tr("Implicit line force"),
+        "line_hold": tr("Elastic lines"),
     }[cure.change.setting[0]]
     length = tr("the lengths") if cure.change.kind == "together" else tr("the length")
-    words = tr("{choice} ends {one}, {length} {other}")
+    words = tr("{choice} fixes {one}, {length} {other}")
     troubles = {"one": _trouble(cure.option_result), "other": _trouble(cure.lengths_result)}
     return words.format(choice=choice, length=length, **troubles)
 
@@ -264,11 +260,11 @@ def _parts(cure: Fix) -> str:
 def _trouble(complaint: str) -> str:
     """Return what is wrong as a thing that something can end."""
     words = {
-        "vibrating": tr("the swing"),
-        "diverging": tr("the running away"),
-        "settling": tr("the long settling"),
+        "vibrating": tr("the oscillation"),
+        "diverging": tr("the divergence"),
+        "settling": tr("the slow convergence"),
         "folded": tr("the fold"),
-        "unreachable": tr("the lack of a balance"),
+        "unreachable": tr("the missing equilibrium"),
     }
     return words.get(complaint, tr("the strain"))
 

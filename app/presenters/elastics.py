@@ -24,7 +24,7 @@ def elastic_views(
     names = {each.name for each in own}
     brought = [each for each in kept if each not in own and each not in built_in]
     return [
-        *(_view(each, tr("your own"), True) for each in own),
+        *(_view(each, tr("custom"), True) for each in own),
         *(_view(each, tr("this project"), False) for each in brought if each.name not in names),
         *(_view(each, "Busk", False) for each in built_in if each.name not in names),
     ]
@@ -82,7 +82,7 @@ Options = Mapping[int, ElasticOption]
 
 def mode_titles() -> list[tuple[str, str]]:
     """Return both modes with their titles."""
-    return [(KEEP_FIT, tr("Keep the fit on the body")), (KEEP_CUT, tr("Keep the cut length"))]
+    return [(KEEP_FIT, tr("Keep fitted length")), (KEEP_CUT, tr("Keep cut length"))]
 
 
 def mode_words(mode: str, design: Design) -> str:
@@ -90,12 +90,9 @@ def mode_words(mode: str, design: Design) -> str:
     if design.line_hold == "held":
         return tr("Line lengths are fixed in this design: an elastic changes the cut length, not the shape.")
     if mode == KEEP_FIT:
-        return tr(
-            "The band keeps its length on the body. The softer the elastic, the shorter it has to be cut."
-        )
+        return tr("Keep the length on the body: softer elastics are cut shorter.")
     return tr(
-        "The elastic is cut to the set length of the line. It gives way on the body: the band is longer "
-        "there and shapes less."
+        "Cut the elastic to the set length of the line: on the body the band is longer and shapes less."
     )
 
 
@@ -103,9 +100,9 @@ def effect_words(outcome: Outcome, rigid: Outcome) -> str:
     """Return the lift with an elastic against that of a band that does not stretch."""
     with_it, without = (length(each.lift, signed=True) for each in (outcome, rigid))
     if kept := kept_words(outcome, rigid):
-        words = tr("Lift {lift}, {kept} of {rigid} with a band that does not stretch.")
+        words = tr("Lift {lift}, {kept} of {rigid} with an inextensible band.")
         return words.format(lift=with_it, kept=kept, rigid=without)
-    return tr("Lift {lift}; {rigid} with a band that does not stretch.").format(lift=with_it, rigid=without)
+    return tr("Lift {lift}; {rigid} with an inextensible band.").format(lift=with_it, rigid=without)
 
 
 def kept_words(outcome: Outcome, rigid: Outcome) -> str:
@@ -151,18 +148,18 @@ def _longer(outcome: Outcome, rigid: Outcome, name: str) -> float:
 def _note(option: ElasticOption, rigid: Outcome | None, far: bool, name: str) -> str:
     """Return what is lost with an elastic; ``name`` is that of the line, empty for several."""
     if option.elastic is None:
-        return tr("Does not stretch; without a cut length")
+        return tr("Inextensible; no cut length")
     notes = []
     assert option.outcome is not None
     longer = _longer(option.outcome, rigid, name) if rigid is not None and name else 0.0
     if longer > LEAST_LENGTH:
-        notes.append(tr("{length} longer on the body").format(length=length(longer)))
+        notes.append(tr("{length} longer on body").format(length=length(longer)))
     if far:
         end = f"{100 * option.elastic.max_elongation:g}"
-        notes.append(tr("Stretched far, its table ends at {end} %").format(end=end))
+        notes.append(tr("High elongation: the curve ends at {end} %").format(end=end))
     kept = kept_words(option.outcome, rigid) if rigid is not None else ""
     if kept:
-        notes.append(tr("Lift kept: {kept}").format(kept=kept))
+        notes.append(tr("Lift: {kept}").format(kept=kept))
     return " · ".join(notes)
 
 
@@ -179,7 +176,7 @@ def advice_view(
     lines, offers = [render(option.reason, design)], []
     if option.closest is not None:
         lines = [joined((*lines, effect_words(option.closest, rigid) if rigid is not None else ""))]
-        offers.append((tr("Use at its limit"), place, True))
+        offers.append((tr("Use at limit"), place, True))
     other = _other(option, options, titles, names)
     if other is not None:
         at, limited = other
@@ -199,11 +196,11 @@ def next_step(option: ElasticOption, options: Sequence[ElasticOption], names: Se
     assert option.elastic is not None
     other = nearest(options, option.elastic)
     if other is not None and other.elastic is not None:
-        return tr("Nearest elastic that works: {elastic}.").format(elastic=elastic_title(other.elastic.name))
+        return tr("Nearest suitable elastic: {elastic}.").format(elastic=elastic_title(other.elastic.name))
     best = strongest(options, names)
     if best is None or best.elastic is None:
         return ""
-    words = tr("No elastic works at this length; {elastic} comes nearest.")
+    words = tr("No elastic is suitable at this length; {elastic} is nearest.")
     return words.format(elastic=elastic_title(best.elastic.name))
 
 
@@ -222,16 +219,16 @@ def _other(
 
 
 def _offer(title: str, limited: bool) -> str:
-    words = tr("Use {elastic} at its limit") if limited else tr("Use {elastic}")
+    words = tr("Use {elastic} at limit") if limited else tr("Use {elastic}")
     return words.format(elastic=title)
 
 
 def _other_words(option: ElasticOption, title: str, limited: bool, rigid: Outcome | None) -> str:
     outcome = option.closest if limited else option.outcome
     assert outcome is not None
-    words = tr("Nearest elastic that works: {elastic}.")
+    words = tr("Nearest suitable elastic: {elastic}.")
     if limited:
-        words = tr("No elastic works at this length; {elastic} comes nearest.")
+        words = tr("No elastic is suitable at this length; {elastic} is nearest.")
     effect = effect_words(outcome, rigid) if rigid is not None else ""
     return joined((words.format(elastic=title), effect))
 

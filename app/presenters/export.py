@@ -44,18 +44,18 @@ def exports() -> tuple[Export, ...]:
 def _meshes() -> tuple[Export, ...]:
     meshes = {
         "glb": tr("glTF, always in metres with y up: Blender, viewers, web pages."),
-        "obj": tr("Opened by nearly every 3D program, CLO among them. Tell it the unit."),
-        "ply": tr("The format of scanners: MeshLab, CloudCompare, Blender. Tell it the unit."),
-        "stl": tr("For 3D printing and CAD. Tell it the unit."),
+        "obj": tr("Opens in most 3D programs, also CLO. Choose the unit on import."),
+        "ply": tr("Scanner format: MeshLab, CloudCompare, Blender. Choose the unit on import."),
+        "stl": tr("For 3D printing and CAD. Choose the unit on import."),
     }
     return (
-        Export("body", tr("Body"), "person", tr("The whole body, as it was scanned or reshaped."), meshes),
+        Export("body", tr("Body"), "person", tr("Whole body, original or reshaped."), meshes),
         Export(
             "control",
             tr("Control mesh"),
             "control-mesh",
-            tr("The coarse mesh that lies on the body and carries the lines."),
-            meshes | {"csv": tr("A table of the control points in mm, with row and column.")},
+            tr("Coarse mesh on the body that carries the lines."),
+            meshes | {"csv": tr("Table of control points in mm, with row and column.")},
         ),
     )
 
@@ -66,19 +66,25 @@ def _drawings() -> tuple[Export, ...]:
             "lines",
             tr("Lines as curves"),
             "lines",
-            tr("The worn lines, smooth on the skin. Lengths differ from the cut list: cut by strips."),
+            tr(
+                "Active lines as smooth curves on the skin. Lengths differ from the cut list: "
+                "use the band strips for cutting."
+            ),
             {
-                "dxf": tr("For CAD and pattern programs: a layer for each part of a line."),
-                "obj": tr("For 3D programs, to lie on the body that is exported likewise."),
+                "dxf": tr("For CAD and pattern programs: one layer for each part of a line."),
+                "obj": tr("For 3D programs; aligned with a body exported with the same settings."),
             },
         ),
         Export(
             "flat",
-            tr("Bands as flat strips"),
+            tr("Band strips"),
             "strips",
-            tr("A strip for each worn line at its size, to cut where its elastic is known, with marks."),
+            tr(
+                "Flat strip of each active line at full scale with marks; cut length where an "
+                "elastic is chosen."
+            ),
             {
-                "svg": tr("Prints at its size: Inkscape, Illustrator, cutters, browsers."),
+                "svg": tr("Prints at full scale: Inkscape, Illustrator, cutters, browsers."),
                 "dxf": tr("For CAD, pattern programs and plotters, in millimetres."),
             },
         ),
@@ -87,7 +93,7 @@ def _drawings() -> tuple[Export, ...]:
 
 def _measures() -> Export:
     return Export(
-        "measures", tr("Measures"), "ruler", tr("What the body measures."), _measure_formats(_table())
+        "measures", tr("Measurements"), "ruler", tr("Measurements of the body."), _measure_formats(_table())
     )
 
 
@@ -95,40 +101,40 @@ def _pictures() -> tuple[Export, ...]:
     return (
         Export(
             "picture",
-            tr("Picture"),
+            tr("Image"),
             "camera",
-            tr("The body with its bands, as large as you like."),
-            {"png": tr("Opened by everything.")},
+            tr("Image of the body with its bands at any size."),
+            {"png": tr("Opens in all programs.")},
         ),
         Export(
             "turntable",
             tr("Turntable"),
             "arrow-counter-clockwise",
-            tr("The body turns once round."),
+            tr("Animation of one full rotation of the body."),
             {
-                "webp": tr("All colours, small: browsers and most viewers."),
-                "gif": tr("Moves everywhere, in mails and slides too; 256 colours, large."),
-                "png": tr("A series of pictures, for programs that cut films."),
+                "webp": tr("Full colour, small files: browsers and most viewers."),
+                "gif": tr("Plays everywhere, also in e-mails and slides; 256 colours, large files."),
+                "png": tr("Image sequence for video editors."),
             },
         ),
     )
 
 
 def _turns() -> Export:
-    told = tr("Volume error, heights and lengths, turn by turn.")
-    return Export("turns", tr("Turns of the run"), "chart-line", told, {"csv": _table()})
+    told = tr("Volume error, heights and lengths at each iteration.")
+    return Export("turns", tr("Iterations"), "chart-line", told, {"csv": _table()})
 
 
 def _table() -> str:
-    return tr("A table for spreadsheets.")
+    return tr("Table for spreadsheets.")
 
 
 def _measure_formats(table: str) -> dict[str, str]:
     return {
-        "smis": tr("SeamlyMe and Seamly2D; lengths alone."),
-        "vit": tr("Valentina and Tape; lengths alone."),
+        "smis": tr("SeamlyMe and Seamly2D; lengths only."),
+        "vit": tr("Valentina and Tape; lengths only."),
         "csv": table,
-        "json": tr("For programs of your own."),
+        "json": tr("For your own programs."),
     }
 
 
@@ -164,8 +170,8 @@ _TURNTABLE_SIZES = ("480x540", "640x720", "960x1080", "1280x720")
 
 
 def _shape() -> Choice:
-    options = (("", tr("Reshaped")), ("before", tr("At rest")))
-    return Choice("shape", tr("Shape"), tr("The body after, or before it was reshaped."), options)
+    options = (("", tr("Reshaped")), ("before", tr("Original")))
+    return Choice("shape", tr("Shape"), tr("Reshaped or original body."), options)
 
 
 def _unit(units: tuple[str, ...] = tuple(UNITS)) -> Choice:
@@ -175,7 +181,7 @@ def _unit(units: tuple[str, ...] = tuple(UNITS)) -> Choice:
         "m": tr("Metres"),
         "in": tr("Inches"),
     }
-    said = tr("The unit of lengths in the file.")
+    said = tr("Unit of lengths in the file.")
     return Choice("unit", tr("Unit"), said, tuple((unit, words[unit]) for unit in units))
 
 
@@ -185,13 +191,13 @@ def _axes() -> Choice:
         "y-up": tr("y up, face to z: CLO, Maya"),
         "z-up-front-y": tr("z up, face to y: some CAD"),
     }
-    said = tr("Which way is up, and where the body faces.")
+    said = tr("Up and front directions in the file.")
     return Choice("axes", tr("Axes"), said, tuple((axes, words[axes]) for axes in AXES))
 
 
 def _view() -> Choice:
     options = (
-        ("now", tr("As the view is now")),
+        ("now", tr("Current view")),
         ("front", tr("Front")),
         ("left", tr("Left")),
         ("right", tr("Right")),
@@ -199,19 +205,19 @@ def _view() -> Choice:
         ("three-quarter", tr("Three-quarter view")),
         ("top", tr("From above")),
     )
-    return Choice("view", tr("Look from"), tr("From where the body is seen."), options)
+    return Choice("view", tr("View direction"), tr("View direction of the body."), options)
 
 
 def _bands() -> Choice:
-    options = (("", tr("Shown")), ("none", tr("Left out")))
-    return Choice("bands", tr("Bands"), tr("Those that the view hides stay hidden."), options)
+    options = (("", tr("Shown")), ("none", tr("Hidden")))
+    return Choice("bands", tr("Bands"), tr("Bands hidden in the view stay hidden."), options)
 
 
 def _ground(clear: bool = False) -> Choice:
     options: Options = (("", tr("Light")), ("dark", tr("Dark")))
     if clear:
         options = (*options, ("clear", tr("Transparent")))
-    return Choice("ground", tr("Background"), tr("What the body stands before."), options)
+    return Choice("ground", tr("Background"), tr("Background colour."), options)
 
 
 def _size(sizes: tuple[str, ...]) -> Choice:
@@ -221,17 +227,19 @@ def _size(sizes: tuple[str, ...]) -> Choice:
 
 def _shows() -> Choice:
     options = (("", tr("Reshaped")), ("beside", tr("Before and after")))
-    return Choice("shows", tr("Shows"), tr("The reshaped body alone, or both side by side."), options)
+    return Choice(
+        "shows", tr("Content"), tr("Reshaped body alone, or before and after side by side."), options
+    )
 
 
 def _frames() -> Choice:
     options = tuple((count, count) for count in ("12", "24", "36", "72"))
-    return Choice("frames", tr("Pictures"), tr("More of them turn more smoothly, in a larger file."), options)
+    return Choice("frames", tr("Images"), tr("More images: smoother rotation, larger file."), options)
 
 
 def _seconds() -> Choice:
     options = tuple((seconds, tr("{seconds} s").format(seconds=seconds)) for seconds in ("3", "6", "12"))
-    return Choice("seconds", tr("Time"), tr("How long one turn takes."), options)
+    return Choice("seconds", tr("Time"), tr("Duration of one rotation."), options)
 
 
 @dataclass(frozen=True)

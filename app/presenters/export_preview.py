@@ -97,7 +97,9 @@ def _picture_kind(path: str, manner: ExportOptions) -> None:
 
 def _table_kind(path: str, manner: ExportOptions) -> None:
     if not path.lower().endswith(".csv"):
-        raise UserError(Message("A table is a .csv file."), Message("Choose a name that ends in .csv."))
+        raise UserError(
+            Message("Tables are saved as .csv files."), Message("Choose a name that ends in .csv.")
+        )
 
 
 def _in_space(space: FileSpace) -> str:
@@ -161,7 +163,11 @@ def _measures(path: str, outcome: ExportSource, manner: ExportOptions) -> Export
     note = f"Busk {__version__}, {outcome.design.scan.name}, {'at rest' if manner.before else 'reshaped'}."
     note += f" Estimates: {unsure}." if unsure else ""
     sheet = MeasurementTable(values, unit, titles, note)
-    told = tr("{count} measures at rest") if manner.before else tr("{count} measures as reshaped")
+    told = (
+        tr("{count} measurements of the original body")
+        if manner.before
+        else tr("{count} measurements of the reshaped body")
+    )
     how = tr("in {unit}").format(unit=_unit_words(unit))
     # Files for pattern programs hold lengths alone, each by its name there.
     kind = measurement_file_kind(path, unit)
@@ -171,7 +177,7 @@ def _measures(path: str, outcome: ExportSource, manner: ExportOptions) -> Export
 
 def _turns(path: str, outcome: ExportSource, manner: ExportOptions) -> ExportPreview:
     records = outcome.records
-    told = tr("Turns: {count}").format(count=number(len(records), 0))
+    told = tr("Iterations: {count}").format(count=number(len(records), 0))
     return ExportPreview(told, "", lambda at, _, hear: write_iterations(at, records, outcome.stages))
 
 
@@ -214,7 +220,7 @@ def _turntable(path: str, outcome: ExportSource, manner: ExportOptions) -> Expor
         return write_turntable(at, drawn, turntable, hear)
 
     _ = outcome.occlusion
-    told = tr("{count} pictures in {seconds} s")
+    told = tr("{count} images in {seconds} s")
     return ExportPreview(told.format(count=manner.frames, seconds=f"{manner.seconds:g}"), "", write, draw)
 
 

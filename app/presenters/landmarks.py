@@ -42,7 +42,7 @@ def landmark_title(name: str) -> str:
     """Return a landmark's name in the window's language."""
     titles = {
         "bust_point": tr("Bust point"),
-        "fold": tr("Under-bust fold"),
+        "fold": tr("Inframammary fold"),
         "lowest": tr("Lowest point"),
         "root_inner": tr("Inner breast root"),
         "root_outer": tr("Outer breast root"),
@@ -86,7 +86,7 @@ def landmark_view(name: str, mark: Landmark | None, accepted: Collection[Spot] =
     """Return what is shown of a landmark, ``mark`` if it was found: in the list and on its pin alike."""
     title, group = landmark_title(name), GROUPS.get(kind_of(name), "further")
     if mark is None:
-        return LandmarkView(name, title, 0.0, tr("The scan does not show it."), group, absent=True)
+        return LandmarkView(name, title, 0.0, tr("Not detected on the scan."), group, absent=True)
     unsure = kind_of(name) in ESSENTIAL and not mark.by_hand and mark.confidence < CERTAIN
     weak = unsure or (mark.off > 0.0 and spot_of(mark) not in accepted)
     traced, off = len(mark.evidence) > 0, mark.off
@@ -147,18 +147,18 @@ class LandmarkView:
     def state(self) -> str:
         """How it came to be there, or how sure it is, in a word or two."""
         if self.absent:
-            return tr("not found")
+            return tr("not detected")
         if self.by_hand:
-            off = tr("by hand, {length} off").format(length=length(self.off_mm, 0))
-            return off if self.off_mm else tr("by hand")
+            off = tr("manual, {length} off").format(length=length(self.off_mm, 0))
+            return off if self.off_mm else tr("manual")
         return f"{self.confidence * 100:.0f} %"
 
     def words(self) -> str:
         """Return the rule of its detection, its evidence, and the meaning of its colour."""
-        read = tr("The curve that it was read from is drawn on the body.")
-        grey = tr("Not certain, and grey: the model does not hang on it.")
-        sure = tr("Certain: from {least} % on it needs no second look.")
-        doubtful = tr("Doubtful: below {least} % it wants a look.")
+        read = tr("The curve used for detection is shown on the body.")
+        grey = tr("Low confidence; not used by the model.")
+        sure = tr("High confidence: {least} % or more needs no review.")
+        doubtful = tr("Low confidence: below {least} % the landmark needs review.")
         said = {"certain": sure, "doubtful": "" if self.by_hand else doubtful, "unneeded": grey}
         told = said.get(self.sureness, "").format(least=f"{CERTAIN * 100:.0f}")
         return "\n".join([self.rule, *[read] * self.traced, *[told] * bool(told)])

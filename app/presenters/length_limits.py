@@ -37,7 +37,9 @@ def _in_a_row(words: list[str]) -> str:
 def _in_key(leeway: LengthLimits, tone: str) -> list[str]:
     zones = [zone for zone in leeway.zones if zone.tone == tone]
     if tone == GREEN:
-        valid = tr("valid shape") if leeway.pressure_known else tr("valid shape (without pressure)")
+        valid = (
+            tr("valid shape") if leeway.pressure_known else tr("valid shape (contact pressure not checked)")
+        )
         return [_range(valid, zone.short, zone.long) for zone in zones]
     reasons = sorted({reason for zone in zones for reason in _told(zone)}, key=lambda each: -each.long)
     if tone == RED:  # what is worse lies below
@@ -60,57 +62,57 @@ def hint(leeway: LengthLimits, ratio: float) -> str:
     explained = tr("{reason}: {meaning}.")
     lines += [explained.format(reason=_upper(short_reason(each)), meaning=meaning(each)) for each in reasons]
     if zone.tone == GREEN and not leeway.pressure_known:
-        lines.append(tr("Pressure is not looked at: it is made of no elastic."))
+        lines.append(tr("Contact pressure is not checked: no elastic is chosen."))
     return "\n".join(_glued(line) for line in lines)
 
 
 def length_tip(short: float, long: float) -> str:
     """Return what a slider from ``short`` to ``long`` [1] means, and its keys."""
-    said = tr("Length of the front part, {short} to {long} % of its rest.\n← → 0.1 %, Shift 1 %, Alt 0.01 %")
+    said = tr("Set the front length, {short} to {long} % of the original.\n← → 0.1 %, Shift 1 %, Alt 0.01 %")
     return said.format(short=number(100.0 * short, 0), long=number(100.0 * long, 0))
 
 
 def resistance_reason(leeway: LengthLimits | None) -> str:
     """Return why a hand meets resistance, empty if there is nothing red below."""
     reasons = _told(leeway.zones[0]) if leeway is not None and leeway.zones[0].tone == RED else ()
-    return tr("Not this short: {reason}.").format(reason=short_reason(reasons[0])) if reasons else ""
+    return tr("Cannot be shorter: {reason}.").format(reason=short_reason(reasons[0])) if reasons else ""
 
 
 def short_reason(reason: Reason) -> str:
     """Return a reason in a few words, and the lengths that it holds for."""
     words = {
         "strained": tr("strained"),
-        "vibrating": tr("would vibrate"),
-        "restless": tr("turns never rest"),
-        "pressing": tr("presses too much"),
+        "vibrating": tr("may oscillate"),
+        "restless": tr("no convergence"),
+        "pressing": tr("contact pressure too high"),
         "slack": tr("slack"),
         "overstrained": tr("overstrained"),
-        "folded": tr("folds"),
-        "inverted": tr("inside out"),
-        "stretched": tr("beyond the table of its elastic"),
-        "unreachable": tr("cannot be reached"),
+        "folded": tr("folded"),
+        "inverted": tr("inverted"),
+        "stretched": tr("outside the elastic's curve"),
+        "unreachable": tr("no equilibrium"),
     }[reason.why]
     if reason.is_independent:
-        return tr("{what} by the other lines, whatever this one does").format(what=words)
+        return tr("{what} due to other lines, at any length").format(what=words)
     where = _range(words, reason.short, reason.long)
-    return tr("{where} (by the other lines)").format(where=where) if _of_others(reason) else where
+    return tr("{where} (due to other lines)").format(where=where) if _of_others(reason) else where
 
 
 def meaning(reason: Reason) -> str:
     """Return what a reason means, with the number at which it begins."""
     return {
-        "strained": tr("skin is stretched or pressed together by more than 20 % somewhere"),
-        "vibrating": tr("turns with the conventional force do not come to rest"),
-        "restless": tr("lines act one turn late and are too stiff for that; choose in step, or softer lines"),
-        "pressing": tr("its band presses with more than {kpa} kPa somewhere").format(
+        "strained": tr("skin is compressed or stretched by over 20 % in places"),
+        "vibrating": tr("iterations with conventional volume control do not converge"),
+        "restless": tr("with explicit line forces the lines are too stiff; choose Implicit or softer lines"),
+        "pressing": tr("contact pressure of the band exceeds {kpa} kPa in places").format(
             kpa=number(pressure_limits().red_kpa, 0)
         ),
-        "slack": tr("it would have to push, which no band can"),
-        "overstrained": tr("skin is stretched or pressed together by more than 30 % somewhere"),
-        "folded": tr("a triangle of the control mesh turns to its side"),
-        "inverted": tr("a triangle of the control mesh shows its back"),
-        "stretched": tr("nothing is known of the elastic there"),
-        "unreachable": tr("no balance is found there"),
+        "slack": tr("tension would be negative, which is not possible for a band"),
+        "overstrained": tr("skin is compressed or stretched by over 30 % in places"),
+        "folded": tr("a triangle of the control mesh is rotated on its side"),
+        "inverted": tr("a triangle of the control mesh is inverted"),
+        "stretched": tr("the elongation is outside the measured curve of the elastic"),
+        "unreachable": tr("no equilibrium is found at these lengths"),
     }[reason.why]
 
 

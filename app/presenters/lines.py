@@ -156,8 +156,10 @@ def _over_shoulder(design: Design, frame: Frame, name: str) -> bool | None:
 def _strap_words(tail: Tail) -> str:
     """Return where a strap goes on from its upper end, or why it does not."""
     if tail.problem:
-        return tr("{why} It ends on the upper chest.").format(why=render(tail.problem))
-    words = tr("Over the shoulder to the under-bust band at the back; {length} of it on the fixed body")
+        return tr("{why} The line ends at the upper chest.").format(why=render(tail.problem))
+    words = tr(
+        "Over the shoulder to the under-bust band at the back; {length} of the path is on the fixed body"
+    )
     return words.format(length=length(tail.length, 0))
 
 
@@ -290,7 +292,7 @@ def band_label(design: Design, frame: Frame, name: str) -> tuple[str, str]:
     ratio = design.ratio(name)
     if design.line_settings(name).elastic:
         stretch = frame.lengths[name] / (ratio * line.rest_length) - 1.0
-        said = tr("stretched by {value}").format(value=f"{number(100.0 * stretch)} %")
+        said = tr("elongation {value}").format(value=f"{number(100.0 * stretch)} %")
         return f"{title} {length(frame.lengths[name])}", said
     change = (ratio - 1.0) * line.rest_length
     return f"{title} {number(100.0 * ratio)} %", length(change, signed=True)

@@ -56,7 +56,7 @@ def _skin_maps() -> list[MapKind]:
             "displacement",
             tr("Displacement"),
             "mm",
-            tr("How far the skin moved along its normal at rest: outward (+) or inward (−)."),
+            tr("Shows the displacement of the skin along its original normal: outward (+) or inward (−)."),
             tr("+ outward  − inward"),
             both_ways=True,
         ),
@@ -65,28 +65,31 @@ def _skin_maps() -> list[MapKind]:
             tr("Strain"),
             "%",
             tr(
-                "Largest strain of the control mesh, stretched or pressed together: the principal strain of "
-                "its triangles, averaged at each control point and carried to the skin between them."
+                "Shows the maximum strain of the control mesh: principal strain of its "
+                "triangles, averaged at each control point and interpolated on the skin."
             ),
             tr("of the control mesh"),
         ),
         MapKind(
             "sides",
-            tr("Left and right"),
+            tr("Symmetry"),
             "mm",
             tr(
-                "How far each side stands out beyond the other one, mirrored. The mirror stands where the "
-                "trunk without the breasts matches best."
+                "Shows the protrusion of each side beyond the other, mirrored. The mirror plane "
+                "best matches the trunk without the breasts."
             ),
-            tr("+ stands out more than the other side"),
+            tr("+ protrudes beyond the other side"),
             both_ways=True,
         ),
         MapKind(
             "worn",
-            tr("Predicted less real"),
+            tr("Residuals (prediction − scan)"),
             "mm",
-            tr("How far the predicted skin stands before (+) or behind (−) that of the worn scan."),
-            tr("+ predicted further out than real"),
+            tr(
+                "Shows the position of the predicted skin in front of (+) or behind (−) the skin "
+                "of the fitting scan."
+            ),
+            tr("+ predicted further out than measured"),
             both_ways=True,
         ),
     ]
@@ -96,13 +99,13 @@ def _line_maps() -> list[MapKind]:
     return [
         MapKind(
             "pull",
-            tr("Pull of lines"),
+            tr("Line tension"),
             "%",
             tr(
-                "How strongly each part of the worn lines pulls, in % of the strongest part. Newtons stand "
-                "in the cut list."
+                "Shows the tension along the active lines, in % of the maximum. Tensions in N "
+                "are in the cut list."
             ),
-            tr("of the strongest part"),
+            tr("of maximum"),
             digits=0,
         ),
         MapKind(
@@ -110,7 +113,7 @@ def _line_maps() -> list[MapKind]:
             tr("Contact pressure"),
             "kPa",
             _pressure_tip(),
-            tr("An estimate, rather high. Dashed: over hollows."),
+            tr("Estimate, rather too high. Dashed: over hollows."),
             marks=limit_marks(),
         ),
     ]
@@ -122,26 +125,26 @@ def _pressure_tip() -> str:
         f"{number(kpa, 0)} kPa ({number(mmhg(kpa), 0)} mmHg)" for kpa in (limits.amber_kpa, limits.red_kpa)
     )
     return tr(
-        "What the worn bands press the skin with: their pull over their width and the radius that they bend "
-        "with. 1 kPa is 7.5 mmHg. Marked: snug from {amber}, too tight from {red}. An estimate: tissue gives "
-        "way, and sensors read less."
+        "Shows the contact pressure of the bands on the skin: tension divided by width and "
+        "radius of curvature. 1 kPa is 7.5 mmHg. Marks: snug from {amber}, too tight from {red}. "
+        "Estimate: tissue yields, and sensors measure lower values."
     ).format(amber=amber, red=red)
 
 
 def pressure_note(listed: PressureList | None, stale: bool) -> str:
     """Return the first note below the legend of pressure; ``stale`` values belong to a former shape."""
     if listed is None:
-        return tr("Worked out as soon as the run rests.")
+        return tr("Computed when the solver has converged.")
     if stale:
-        return tr("Of the former shape: worked out again as soon as the run rests.")
+        return tr("For the previous shape; recomputed when the solver has converged.")
     if not listed.worn:
-        return tr("No worn line presses whose tension is known.")
+        return tr("No active line with known tension presses on the skin.")
     return ""
 
 
 def bridge_words(off: float) -> str:
     """Return the note on a place where a band bridges a hollow, ``off`` the skin [mm]."""
-    return tr("bridges, {length} off").format(length=length(off, 0))
+    return tr("bridges a hollow, {length} off the skin").format(length=length(off, 0))
 
 
 def ramp_of(name: str, low: float, high: float, clay: str) -> Ramp:
@@ -173,8 +176,8 @@ def section_words(axis: str, side: str, move: BustShift, spread: OutputUncertain
         return bust_sentence(move, uncertainties_of(spread))
     offs = uncertainties_of(spread, side)
     if side == "left":
-        return tr("Bust point left {way}").format(way=step_words(move.left, offs))
-    return tr("Bust point right {way}").format(way=step_words(move.right, offs))
+        return tr("Bust point left: {way}").format(way=step_words(move.left, offs))
+    return tr("Bust point right: {way}").format(way=step_words(move.right, offs))
 
 
 def sides_words(axis: str, pairs: Sequence[tuple[Floats, Floats]]) -> str:
@@ -182,10 +185,10 @@ def sides_words(axis: str, pairs: Sequence[tuple[Floats, Floats]]) -> str:
     steps = [this - other for other, this in pairs]
     if axis == "x" and len(steps) == 1:
         way = step_words(BustStep(float(steps[0][1]), float(steps[0][0])))
-        return tr("Foremost place, against the other side: {way}").format(way=way)
+        return tr("Apex, relative to the other side: {way}").format(way=way)
     if axis == "z" and len(steps) == 2:
         way = forward_words(-float(steps[0][1]))
-        return tr("Foremost place left, against right: {way}").format(way=way)
+        return tr("Apex left, relative to right: {way}").format(way=way)
     return ""
 
 

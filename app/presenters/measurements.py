@@ -23,7 +23,7 @@ from core.pipeline.live_solver import Frame
 
 def measure_views(frame: Frame) -> list[MeasureView]:
     """Return the values that the model gives with every frame, the bust points first."""
-    group = tr("Followed while it solves")
+    group = tr("Solver values")
     rows = (*_bust_rows(frame), *_volume_rows(frame), *_line_rows(frame))
     return [replace(row, group=group) for row in rows]
 
@@ -43,7 +43,7 @@ def _measured(row: dict[str, Any]) -> MeasureView:
         row["before"],
         row["after"],
         key=key,
-        group=tr("Your own") if own else render(definition_of(key)[0].group),
+        group=tr("Custom") if own else render(definition_of(key)[0].group),
         note=render(row["note"]),
         plus_minus=row["plus_minus"],
         estimate=row["estimate"],
@@ -57,13 +57,13 @@ def _measured(row: dict[str, Any]) -> MeasureView:
 def as_table(views: Sequence[MeasureView], doubt: str = "") -> list[list[str]]:
     """Return the table as plain cells, with a heading; each row notes the ``doubt`` why it is no result."""
     heading = [
-        tr("Measure"),
-        tr("Counted from"),
+        tr("Measurement"),
+        tr("Reference"),
         tr("Unit"),
         tr("Before"),
         tr("After"),
         tr("Change"),
-        tr("Note"),
+        tr("Notes"),
     ]
     rows = [
         [
@@ -82,7 +82,10 @@ def _bust_rows(frame: Frame) -> Iterator[MeasureView]:
     """Rows of the bust points, both and each, and of the foremost place of the breasts."""
     rest, now = frame.stages.rest_marks, frame.marks
     low = float(frame.stages.body.mesh.vertices[:, 2].min())
-    above, before = tr("above the lowest point of the scan"), tr("in front of the edge of the reshaped part")
+    above, before = (
+        tr("above the lowest point of the scan"),
+        tr("in front of the edge of the reshaped region"),
+    )
     both, left, right = tr("Bust point"), tr("Bust point left"), tr("Bust point right")
     height, forward = tr("{what}, height"), tr("{what}, forward")
     up, was_up = _up(now) - low, _up(rest) - low
@@ -93,7 +96,7 @@ def _bust_rows(frame: Frame) -> Iterator[MeasureView]:
     ):
         yield MeasureView(height.format(what=side), "mm", was - low, then - low, above, moves=moves)
     yield MeasureView(forward.format(what=both), "mm", _out(rest), _out(now), before, exact=True, moves=OUT)
-    foremost = tr("Foremost place of the skin")
+    foremost = tr("Apex")
     was, then = rest.apex_z - low, now.apex_z - low
     yield MeasureView(height.format(what=foremost), "mm", was, then, above)
     was, then = rest.apex_protrusion, now.apex_protrusion
@@ -104,9 +107,9 @@ def _volume_rows(frame: Frame) -> Iterator[MeasureView]:
     volume = frame.stages.model.volume.rest_volume / 1000.0
     # The body has no volume of its own there: what its skin gains is counted from the same rest volume.
     skin = frame.stages.moving.volume_change(frame.points) / 1000.0
-    part = tr("inside the reshaped part, closed behind")
+    part = tr("inside the reshaped region, closed at the back")
     yield MeasureView(tr("Volume of the model"), "ml", volume, volume + frame.error_ml, part)
-    yield MeasureView(tr("Volume under the skin"), "ml", volume, volume + skin, part)
+    yield MeasureView(tr("Volume under skin"), "ml", volume, volume + skin, part)
 
 
 def _line_rows(frame: Frame) -> Iterator[MeasureView]:
@@ -115,12 +118,12 @@ def _line_rows(frame: Frame) -> Iterator[MeasureView]:
         if not line.back_length:
             yield MeasureView(title, "mm", line.rest_length, reached, tr("along the line, end to end"))
             continue
-        front = tr("{line}, front part").format(line=title)
+        front = tr("{line}, front length").format(line=title)
         yield MeasureView(front, "mm", line.rest_length, reached, tr("along the line, side to side"))
-        whole = tr("{line}, whole band").format(line=title)
+        whole = tr("{line}, full length").format(line=title)
         back = line.back_length
         yield MeasureView(
-            whole, "mm", line.rest_length + back, reached + back, tr("all round, back included")
+            whole, "mm", line.rest_length + back, reached + back, tr("full length, back included")
         )
 
 
@@ -194,9 +197,9 @@ class MeasureView:
         if not self.estimate:
             return self.reference
         if not self.plus_minus or self.off:  # what is off stands beside it, with all sources
-            return tr("an estimate")
+            return tr("estimate")
         off = self.written(self.plus_minus)
-        return tr("an estimate, ± {off} {unit}").format(off=off, unit=self.unit_shown)
+        return tr("estimate, ± {off} {unit}").format(off=off, unit=self.unit_shown)
 
     @property
     def details(self) -> tuple[str, ...]:
@@ -204,7 +207,7 @@ class MeasureView:
         if not self.key:
             return self.off_told
         named = tr("ISO 8559-1: {name}").format(name=self.iso) if self.iso else tr("Not in ISO 8559-1")
-        sure = tr("What it is taken from is sure to {percent} %")
+        sure = tr("Confidence of the landmarks used: {percent} %")
         said = (
             self.tip,
             "" if self.own else named,
@@ -287,7 +290,7 @@ def from_draft(draft: Draft, suggested: str, taken: Collection[str]) -> CustomMe
     name = draft.name or _free(suggested, taken)
     if name in taken:
         raise UserError(
-            Message("There is a measure {name} already.", name=name), Message("Give it a name of its own.")
+            Message("A measurement named {name} already exists.", name=name), Message("Choose a unique name.")
         )
     return CustomMeasurement(name, draft.kind, draft.marks, draft.level if draft.kind == "girth" else 0.0)
 
@@ -315,7 +318,7 @@ def value_texts(before: Measure, after: Measure) -> tuple[str, str, str]:
         change=length(round(after.value, 1) - round(before.value, 1), signed=True)
     )
     sure = min(before.confidence, after.confidence)
-    unsure = tr("What it is taken from is sure to {percent} %").format(percent=number(100 * sure, 0))
+    unsure = tr("Confidence of the landmarks used: {percent} %").format(percent=number(100 * sure, 0))
     doubts = (unsure if sure < CERTAIN else "", render(after.note))
     return values, said, "\n".join(each for each in doubts if each)
 

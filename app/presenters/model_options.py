@@ -96,88 +96,91 @@ def summary(present: Mapping[str, Any]) -> str:
 
 def _contact() -> Choice:
     tip = tr(
-        "Sticks: the whole pull of a line acts on the skin, as in the paper. Slides: only what presses on"
-        " the skin acts, the garment carries the rest; this lifts the bust."
+        "Choose how line tension acts on the skin. Bonded: in full, as in the paper. "
+        "Frictionless sliding: only normal to the skin; this lifts the bust."
     )
-    options = (("glued", tr("Sticks to the skin")), ("sliding", tr("Slides over it")))
+    options = (("glued", tr("Bonded")), ("sliding", tr("Frictionless sliding")))
     return Choice("line_contact", tr("Skin contact"), tip, options)
 
 
 def _hold() -> Choice:
     tip = tr(
-        "Springs back: a line gives way a little to the body, as in the paper. Held: it reaches the "
-        "length that is set exactly, at whatever tension that takes."
+        "Choose how the line length behaves. Elastic length: as a spring, as in the paper. Fixed "
+        "length: exactly as set, at any tension."
     )
-    options = (("spring", tr("Springs back")), ("held", tr("Held exactly")))
+    options = (("spring", tr("Elastic length")), ("held", tr("Fixed length")))
     return Choice("line_hold", tr("Length"), tip, options)
 
 
 def _stiffness() -> Amount:
     low, high = RANGES["line_stiffness"]
-    tip = tr("How stiff lines are against the body, from {low} to {high}; the paper gives no number.")
+    tip = tr("Set the stiffness of lines relative to the body, {low} to {high}; not given in the paper.")
     return Amount(
         "line_stiffness", tr("Stiffness"), tip.format(low=low, high=number(high, 0)), "×", 1.0, 1, (low, high)
     )
 
 
 def _height() -> Amount:
-    tip = tr("Where the mid-bust line runs between fold (0 %) and bust point (100 %), from 25 to 75 %.")
-    return Amount("line_height", tr("Height of the mid-bust line"), tip, "%", 100.0, 0, (0.25, 0.75))
+    tip = tr(
+        "Set the position of the mid-bust line between inframammary fold (0 %) and bust point "
+        "(100 %), from 25 to 75 %."
+    )
+    return Amount("line_height", tr("Mid-bust line height"), tip, "%", 100.0, 0, (0.25, 0.75))
 
 
 def _force() -> Choice:
     tip = tr(
-        "In step: a turn solves for cables and lines together. One turn late: to the letter of the paper;"
-        " only very soft lines come to rest, so the stiffness changes with it."
+        "Choose the iteration of line forces. Implicit: cables and lines are solved in the same "
+        "iteration. Explicit: line forces are one iteration late, as in the paper; only very "
+        "soft lines converge, so the stiffness changes too."
     )
-    options = (("implicit", tr("In step")), ("explicit", tr("One turn late")))
-    return Choice("line_force", tr("Force of a line"), tip, options)
+    options = (("implicit", tr("Implicit")), ("explicit", tr("Explicit")))
+    return Choice("line_force", tr("Line force"), tip, options)
 
 
 def _chest() -> Choice:
     tip = tr(
-        "Free: only its neighbours hold a point, as in the paper. Firm: where there is little tissue over"
-        " the ribs the skin stays near its place."
+        "Choose the support of the chest. None: points are held by their neighbours only, as in "
+        "the paper. Rib-cage support: thin tissue over the ribs holds the skin near its original "
+        "position."
     )
-    return Choice("firm_chest", tr("Chest"), tip, ((0.0, tr("Free")), (0.1, tr("Firm"))))
+    return Choice("firm_chest", tr("Chest"), tip, ((0.0, tr("None")), (0.1, tr("Rib-cage support"))))
 
 
 def _law() -> Choice:
     tip = tr(
-        "How the cables of the control mesh answer: with the same force for every millimetre, as springs "
-        "under tension, or so that shapes may turn. The paper leaves it open."
+        "Choose the forces of the cables of the control mesh: constant per millimetre, "
+        "prestressed springs, or co-rotational. Not given in the paper."
     )
     options = (
         ("force-density", tr("Force density")),
-        ("prestressed", tr("Springs under tension")),
-        ("co-rotated", tr("Turning shapes")),
+        ("prestressed", tr("Prestressed springs")),
+        ("co-rotated", tr("Co-rotational")),
     )
     return Choice("member_law", tr("Cables"), tip, options)
 
 
 def _prestress() -> Amount:
-    tip = tr(
-        "How far springs under tension are stretched at rest, from 10 to 100 %; the paper gives no number."
-    )
-    return Amount("prestress", tr("Tension of the springs"), tip, "%", 100.0, 0, RANGES["prestress"])
+    tip = tr("Set the initial elongation of prestressed springs, from 10 to 100 %; not given in the paper.")
+    return Amount("prestress", tr("Spring prestress"), tip, "%", 100.0, 0, RANGES["prestress"])
 
 
 def _weights() -> Choice:
     tip = tr(
-        "How skin between control points follows them. Smooth: by the distance to each triangle. Paper: "
-        "by the distance to its centre, as in the paper; it may crease."
+        "Choose the interpolation of skin between control points. Smooth: by the distance to "
+        "each triangle. Paper: by the distance to the triangle centre; the skin may crease."
     )
     options = (("smooth", tr("Smooth")), ("paper", tr("Paper")))
-    return Choice("weights", tr("Skin between the points"), tip, options)
+    return Choice("weights", tr("Skin interpolation"), tip, options)
 
 
 def _normals() -> Choice:
     tip = tr(
-        "Skin that stands off the control mesh keeps its distance, as in the paper, or the distance grows"
-        " and shrinks with the triangle below it."
+        "Keep the distance between skin and control mesh constant (paper), or scale it with the "
+        "triangle below."
     )
-    options = ((False, tr("Keeps")), (True, tr("Grows along")))
-    return Choice("scaled_normals", tr("Distance to the mesh"), tip, options)
+    options = ((False, tr("Constant")), (True, tr("Scaled")))
+    return Choice("scaled_normals", tr("Distance to mesh"), tip, options)
 
 
 def control_words(control: str) -> str:
@@ -187,13 +190,13 @@ def control_words(control: str) -> str:
 
 def _control() -> Choice:
     tip = tr(
-        "What keeps the volume: the paper's two forces, conventional and adaptive (our formula), a plain "
-        "one that adds half of every error, the exact answer, or nothing."
+        "Choose the volume control: the paper's conventional and adaptive forces (adaptive "
+        "formula: ours), integral control with half of every error, the exact solution, or none."
     )
     options = (
         ("adaptive", tr("Adaptive")),
         ("conventional", tr("Conventional")),
-        ("accumulating", tr("Accumulating")),
+        ("accumulating", tr("Integral")),
         ("none", tr("None")),
         ("exact", tr("Exact")),
     )
@@ -202,24 +205,24 @@ def _control() -> Choice:
 
 def _volume_of() -> Choice:
     tip = tr(
-        "What the exact answer holds: the volume of each breast for itself, or of both together; turns "
-        "hold both together, as in the paper."
+        "Conserve the volume of each breast, or of both combined. For the exact solution only; "
+        "iterations conserve the combined volume (paper)."
     )
-    options = (("each", tr("Each breast")), ("both", tr("Both together")))
-    return Choice("volume_of", tr("Holds"), tip, options)
+    options = (("each", tr("Per breast")), ("both", tr("Combined")))
+    return Choice("volume_of", tr("Conserve volume"), tip, options)
 
 
 def _dense() -> Choice:
     tip = tr(
-        "Whose volume the exact answer holds: that of the control mesh, as in the paper, or that of the "
-        "scanned body itself."
+        "Choose the volume that the exact solution conserves: that of the control mesh, as in "
+        "the paper, or of the scanned body."
     )
-    return Choice("dense_volume", tr("Measured on"), tip, ((False, tr("Control mesh")), (True, tr("Body"))))
+    return Choice("dense_volume", tr("Volume of"), tip, ((False, tr("Control mesh")), (True, tr("Body"))))
 
 
 def _gain() -> Amount:
     tip = tr(
-        "How strongly the conventional force answers a volume error, from 0 to 10. Leave it empty for 97 "
-        "% of the limit from which on it vibrates."
+        "Set the volume force per volume error of conventional control, from 0 to 10. Leave "
+        "empty for 97 % of the gain limit for oscillation."
     )
     return Amount("gain", tr("Conventional gain"), tip, "", 1.0, 2, (0.0, 10.0))

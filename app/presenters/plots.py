@@ -53,7 +53,7 @@ def table_of(frame: Frame) -> tuple[list[str], list[Sequence[object]]]:
     names = [line_title(line.name) for line in frame.stages.model.lines]
     heading = [
         tr("run"),
-        tr("turn"),
+        tr("iteration"),
         tr("volume error [%]"),
         tr("volume error [ml]"),
         tr("bust points up [mm]"),
@@ -114,7 +114,7 @@ def height_quantities() -> tuple[Quantity, ...]:
     """Return which height can be plotted: it is counted from that of the body at rest."""
     return (
         Quantity("bust_mm", tr("Bust point height"), length_unit(), shown_value(2.0)),
-        Quantity("apex_mm", tr("Foremost place, height"), length_unit(), shown_value(2.0)),
+        Quantity("apex_mm", tr("Apex height"), length_unit(), shown_value(2.0)),
     )
 
 

@@ -76,9 +76,9 @@ def _unmeant(row: PressureRow) -> list[str]:
 def _figures(row: PressureRow) -> list[str]:
     assert row.max_kpa is not None
     assert row.mean_kpa is not None
-    most = tr("Largest {kpa}").format(kpa=kpa_words(row.max_kpa))
-    mean = tr("Mean where it lies on the skin {kpa}").format(kpa=kpa_words(row.mean_kpa))
-    force = tr("Presses on the skin with {force} N in all").format(force=number(row.force_n or 0.0))
+    most = tr("Maximum {kpa}").format(kpa=kpa_words(row.max_kpa))
+    mean = tr("Mean on the skin {kpa}").format(kpa=kpa_words(row.mean_kpa))
+    force = tr("Total force on the skin {force} N").format(force=number(row.force_n or 0.0))
     where = listed((most, place_words(row))) if row.where else most
     return [where, mean, force]
 
@@ -119,10 +119,10 @@ def unknown_pressure() -> str:
 def pressure_summary(listed: PressureList | None, design: Design, doubt: str = "") -> PressureSummary:
     """Return the pressures of all bands; None is not known yet, or not a result for the reason ``doubt``."""
     if listed is None:
-        return _nothing(doubt or tr("Worked out as soon as the run rests."))
+        return _nothing(doubt or tr("Computed when the solver has converged."))
     most = listed.highest
     if most is None or most.max_kpa is None:
-        return _nothing(tr("No worn line presses whose tension is known."))
+        return _nothing(tr("No active line with known tension presses on the skin."))
     colours = line_colours([row.line for row in listed.rows], design)
     marks = tuple(
         (line_title(row.line, design), colours[row.line], row.max_kpa)
@@ -130,7 +130,7 @@ def pressure_summary(listed: PressureList | None, design: Design, doubt: str = "
         if row.max_kpa is not None
     )
     place = tr("{line}, {side}").format(line=line_title(most.line, design), side=side_words(most.where))
-    look = tr("Look at it, with the map of pressure")
+    look = tr("Show on the map of contact pressure")
     return PressureSummary(
         kpa_words(most.max_kpa),
         most.light,
@@ -149,7 +149,7 @@ def total_words(listed: PressureList) -> str:
         return tr("Total force on the skin unknown")
     words = tr("Total force of all bands on the skin: {force} N")
     if not listed.complete:
-        words = tr("Total force on the skin of the bands with known tension: {force} N")
+        words = tr("Total force on the skin of bands with known tension: {force} N")
     return words.format(force=number(listed.force_n, 1))
 
 

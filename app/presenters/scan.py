@@ -71,25 +71,25 @@ def _copy_notes(body: Body) -> tuple[str, ...]:
     if body.smoothed is body.mesh:
         return ()
     if len(body.smoothed.faces) != len(body.mesh.faces):
-        return (tr("It is so fine that a thinned copy is measured."),)
-    return (tr("It is noisy, by {noise}: a smoothed copy is measured.").format(noise=length(body.noise)),)
+        return (tr("Measured on a thinned copy: the scan is very fine."),)
+    return (tr("Measured on a smoothed copy: the scan noise is {noise}.").format(noise=length(body.noise)),)
 
 
 def work_words(what: str) -> str:
     """Return the name of a step of the work; empty for one that takes no time."""
     words = {
-        "read scan": tr("Reading the scan"),
-        "reading": tr("Reading the scan"),
-        "repairing": tr("Repairing the scan"),
-        "closing holes": tr("Repairing the scan"),
-        "rebuilding the surface": tr("Laying a skin through the points"),
-        "finding up and front": tr("Finding up and front"),
-        "calming the skin": tr("Finding the landmarks"),
-        "find landmarks": tr("Finding the landmarks"),
-        "fit control mesh": tr("Fitting the control mesh"),
-        "find patch": tr("Binding the body"),
-        "bind body": tr("Binding the body"),
-        "preparing the view": tr("Preparing the view"),
+        "read scan": tr("Reading scan"),
+        "reading": tr("Reading scan"),
+        "repairing": tr("Repairing scan"),
+        "closing holes": tr("Repairing scan"),
+        "rebuilding the surface": tr("Reconstructing surface"),
+        "finding up and front": tr("Detecting orientation"),
+        "calming the skin": tr("Detecting landmarks"),
+        "find landmarks": tr("Detecting landmarks"),
+        "fit control mesh": tr("Fitting control mesh"),
+        "find patch": tr("Binding body to control mesh"),
+        "bind body": tr("Binding body to control mesh"),
+        "preparing the view": tr("Preparing view"),
     }
     return words.get(what, "")
 

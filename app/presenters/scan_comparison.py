@@ -29,9 +29,9 @@ def aligned_words(worn: FittingScan) -> str:
     """Return how well a worn scan lies on the first, in a sentence or two."""
     laid = worn.alignment
     met = tr(
-        "{share} % of the skin that no line moves lies within {near} of it, {length} off as a rule."
+        "Registration: {share} % of the skin outside the reshaped region matches within {near}, RMS {length}."
     ).format(near=length(MET, 0), share=number(100.0 * laid.met, 0), length=length(laid.rms))
-    sure = tr("Sure to ±{turn}° and ±{length}.").format(
+    sure = tr("Registration accuracy ±{turn}° and ±{length}.").format(
         turn=number(2.0 * float(laid.rotation_deviations.max()), 2),
         length=length(2.0 * float(laid.translation_deviations.max())),
     )
@@ -41,7 +41,7 @@ def aligned_words(worn: FittingScan) -> str:
 def residual_rows(difference: Residuals) -> tuple[ResidualRow, ...]:
     """Return predicted less real in rows: all, her left, her right."""
     named = {"left": tr("Left"), "right": tr("Right")}
-    rows = [(tr("Moving skin"), difference.total)]
+    rows = [(tr("Reshaped region"), difference.total)]
     rows += [(named[side], figures) for side, figures in difference.sides.items()]
     return tuple(ResidualRow(title, *_figures(figures)) for title, figures in rows)
 
@@ -63,10 +63,10 @@ def map_values(difference: Residuals | None, count: int) -> Floats:
 def bust_words(difference: Residuals) -> str:
     """Return how far the predicted bust points lie from the real ones, in a sentence."""
     if not difference.bust_points:
-        return tr("The bust points do not show surely on the worn scan.")
+        return tr("The bust points are unclear on the fitting scan.")
     named = {
-        "left": tr("Left bust point: predicted {way}, {out}."),
-        "right": tr("Right bust point: predicted {way}, {out}."),
+        "left": tr("Bust point left: predicted {way}, {out}."),
+        "right": tr("Bust point right: predicted {way}, {out}."),
     }
     said = [
         named[side].format(
@@ -76,11 +76,11 @@ def bust_words(difference: Residuals) -> str:
                 tr("{length} lower (±{sure})"),
                 difference.bust_unsure[side],
             ),
-            out=_way(-float(way[1]), tr("{length} further out"), tr("{length} less far out")),
+            out=_way(-float(way[1]), tr("{length} further forward"), tr("{length} further back")),
         )
         for side, way in difference.bust_points.items()
     ]
-    return joined([*said, tr("± is how surely both scans tell the bust points.")])
+    return joined([*said, tr("± is the uncertainty of the bust points on both scans.")])
 
 
 def _way(mm: float, more: str, less: str, sure: float = 0.0) -> str:
@@ -95,7 +95,9 @@ def summary_text(difference: Residuals) -> str:
 def shown_words(difference: Residuals) -> str:
     """Return how much of the moving skin the worn scan shows, where that is not nearly all."""
     share = difference.total.seen
-    said = tr("The worn scan shows {share} % of the moving skin.").format(share=number(100.0 * share, 0))
+    said = tr("The fitting scan covers {share} % of the reshaped region.").format(
+        share=number(100.0 * share, 0)
+    )
     return "" if share > 0.9 else said
 
 
@@ -123,15 +125,21 @@ def determination_text(found: CalibrationResult, design: Design) -> str:
     )
     percent = number(100.0 * WELL, 0)
     if not weak:
-        return tr("All are told to within {percent} %.").format(percent=percent) if well else ""
-    first = tr("Told to within {percent} %: {numbers}.").format(percent=percent, numbers=well) if well else ""
-    return joined([first, tr("Told weakly, as ± says: {numbers}.").format(numbers=weak)])
+        return (
+            tr("All parameters are determined to within {percent} %.").format(percent=percent) if well else ""
+        )
+    first = (
+        tr("Determined to within {percent} %: {numbers}.").format(percent=percent, numbers=well)
+        if well
+        else ""
+    )
+    return joined([first, tr("Poorly determined (see ±): {numbers}.").format(numbers=weak)])
 
 
 def fixed_parameters_text(found: CalibrationResult, design: Design) -> str:
     """Return which numbers stay as they are, since the scans do not tell them."""
     names = [parameter_title(each.name, design) for each in found.calibration.numbers if each.kept]
-    return tr("As they were, since these scans do not tell them: {numbers}.").format(
+    return tr("Not determined by these scans, kept unchanged: {numbers}.").format(
         numbers=listed(names)
     ) if names else ""  # fmt: skip
 
@@ -144,10 +152,10 @@ def parameter_title(name: str, design: Design) -> str:
     if kind == LENGTH and line:
         return tr("Length of {line}").format(line=told_title(line, design))
     return {
-        LINE_STIFFNESS: tr("Stiffness of lines"),
-        FIRM_CHEST: tr("Firm chest"),
-        PRESTRESS: tr("Tension of the springs"),
-        TISSUE: tr("Tissue"),
+        LINE_STIFFNESS: tr("Line stiffness"),
+        FIRM_CHEST: tr("Rib-cage support"),
+        PRESTRESS: tr("Spring prestress"),
+        TISSUE: tr("Tissue stiffness"),
     }.get(name, name)
 
 
@@ -165,15 +173,17 @@ def improvement_text(found: CalibrationResult, design: Design) -> str:
     if found.at_end:
         names = listed([parameter_title(name, design) for name in found.at_end])
         return tr(
-            "Not found: {numbers} went to the end of what may be. Is this the scan with the garment on, and "
-            "are these its lines?"
+            "Calibration failed: {numbers} reached their limits. Check that this is the fitting "
+            "scan and that the lines match the garment."
         ).format(numbers=names)
     before, after = (length(each.total.rms) for each in (found.before, found.after))
     if not found.is_improved:
-        return tr("No number moved by more than its ±: it stays at {before}.").format(before=before)
-    nearer = tr("Predicted less real: {before} → {after}.").format(before=before, after=after)
-    left = tr("Most of it remains: posture, breath or cloth may have made these numbers.")
-    weak = tr("None of these numbers is told well: take them as a hint.")
+        return tr("No parameter changed by more than its ±. The residual stays at {before}.").format(
+            before=before
+        )
+    nearer = tr("Residual: {before} → {after}.").format(before=before, after=after)
+    left = tr("Most of the residual remains. Posture, breathing or cloth thickness may affect the values.")
+    weak = tr("No parameter is well determined. Treat the values as indicative.")
     return joined(
         [nearer, left if found.has_large_residual else "", weak if found.is_poorly_determined else ""]
     )
@@ -183,7 +193,7 @@ def record_words(record: Calibration | None) -> str:
     """Return what a design keeps of a calibration, in a line; nothing if there was none."""
     if record is None:
         return ""
-    return tr("Calibrated on {file}: {before} → {after}.").format(
+    return tr("Calibration with {file}: {before} → {after}.").format(
         file=record.worn, before=length(record.rms_before), after=length(record.rms_after)
     )
 
@@ -192,15 +202,15 @@ def navigation_text(record: Calibration | None, worn: FittingScan | None) -> str
     """Return what stands on the door: what was calibrated, what is compared, or what is behind it."""
     if worn is not None:
         return worn.name
-    return record_words(record) or tr("Predicted less real, from a scan with the garment on")
+    return record_words(record) or tr("Residuals from a scan of the worn garment")
 
 
 def notes_of(worn: FittingScan | None, pending: bool) -> Iterator[str]:
     """Yield notes of the legend of the map, in place of its own line."""
     if worn is None:
-        yield tr("Compare with a worn scan first: File menu.")
+        yield tr("Compare with a fitting scan first (File menu).")
     elif pending:
-        yield tr("Compared anew as soon as the run rests.")
+        yield tr("Compared again when the solver has converged.")
 
 
 @dataclass(frozen=True)

@@ -38,8 +38,8 @@ def within_words(answer: SizeAnswer, spread: OutputUncertainties | None) -> str:
         return ""
     others = neighbours_of(answer, *known)
     if not others:
-        return tr("No other size lies within the ±.")
-    return tr("Within the ± also: {sizes}").format(sizes=listed(others))
+        return tr("No other size within ±.")
+    return tr("Also within ±: {sizes}").format(sizes=listed(others))
 
 
 def _letters(measured: Measures) -> Iterator[str]:
@@ -76,8 +76,8 @@ def _unlike(sentences: list[str]) -> tuple[str, ...]:
 def _near(answer: SizeAnswer) -> Iterator[str]:
     """Yield a line on the next bands, one on the next cups and one on the sister sizes."""
     lines = {
-        "band": tr("Under-bust {sizes}"),
-        "cup": tr("Bust {sizes}"),
+        "band": tr("Under-bust girth {sizes}"),
+        "cup": tr("Bust girth {sizes}"),
     }
     for part, words in lines.items():
         near = [_away(each) for each in answer.neighbours if each.part == part]

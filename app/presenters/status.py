@@ -41,14 +41,14 @@ TROUBLED = ("caution", "bad", "strained", "overstrained", "folded", "vibrating",
 def state_title(state: str) -> str:
     """Return the word for a state of a run in ``TONES``."""
     return {
-        "settled": tr("Settled"),
-        "strained": tr("Settled, strained"),
-        "settling": tr("Settling"),
-        "vibrating": tr("Vibrating"),
-        "diverging": tr("Diverging"),
+        "settled": tr("Converged"),
+        "strained": tr("Converged, strained"),
+        "settling": tr("Converging"),
+        "vibrating": tr("Oscillating"),
+        "diverging": tr("Diverged"),
         "folded": tr("Folded"),
         "overstrained": tr("Overstrained"),
-        "stale": tr("Stale"),
+        "stale": tr("Not computed"),
         "paused": tr("Paused"),
     }[state]
 
@@ -121,7 +121,7 @@ def invalid_reason(frame: Frame) -> str:
     if is_result(frame):
         return ""
     state = state_title(display_state(frame))
-    return tr("{state}: these figures are no result to sew for.").format(state=state)
+    return tr("{state}: do not use these values for production.").format(state=state)
 
 
 def oscillation_mm(frame: Frame) -> tuple[float, float]:
@@ -138,10 +138,12 @@ def oscillation_mm(frame: Frame) -> tuple[float, float]:
 def explanation(frame: Frame) -> str:
     """Return what it means that a run swings or runs away, or that a shape is no body; else nothing."""
     return {
-        "vibrating": tr("The calculation does not come to rest: the bust point swings by ±{swing}."),
-        "diverging": tr("The calculation runs away: the body is shown as it was before."),
-        "folded": tr("The skin folds over: this is no body any more."),
-        "overstrained": tr("Skin pressed or stretched by over 30 %: no shape to sew for."),
+        "vibrating": tr("The solver does not converge: the bust point oscillates by ±{swing}."),
+        "diverging": tr("The solver diverged. The last valid shape is shown."),
+        "folded": tr("The skin overlaps itself: this is not a valid shape."),
+        "overstrained": tr(
+            "Skin is compressed or stretched by over 30 %: do not use this shape for production."
+        ),
     }.get(frame.verdict.state, "").format(swing=length(oscillation_mm(frame)[1]))
 
 
@@ -149,12 +151,8 @@ def _effort(frame: Frame) -> str:
     """Return how many rounds it took, or steps to the exact answer."""
     exact, turns = frame.stages.design.volume == "exact", frame.verdict.iterations
     if exact and turns == 1:
-        return tr("Worked out in one Newton step")
-    text = (
-        tr("Worked out in {turns} Newton steps")
-        if exact
-        else tr("Worked out in {turns} turns: in each, every control point goes once to its own balance")
-    )
+        return tr("Solved in one Newton iteration")
+    text = tr("Solved in {turns} Newton iterations") if exact else tr("Converged in {turns} iterations")
     return text.format(turns=number(turns, 0))
 
 
@@ -169,9 +167,9 @@ def _figures(
     error, ml = controlled_volume(frame)
     kept = (tr("Volume error"), f"{number(error, 2, signed=True)} % · {number(ml, 1, signed=True)} ml")
     if verdict.condition and state == "folded":
-        return [kept, (tr("Turned skin"), f"{number(verdict.condition.largest_rotation, 0)}°")]
+        return [kept, (tr("Skin rotation"), f"{number(verdict.condition.largest_rotation, 0)}°")]
     if verdict.condition and state == "overstrained":
-        return [kept, (tr("Skin"), _strain(verdict.condition))]
+        return [kept, (tr("Skin strain"), _strain(verdict.condition))]
     move = bust_shift(frame)
     told = [(tr("Bust point"), step_words(move.mean))]
     if girths is not None:
@@ -179,7 +177,7 @@ def _figures(
         told.append((tr("Bust girth"), change))
     hardest = None if pressed is None else pressed.highest
     if hardest is not None and hardest.max_kpa is not None:
-        told.append((tr("Highest pressure"), f"{number(hardest.max_kpa)} kPa"))
+        told.append((tr("Maximum contact pressure"), f"{number(hardest.max_kpa)} kPa"))
     elif move.differs:
         told.append((tr("Left · right"), " · ".join(sides_words(move))))
     return [*told, kept]
@@ -188,12 +186,14 @@ def _figures(
 def _swing_figures(frame: Frame) -> list[tuple[str, str]]:
     verdict, (middle, swing) = frame.verdict, oscillation_mm(frame)
     growth = verdict.growth - 1.0
-    grows = tr("grows") if growth > _STEADY else tr("fades") if growth < -_STEADY else tr("stays as large")
+    grows = (
+        tr("increasing") if growth > _STEADY else tr("decreasing") if growth < -_STEADY else tr("constant")
+    )
     percent = f"{number(100.0 * verdict.error, 2)} ± {number(100.0 * verdict.amplitude, 2)} %"
     return [
         (tr("Volume error"), percent),
         (tr("Bust point"), f"{length_number(middle, signed=True)} ± {length(swing)}"),
-        (tr("The swing"), grows),
+        (tr("Amplitude"), grows),
     ]
 
 
@@ -213,19 +213,19 @@ def solver_error_text(error: Exception) -> tuple[str, str]:
     if isinstance(error, MemoryError):
         return (
             tr("There is not enough memory to compute the shape."),
-            tr("Your design is kept and can be saved. Close other programs, then try again."),
+            tr("Your design is safe and can be saved. Close other programs, then try again."),
         )
     return (
-        tr("An error inside Busk stopped the computation of the shape."),
-        tr("Your design is kept and can be saved. The view shows the last computed shape."),
+        tr("An internal error stopped the computation of the shape."),
+        tr("Your design is safe and can be saved. The view shows the last computed shape."),
     )
 
 
 def error_text(error: Exception) -> tuple[str, str]:
     """Return what failed in any other work, and what to do."""
     if isinstance(error, MemoryError):
-        return tr("There is not enough memory for this."), tr("Close other programs, then try again.")
-    return tr("Something went wrong inside Busk."), tr("Your design is kept. The log tells more.")
+        return tr("There is not enough memory for this task."), tr("Close other programs, then try again.")
+    return tr("An internal error occurred in Busk."), tr("Your design is safe. See the log for details.")
 
 
 def not_computed() -> str:

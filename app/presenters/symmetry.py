@@ -60,7 +60,7 @@ def map_note(told: BeforeAfter | None, after: bool) -> str:
     skin = None if told is None else (told.after if after else told.before).skin
     if skin is None:
         return ""
-    words = tr("+ stands out more than the other side: left {left} ml, right {right} ml")
+    words = tr("+ protrudes beyond the other side: left {left} ml, right {right} ml")
     return words.format(left=number(skin.left_more, 0), right=number(skin.right_more, 0))
 
 
@@ -71,11 +71,16 @@ def _offs(spread: OutputUncertainties | None) -> dict[str, float]:
 
 def _sentence(now: SideDifference, offs: Mapping[str, float], words: str = "") -> str:
     if now.largest_difference < ENOUGH:
-        return tr("Both bust points lie alike within {length}.").format(length=length(ENOUGH))
+        return tr("Bust points are symmetric within {length}.").format(length=length(ENOUGH))
     parts, within = [], True
     for key, value, left, right in (
         ("higher", now.higher, tr("left {length} higher"), tr("right {length} higher")),
-        ("further_out", now.further_out, tr("left {length} further out"), tr("right {length} further out")),
+        (
+            "further_out",
+            now.further_out,
+            tr("left {length} further forward"),
+            tr("right {length} further forward"),
+        ),
     ):
         if abs(value) >= ENOUGH:
             off = offs.get(key)
@@ -87,7 +92,7 @@ def _sentence(now: SideDifference, offs: Mapping[str, float], words: str = "") -
             parts.append((left if value > 0.0 else right).format(length=size))
             within &= off is not None and abs(value) <= off
     said = (words or tr("Bust points: {how}.")).format(how=listed(parts))
-    return joined((said, tr("Within the error they lie alike."))) if within else said
+    return joined((said, tr("No significant difference in position."))) if within else said
 
 
 def _view(row: SymmetryRow, doubtful: bool, off: float | None) -> SymmetryRowView:
@@ -101,7 +106,7 @@ def _view(row: SymmetryRow, doubtful: bool, off: float | None) -> SymmetryRowVie
         f"{title} [{shown_unit(row.unit)}]",
         _written(row, row.before),
         _written(row, after),
-        joined((tip, tr("Within the error both are alike."))) if within else tip,
+        joined((tip, tr("No significant difference."))) if within else tip,
         (shares[0], shares[1]),
         "" if off is None else (length_uncertainty(off) if row.unit == "mm" else plus_minus(off)),
         within,
@@ -122,28 +127,34 @@ def _written(row: SymmetryRow, value: float | None) -> str:
 def _titles() -> dict[str, tuple[str, str]]:
     """Return what each figure is called, and what it is; the most telling first."""
     return {
-        "higher": (tr("Higher"), tr("Which bust point is higher, and by how much.")),
-        "further_out": (tr("Further out"), tr("Which bust point is further to the front, and by how much.")),
+        "higher": (tr("Height"), tr("Difference in height of the bust points.")),
+        "further_out": (tr("Protrusion"), tr("Difference in forward position of the bust points.")),
         "in_all": (
-            tr("Stands out"),
-            tr("By how many ml the skin of one breast stands out more than the other one's, mirrored."),
+            tr("Excess volume"),
+            tr("Volume by which one breast protrudes beyond the other, mirrored; net, in ml."),
         ),
         "mean": (
-            tr("Skin apart"),
-            tr("How far the skin of one breast is from that of the other one, mirrored; mean of both."),
+            tr("Mean distance"),
+            tr("Distance between the skin of one breast and that of the other, mirrored; mean of both."),
         ),
-        "further_aside": (tr("Further aside"), tr("Which bust point is further from the mirror.")),
-        "largest": (tr("Apart, most"), tr("Where one side stands out most beyond the mirrored other.")),
-        "left_more": (tr("Left stands out"), tr("What lies between the skins where it is the left.")),
-        "right_more": (tr("Right stands out"), tr("What lies between the skins where it is the right.")),
+        "further_aside": (
+            tr("Lateral offset"),
+            tr("Difference in distance of the bust points from the mirror plane."),
+        ),
+        "largest": (
+            tr("Max. distance"),
+            tr("Place where one side protrudes most beyond the other, mirrored."),
+        ),
+        "left_more": (tr("Left excess"), tr("Volume between both skins where the left side protrudes.")),
+        "right_more": (tr("Right excess"), tr("Volume between both skins where the right side protrudes.")),
     }
 
 
 def _rests_on() -> tuple[str, ...]:
     return (
-        tr("L: the left is more; R: the right. The tick in the bar is before."),
-        tr("The mirror stands where the trunk without the breasts matches best."),
-        tr("Lines move tissue and keep its volume: what one breast has more they do not take away."),
+        tr("L, R: side with the larger value. Tick in the bar: before."),
+        tr("The mirror plane best matches the trunk without the breasts."),
+        tr("Lines move tissue at constant volume: they do not reduce the volume difference of the breasts."),
     )
 
 
@@ -157,9 +168,9 @@ def _hint(stages: Stages, now: SideDifference) -> tuple[str, bool]:
     names = splittable_lines(design, read_template(design.template))
     if not names:
         return tr(
-            "To make it even, wear a line that moves one side, or one across both that is unlocked."
+            "To balance the sides, activate a line on one side, or an unlocked line across both."
         ), False
-    return tr("Make even begins by setting left and right apart: {lines}.").format(
+    return tr("Balancing separates left and right: {lines}.").format(
         lines=listed(split_titles(design, names))
     ), True
 
@@ -171,8 +182,10 @@ def split_titles(design: Design, names: tuple[str, ...]) -> list[str]:
 
 def not_balanced_reason(gained: float, lost: float) -> tuple[str, str]:
     """Return why a design is not made even, and what could be done; both in mm, see ``Evened``."""
-    said = tr("These lines cannot make it more even: {gained} nearer would move both sides by {lost}.")
-    hint = tr("Other lines may do more: a strap lifts one side alone.")
+    said = tr(
+        "The active lines cannot reduce the asymmetry further: {gained} gain would move both sides by {lost}."
+    )
+    hint = tr("Add other lines: a strap lifts one side alone.")
     return said.format(gained=length(max(gained, 0.0)), lost=length(lost)), hint
 
 
@@ -198,7 +211,7 @@ def balance_result_texts(
     lines = [_way(name, now[name], come[name], line) for name, by in nearer.items() if by < -_SEEN]
     beside = tr("{figure} {before} → {after}")
     price = listed(_way(name, now[name], come[name], beside) for name, by in nearer.items() if by > _SEEN)
-    costs = tr("At the price of: {figures}").format(figures=price) if price else ""
+    costs = tr("Trade-off: {figures}").format(figures=price) if price else ""
     why = "\n".join(filter(None, ("" if met else _why(reply), _by_turns(reply.design))))
     return "\n".join((_outcome(reply, met), *lines)), costs, why
 
@@ -208,21 +221,22 @@ def _by_turns(design: Design) -> str:
     if design.volume in ("exact", "none") or design.volume_of == "both":
         return ""
     return tr(
-        "Figures are those of the exact answer, where each breast keeps its volume. Turns keep both "
-        "together: Measures may differ by up to {length} and 10 to 20 ml."
+        "Values of the exact solution, which conserves the volume of each breast. Iterations "
+        "conserve the combined volume: values in Measurements may differ by up to {length} and "
+        "10 to 20 ml."
     ).format(length=length(1.0, 0))
 
 
 def _outcome(reply: InverseResult, met: bool) -> str:
     if met:
-        return tr("Reached.")
-    return tr("Not reachable. Nearest:") if reply.agreed else tr("Nearest so far:")
+        return tr("All targets reached.")
+    return tr("Not reachable. Closest result:") if reply.agreed else tr("Closest result:")
 
 
 def _why(reply: InverseResult) -> str:
     if not reply.agreed:
-        return tr("Lengths, elastics and pressures did not come to agree.")
-    return tr("Because {reasons}.").format(reasons=reasons_words(reply))
+        return tr("The iteration over lengths, elastics and contact pressure did not converge.")
+    return tr("Reasons: {reasons}.").format(reasons=reasons_words(reply))
 
 
 def _way(name: str, before: float, after: float, said: str) -> str:

@@ -40,10 +40,10 @@ SAME = 5e-4
 def target_title(name: str) -> str:
     """Return what a figure that can be asked for is called in the window."""
     titles = {
-        "lift": tr("Bust point up"),
-        "out": tr("Bust point forward"),
-        "apex lift": tr("Foremost place up"),
-        "apex out": tr("Foremost place forward"),
+        "lift": tr("Bust point lift"),
+        "out": tr("Bust point, forward"),
+        "apex lift": tr("Apex lift"),
+        "apex out": tr("Apex, forward"),
         GIRTH: tr("Bust girth"),
         HIGHER: tr("Left higher than right"),
         FURTHER_OUT: tr("Left further forward than right"),
@@ -97,10 +97,10 @@ def result_text(
     """
     most = max(reply.pressure.values(), default=0.0)
     if limit is not None and reply.agreed and most < _ABOUT * limit:
-        said = tr("Presses with {kpa} kPa at most; then {figures}.")
+        said = tr("Contact pressure at most {kpa} kPa; result: {figures}.")
         return said.format(kpa=number(most), figures=listed(_come(reply, goals)))
     if reply.reachable:
-        return tr("Reached.")
+        return tr("All targets reached.")
     if is_met(reply, goals):
         most = max(float(np.abs(off).max()) for off in profile_deviations(goals, reply.reached).values())
         return tr("Reached within {length}.").format(length=length(most))
@@ -108,9 +108,12 @@ def result_text(
         return _near_words(reply, goals, now or {})
     nearest = closest_result_text(reply, goals, now or {})
     if not reply.agreed:
-        said = tr("Nearest so far: {nearest}. Lengths, elastics and pressures did not come to agree.")
+        said = tr(
+            "Closest result: {nearest}. The iteration over lengths, elastics and contact "
+            "pressure did not converge."
+        )
         return said.format(nearest=nearest)
-    said = tr("Not reachable: nearest is {nearest}, because {reasons}.")
+    said = tr("Not reachable. Closest result: {nearest}. Reasons: {reasons}.")
     return said.format(nearest=nearest, reasons=reasons_words(reply))
 
 
@@ -120,9 +123,9 @@ def _near_words(reply: InverseResult, goals: Sequence[Goal], now: Mapping[str, f
     section = max(offs, key=lambda each: float(np.abs(offs[each]).mean()))
     before = _off_before(goals, now, section)
     if before is None or float(np.abs(offs[section]).mean()) <= _MUCH * before:
-        said = tr("Met within {mean} on average, {most} at most.")
+        said = tr("Reached with a deviation of {mean} on average, {most} maximum.")
     else:
-        said = tr("Nearest is {mean} off on average, {most} at most (was {before}).")
+        said = tr("Closest result: deviation {mean} on average, {most} maximum (before: {before}).")
     return said.format(**_mean_and_most(offs[section]), before=length(before or 0.0))
 
 
@@ -154,9 +157,9 @@ def _nearest(reply: InverseResult, goals: Sequence[Goal], now: Mapping[str, floa
         yield target_text(goal.name, reply.reached[goal.name])
     profiles = profile_deviations(goals, reply.reached)
     for section, off in profiles.items():
-        said = tr("a profile off by {mean} on average ({most} at most)")
+        said = tr("profile deviation {mean} on average ({most} maximum)")
         if len(profiles) > 1:
-            said = tr("{profile}: off by {mean} on average ({most} at most)")
+            said = tr("{profile}: deviation {mean} on average ({most} maximum)")
         words = said.format(profile=target_title(section), **_mean_and_most(off))
         before = _off_before(goals, now, section)
         if before is not None:
@@ -174,7 +177,7 @@ def bust_movement_text(goals: Sequence[Goal], now: Mapping[str, float], then: Ma
     asked = {goal.name.removesuffix(" left").removesuffix(" right") for goal in goals}
     free = [name for name in (LIFT, OUT) if name not in asked and name in now and name in then]
     moved = [_from_to(name, now[name], then[name]) for name in free if abs(then[name] - now[name]) > _MET]
-    return tr("Moves along: {figures}").format(figures=listed(moved)) if moved else ""
+    return tr("Also changes: {figures}").format(figures=listed(moved)) if moved else ""
 
 
 def _from_to(name: str, before: float, after: float) -> str:
@@ -189,7 +192,7 @@ def deviation_text(goals: Sequence[Goal], reached: Mapping[str, float], section:
     off = profile_deviations(goals, reached).get(section)
     if off is None:
         return ""
-    return tr("off by {mean}, at most {most}").format(**_mean_and_most(off))
+    return tr("deviation {mean}, at most {most}").format(**_mean_and_most(off))
 
 
 def is_met(reply: InverseResult, goals: Sequence[Goal]) -> bool:
@@ -214,7 +217,7 @@ def _mean_and_most(off: Floats) -> dict[str, str]:
 
 def reasons_words(reply: InverseResult) -> str:
     """Return why an answer is not what was asked for, as part of a sentence."""
-    return tr(", and ").join(reasons(reply))
+    return tr("; ").join(reasons(reply))
 
 
 def reasons(reply: InverseResult) -> list[str]:
@@ -226,16 +229,16 @@ def reasons(reply: InverseResult) -> list[str]:
     causes = [
         said.format(lines=_titles(names, reply.design), kpa=kpa)
         for names, said in (
-            (short, tr("{lines} may not be shorter")),
-            (long, tr("{lines} may not be longer: a longer line would have to push")),
-            (slack, tr("{lines} would have to push, which no band can")),
-            (reply.at_pressure_limit, tr("{lines} may not press more than {kpa} kPa")),
+            (short, tr("{lines}: lower length limit")),
+            (long, tr("{lines}: upper length limit, a longer line would be slack")),
+            (slack, tr("{lines}: slack, the tension would be negative")),
+            (reply.at_pressure_limit, tr("{lines}: contact pressure limit of {kpa} kPa")),
         )
         if names
     ]
     if reply.strained:
-        causes.append(tr("the body would be strained more than looks natural"))
-    return causes or [tr("these lines do not move the body that way")]
+        causes.append(tr("the skin strain would exceed its limit"))
+    return causes or [tr("the active lines cannot produce this movement")]
 
 
 def change_words(before: Design, reply: InverseResult) -> list[str]:
@@ -251,28 +254,28 @@ def change_words(before: Design, reply: InverseResult) -> list[str]:
     said = said or [tr("No line changes")]
     if reply.pressure:
         most = max(reply.pressure.values())
-        said.append(tr("presses with {kpa} kPa at most").format(kpa=number(most)))
+        said.append(tr("contact pressure at most {kpa} kPa").format(kpa=number(most)))
     if reply.unchecked and reply.pressure:
         lines = _titles(reply.unchecked, after)
-        said.append(tr("pressure of {lines} not looked at: see Garment").format(lines=lines))
+        said.append(tr("contact pressure of {lines} not checked: see Garment").format(lines=lines))
     elif reply.unchecked:
-        said.append(tr("pressure not looked at: see Garment"))
+        said.append(tr("contact pressure not checked: see Garment"))
     return said
 
 
 def locked_lines_text(design: Design, kept: Collection[str]) -> str:
     """Return which worn lines stay because they are locked, if any do."""
     lines = _titles([name for name in sorted(design.active_lines()) if name in kept], design)
-    return tr("Locked, so kept: {lines}.").format(lines=lines) if lines else ""
+    return tr("Locked, not changed: {lines}.").format(lines=lines) if lines else ""
 
 
 def missing_input_text(design: Design, moving: Collection[str]) -> str:
     """Return what has to be done before anything can be asked, if there is something; see ``free_lines``."""
     lines = design.active_lines() & set(moving)
     if not lines:
-        return tr("Wear the lines that may change first: choose a preset, or shorten a line.")
+        return tr("Activate lines first: choose a preset or shorten a line.")
     if all(design.line_settings(name).locked for name in lines):
-        return tr("All worn lines are locked. Unlock one that may change.")
+        return tr("All active lines are locked. Unlock at least one line.")
     return ""
 
 
@@ -281,7 +284,7 @@ def step_words(goals: Sequence[Goal], limit: float | None = None) -> str:
     wishes = [targets_text(goals)] if goals else []
     if limit is not None:
         wishes.append(tr("{kpa} kPa at most").format(kpa=number(limit)))
-    return tr("Asked for") + colon() + listed(wishes)
+    return tr("Targets") + colon() + listed(wishes)
 
 
 def _titles(names: Iterable[str], design: Design) -> str:
@@ -329,7 +332,7 @@ def conflict_words(conflicts: Iterable[Conflict]) -> tuple[str, ...]:
 def _sentence(conflict: Conflict) -> str:
     name, alone = target_title(conflict.name), _value(conflict.name, conflict.alone)
     if not conflict.against:
-        return tr("{target}: {value} is the nearest even as the only target.").format(
+        return tr("{target}: {value} is the closest result even as the only target.").format(
             target=name, value=alone
         )
     words = tr(
@@ -344,26 +347,28 @@ def _sentence(conflict: Conflict) -> str:
 
 def _value(name: str, value: float) -> str:
     size = length(value, 1, signed=is_signed(name))
-    return tr("{length} off").format(length=size) if section_of(name) else size
+    return tr("deviation {length}").format(length=size) if section_of(name) else size
 
 
 def unlimited_words(free: InverseResult, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
     """Return what targets come to without a limit of pressure, and what lines press with then."""
     most = number(max(free.pressure.values(), default=0.0))
     if is_met(free, goals):
-        return tr("All targets are met without the pressure limit, with {kpa} kPa.").format(kpa=most)
-    words = tr("Nearest without the pressure limit: {figures}, with {kpa} kPa.")
+        return tr("All targets are reached without the contact pressure limit, at {kpa} kPa.").format(
+            kpa=most
+        )
+    words = tr("Closest result without the contact pressure limit: {figures}, at {kpa} kPa.")
     return words.format(figures=closest_result_text(free, goals, now), kpa=most)
 
 
 def activated_text(before: Design, after: Design) -> str:
     """Return which lines an answer switches on, if it does."""
     lines = _titles(sorted(after.active_lines() - before.active_lines()), after)
-    return tr("Switched on: {lines}.").format(lines=lines) if lines else ""
+    return tr("Activated: {lines}.").format(lines=lines) if lines else ""
 
 
 def inactive_words(design: Design, names: Iterable[str]) -> str:
     """Return which lines that are off may be switched on; empty if there are none."""
     lines = _titles(sorted(names), design)
-    words = tr("Switch on inactive lines where they bring the targets nearer: {lines}")
+    words = tr("Activate inactive lines where they improve the result: {lines}")
     return words.format(lines=lines) if lines else ""

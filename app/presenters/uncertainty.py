@@ -24,10 +24,10 @@ def source_words(source: str) -> str:
         "landmarks": tr("landmarks"),
         "scan": tr("scan"),
         "tissue": tr("tissue"),
-        "line": tr("stiffness of lines"),
+        "line": tr("line stiffness"),
         "tape": tr("cutting and sewing"),
         "elastic": tr("elastics"),
-        "root": tr("top of the root"),
+        "root": tr("upper end of the breast root"),
     }[source]
 
 
@@ -71,7 +71,7 @@ def _keys(view: MeasureView) -> tuple[str | None, str | None, str | None]:
 
 def _without_off() -> str:
     """Return why the figures that come with every frame have no ±: for most none is worked out."""
-    return tr("Of what is followed while it solves, lengths of lines too, only the bust points have a ±.")
+    return tr("Of the solver values, only the bust points have a ±.")
 
 
 def _shares(
@@ -97,9 +97,9 @@ def _shares(
 def uncertainty_view(spread: OutputUncertainties | None, waiting: str, faint: bool) -> UncertaintyView:
     """Return the text below the measurements; ``waiting`` is the reason why there is no ± yet."""
     if spread is None:
-        return UncertaintyView(waiting, short=tr("± is not there yet: why") if waiting else "")
-    meaning = tr("± is twice the standard deviation: 95 % of all cases, if errors are normal.")
-    told = tr("± of a former shape: what it means") if faint else tr("± holds 95 % of cases: what it means")
+        return UncertaintyView(waiting, short=tr("No ± yet: details") if waiting else "")
+    meaning = tr("± is twice the standard deviation: 95 % of cases if errors are normally distributed.")
+    told = tr("± of the previous shape: details") if faint else tr("± covers 95 % of cases: details")
     return UncertaintyView(
         joined([meaning, _without_off(), *map(render, spread.cautions)]), _contact(spread), faint, told
     )
@@ -110,10 +110,10 @@ def _contact(spread: OutputUncertainties) -> str:
         return ""
     up, out = (length(spread.other[key], signed=True) for key in (LIFT, OUT))
     if spread.contact == "sliding":
-        said = tr("If lines slid over the skin instead: bust points {up} up, {out} forward.")
+        said = tr("With sliding lines: bust points {up} up, {out} forward.")
     else:
-        said = tr("If lines stuck to the skin instead: bust points {up} up, {out} forward.")
-    between = tr("The truth lies between the two, and no ± holds it.")
+        said = tr("With bonded lines: bust points {up} up, {out} forward.")
+    between = tr("Real contact is between bonded and sliding; the ± does not include this.")
     told = said.format(up=up, out=out)
     return f"{told} {between}" if language() == "en" else f"{told}{between}"
 

@@ -35,7 +35,7 @@ def variants_view(variants: Variants, shown: str, pressed: Pressed, judged: Judg
     """Return the table of variants, of which one is ``shown``."""
     overall = [None if frame is None else judged(frame) for _, _, frame in variants]
     levels = tuple("" if view is None else view.level for view in overall)
-    verdicts = tuple(tr("Not solved yet") if view is None else view.headline for view in overall)
+    verdicts = tuple(tr("Not computed") if view is None else view.headline for view in overall)
     names = tuple(name for name, _, _ in variants)
     rows = *_lengths(variants), *_pieces(variants, pressed), *_results(variants)
     return VariantsView(names, names.index(shown), levels, verdicts, rows)
@@ -46,7 +46,7 @@ def as_table(view: VariantsView) -> list[list[str]]:
     first, *others = view.names
     differences = [f"{name} - {first}" for name in others]
     rows = [
-        [tr("Figure"), tr("Unit"), *view.names, *differences],
+        [tr("Quantity"), tr("Unit"), *view.names, *differences],
         [tr("Verdict"), "", *view.verdicts, *[""] * len(others)],
     ]
     for row in view.rows:
@@ -93,7 +93,7 @@ def _lengths(variants: Variants) -> list[VariantRow]:
     elastic = {name for _, design, _ in variants for name in design.active_elastics()}
     for name, title in heads.items():
         if name in elastic:
-            rows.append(_reached(name, tr("{line}, on the body").format(line=title), variants))
+            rows.append(_reached(name, tr("{line}, on body").format(line=title), variants))
             continue
         ratios = [_ratio(design, name, rest) for (_, design, _), rest in zip(variants, rests, strict=True)]
         lengths = [
@@ -163,8 +163,8 @@ def _named(variants: Variants) -> dict[str, Design]:
 def _piece_title(name: str, design: Design, rows: Sequence[CutRow]) -> str:
     title = line_title(name, design)
     if any(row.front_only for row in rows):
-        return tr("{line}: front part, elastic, pressure").format(line=title)
-    return tr("{line}: to cut, elastic, pressure").format(line=title)
+        return tr("{line}: front part, elastic, contact pressure").format(line=title)
+    return tr("{line}: cut length, elastic, contact pressure").format(line=title)
 
 
 def _rests(frame: Frame | None) -> dict[str, float]:
@@ -194,7 +194,7 @@ def _results(variants: Variants) -> list[VariantRow]:
         )
 
     return [
-        row(tr("Bust point, up"), ("mm", 1, lambda frame: bust_shift(frame).mean.up)),
+        row(tr("Bust point lift"), ("mm", 1, lambda frame: bust_shift(frame).mean.up)),
         row(tr("Bust point, forward"), ("mm", 1, lambda frame: bust_shift(frame).mean.forward)),
         row(
             tr("Volume error"),

@@ -151,8 +151,8 @@ def picture_kind(path: str | os.PathLike[str]) -> str:
     kind = Path(path).suffix.lower().lstrip(".")
     if kind != "png":
         raise UserError(
-            Message("Busk does not draw pictures as .{kind}.", kind=kind),
-            Message("Choose a name that ends in .png."),
+            Message("Pictures cannot be saved as .{kind}.", kind=kind),
+            Message("Choose a name ending in .png."),
         )
     return kind
 

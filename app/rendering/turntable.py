@@ -46,10 +46,10 @@ class Turntable:
 
     def __post_init__(self) -> None:
         refusals = {
-            "frames": Message("A turntable cannot have {value} frames."),
-            "seconds": Message("A turntable cannot have {value} seconds."),
-            "width": Message("A turntable cannot have {value} width."),
-            "height": Message("A turntable cannot have {value} height."),
+            "frames": Message("The number of turntable frames {value} is out of range."),
+            "seconds": Message("The turntable duration {value} s is out of range."),
+            "width": Message("The turntable width of {value} pixels is out of range."),
+            "height": Message("The turntable height of {value} pixels is out of range."),
         }
         values = (self.frames, self.seconds, *self.size)
         for (name, refusal), value in zip(refusals.items(), values, strict=True):
@@ -57,7 +57,7 @@ class Turntable:
             if not low <= value <= high:
                 raise UserError(
                     refusal.fill(value=f"{value:g}"),
-                    Message("It goes from {low} to {high}.", low=f"{low:g}", high=f"{high:g}"),
+                    Message("Enter a value from {low} to {high}.", low=f"{low:g}", high=f"{high:g}"),
                 )
 
 
@@ -66,7 +66,7 @@ def turntable_kind(path: str | os.PathLike[str]) -> str:
     kind = Path(path).suffix.lower().lstrip(".")
     if kind not in FORMATS:
         raise UserError(
-            Message("Busk does not make turntables as .{kind}.", kind=kind),
+            Message("Turntables cannot be saved as .{kind}.", kind=kind),
             Message("Choose one of: {choices}.", choices=", ".join(FORMATS)),
         )
     return kind
@@ -105,8 +105,8 @@ def write_turntable(
     kind, targets = turntable_kind(path), turntable_files(path, turntable.frames)
     if not targets[0].parent.is_dir():
         raise UserError(
-            Message("There is no folder {folder}.", folder=str(targets[0].parent)),
-            Message("Make it, or choose another one."),
+            Message("Folder {folder} does not exist.", folder=str(targets[0].parent)),
+            Message("Create it, or choose another folder."),
         )
     pictures = _composed(shots, turntable, progress)
     with ExitStack() as stack:

@@ -38,7 +38,10 @@ def curve_block(handout: ReportDocument, height: float) -> Block:
     top, right = title.height, _SIDE + _GAP
     half = (0.5 if _plotted(sheet) else 0.85) * (height - top)
     wide = 0.5 * (WIDE - right - _GAP)
-    where = tr("Side, through the left bust point"), tr("Level of the bust points, from above, front below")
+    where = (
+        tr("Side view through the left bust point"),
+        tr("Top view at bust point level (front at the bottom)"),
+    )
     names = [elide(each, "caption", room) for each, room in zip(where, (_SIDE, WIDE - right), strict=True)]
     marks = _bust_points(sheet)
     parts = [
@@ -87,7 +90,7 @@ def _section(
     scale = float((room / (box[1] - box[0])).min())
     centre, step = box.mean(axis=0), next(each for each in _GRID[length_unit()] if each * scale >= _NARROWEST)
     low, high = centre - zero + np.array([[-0.5], [0.5]]) * room / scale
-    said = elide(tr("grid {length}, 0 at the bust point").format(length=length(step, 0)), "caption", width)
+    said = elide(tr("grid {length}, origin at bust point").format(length=length(step, 0)), "caption", width)
     bands = [_band(curve, off) for curve, off in zip(cut.after, cut.off_mm, strict=False) if len(curve) > 2]
 
     def paint(paper: PagePainter, x: float, y: float) -> None:
@@ -150,12 +153,12 @@ def _plots(
     sheet: Report, left: float, top: float, width: float, height: float
 ) -> list[tuple[float, float, Block]]:
     """Return the plots of the run with where they stand, or why there are none."""
-    turns, said = sheet.turns, tr("No turns to plot: the exact answer was worked out at once.")
+    turns, said = sheet.turns, tr("No iterations to plot: the exact solution is computed directly.")
     if not sheet.cuts.rows:
-        said = tr("No turns to plot: no line is worn.")
+        said = tr("No iterations to plot: no active lines.")
     if not _plotted(sheet):
         return [(left, top, _sentence(said, 2.0 * width + _GAP))]
-    error, up = tr("Volume error, %"), tr("Bust points, {unit} up").format(unit=length_unit())
+    error, up = tr("Volume error, %"), tr("Bust point lift, {unit}").format(unit=length_unit())
     heights = [shown_value(each) for each in turns.up_mm]
     if not sheet.is_valid:
         return [(left, top, _plot(turns, turns.error_percent, error, 2.0 * width + _GAP, height))]
@@ -176,7 +179,7 @@ def _sentence(said: str, width: float) -> Block:
 
 def _plot(turns: IterationCurve, values: Sequence[float], title: str, width: float, height: float) -> Block:
     """Return a figure over the turns of the run."""
-    said, last = elide(title, "caption", width), tr("turn {turn}").format(turn=number(turns.turn[-1], 0))
+    said, last = elide(title, "caption", width), tr("iteration {turn}").format(turn=number(turns.turn[-1], 0))
     x_of, seen = np.array(turns.turn, dtype=np.float64), np.array(values, dtype=np.float64)
     low, high = float(seen.min()), float(seen.max())
     if high - low < 1e-3:

@@ -68,8 +68,8 @@ def force_range_warning(sheet: Report) -> str:
     if not sheet.is_valid or worst < VAGUE:
         return ""
     if worst > MOST_VAGUE:
-        return tr("Tension and pressure are known by order of magnitude only: measure them on a sample.")
-    said = tr("Tension and pressure are not known to better than a factor of {factor}: measure on a sample.")
+        return tr("Tension and contact pressure are order-of-magnitude estimates: measure them on a sample.")
+    said = tr("Tension and contact pressure are uncertain by a factor of {factor}: measure them on a sample.")
     return said.format(factor=number(worst, 0))
 
 
@@ -90,7 +90,7 @@ def _within_words(cut: CutRow, press: PressureRow, sheet: Report) -> Iterator[st
     parts, off = [], sheet.off.get(f"{CUT}:{cut.line}")
     if off is not None and cut.cut_mm is not None:
         parts.append(tr("cut {off} {unit}").format(off=length_uncertainty(off), unit=length_unit()))
-    words = tr("tension {low} to {high} N"), tr("largest pressure {low} to {high} kPa")
+    words = tr("tension {low} to {high} N"), tr("maximum contact pressure {low} to {high} kPa")
     for said, ends in zip(words, _force_ends(cut, press, sheet), strict=True):
         if ends is not None and _factor(*ends) < VAGUE:
             low, high = (number(each, 1) for each in ends)
@@ -160,15 +160,15 @@ def _cut_view(cut: CutRow, press: PressureRow) -> CutRowText:
 
 def _remark(cut: CutRow) -> str:
     """Return in a few words why no piece can be cut, or what to mind of it."""
-    said = [tr("Slack: it has no tension.")] if cut.slack else []
+    said = [tr("Slack (no tension).")] if cut.slack else []
     if not cut.elastic:
-        said.append(tr("No elastic is chosen: the line is listed as it is worn."))
+        said.append(tr("No elastic chosen. The length is that on the body."))
     elif cut.refused:
-        said.append(tr("The elastic does not stretch this far."))
+        said.append(tr("The elongation exceeds the curve of the elastic."))
     elif cut.cut_mm is None and not cut.slack:
-        said.append(tr("Its tension is not known."))
+        said.append(tr("Tension unknown."))
     if cut.cut_mm is not None and cut.front_only:
-        said.append(tr("Front part only: add what goes on over shoulder or back."))
+        said.append(tr("Front part only: add the part over shoulder or back."))
     return joined(said)
 
 
@@ -185,7 +185,7 @@ def _elastic(cut: CutRow) -> str:
 
 def _without_figures(view: CutRowText) -> CutRowText:
     first, *others = view.values
-    remark = tr("No figure: the shape is no result.")
+    remark = tr("No value: the shape is not valid.")
     nothing = (first, *(NOTHING for _ in others))
     return replace(view, values=nothing, rating="", word="", to_cut=False, remark=remark)
 

@@ -30,9 +30,9 @@ _ELASTIC, _LIGHT, _WORD = 35.0, 165.0, 168.0
 
 def cut_blocks(handout: ReportDocument) -> list[Block]:
     """Return the cut list with what each band presses with, or what is missing for it."""
-    title = heading(tr("To cut"), WIDE)
+    title = heading(tr("Cut list"), WIDE)
     if not handout.report.cuts.rows:
-        said = tr("No line is worn: set a line shorter, and it stands here with its length and pressure.")
+        said = tr("No active lines. Shorten a line to add it to this list.")
         return [title, paragraph(said, "body", WIDE)]
     views = cut_views(handout.report, list(handout.colours))
     rows = (_cut_row(view, handout.colours.get(view.line, "")) for view in views)
@@ -44,7 +44,7 @@ def _cut_head() -> Block:
         tr("width {unit}").format(unit=length_unit()),
         tr("cut {unit}").format(unit=length_unit()),
         tr("seams"),
-        tr("stretch %"),
+        tr("elong. %"),
         tr("worn {unit}").format(unit=length_unit()),
         tr("height {unit}").format(unit=length_unit()),
         tr("tension N"),
@@ -74,7 +74,7 @@ def _cut_row(view: CutRowText, colour: str) -> Block:
     kind = fitting_font(view.elastic, room)
     elastic = elide(view.elastic, kind, room)
     word = elide(view.word, "body", WIDE - _WORD)
-    refused = elide(tr("NOT TO CUT"), "strong", _EDGES[_STRETCH] - _EDGES[0] - 3.0)
+    refused = elide(tr("DO NOT CUT"), "strong", _EDGES[_STRETCH] - _EDGES[0] - 3.0)
 
     def paint(paper: PagePainter, x: float, y: float) -> None:
         base, middle = y + 3.75, y + 2.8
@@ -99,7 +99,7 @@ def _cut_row(view: CutRowText, colour: str) -> Block:
 def _legend() -> Block:
     """Return what the lights say, on one line."""
     said = pressure_legend()
-    before = tr("Tension and pressure are estimates. Largest pressure:")
+    before = tr("Tension and contact pressure are estimates. Maximum pressure:")
 
     def paint(paper: PagePainter, x: float, y: float) -> None:
         paper.text(x, y + 2.6, before, "small")

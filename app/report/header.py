@@ -53,7 +53,7 @@ def head_blocks(handout: ReportDocument, share: float = 1.0) -> list[Block]:
 
 
 def _title(sheet: Report) -> Block:
-    heading, title = sheet.heading, tr("Fitting sheet")
+    heading, title = sheet.heading, tr("Fitting report")
     customer = elide(heading.customer or project_words(sheet), "name", 100.0)
     gap = text_width(customer, "name") + 3.0
     project = elide(project_words(sheet), "quiet", WIDE - gap) if heading.customer else ""
@@ -73,7 +73,7 @@ def _verdict(view: AssessmentView) -> Block:
     reasons = [wrap(joined(each), "body", WIDE - 12.0) for each in view.reasons[:REASONS]]
     lines = [line for reason in reasons for line in reason]
     if more := len(view.reasons) - len(reasons):
-        lines.append(tr("{count} more: see the appendix.").format(count=more))
+        lines.append(tr("{count} more in the appendix.").format(count=more))
     height = 7.6 + len(lines) * line_height("body") + (1.4 if lines else 0.0)
 
     def paint(paper: PagePainter, x: float, y: float) -> None:
@@ -137,7 +137,7 @@ def _cuts(handout: ReportDocument) -> Block:
     pieces, left = cut_pieces(handout.report, list(handout.colours)), _CELLS[2]
     room, caption = _CELLS[3] - left - 6.0, _cut_caption(handout.report)
     if not handout.report.is_valid:
-        return _sentence(left, room, caption, tr("No figure: the shape is no result."))
+        return _sentence(left, room, caption, tr("No value: the shape is not valid."))
     if len(pieces) == 1:
         line, title, length = pieces[0]
         one = _great(left, room, caption, length, "", length_unit())
@@ -174,15 +174,15 @@ def _cuts(handout: ReportDocument) -> Block:
 def _no_cut(sheet: Report) -> str:
     """Return why there is no length to cut."""
     if not sheet.cuts.rows:
-        return tr("No line is worn: there is nothing to cut.")
+        return tr("No active lines: the cut list is empty.")
     if any(row.front_only and row.cut_mm is not None for row in sheet.cuts.rows):
-        return tr("No whole piece: front parts alone stand in the cut list.")
-    return tr("No elastic is chosen yet: choose one for each line to get its length to cut.")
+        return tr("No full lengths: the cut list contains front lengths only.")
+    return tr("No elastics chosen: choose one for each line to compute the cut lengths.")
 
 
 def _cut_caption(sheet: Report) -> str:
     guessed = any(row.cut_mm is not None and row.estimate for row in sheet.cuts.rows)
-    return tr("Length to cut, an estimate") if guessed else tr("Length to cut")
+    return tr("Cut length (estimate)") if guessed else tr("Cut length")
 
 
 def _sentence(left: float, room: float, caption: str, said: str) -> Block:
@@ -196,9 +196,9 @@ def _sentence(left: float, room: float, caption: str, said: str) -> Block:
 
 
 def _lift(sheet: Report) -> Block:
-    left, room, caption = _CELLS[3], _CELLS[4] - _CELLS[3] - 6.0, tr("Lift of the bust points")
+    left, room, caption = _CELLS[3], _CELLS[4] - _CELLS[3] - 6.0, tr("Bust point lift")
     if sheet.lift is None:
-        return _sentence(left, room, caption, tr("No figure: the shape is no result."))
+        return _sentence(left, room, caption, tr("No value: the shape is not valid."))
     off, below = sheet.off.get(LIFT), forward_words(sheet.lift.forward, sheet.off.get(OUT))
     figure = length_number(sheet.lift.up, signed=True)
     told = "" if off is None else f"{length_uncertainty(off)} {length_unit()}"
@@ -206,9 +206,9 @@ def _lift(sheet: Report) -> Block:
 
 
 def _volume(sheet: Report) -> Block:
-    kept, left, caption = sheet.volume, _CELLS[4], tr("Change of volume")
+    kept, left, caption = sheet.volume, _CELLS[4], tr("Volume change")
     if not sheet.is_valid:
-        return _sentence(left, WIDE - left, caption, tr("No figure: the shape is no result."))
+        return _sentence(left, WIDE - left, caption, tr("No value: the shape is not valid."))
     of = tr("of {ml} ml in the model").format(ml=number(kept.rest_ml, 0))
     figure = number(kept.error_ml, 1, signed=True)
     return _great(left, WIDE - left, caption, figure, of, "ml")
@@ -218,7 +218,7 @@ def _pictures(handout: ReportDocument, share: float) -> Block:
     """Return front and side, before and after, or a sentence where they could not be drawn."""
     if not all(name in handout.pictures for name in SHOTS):
         lines = wrap(
-            tr("The pictures of the body could not be drawn here: the curves show what changes."),
+            tr("The images of the body could not be drawn. The curves show the changes."),
             "small",
             WIDE,
         )

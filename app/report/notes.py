@@ -16,16 +16,16 @@ from core.measurements.sizes import built_in
 
 def cut_notes(sheet: Report) -> list[str]:
     """Return what holds for all of the cut list."""
-    height = tr("Height: the middle of the front over (+) or under (−) the bust points, as worn.")
+    height = tr("Height: centre front above (+) or below (−) the bust points, on the body.")
     return [height, *render_all(sheet.cuts.notes)]
 
 
 def note_groups(sheet: Report) -> Iterator[tuple[str, list[str]]]:
     """Give what is to be known of the figures beside the cut list: what to look at, what is left out."""
     if beyond := _beyond_the_head(sheet):
-        yield tr("To look at"), beyond
-    told = tr("Before: on the scan. After: on the body as the model reshapes it.")
-    taken = tr("How each measure is taken: user guide, Measures, and the data file of this sheet.")
+        yield tr("To review"), beyond
+    told = tr("Before: measured on the scan. After: measured on the reshaped body of the model.")
+    taken = tr("Definitions of the measurements: user guide, Measurements, and the data file of this report.")
     yield tr("Measured"), [each for each in (told, taken, size_rule(sheet), size_cautions(sheet)) if each]
     limits = _limits() if sheet.cuts.rows else []
     if estimated := [*_meaning(sheet), *limits, *_unsure(sheet)]:
@@ -59,7 +59,7 @@ def size_cautions(sheet: Report) -> str:
             told.setdefault(_caution(each), []).append(system_word(each))
     between = "；" if language() == "ja" else "; "
     words = between.join(f"{listed(systems)}{colon()}{caution}" for caution, systems in told.items())
-    return tr("* Others find another size. {words}").format(words=words) if words else ""
+    return tr("* Other size charts give another size. {words}").format(words=words) if words else ""
 
 
 def _meaning(sheet: Report) -> list[str]:
@@ -67,8 +67,8 @@ def _meaning(sheet: Report) -> list[str]:
     if not (sheet.off and sheet.is_valid):
         return []
     sources = listed([source_words(each) for each in sheet.off_sources])
-    means = tr("± is twice the standard deviation: 95 % of all cases, if errors are normal.")
-    holds = tr("It holds: {sources}. Whether lines stick or slide is no part of it.").format(sources=sources)
+    means = tr("± is twice the standard deviation: 95 % of cases if errors are normally distributed.")
+    holds = tr("Included: {sources}. Not included: bonded or sliding skin contact.").format(sources=sources)
     return [joined([means, holds]), *map(render, sheet.off_notes)]
 
 

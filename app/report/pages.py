@@ -101,7 +101,7 @@ def _cutting(handout: ReportDocument) -> list[Block]:
     """Return what has to be known to cut by the list, and how far its forces are known."""
     sheet = handout.report
     notes = [force_range_warning(sheet), *cut_notes(sheet)] if sheet.cuts.rows else []
-    return [heading(tr("For cutting"), HALF), *map(bullet, filter(None, notes))] if notes else []
+    return [heading(tr("Cutting notes"), HALF), *map(bullet, filter(None, notes))] if notes else []
 
 
 def _whole(page: int) -> Iterator[Column]:

@@ -39,7 +39,7 @@ def key_blocks(sheet: Report) -> Iterator[Block]:
     """Give the few measures that a garment is made to."""
     groups = measure_rows(replace(sheet, measures=key_measures(sheet)))
     edges = _edges(groups)
-    yield heading(tr("Key measures"), HALF)
+    yield heading(tr("Key measurements"), HALF)
     yield _measure_head(edges)
     for _, rows in groups:
         yield from (_measure(row, edges) for row in rows if row.values)
@@ -55,7 +55,7 @@ def measure_blocks(sheet: Report) -> Iterator[Block]:
     others = tuple(row for row in sheet.measures if row["key"] not in key)
     groups = measure_rows(replace(sheet, measures=others))
     edges = _edges(groups)
-    yield heading(tr("Further measures"), HALF)
+    yield heading(tr("Other measurements"), HALF)
     yield _measure_head(edges)
     for group, rows in groups:
         said = elide(group, "strong", HALF)
@@ -66,7 +66,7 @@ def measure_blocks(sheet: Report) -> Iterator[Block]:
 
 def note_blocks(sheet: Report) -> Iterator[Block]:
     """Give what is to be known of the figures."""
-    yield heading(tr("What the figures rest on"), HALF)
+    yield heading(tr("Assumptions and sources"), HALF)
     for title, sentences in note_groups(sheet):
         yield _title(title)
         for sentence in filter(None, sentences):
@@ -77,7 +77,7 @@ def line_note_blocks(handout: ReportDocument) -> Iterator[Block]:
     """Give what is to be known of each line."""
     notes = line_notes(handout.report, list(handout.colours))
     if notes:
-        yield heading(tr("Notes on the lines"), HALF)
+        yield heading(tr("Line notes"), HALF)
     for title, sentences in notes:
         yield _title(title or tr("All lines"))
         yield from map(bullet, sentences)
@@ -85,7 +85,7 @@ def line_note_blocks(handout: ReportDocument) -> Iterator[Block]:
 
 def _measure_head(edges: Edges) -> Block:
     titles = tr("before"), tr("after"), tr("change")
-    unit = elide(tr("{unit}, if not told otherwise").format(unit=length_unit()), "caption", edges[0] - 10.0)
+    unit = elide(tr("{unit} unless noted").format(unit=length_unit()), "caption", edges[0] - 10.0)
 
     def paint(paper: PagePainter, x: float, y: float) -> None:
         paper.text(x, y + 2.6, unit, "caption")

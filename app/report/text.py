@@ -60,7 +60,7 @@ def assessment_text(sheet: Report) -> AssessmentView:
 def size_words(sheet: Report) -> str:
     """Return the size as each system writes it, and which others lie within what girths may be off."""
     within = sheet.sizes[0].get("within_off")
-    words = tr("Within the ± also: {sizes}") if within else tr("No other size lies within the ±.")
+    words = tr("Also within ±: {sizes}") if within else tr("No other size within ±.")
     said = words.format(sizes=listed(within or ())) if within is not None and sheet.sizes[0]["inside"] else ""
     return "\n".join(filter(None, (said, other_sizes(sheet))))
 
@@ -155,7 +155,7 @@ def _change(row: dict[str, Any], digits: int) -> str:
 
 
 def _group(key: str) -> str:
-    return tr("Your own") if key.startswith(OWN) else render(definition_of(key)[0].group)
+    return tr("Custom") if key.startswith(OWN) else render(definition_of(key)[0].group)
 
 
 def is_known(row: dict[str, Any]) -> bool:

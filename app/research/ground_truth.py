@@ -101,7 +101,7 @@ def read_truths(folder: Path) -> tuple[list[Truth], list[str]]:
         entries = content.get(section) or {}
         if not isinstance(entries, dict):
             raise TruthError(
-                Message("'{section}' in {file} is no table of files by name.", section=section, file=FILE),
+                Message("'{section}' in {file} is not a table of files by name.", section=section, file=FILE),
                 FORM,
             )
         for name, entry in entries.items():
@@ -110,7 +110,7 @@ def read_truths(folder: Path) -> tuple[list[Truth], list[str]]:
             except ValueError as problem:
                 raise TruthError(
                     Message(
-                        "What {file} tells about '{name}' cannot be used: {why}.",
+                        "The entry '{name}' of {file} cannot be used: {why}.",
                         file=FILE,
                         name=name,
                         why=str(problem),
@@ -120,7 +120,7 @@ def read_truths(folder: Path) -> tuple[list[Truth], list[str]]:
             truths.append(truth)
             strange |= unknown
     if not truths:
-        raise TruthError(Message("{file} names no file under 'bodies' or 'scans'.", file=FILE), FORM)
+        raise TruthError(Message("{file} lists no files under 'bodies' or 'scans'.", file=FILE), FORM)
     return truths, sorted(strange)
 
 
@@ -131,7 +131,7 @@ def _read_json(folder: Path) -> Table:
     except FileNotFoundError:
         raise TruthError(
             Message(
-                "There is no {file} in {folder}, which tells where the landmarks are.",
+                "{folder} does not contain {file} with the landmark positions.",
                 file=FILE,
                 folder=folder,
             ),
@@ -140,19 +140,19 @@ def _read_json(folder: Path) -> Table:
     except OSError as problem:
         if problem.errno == errno.EFBIG:
             raise TruthError(
-                Message("{path} is too large to be a list of landmarks.", path=path), FORM
+                Message("{path} is too large for a list of landmarks.", path=path), FORM
             ) from problem
         raise TruthError(
             Message("{file} cannot be read: {problem}.", file=path, problem=reason_of(problem)),
             Message("Choose another folder."),
         ) from problem
     except (ValueError, RecursionError) as problem:
-        where = f"line {problem.lineno}" if isinstance(problem, json.JSONDecodeError) else "its first line"
+        where = f"line {problem.lineno}" if isinstance(problem, json.JSONDecodeError) else "the first line"
         raise TruthError(
-            Message("{path} is not written as JSON: look at {where}.", path=path, where=where), FORM
+            Message("{path} is not valid JSON. Check {where}.", path=path, where=where), FORM
         ) from problem
     if not isinstance(content, dict):
-        raise TruthError(Message("{file} holds no table of bodies or scans.", file=FILE), FORM)
+        raise TruthError(Message("{file} contains no table of bodies or scans.", file=FILE), FORM)
     return content
 
 

@@ -39,8 +39,11 @@ def back_of(calm: Mesh, control: ControlMesh, path_name: str) -> Back:
     level = trunk_levels(calm, [0.5 * (right[2] + left[2])])[0]
     if len(level.segments) == 0:
         raise FitError(
-            Message("The scan has no back at the height of the {line} line.", line=LineName(path_name)),
-            Message("Open a scan of a whole upper body."),
+            Message(
+                "The scan has no surface on the back at the height of the {line} line.",
+                line=LineName(path_name),
+            ),
+            Message("Open a scan of a complete upper body."),
         )
     axis = 0.5 * (level.points.min(axis=0) + level.points.max(axis=0))[:2]
     ends = np.array([right[:2], left[:2]]) - axis

@@ -79,7 +79,7 @@ def fit_control_mesh(
     if not low <= line_height <= high:
         raise FitError(
             Message("The line height {height} is out of range.", height=f"{line_height:g}"),
-            Message("Choose {low} to {high}.", low=f"{low:g}", high=f"{high:g}"),
+            Message("Enter a value from {low} to {high}.", low=f"{low:g}", high=f"{high:g}"),
         )
     ground = fit_frame(template, body.smoothed, landmarks)
     outline, holes = project_border(ground, landmarks)
@@ -102,10 +102,10 @@ def fit_control_mesh(
     if best.faults.folded.any():
         raise FitError(
             Message(
-                "Triangles of the control mesh would be folded on this body: {count}.",
+                "Folded triangles in the control mesh on this body: {count}.",
                 count=int(best.faults.folded.sum()),
             ),
-            Message("Correct the bust points and folds, or choose the other template."),
+            Message("Correct the bust points and inframammary folds, or choose the other template."),
         )
     quality = measure_fit(best.mesh, ground.skin, *_off_landmarks(template, best.mesh, landmarks))
     warnings = [*_fold_warnings(best.lost), *_arm_warning(ground), *_hole_warning(int(holes.sum()))]
@@ -223,12 +223,12 @@ def _refuse_holes(template: Template, holes: Flags) -> None:
     if max(sides) > MOST_HOLES or holes.mean() > MOST_HOLES:
         raise FitError(
             Message(
-                "The scan has no skin where {missing} of the {all} control points must lie.",
+                "The scan is incomplete: no surface at {missing} of {all} control points.",
                 missing=int(holes.sum()),
                 all=holes.size,
             ),
             Message(
-                "Close the holes of the scan, or open one that reaches from the ribs to the collarbones."
+                "Fill the holes of the scan, or open a scan that extends from the ribs to the collarbones."
             ),
         )
 
@@ -238,8 +238,8 @@ def _hole_warning(count: int) -> list[Message]:
         return []
     return [
         Message(
-            "The scan has holes at {count} control points: they lie as their neighbours and the "
-            "other side tell.",
+            "The scan has holes at {count} control points: their positions are interpolated from "
+            "adjacent points and the opposite side.",
             count=count,
         )
     ]
@@ -248,17 +248,15 @@ def _hole_warning(count: int) -> list[Message]:
 def _arm_warning(ground: FittingFrame) -> list[Message]:
     if ground.torso.armpit >= max(ground.torso.left.bust, ground.torso.right.bust):
         return []
-    return [
-        Message("The arms touch the body below the bust points: the sides of the mesh may lie on an arm.")
-    ]
+    return [Message("The arms touch the body below the bust points: the sides of the mesh may cover an arm.")]
 
 
 def _fold_warnings(lost: list[int]) -> list[Message]:
     sides = [side for side, sign in (("left", 1), ("right", -1)) if any(sign * number > 0 for number in lost)]
     return [
         Message(
-            "The fold under the {side} breast could not be followed everywhere: some control "
-            "points lie at an estimated height.",
+            "The inframammary fold of the {side} breast is only partly detectable: the height of "
+            "some control points is estimated.",
             side=SideName(side),
         )
         for side in sides

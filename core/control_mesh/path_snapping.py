@@ -59,7 +59,7 @@ def snap(control: ControlMesh, curve: Points, closed: bool = False, *, pulling: 
     if len(path) < (3 if closed else 2):
         raise LineError(
             Message("The line is too short for the control mesh."),
-            Message("Draw it on to the next control points."),
+            Message("Extend it to the next control points."),
         )
     off = max_deviation(samples, points[[*path, *path[:1]] if closed else list(path)])
     return Snapped(path, closed, off, not control.fixed[list(path)].all())
@@ -76,7 +76,7 @@ def resampled(curve: Points) -> Points:
     along = arc_length(curve)
     if len(curve) < 2 or along[-1] < STEP:
         raise LineError(
-            Message("The line has no length."), Message("Draw it from one place of the body to another.")
+            Message("The line has no length."), Message("Draw it between two different points of the body.")
         )
     at = np.linspace(0.0, along[-1], int(np.clip(along[-1] / STEP, 2, _MOST)) + 1)
     return interpolate(at, along, curve)

@@ -72,15 +72,16 @@ class FitQuality:
         if self.smallest_angle < POINTED:
             found.append(
                 Message(
-                    "The control mesh has pointed triangles, of {angle} degrees: look at the bust points "
-                    "and folds.",
+                    "The control mesh has sharp triangles with an angle of {angle} degrees. "
+                    "Check the bust points and inframammary folds.",
                     angle=f"{self.smallest_angle:.0f}",
                 )
             )
         if self.same_way <= SAME_WAY:
             found.append(
                 Message(
-                    "The control mesh bridges part of a fold under a breast: look there at what the lines do."
+                    "The control mesh bridges part of an inframammary fold. Check the effect of "
+                    "the lines there."
                 )
             )
         return tuple(found)

@@ -69,7 +69,7 @@ def shoulder_above(skin: Mesh, end: Points) -> Points:
     if open_there or top[2] - end[2] < _LEAST or np.ptp(level[:, 1]) > _FLAT:
         raise LineError(
             Message("The scan ends below the shoulder."),
-            Message("The strap ends on the upper chest: add the rest by tape."),
+            Message("The strap ends on the upper chest: measure the remaining length by tape and add it."),
         )
     return np.asarray(top)
 
@@ -78,5 +78,7 @@ def _outline(skin: Mesh, end: Points) -> tuple[Points, bool]:
     """Return the curve in which a plane from front to back cuts the skin at ``end``, and if it is closed."""
     curves = join_segments(cut(skin, end, (1.0, 0.0, 0.0)))
     if not curves:
-        raise LineError(Message("There is no skin at the upper end of the strap."), Message("Draw it anew."))
+        raise LineError(
+            Message("The scan has no surface at the upper end of the strap."), Message("Draw it again.")
+        )
     return min(curves, key=lambda curve: float(np.linalg.norm(curve[0] - end, axis=1).min()))

@@ -225,4 +225,4 @@ def _check_rows(template: Template) -> None:
 
 
 def _refusal(why: str) -> FitError:
-    return FitError(Message("The template is not usable: {why}.", why=why), Message("Install Busk again."))
+    return FitError(Message("The template cannot be used: {why}.", why=why), Message("Reinstall Busk."))

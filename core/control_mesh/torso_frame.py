@@ -78,8 +78,8 @@ def measure_torso(mesh: Mesh, landmarks: Landmarks) -> Torso:
     level = _below(mesh, landmarks.underbust_level)
     if len(level) < 3:
         raise FitError(
-            Message("The scan ends at the breasts: there is no torso under them."),
-            Message("Open a scan that reaches at least 10 cm below the breasts, or correct the landmarks."),
+            Message("The scan ends at the breasts: the torso below them is missing."),
+            Message("Open a scan that extends at least 10 cm below the breasts, or correct the landmarks."),
         )
     low, high = level.min(axis=0), level.max(axis=0)
     axis = np.array([0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.0])
@@ -123,11 +123,12 @@ def _breast(landmarks: Landmarks, side: str, axis: Points) -> Breast:
     if not np.radians(10.0) < azimuth < np.radians(80.0):
         raise FitError(
             Message(
-                "The {side} bust point lies {angle} degrees to that side of the middle.",
+                "The {side} bust point is {angle} degrees to its side of the centre, outside 10 "
+                "to 80 degrees.",
                 side=SideName(side),
                 angle=f"{np.degrees(azimuth):.0f}",
             ),
-            Message("Set the bust point on the breast of that side."),
+            Message("Place the bust point on the breast of that side."),
         )
     lowest = min(float(fold[2]), float(landmarks.position(f"lowest_{side}")[2]))
     return Breast(azimuth, max(ROOT, azimuth + BEYOND), float(bust[2]), float(fold[2]), lowest)

@@ -77,9 +77,9 @@ def _flooded(body: Mesh, control: ControlMesh, fade: float) -> Floats:
     region = _flood(graph, fence, at[list(control.bust_points)])
     inner = np.setdiff1d(at, at[control.border])
     if region[inner].mean() < COVERED:
-        raise _FenceError(Message("The scan falls into pieces within the patch."))
+        raise _FenceError(Message("The scan is disconnected within the blend region."))
     if _touches_rest(body, around, region):
-        raise _FenceError(Message("The border of the patch does not close on the scan."))
+        raise _FenceError(Message("The border of the blend region is not closed on the scan."))
     region[fence] = True
     members = np.flatnonzero(region)
     sources = np.searchsorted(members, fence)
@@ -128,7 +128,7 @@ def _fence(graph: sparse.csr_array, tree: cKDTree, stops: Indices, corners: Poin
         while step != at:
             step = int(before[step])
             if step < 0:
-                raise _FenceError(Message("The border of the patch meets a hole in the scan."))
+                raise _FenceError(Message("The border of the blend region meets a hole of the scan."))
             vertices.add(int(members[step]))
     return np.array(sorted(vertices), dtype=np.int64)
 

@@ -60,5 +60,5 @@ class Calibration:
         words = all(name.strip() and is_printable(name, LONGEST_NAME) for name in names)
         if not words or len(names) > MOST_NUMBERS + 1 or not all(map(math.isfinite, figures)):
             raise UserError(
-                Message("What is kept of a calibration cannot be read."), Message("Calibrate again.")
+                Message("The calibration data cannot be read."), Message("Run the calibration again.")
             )

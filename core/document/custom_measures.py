@@ -45,12 +45,12 @@ class CustomMeasurement:
     def __post_init__(self) -> None:
         if is_blank(self.name) or not is_printable(self.name, LONGEST_NAME):
             raise UserError(
-                Message("A measure needs a name of its own."),
-                Message("Use up to {count} letters.", count=LONGEST_NAME),
+                Message("A measurement requires a unique name."),
+                Message("Use at most {count} characters.", count=LONGEST_NAME),
             )
         if self.kind not in KINDS:
             raise UserError(
-                Message("There is no kind of measure '{kind}'.", kind=self.kind),
+                Message("Unknown measurement type '{kind}'.", kind=self.kind),
                 Message("Choose straight, skin or girth."),
             )
         unknown = [mark for mark in self.marks if mark not in NAMES]
@@ -62,12 +62,12 @@ class CustomMeasurement:
         if self.kind == "girth" and (len(self.marks) > 1 or not abs(self.level) < FURTHEST):
             raise UserError(
                 Message("The girth {name} has no level.", name=self.name),
-                Message("Name one landmark, or a height in mm, or both."),
+                Message("Specify one landmark, or a height in mm, or both."),
             )
         if self.kind != "girth" and (len(set(self.marks)) != 2 or len(self.marks) != 2 or self.level):
             raise UserError(
-                Message("The measure {name} has no two ends.", name=self.name),
-                Message("Name two different landmarks."),
+                Message("The measurement {name} does not have two ends.", name=self.name),
+                Message("Specify two different landmarks."),
             )
 
     @property
@@ -75,10 +75,10 @@ class CustomMeasurement:
         """How it is taken, in a sentence."""
         places = [LandmarkName(mark) for mark in self.marks]
         if self.kind == "straight":
-            return Message("Yours: straight from {start} to {end}.", start=places[0], end=places[1])
+            return Message("Custom: straight distance from {start} to {end}.", start=places[0], end=places[1])
         if self.kind == "skin":
             return Message(
-                "Yours: the shortest way over the skin from {start} to {end}.", start=places[0], end=places[1]
+                "Custom: shortest path over the skin from {start} to {end}.", start=places[0], end=places[1]
             )
         if not places:
             return Message(
@@ -95,15 +95,15 @@ class CustomMeasurement:
                 height=length_of(-self.level),
                 place=places[0],
             )
-        return Message("Yours: a tape, level, at {place}.", place=places[0])
+        return Message("Custom: horizontal tape at {place}.", place=places[0])
 
 
 def check_customer(name: str) -> None:
     """Raise UserError if no sheet could name a customer so; nobody may be named."""
     if not is_printable(name, LONGEST_CUSTOMER):
         raise UserError(
-            Message("The name of the customer is too long or cannot be printed."),
-            Message("Use up to {count} letters.", count=LONGEST_CUSTOMER),
+            Message("The name of the customer is too long or contains unprintable characters."),
+            Message("Use at most {count} characters.", count=LONGEST_CUSTOMER),
         )
 
 
@@ -131,8 +131,8 @@ def parse_measurement(text: str) -> CustomMeasurement:
     told = re.fullmatch(r"([^=]+)=\s*(\w+)\s*:(.*)", text.replace("\N{MINUS SIGN}", "-"))
     if told is None:
         raise UserError(
-            Message("'{text}' is no measure.", text=text),
-            Message("Write NAME=KIND:PLACES, see 'busk measure --help'."),
+            Message("'{text}' is not a measurement.", text=text),
+            Message("Enter NAME=KIND:PLACES, see 'busk measure --help'."),
         )
     name, kind, places = (part.strip() for part in told.groups())
     if kind != "girth":
@@ -141,7 +141,7 @@ def parse_measurement(text: str) -> CustomMeasurement:
     if level is None or not places:
         raise UserError(
             Message("The girth {name} has no level.", name=name),
-            Message("Name one landmark, or a height in mm, or both."),
+            Message("Specify one landmark, or a height in mm, or both."),
         )
     marks = (level[1],) if level[1] else ()
     return CustomMeasurement(name, kind, marks, float((level[2] or "0").replace(" ", "")))

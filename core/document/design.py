@@ -89,34 +89,34 @@ class Design:
             if not RATIO_LIMITS[0] <= line.ratio <= RATIO_LIMITS[1]:
                 raise LineError(
                     Message(
-                        "{line} cannot be set to {percent} % of its rest length.",
+                        "{line} cannot be set to {percent} % of its original length.",
                         line=LineName(line.name),
                         percent=f"{100 * line.ratio:.1f}",
                     ),
                     Message(
-                        "Stay between {low} and {high} %.",
+                        "Enter {low} to {high} %.",
                         low=f"{100 * RATIO_LIMITS[0]:.0f}",
                         high=f"{100 * RATIO_LIMITS[1]:.0f}",
                     ),
                 )
         if twice := repeated(line.name for line in self.own_lines):
             raise LineError(
-                Message("There are two lines '{name}'.", name=LineName(twice)),
-                Message("Give each line a name of its own."),
+                Message("Two lines are named '{name}'.", name=LineName(twice)),
+                Message("Give each line a unique name."),
             )
         if twice := repeated(line.name for line in self.traits):
             raise LineError(
-                Message("The line {name} is treated in two ways.", name=LineName(twice)),
-                Message("Say once how."),
+                Message("The line {name} has contradictory settings.", name=LineName(twice)),
+                Message("Specify one of them."),
             )
         if twice := repeated(mark.name for mark in self.placed):
             raise LandmarkError(
-                Message("The landmark {name} is placed twice.", name=twice), Message("Place it once.")
+                Message("The landmark {name} is specified twice.", name=twice), Message("Specify it once.")
             )
         if twice := repeated(measure.name for measure in self.own_measures):
             raise UserError(
-                Message("There are two measures '{name}'.", name=twice),
-                Message("Give each measure a name of its own."),
+                Message("Two measurements are named '{name}'.", name=twice),
+                Message("Give each measurement a unique name."),
             )
         check_elastics(self.elastics, {each.name: each.elastic for each in self.traits if each.elastic})
 
@@ -127,8 +127,8 @@ class Design:
                     (len(lines), MOST_LINES, Message("lines"))
                     for lines in (self.lines, self.own_lines, self.traits)
                 ),
-                (sum(map(CustomLine.count, self.own_lines)), MOST_POINTS, Message("points of own lines")),
-                (len(self.own_measures), MOST_MEASURES, Message("own measures")),
+                (sum(map(CustomLine.count, self.own_lines)), MOST_POINTS, Message("points of custom lines")),
+                (len(self.own_measures), MOST_MEASURES, Message("custom measurements")),
                 (len(self.elastics), MOST_ELASTICS, Message("elastics")),
                 (
                     sum(len(each.curve) for each in self.elastics),
@@ -211,9 +211,9 @@ class Design:
         if self.own_lines and template != self.template:
             raise LineError(
                 Message(
-                    "Own lines belong to the control mesh of {template} polygons.", template=self.template
+                    "Custom lines belong to the {template}-polygon control mesh.", template=self.template
                 ),
-                Message("Keep it, or remove your own lines first."),
+                Message("Remove custom lines before switching."),
             )
         return replace(self, template=template)
 

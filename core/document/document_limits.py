@@ -43,7 +43,7 @@ def check_counts(counted: Iterable[tuple[int, int, Message]]) -> None:
         if count > most:
             raise UserError(
                 Message("This design has too many {what}: {count}.", what=what, count=count),
-                Message("Use up to {count}.", count=most),
+                Message("Use at most {count}.", count=most),
             )
 
 
@@ -51,7 +51,7 @@ def check_size(name: str, data: Sized, most: int) -> None:
     """Raise ProjectError if a part of a project is larger than what is read of it [bytes]."""
     if len(data) > most:
         raise too_large(
-            name, most, Message("Use fewer lines, shorter tables of elastics, or a thinner scan.")
+            name, most, Message("Use fewer lines, shorter tables of elastics, or a scan with fewer points.")
         )
 
 

@@ -58,17 +58,18 @@ class Elastic:
     def __post_init__(self) -> None:
         if is_blank(self.name) or not is_printable(self.name, LONGEST_NAME):
             raise LineError(
-                Message("An elastic needs a name."), Message("Use up to {count} letters.", count=LONGEST_NAME)
+                Message("An elastic requires a name."),
+                Message("Use at most {count} characters.", count=LONGEST_NAME),
             )
         if not is_printable(self.source.translate(_WHITE), LONGEST_SOURCE):
             raise LineError(
                 Message(
-                    "The source of the elastic {name} is too long or cannot be printed.",
+                    "The source of the elastic {name} is too long or contains unprintable characters.",
                     name=ElasticName(self.name),
                 ),
-                Message("Use up to {count} letters.", count=LONGEST_SOURCE),
+                Message("Use at most {count} characters.", count=LONGEST_SOURCE),
             )
-        for key, what in (("width_mm", Message("width")), ("allowance_mm", Message("allowance"))):
+        for key, what in (("width_mm", Message("width")), ("allowance_mm", Message("seam allowance"))):
             number, (low, high) = getattr(self, key), LIMITS[key]
             if not low <= number <= high:
                 raise LineError(
@@ -87,19 +88,21 @@ class Elastic:
         whole = all(math.isfinite(number) for row in rows for number in row)
         if not whole or not 2 <= len(rows) <= MOST_POINTS or tuple(rows[0]) != (0.0, 0.0):
             raise LineError(
-                Message("The table of {name} is no curve.", name=self.name),
-                Message("It begins with no force at no elongation."),
+                Message("The table of {name} is not a curve.", name=self.name),
+                Message("The table must begin with zero force at zero elongation."),
             )
         for (before, weaker), (after, stronger) in pairwise(rows):
             if not before < after or not weaker < stronger:
                 raise LineError(
                     Message(
-                        "The table of {name} goes back after {elongation} % and {force} N.",
+                        "The table of {name} decreases after {elongation} % and {force} N.",
                         name=self.name,
                         elongation=f"{100.0 * before:g}",
                         force=f"{weaker:g}",
                     ),
-                    Message("Elongation and force must both rise from row to row: leave out the way back."),
+                    Message(
+                        "Elongation and force must increase from row to row: remove the rows of unloading."
+                    ),
                 )
         if self.max_elongation > FURTHEST or self.max_force > STRONGEST:
             raise LineError(
@@ -110,7 +113,7 @@ class Elastic:
                     force=f"{self.max_force:g}",
                 ),
                 Message(
-                    "Look at its units: no elastic goes beyond {elongation} % or {force} N.",
+                    "Check the units: elastics do not exceed {elongation} % or {force} N.",
                     elongation=f"{100.0 * FURTHEST:g}",
                     force=f"{STRONGEST:g}",
                 ),
@@ -163,15 +166,15 @@ class Elastic:
         needed, end = _beyond(force, self.max_force, 1), f"{self.max_force:g}"
         return ElasticError(
             Message(
-                "{name} would be pulled with {force} N as {line}; its table ends at {strength} N.",
+                "{name} requires {force} N for {line}; its table ends at {strength} N.",
                 name=ElasticName(self.name),
                 force=needed,
                 line=line,
                 strength=end,
             ),
-            Message("Let the line be longer, or take a stronger or wider elastic."),
+            Message("Make the line longer, or choose a stronger or wider elastic."),
             Message(
-                "Too weak: {force} N at this length, its table ends at {strength} N.",
+                "Too weak: {force} N at this length; its table ends at {strength} N.",
                 force=needed,
                 strength=end,
             ),
@@ -198,17 +201,17 @@ class OverstretchedError(ElasticError):
             _beyond(100.0 * elongation, 100.0 * elastic.max_elongation, 0),
             f"{100.0 * elastic.max_elongation:g}",
         )
-        hint = Message("Let the line be longer, or take an elastic that stretches further.")
+        hint = Message("Make the line longer, or choose an elastic with higher elongation.")
         if ratio is not None:
             least = math.ceil(100.0 * MARGIN * ratio * (1.0 + elongation) / (1.0 + elastic.max_elongation))
             hint = Message(
-                "Set {line} to {percent} % or longer, or choose an elastic that stretches further.",
+                "Set {line} to {percent} % or longer, or choose an elastic with higher elongation.",
                 line=line,
                 percent=f"{least:.0f}",
             )
         super().__init__(
             Message(
-                "{name} would be stretched by {elongation} % as {line}; its table ends at {reach} %.",
+                "{name} requires {elongation} % elongation for {line}; its table ends at {reach} %.",
                 name=ElasticName(elastic.name),
                 elongation=needed,
                 line=line,
@@ -216,7 +219,7 @@ class OverstretchedError(ElasticError):
             ),
             hint,
             Message(
-                "Too short a cut: {elongation} % stretch, its table ends at {reach} %.",
+                "Cut length too short: {elongation} % elongation; its table ends at {reach} %.",
                 elongation=needed,
                 reach=end,
             ),
@@ -236,8 +239,8 @@ def check_elastics(elastics: Sequence[Elastic], made: Mapping[str, str]) -> None
     names = [elastic.name for elastic in elastics]
     if twice := repeated(names):
         raise LineError(
-            Message("There are two elastics '{name}'.", name=twice),
-            Message("Give each elastic a name of its own."),
+            Message("Two elastics are named '{name}'.", name=twice),
+            Message("Give each elastic a unique name."),
         )
     known = set(names)
     for line, name in made.items():
@@ -248,5 +251,5 @@ def check_elastics(elastics: Sequence[Elastic], made: Mapping[str, str]) -> None
                     name=ElasticName(name),
                     line=LineName(line),
                 ),
-                Message("Choose it again."),
+                Message("Choose the elastic again."),
             )

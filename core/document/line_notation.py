@@ -33,9 +33,7 @@ DECIMALS = 4
 
 _NUMBER = r"\d+(?:\.\d+)?"
 _PLACE = re.compile(rf"r({_NUMBER})c([+-]?{_NUMBER})")
-_ASK = Message(
-    "Write NAME=r2c-3,r3c0,r2c3 or NAME=28,45,34, with ,closed at the end for a line that goes round."
-)
+_ASK = Message("Enter NAME=r2c-3,r3c0,r2c3 or NAME=28,45,34, with ,closed at the end for a closed line.")
 _ENDINGS = ("closed", "shoulder")
 
 
@@ -47,7 +45,7 @@ def parse_line(text: str, template: Template) -> CustomLine:
     while words and words[-1] in _ENDINGS:
         endings.add(words.pop())
     if not equals or not name or not words or not all(words):
-        raise LineError(Message("'{text}' is no line.", text=text), _ASK)
+        raise LineError(Message("'{text}' is not a line.", text=text), _ASK)
     closed, shoulder = (ending in endings for ending in _ENDINGS)
     if any(_between(word) for word in words):
         places = tuple(place for word in words for place in _places(word, template))
@@ -98,19 +96,21 @@ def with_custom_lines(control: ControlMesh, own: tuple[CustomLine, ...]) -> Cont
     for line in own:
         if line.name in paths or line.name in embedded:
             raise LineError(
-                Message("There are two lines '{name}'.", name=LineName(line.name)),
-                Message("Give each line a name of its own."),
+                Message("Two lines are named '{name}'.", name=LineName(line.name)),
+                Message("Give each line a unique name."),
             )
         if not all(0 <= point < count for point in line.points):
             raise LineError(
-                Message("The line {name} names a control point that there is not.", name=LineName(line.name)),
-                Message("The control mesh has the points 0 to {last}.", last=count - 1),
+                Message(
+                    "The line {name} contains a control point that does not exist.", name=LineName(line.name)
+                ),
+                Message("The control mesh has points 0 to {last}.", last=count - 1),
             )
         if not all(control.grid.has(place) for place in line.places):
             raise LineError(
                 Message("The line {line} leaves the control mesh.", line=LineName(line.name)),
                 Message(
-                    "Its rows are 0 to {rows}, its columns {low} to {high}.",
+                    "Rows are 0 to {rows}, columns {low} to {high}.",
                     rows=control.grid.top,
                     low=-control.grid.half,
                     high=control.grid.half,
@@ -173,8 +173,8 @@ def _walk(word: str, template: Template) -> list[int]:
     )
     if len(ends) != 2 or (row == to_row) == (column == to_column):
         raise LineError(
-            Message("'{word}' does not go along a row or a column.", word=word),
-            Message("Name its points one by one."),
+            Message("'{word}' does not follow a row or a column.", word=word),
+            Message("List its points one by one."),
         )
     rows, columns = _steps(row, to_row), _steps(column, to_column)
     return [template.point(r, c) for r in rows for c in columns]
@@ -193,11 +193,13 @@ def _point(word: str, template: Template) -> int:
         if not word.isdecimal() or not int(word) < count:
             raise LineError(
                 Message(
-                    "'{word}' is no control point of the template {template}.",
+                    "'{word}' is not a control point of the template {template}.",
                     word=word,
                     template=template.name,
                 ),
-                Message("Its points are 0 to {last}, or places like r2c-3. {how}", last=count - 1, how=_ASK),
+                Message(
+                    "Points are 0 to {last}, or positions such as r2c-3. {how}", last=count - 1, how=_ASK
+                ),
             )
         return int(word)
     if _between(word) or not template.grid.has((float(match[1]), float(match[2]))):
@@ -207,9 +209,9 @@ def _point(word: str, template: Template) -> int:
 
 def _nowhere(word: str, template: Template) -> LineError:
     return LineError(
-        Message("The template {template} has no place '{word}'.", template=template.name, word=word),
+        Message("The template {template} has no position '{word}'.", template=template.name, word=word),
         Message(
-            "Its rows are 0 to {rows}, its columns {low} to {high}.",
+            "Rows are 0 to {rows}, columns {low} to {high}.",
             rows=len(template.rows) - 1,
             low=-template.half,
             high=template.half,

@@ -52,24 +52,27 @@ class CustomLine:
 
     def __post_init__(self) -> None:
         if is_blank(self.name):
-            raise LineError(Message("A line has no name."), Message("Give each line a name of its own."))
+            raise LineError(Message("A line has no name."), Message("Give each line a unique name."))
         check_line_name(self.name)
         stops: tuple[object, ...] = self.places or self.points
         following = stops + stops[:1] if self.closed else stops
         if len(stops) < (3 if self.closed else 2) or any(a == b for a, b in pairwise(following)):
             raise LineError(
-                Message("The line {name} does not go from point to point.", name=LineName(self.name)),
-                Message("Name two control points at least, three if it is closed, and none twice in a row."),
+                Message("The line {name} is not a sequence of points.", name=LineName(self.name)),
+                Message(
+                    "Enter at least two control points (three if the line is closed), with no "
+                    "point repeated in succession."
+                ),
             )
         if not all(isfinite(number) for place in self.places for number in place):
             raise LineError(
-                Message("The line {line} has a point without a place.", line=LineName(self.name)),
-                Message("Draw it anew."),
+                Message("The line {line} has a point without a position.", line=LineName(self.name)),
+                Message("Draw it again."),
             )
         if self.closed and self.over_shoulder:
             raise LineError(
                 Message(
-                    "The line {line} is closed and cannot go over the shoulder.", line=LineName(self.name)
+                    "The line {line} is closed and cannot run over the shoulder.", line=LineName(self.name)
                 ),
                 Message("Leave its ends open."),
             )
@@ -119,13 +122,15 @@ class LineSettings:
         if not is_printable(self.title, LONGEST_TITLE):
             raise LineError(
                 Message(
-                    "The title of the line {name} is too long or cannot be printed.", name=LineName(self.name)
+                    "The title of the line {name} is too long or contains unprintable characters.",
+                    name=LineName(self.name),
                 ),
-                Message("Use up to {count} letters.", count=LONGEST_TITLE),
+                Message("Use at most {count} characters.", count=LONGEST_TITLE),
             )
         if self.colour and not re.fullmatch("#[0-9a-fA-F]{6}", self.colour):
             raise LineError(
-                Message("'{text}' is no colour.", text=self.colour), Message("Write it like #e5536b.")
+                Message("'{text}' is not a colour.", text=self.colour),
+                Message("Enter a colour such as #e5536b."),
             )
         low, high = RANGES["line_stiffness"]
         if self.stiffness is not None and not low <= self.stiffness <= high:
@@ -135,7 +140,7 @@ class LineSettings:
                     value=f"{self.stiffness:g}",
                     name=LineName(self.name),
                 ),
-                Message("It goes from {low} to {high}.", low=f"{low:g}", high=f"{high:g}"),
+                Message("Enter a value from {low} to {high}.", low=f"{low:g}", high=f"{high:g}"),
             )
         if self.width is not None and not WIDTHS[0] <= self.width <= WIDTHS[1]:
             raise LineError(
@@ -144,7 +149,7 @@ class LineSettings:
                     name=LineName(self.name),
                     width=length_of(self.width),
                 ),
-                Message("It goes from {low} to {high}.", low=f"{WIDTHS[0]:g}", high=f"{WIDTHS[1]:g}"),
+                Message("Enter a value from {low} to {high}.", low=f"{WIDTHS[0]:g}", high=f"{WIDTHS[1]:g}"),
             )
 
     def mechanical(self) -> LineSettings:

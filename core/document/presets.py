@@ -64,8 +64,8 @@ class Preset:
     def __post_init__(self) -> None:
         if not is_printable(self.title, LONGEST_TITLE) or not is_printable(self.leaves_out, _LONGEST):
             raise LineError(
-                Message("The title of the preset is too long or cannot be printed."),
-                Message("Use up to {count} letters.", count=LONGEST_TITLE),
+                Message("The title of the preset is too long or contains unprintable characters."),
+                Message("Use at most {count} characters.", count=LONGEST_TITLE),
             )
 
     def lines_on_template(self, template: Template) -> Iterator[tuple[PresetLine, tuple[CustomLine, ...]]]:
@@ -82,7 +82,7 @@ class Preset:
                 known = tuple(LineName(each) for each in (*template.lines, *pairs))
                 raise LineError(
                     Message("There is no line '{line}'.", line=LineName(line.line)),
-                    Message("The lines are: {lines}.", lines=known),
+                    Message("Available lines: {lines}.", lines=known),
                 )
 
 
@@ -169,15 +169,15 @@ def preset_from(design: Design, title: str) -> Preset:
     own = {line.name: line for line in design.own_lines}
     if design.active_elastics():
         raise LineError(
-            Message("The lengths of elastics belong to one body: they cannot be kept as a preset."),
-            Message("Make the lines of no elastic first; then their lengths are those of the shape."),
+            Message("Elastic lengths are specific to one body and cannot be saved in a preset."),
+            Message("Set the lines to no elastic first. Lengths then refer to the body."),
         )
     names = sorted(design.active_lines() - own.keys()) + list(own)
     lines = tuple(_as_preset(name, design, own.get(name), template) for name in names)
     if not lines:
         raise LineError(
-            Message("There are no lines to keep as a preset."),
-            Message("Set a line shorter or add one first."),
+            Message("The design has no lines to save as a preset."),
+            Message("Shorten or add a line first."),
         )
     return Preset(title, lines, template=design.template if own else "")
 
@@ -200,7 +200,7 @@ def with_preset(design: Design, preset: Preset) -> Design:
     if preset.template not in ("", design.template):
         raise LineError(
             Message(
-                "The preset {name} belongs to the control mesh of {count} polygons.",
+                "The preset {name} belongs to the {count}-polygon control mesh.",
                 name=preset.title,
                 count=preset.template,
             ),

@@ -54,8 +54,11 @@ def check_line_name(name: str) -> None:
     if not is_printable(name, LONGEST_NAME):
         told = " ".join(shown(name[:LONGEST_NAME]).split())
         raise LineError(
-            Message("The name of the line '{name}' is too long or cannot be printed.", name=LineName(told)),
-            Message("Use up to {count} letters.", count=LONGEST_NAME),
+            Message(
+                "The name of the line '{name}' is too long or contains unprintable characters.",
+                name=LineName(told),
+            ),
+            Message("Use at most {count} characters.", count=LONGEST_NAME),
         )
 
 

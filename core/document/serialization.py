@@ -84,7 +84,7 @@ def from_values(values: Any) -> Design:
     if written > FORMAT:
         raise ProjectError(
             Message(
-                "This project has format {written}; this Busk reads up to {format}.",
+                "The project has file format {written}. This version of Busk reads formats up to {format}.",
                 written=written,
                 format=FORMAT,
             ),
@@ -95,7 +95,8 @@ def from_values(values: Any) -> Design:
     check_nesting(others)
     if not _fits(others):
         raise ProjectError(
-            Message("The project holds too much that this Busk does not know."), Message("Update Busk.")
+            Message("The project contains too much data that this version of Busk does not support."),
+            Message("Update Busk."),
         )
     return Design(**known, unknown=others)
 

@@ -27,7 +27,7 @@ def halves(name: str, path: Sequence[int], template: Template) -> tuple[CustomLi
     before, after = sides[:at], sides[at + 1 :]
     if path[0] == path[-1]:
         raise LineError(
-            Message("The line {name} goes round and has no two halves.", name=LineName(name)),
+            Message("The line {name} is closed and has no two halves.", name=LineName(name)),
             Message("Draw two lines instead."),
         )
     if at <= 0 or not (
@@ -43,7 +43,7 @@ def free_halves(line: CustomLine) -> tuple[CustomLine, CustomLine]:
     """Return the left and the right half of a free line; see ``halves``."""
     if line.closed:
         raise LineError(
-            Message("The line {name} goes round and has no two halves.", name=LineName(line.name)),
+            Message("The line {name} is closed and has no two halves.", name=LineName(line.name)),
             Message("Draw two lines instead."),
         )
     side = 1.0 if line.places[0][1] < 0.0 else -1.0
@@ -66,10 +66,10 @@ def free_halves(line: CustomLine) -> tuple[CustomLine, CustomLine]:
 def _crosses_not(name: str) -> LineError:
     return LineError(
         Message(
-            "The line {name} does not go across the front centre from one side to the other.",
+            "The line {name} does not cross the front centre.",
             name=LineName(name),
         ),
-        Message("Split one that does, such as the mid-bust line."),
+        Message("Choose a line that crosses it, such as the mid-bust line."),
     )
 
 
@@ -104,8 +104,8 @@ def split(design: Design, template: Template, name: str, *, linked: bool = False
     for half in pair:
         if half.name in there and there[half.name] != half:
             raise LineError(
-                Message("There is another line {name}.", name=LineName(half.name)),
-                Message("Rename or remove that one first."),
+                Message("A line named {name} already exists.", name=LineName(half.name)),
+                Message("Rename or remove that line first."),
             )
     worn, ratio, traits = name in design.active_lines(), design.ratio(name), design.line_settings(name)
     after = design
@@ -131,11 +131,12 @@ def _halves_of(design: Design, template: Template, name: str) -> tuple[CustomLin
         touched = list(template.paths[name])
     else:
         raise LineError(
-            Message("There is no line '{line}'.", line=LineName(name)), Message("Name one of the design's.")
+            Message("There is no line '{line}'.", line=LineName(name)),
+            Message("Specify a line of the design."),
         )
     if not template.free[touched].any():
         raise LineError(
-            Message("The line {name} lies where nothing moves.", name=LineName(name)),
-            Message("Split one that moves the body."),
+            Message("The line {name} is in the fixed area of the body.", name=LineName(name)),
+            Message("Choose a line that moves the body."),
         )
     return free_halves(own[name]) if name in own and own[name].free else halves(name, touched, template)

@@ -23,7 +23,7 @@ def check_flags(said: Iterable[tuple[object, SettingName]]) -> None:
     for value, what in said:
         if not isinstance(value, bool):
             raise UserError(
-                Message("The {what} can be on or off only.", what=what), Message("Write true or false.")
+                Message("The {what} must be on or off.", what=what), Message("Enter true or false.")
             )
 
 
@@ -33,5 +33,5 @@ def check_numbers(said: Iterable[tuple[float, float, float, SettingName]]) -> No
         if not low <= number <= high:
             raise UserError(
                 Message("The {what} {number} is out of range.", what=what, number=f"{number:g}"),
-                Message("It goes from {low} to {high}.", low=f"{low:g}", high=f"{high:g}"),
+                Message("Enter a value from {low} to {high}.", low=f"{low:g}", high=f"{high:g}"),
             )

@@ -19,15 +19,15 @@ from core.pipeline.build import Stages
 from core.pipeline.line_routes import NO_BACK
 
 SIDE_SEAM, LEFT = Message("right side, seam"), Message("left side")
-CENTRE, BACK, SEAM = Message("centre front"), Message("centre back"), Message("seam")
+CENTRE, BACK, SEAM = Message("centre front"), Message("centre back"), Message("seam allowance")
 UPPER, LOWER = Message("upper end"), Message("lower end")
 EDGE, SHOULDER, SEWN = Message("upper edge"), Message("shoulder"), Message("back, at the under-bust band")
 """What the marks of a strip are called: a band that goes round begins and ends at the right side."""
 
-AS_WORN = Message("as worn: an elastic is cut shorter")
+AS_WORN = Message("worn length: an elastic is cut shorter")
 """What is said of a strip of which no elastic is chosen."""
 
-NOT_TO_CUT = Message("NOT TO CUT")
+NOT_TO_CUT = Message("DO NOT CUT")
 """What is printed across such a strip."""
 
 _TO_CUT = Message("to cut from {elastic}, {allowance} of it for seams; worn {worn}, stretched by {stretch} %")
@@ -141,7 +141,7 @@ def _cut(worn: Strip, row: CutRow) -> Strip:
 def _worn(stages: Stages) -> Sequence[Line]:
     worn = [line for line in stages.model.lines if line.name in stages.design.active_lines()]
     if not worn:
-        raise LineError(Message("No line is worn."), Message("Set the length of a line first."))
+        raise LineError(Message("No active lines."), Message("Set a line length first."))
     return worn
 
 

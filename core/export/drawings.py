@@ -76,7 +76,7 @@ def drawing_kind(path: str | os.PathLike[str], formats: Sequence[str]) -> str:
     kind = Path(path).suffix.lower().lstrip(".")
     if kind not in formats:
         raise UserError(
-            Message("Busk does not draw lines as .{kind}.", kind=kind),
+            Message("Lines cannot be exported as .{kind}.", kind=kind),
             Message("Choose one of: {choices}.", choices=", ".join(formats)),
         )
     return kind

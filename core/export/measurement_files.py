@@ -69,12 +69,12 @@ def measurement_file_kind(path: str | os.PathLike[str], unit: str) -> str:
     units = _XML_UNITS if kind in _XML_VERSIONS else UNITS
     if kind not in MEASURE_FORMATS:
         raise UserError(
-            Message("Busk does not write measures as .{kind}.", kind=kind),
+            Message("Measurements cannot be exported as .{kind}.", kind=kind),
             Message("Choose one of: {choices}.", choices=", ".join(MEASURE_FORMATS)),
         )
     if unit not in units:
         raise UserError(
-            Message("A .{kind} file cannot be in {unit}.", kind=kind, unit=unit),
+            Message(".{kind} files do not support the unit {unit}.", kind=kind, unit=unit),
             Message("Choose one of: {choices}.", choices=", ".join(units)),
         )
     return kind

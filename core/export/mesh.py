@@ -55,7 +55,7 @@ def kind_of(path: str | os.PathLike[str]) -> str:
     kind = Path(path).suffix.lower().lstrip(".")
     if kind not in FORMATS:
         raise UserError(
-            Message("Busk does not write .{kind} files.", kind=kind),
+            Message(".{kind} files are not supported for export.", kind=kind),
             Message("Choose one of: {choices}.", choices=", ".join(FORMATS)),
         )
     return kind

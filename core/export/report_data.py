@@ -35,7 +35,7 @@ AROUND = 12.0
 
 NOT_MODELLED = (
     Message("Friction between garment and skin, gravity, breathing, posture and movement are not modelled."),
-    Message("Lines alone shape the body: cloth between them, seams, wires and hooks are not there."),
+    Message("Only lines shape the body: fabric between them, seams, wires and hooks are not modelled."),
 )
 """What no figure of a sheet takes into account."""
 

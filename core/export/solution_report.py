@@ -169,10 +169,10 @@ def notes(stages: Stages) -> list[Message]:
         *immovable_lines(stages),
         *warnings(stages),
         *stages.body.repairs,
-        Message("Lengths are those of the front part of a line, side to side; the back does not change."),
+        Message("Lengths are front lengths, from side to side; the back does not change."),
         Message(
-            "Not modelled: friction between garment and skin, gravity, stiffness of real tissue, "
-            "and of real elastic where a line is made of none."
+            "Not modelled: friction between garment and skin, gravity, the measured stiffness of "
+            "tissue, and the material of lines without an elastic."
         ),
     ]
 

@@ -34,7 +34,7 @@ class FileSpace:
     def __post_init__(self) -> None:
         for word, choices, what in (
             (self.unit, UNITS, SettingName("unit")),
-            (self.axes, AXES, SettingName("set of axes")),
+            (self.axes, AXES, SettingName("axis convention")),
         ):
             if word not in choices:
                 raise UserError(

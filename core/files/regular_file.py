@@ -9,8 +9,8 @@ from pathlib import Path
 
 from core.messages import Message
 
-TOO_LARGE = Message("it is far too large")
-NOT_A_FILE = Message("it is not a file")
+TOO_LARGE = Message("the file is too large")
+NOT_A_FILE = Message("not a file")
 """Reasons why something cannot be read: a folder, a pipe and a device are not files."""
 
 

@@ -54,7 +54,7 @@ class Finding:
 
 UNKNOWN_PRESSURE = Finding(
     *("pressure", CAUTION, Message("The contact pressure was not computed.")),
-    Message("Change a length to compute it again."),
+    Message("Change a line length to compute it."),
 )
 
 
@@ -117,15 +117,15 @@ def _run(shown: ShownState, running: bool) -> Iterator[Finding]:
     verdict = shown.verdict
     if verdict.motion == "diverging":
         yield Finding(
-            *("convergence", BAD, Message("The calculation diverges: there is no shape.")),
-            Message("Set the lines longer or softer."),
+            *("convergence", BAD, Message("The solver diverged: there is no valid shape.")),
+            Message("Make the lines longer or softer."),
         )
     elif verdict.motion == "vibrating":
-        message = Message("The calculation does not converge: it oscillates.")
+        message = Message("The solver does not converge: it oscillates.")
         yield Finding("convergence", BAD, message, Message("Diagnose the design."))
     elif verdict.motion == "settling" and not running:
         yield Finding(
-            "convergence", BAD, Message("The calculation has not converged."), Message("Diagnose the design.")
+            "convergence", BAD, Message("The solver has not converged."), Message("Diagnose the design.")
         )
     if verdict.motion not in ("diverging", "vibrating"):
         yield from _shape(verdict)
@@ -138,7 +138,7 @@ def _shape(verdict: Convergence) -> Iterator[Finding]:
     ends = (100.0 * (each - 1.0) for each in (condition.shortest, condition.longest))
     low, high = (f"{each:+.0f}".replace("-", "\N{MINUS SIGN}") for each in ends)
     if condition.folded:
-        yield Finding("shape", BAD, Message("The skin folds over: this shape is not valid."), action)
+        yield Finding("shape", BAD, Message("The mesh is folded: this shape is not valid."), action)
     elif condition.overstrained:
         message = Message(
             "Skin is compressed or stretched by over 30 % ({low} to {high} %).", low=low, high=high
@@ -160,24 +160,24 @@ def _bands(cuts: CutList | None) -> Iterator[Finding]:
             yield _slack(row)
         elif row.far and row.elongation is not None:
             message = Message(
-                "The elastic of {line} is stretched far, by {percent} %.",
+                "The elongation of the elastic of {line} is high ({percent} %).",
                 line=LineName(row.line, row.title),
                 percent=f"{100.0 * row.elongation:.0f}",
             )
-            action = Message("Cut it longer, or choose another elastic.")
+            action = Message("Increase the cut length, or choose another elastic.")
             yield Finding("band", CAUTION, message, action, (row.line,), row.elongation)
 
 
 def _slack(row: CutRow) -> Finding:
     level = BAD if row.push_n > PUSHES else CAUTION
-    message = Message("{line} is slack: it has no tension.", line=LineName(row.line, row.title))
+    message = Message("{line} is slack (no tension).", line=LineName(row.line, row.title))
     if row.push_n:
         message = Message(
-            "{line} is slack: it would have to push with {newtons} N, which no band can.",
+            "{line} is slack: the computed force is a compression of {newtons} N, which a band cannot carry.",
             line=LineName(row.line, row.title),
             newtons=f"{row.push_n:.1f}",
         )
-    return Finding("band", level, message, Message("Shorten it, or take it off."), (row.line,))
+    return Finding("band", level, message, Message("Shorten or deactivate the line."), (row.line,))
 
 
 def _pressures(pressed: PressureList | None) -> Iterator[Finding]:
@@ -189,21 +189,21 @@ def _pressures(pressed: PressureList | None) -> Iterator[Finding]:
 
 def _pressure(row: PressureRow) -> Finding:
     if row.max_kpa is None:
-        message = Message("{line} has an unknown contact pressure.", line=LineName(row.line, row.title))
+        message = Message("The contact pressure of {line} is unknown.", line=LineName(row.line, row.title))
         return Finding("pressure", CAUTION, message, join(row.notes), (row.line,))
     kpa, mmhg = row.max_kpa or 0.0, row.max_mmhg or 0.0
     message = Message(
-        "{line} presses with {kpa} kPa ({mmhg} mmHg).",
+        "{line}: contact pressure {kpa} kPa ({mmhg} mmHg).",
         line=LineName(row.line, row.title),
         kpa=f"{kpa:.1f}",
         mmhg=f"{mmhg:.0f}",
     )
     if row.light == AMBER:
-        action = Message("Try it on: sit and breathe in with it.")
+        action = Message("Test the garment while sitting and breathing in.")
         return Finding("pressure", CAUTION, message, action, (row.line,), kpa)
     unwearable = kpa >= pressure_limits().beyond[-1][0]
-    action = Message("Set it longer, wider or softer.")
-    much = Message("It cannot be worn: set it much longer, wider or softer.")
+    action = Message("Make the line longer, wider or softer.")
+    much = Message("Not wearable: make the line much longer, wider or softer.")
     return Finding("pressure", BAD, message, much if unwearable else action, (row.line,), kpa)
 
 
@@ -218,7 +218,7 @@ def _foundations(stages: Stages) -> Iterator[Finding]:
 
 def _fit(stages: Stages) -> Iterator[Finding]:
     """Yield how far the control mesh is off the body, where that is more than on any body that was tried."""
-    quality, action = stages.control.quality, Message("Check the bust points and folds.")
+    quality, action = stages.control.quality, Message("Check the bust points and inframammary folds.")
     if quality is None:
         return
     largest, most, fold = FIT_LIMITS

@@ -26,20 +26,20 @@ UNEVEN = 0.1
 
 SLACK = join(
     (
-        Message("Slack: it is longer than the body needs there, and a band cannot push."),
-        Message("Shorten it, or take it off."),
+        Message("Slack: the band is longer than its path on the body and has no tension."),
+        Message("Shorten or deactivate the line."),
     )
 )
 """What is said of a line without tension that the model would have push."""
 
-UNCHOSEN = Message("No elastic is chosen for it: choose one to get its length to cut.")
+UNCHOSEN = Message("No elastic selected: choose one to compute the cut length.")
 """What is said of a line that is made of nothing in particular."""
 
 SEWN_ON = 3.0
 """A line that ends nearer than this to a band is sewn to it [mm]."""
 
 FRONT_ONLY = Message(
-    "Front part only, up to the edge of the control mesh: what goes on over shoulder or back is not in it."
+    "Front part only, up to the edge of the control mesh: the part over shoulder or back is not included."
 )
 """What is said of a line that ends where the control mesh does."""
 
@@ -186,9 +186,7 @@ def _held(row: CutRow, elastic: Elastic) -> CutRow:
     if row.tension_n is None:
         return _noted(
             row,
-            Message(
-                "It lies on points that do not move, so its tension is not known: let lines spring back."
-            ),
+            Message("Located on fixed points, so its tension is unknown: make lines elastic to compute it."),
         )
     if row.tension_n > elastic.max_force:
         return _refused(row, elastic.overload_error(row.tension_n, LineName(row.line, row.title)).text)
@@ -214,7 +212,7 @@ def _stretched(row: CutRow, elastic: Elastic, elongation: float, tension: float)
         return row
     end = 100.0 * elastic.max_elongation
     note = Message(
-        "Stretched far, its table ends at {end} %: 30 to 50 % are usual, an estimate.", end=f"{end:g}"
+        "High elongation (the table ends at {end} %): 30 to 50 % is usual (estimate).", end=f"{end:g}"
     )
     return _noted(replace(row, far=True), note)
 
@@ -233,7 +231,7 @@ def _uneven(tension: LineTension) -> tuple[Message, ...]:
         return ()
     return (
         Message(
-            "Its tension goes from {low} to {high} N along the line.", low=f"{low:.1f}", high=f"{high:.1f}"
+            "The tension varies from {low} to {high} N along the line.", low=f"{low:.1f}", high=f"{high:.1f}"
         ),
     )
 
@@ -242,8 +240,8 @@ def _notes(rows: tuple[CutRow, ...], tissue: float) -> tuple[Message, ...]:
     """Return in sentences what holds for the whole list."""
     notes = [
         Message(
-            "Newtons are an estimate: skin and tissue are taken to answer with {tissue} N per m "
-            "of width and strain; skins alone were measured from about 160 to 1150.",
+            "Forces in N are estimates: skin and tissue stiffness is assumed to be {tissue} N "
+            "per m of width and unit strain; measured values of skin alone are about 160 to 1150.",
             tissue=f"{tissue:.0f}",
         ),
     ]
@@ -251,15 +249,13 @@ def _notes(rows: tuple[CutRow, ...], tissue: float) -> tuple[Message, ...]:
     if guessed:
         notes.append(
             Message(
-                "The force of {elastics} is an estimate: measure your own before you cut.",
+                "The force of {elastics} is an estimate: measure your own material before cutting.",
                 elastics=tuple(map(ElasticName, guessed)),
             )
         )
     if any(row.closed and row.cut_mm for row in rows):
-        notes.append(Message("The back of a band is taken to be stretched as far as its front."))
-        notes.append(
-            Message("Lengths run along the line, which need not lie level: a girth by tape is another one.")
-        )
+        notes.append(Message("The back of a band is assumed to have the same elongation as its front."))
+        notes.append(Message("Lengths follow the line, which may not be horizontal: a tape girth differs."))
     allowances = {row.allowance_mm for row in rows if row.cut_mm}
     if len(allowances) == 1:
         notes.append(
@@ -272,8 +268,7 @@ def _notes(rows: tuple[CutRow, ...], tissue: float) -> tuple[Message, ...]:
     elif allowances:
         notes.append(
             Message(
-                "Lengths to cut hold the allowance for seams; hooks and eyes, rings and slides are "
-                "not taken off."
+                "Cut lengths include the seam allowance; hooks and eyes, rings and slides are not deducted."
             )
         )
     return tuple(notes)

@@ -30,9 +30,9 @@ _TOLD = re.compile(
 _QUOTED = re.compile(r'^"(.*)"$')
 
 HELP = Message(
-    "It needs one row of headings with units, like 'elongation %' and 'force N' (also N/cm, cN, gf, kgf), "
-    "then one row for each point; before them lines like '# width_mm: 12', '# name: ...', "
-    "'# allowance_mm: 20'."
+    "It requires one row of headings with units, such as 'elongation %' and 'force N' (also "
+    "N/cm, cN, gf, kgf), then one row for each point; before them lines such as '# width_mm: "
+    "12', '# name: ...', '# allowance_mm: 20'."
 )
 """What a user has to know to write a table."""
 
@@ -68,12 +68,12 @@ def elastic_from_csv(text: str, name: str, width_mm: float | None = None) -> Ela
     )
     if width is None:
         raise LineError(
-            Message("The table {name} does not say how wide the elastic is.", name=name),
-            Message("Write '# width_mm: 12'."),
+            Message("The table {name} does not specify the width of the elastic.", name=name),
+            Message("Add '# width_mm: 12'."),
         )
     allowance = ALLOWANCE
     if "allowance" in told:
-        allowance = _number(told["allowance"].removesuffix("mm"), Message("allowance"), name)
+        allowance = _number(told["allowance"].removesuffix("mm"), Message("seam allowance"), name)
     estimate = told.get("estimate", "no").strip().lower() in ("yes", "true", "1")
     curve = _curve(text, name, width)
     source = told.get("source", "").replace(_UNFILLED, "")
@@ -87,11 +87,11 @@ def _check_units(elastic: Elastic) -> None:
     if elastic.max_elongation < SHORTEST_REACH:
         raise LineError(
             Message(
-                "The table {name} ends at {end} %: no elastic stretches so little.",
+                "The table {name} ends at {end} %, which is implausibly low for an elastic.",
                 name=elastic.name,
                 end=f"{100.0 * elastic.max_elongation:g}",
             ),
-            Message("If 1 means twice as long, head it 'elongation 1'."),
+            Message("If 1 means twice the length, use the heading 'elongation 1'."),
         )
     if elastic.max_force > MOST_PER_CM * elastic.width_mm / 10.0:
         raise LineError(
@@ -101,7 +101,7 @@ def _check_units(elastic: Elastic) -> None:
                 strength=f"{elastic.max_force:g}",
                 width=length_of(elastic.width_mm),
             ),
-            Message("Look at its unit: 'force cN' or 'force gf' may be meant."),
+            Message("Check the unit: 'force cN' or 'force gf' may be intended."),
         )
 
 
@@ -148,8 +148,10 @@ def _number(text: str, what: Message, name: str) -> float:
         return float(text.strip().replace(",", "."))
     except ValueError:
         raise LineError(
-            Message("The {what} '{text}' of {name} is no number.", what=what, text=text.strip(), name=name),
-            Message("Write it in mm."),
+            Message(
+                "The {what} '{text}' of {name} is not a number.", what=what, text=text.strip(), name=name
+            ),
+            Message("Enter it in mm."),
         ) from None
 
 
@@ -165,7 +167,7 @@ def _curve(text: str, name: str, width: float) -> Curve:
     comma = next((mark for mark in "\t;," if mark in numbered[0][1]), "")
     if not comma:
         raise LineError(
-            Message("The table {name} has one column only.", name=name),
+            Message("The table {name} has only one column.", name=name),
             HELP,
         )
     heading, *rows = ((count, _cells(line, comma)) for count, line in numbered)
@@ -175,17 +177,17 @@ def _curve(text: str, name: str, width: float) -> Curve:
         points = points[1:]
     if len(points) < FEWEST:
         raise LineError(
-            Message("The table {name} has too few rows to be a curve.", name=name),
-            Message("Measure {count} points at least beside the unstretched elastic.", count=FEWEST),
+            Message("The table {name} has too few rows for a curve.", name=name),
+            Message("Measure at least {count} points in addition to the unstretched elastic.", count=FEWEST),
         )
     if points[0][0] == 0.0:
         raise LineError(
             Message(
-                "The table {name} begins with {force} N at no elongation.",
+                "The table {name} begins with {force} N at zero elongation.",
                 name=name,
                 force=f"{points[0][1]:g}",
             ),
-            Message("Measure from where it begins to pull, or leave that row out."),
+            Message("Measure from zero force, or remove that row."),
         )
     return ((0.0, 0.0), *points)
 
@@ -212,11 +214,11 @@ def _columns(heading: Sequence[str], name: str, width: float) -> tuple[tuple[int
         if unit is None:
             raise LineError(
                 Message(
-                    "The column '{heading}' of {name} does not say its unit.",
+                    "The column '{heading}' of {name} has no unit.",
                     heading=heading[at].strip(),
                     name=name,
                 ),
-                Message("Head it like '{example}'.", example=f"{what} {example}"),
+                Message("Use a heading such as '{example}'.", example=f"{what} {example}"),
             )
         found.append((at, unit))
     return found[0], found[1]
@@ -247,7 +249,9 @@ def _points(
             stretched, pulled = (float(row[at].strip().replace(point, ".")) for at, _ in columns)
         except (ValueError, IndexError):
             raise LineError(
-                Message("Line {count} of the table {name} has no two numbers.", count=count, name=name),
-                Message("Leave out what is no point."),
+                Message(
+                    "Row {count} of the table {name} does not contain two numbers.", count=count, name=name
+                ),
+                Message("Remove rows that are not data points."),
             ) from None
         yield stretched / columns[0][1], pulled * columns[1][1]

@@ -104,12 +104,12 @@ def find_elastic(text: str) -> Elastic:
     if len(found) > 1:
         names = "; ".join(each.name for each in found)
         raise LineError(
-            Message("Several elastics are called '{text}'.", text=text),
+            Message("Several elastics match '{text}'.", text=text),
             Message("Choose one of: {choices}.", choices=names),
         )
     if not found:
         raise LineError(
-            Message("No elastic is called '{text}'.", text=text),
+            Message("No elastic matches '{text}'.", text=text),
             Message("Choose one of: {choices}.", choices=tuple(map(ElasticName, elastics))),
         )
     return found[0]
@@ -133,12 +133,12 @@ def _text_of(path: Path) -> str:
             Message(
                 "The table {name} cannot be read: {problem}.", name=path.name, problem=reason_of(problem)
             ),
-            Message("Check its name and place."),
+            Message("Check its name and folder."),
         ) from problem
     if b"\0" in data:
         raise LineError(
-            Message("The file {name} is no text.", name=path.name),
-            Message("Save the table as CSV, then import that."),
+            Message("The file {name} is not a text file.", name=path.name),
+            Message("Save the table as CSV and import that file."),
         )
     try:
         return data.decode("utf-8-sig")
@@ -167,7 +167,7 @@ def remove_elastic(name: str) -> None:
                     Message(
                         "The table {name} cannot be removed: {why}.", name=path.name, why=reason_of(problem)
                     ),
-                    Message("Remove it from the folder by hand."),
+                    Message("Delete it from the folder manually."),
                 ) from problem
 
 
@@ -181,8 +181,8 @@ def save_elastic(elastic: Elastic) -> Path:
         private_folder(folder)
     except OSError as problem:
         raise UserError(
-            Message("The folder {folder} cannot be made.", folder=str(folder)),
-            Message("Make room, or make it by hand."),
+            Message("The folder {folder} cannot be created.", folder=str(folder)),
+            Message("Free disk space, or create it manually."),
         ) from problem
     held = [path for path in _own_tables() if _holds(path, elastic.name)]
     # Of several the library has the last; names that differ may be one name for files.

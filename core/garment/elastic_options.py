@@ -187,7 +187,7 @@ def _slack(stages: Stages, name: str) -> ElasticError:
     length = line.rest_length if off is None else line.length(off)
     percent = math.floor(100.0 * length / line.rest_length - 0.1)
     return ElasticError(
-        Message("{line} is slack: as long as this it has no tension.", line=LineName(name)),
+        Message("{line} is slack at this length (no tension).", line=LineName(name)),
         Message("Set {line} to {percent} % or shorter.", line=LineName(name), percent=f"{percent:.0f}"),
         Message("Slack at this length: set the line to {percent} % or shorter.", percent=f"{percent:.0f}"),
         LineName(name),

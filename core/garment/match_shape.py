@@ -69,9 +69,9 @@ def too_weak_error(elastic: Elastic, ratio: float, excess: float, line: str) -> 
 
     ``ratio`` [1] is the shortest to which it can be cut.
     """
-    limit = Message("at its limit, {reach} % stretch", reach=f"{100.0 * elastic.max_elongation:g}")
+    limit = Message("at its maximum elongation, {reach} %", reach=f"{100.0 * elastic.max_elongation:g}")
     if ratio <= RATIO_LIMITS[0] + PRECISION:
-        limit = Message("at the shortest cut, {ratio} %", ratio=f"{100.0 * RATIO_LIMITS[0]:g}")
+        limit = Message("at the shortest cut length, {ratio} %", ratio=f"{100.0 * RATIO_LIMITS[0]:g}")
     return ElasticError(
         Message(
             "{name} is too weak for {line}: {excess} too long {limit}.",
@@ -80,7 +80,7 @@ def too_weak_error(elastic: Elastic, ratio: float, excess: float, line: str) -> 
             excess=Length(excess, 1),
             limit=limit,
         ),
-        Message("Let the line be longer, or take a stronger or wider elastic."),
+        Message("Make the line longer, or choose a stronger or wider elastic."),
         Message("Too weak: {excess} too long {limit}.", excess=Length(excess, 1), limit=limit),
         LineName(line),
     )
@@ -115,10 +115,10 @@ def match_reached_lengths(
     if np.any(reached - wanted < -SHORT) or any(short & [elastics[name] is None for name in moving]):
         raise LineError(
             Message(
-                "No length of elastic was found with which {lines} would reach the same.",
+                "No elastic length found at which {lines} reach the same lengths.",
                 lines=", ".join(moving),
             ),
-            Message("Let the lines be longer, or take stronger or wider elastics."),
+            Message("Make the lines longer, or choose stronger or wider elastics."),
         )
     pairs = {name: _shared(found, design.linked_pair(name), moving) for name in moving}
     missed = {name: float(each) for name, each, far in zip(moving, excess, short, strict=True) if far}

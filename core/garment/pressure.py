@@ -30,24 +30,25 @@ LEAST_OVER = 20.0
 """The radius is never taken over less than this length [mm]: a scan does not show more."""
 
 LEFT_OUT = (
+    Message("Estimate, probably too high: tissue yields under a band, and sensors measured up to 42 % less."),
+    Message("Friction is not included, such as that which keeps a band from slipping."),
     Message(
-        "An estimate, and rather too much: tissue gives way under a band, and sensors read up to 42 % less."
+        "Only the tension along the band is included: fabric stretched in both directions has a "
+        "higher contact pressure."
     ),
     Message(
-        "Friction is left out: what keeps a band from slipping, along it or up and down, is not counted."
+        "The radius of curvature is averaged over about the band width: the pressure at the edge "
+        "of a bone is higher."
     ),
-    Message("Only the pull along the band presses here; fabric that is stretched both ways presses more."),
-    Message("The radius is taken over about the width of the band: an edge of a bone presses more."),
-    Message("The body stands and breathes evenly: sitting and breathing in can double the pressure."),
+    Message("Valid for standing and quiet breathing: sitting and breathing in can double the pressure."),
 )
 """What the figures leave out."""
 
-SLACK_NOTE = Message("It is slack: it does not press.")
+SLACK_NOTE = Message("Slack: no contact pressure.")
 """What is said of a line without tension."""
 
 NOT_FOR_STRAPS = Message(
-    "The limits of the light are for soft parts round the trunk: they were not set for "
-    "what goes over shoulders."
+    "The pressure limits apply to soft tissue around the trunk, not to bands over the shoulders."
 )
 """What is said of a line that goes on beyond the control mesh, as straps do."""
 
@@ -155,7 +156,7 @@ class LinePressure:
         if not self.tension.any():
             said.append(SLACK_NOTE)
         elif not self.tension.all():
-            said.append(Message("Part of it is slack: it does not press there."))
+            said.append(Message("Partly slack: no contact pressure there."))
         if self.bridges:
             most = max(bridge.height for bridge in self.bridges)
             said.append(
@@ -207,7 +208,7 @@ def _told(stages: Stages, name: str, tension: LineTension) -> tuple[Message, ...
     """Return in sentences what was taken for granted."""
     said = []
     if tension.estimate:
-        said.append(Message("Its tension follows from the stiffness of tissue alone, an estimate."))
+        said.append(Message("Its tension is computed from the tissue stiffness alone (estimate)."))
     if not stages.design.line_settings(name).width:
         said.append(Message("It is taken to be {width} wide: no width was told.", width=Length(USUAL_WIDTH)))
     if any(line.name == name and is_strap(stages, line) for line in stages.model.lines):

@@ -133,8 +133,6 @@ def _row(
 def _unknown(held: bool) -> Message:
     if held:
         return Message(
-            "It lies on points that do not move, so its tension is not known: let lines spring back."
+            "Located on fixed points, so its tension is unknown: make lines elastic to compute it."
         )
-    return Message(
-        "It lies on points that do not move: its tension is known once an elastic is chosen for it."
-    )
+    return Message("Located on fixed points: choose an elastic to compute its tension.")

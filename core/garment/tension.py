@@ -47,8 +47,8 @@ class LineTension:
 def divergence_error() -> LineError:
     """Return what to say where the points are those of no body any more."""
     return LineError(
-        Message("The calculation ran away: there is no body to measure or to sew for."),
-        Message("Set the lines longer or softer."),
+        Message("The solver diverged: no shape is available for measurements or cutting."),
+        Message("Make the lines longer or softer."),
     )
 
 

@@ -20,7 +20,7 @@ from core.messages import Message
 def no_path_error() -> LineError:
     """Return what to say where two places do not hang together."""
     return LineError(
-        Message("There is no way over the skin to that place."),
+        Message("No path over the skin reaches that point."),
         Message("Click on the same part of the body."),
     )
 
@@ -38,8 +38,8 @@ class SurfacePaths:
             self._solver = potpourri3d.EdgeFlipGeodesicSolver(mesh.vertices, mesh.faces.astype(np.int64))
         except (RuntimeError, ValueError) as problem:
             raise LineError(
-                Message("Lines cannot be drawn on the skin of this scan."),
-                Message("Lead one through control points."),
+                Message("Lines cannot be drawn on the surface of this scan."),
+                Message("Define the line by control points."),
             ) from problem
 
     def path(self, start: Points, end: Points) -> Points:

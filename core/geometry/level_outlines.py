@@ -117,8 +117,8 @@ def _cut_levels(mesh: Mesh, z: Floats) -> tuple[Points, Indices, Indices]:
 def not_a_surface_error() -> LandmarkError:
     """Return the refusal of a skin most of which is none."""
     return LandmarkError(
-        Message("The triangles of this scan run right through the body."),
-        Message("Export the skin of the body alone."),
+        Message("Triangles of this scan cross the inside of the body."),
+        Message("Export only the body surface."),
     )
 
 

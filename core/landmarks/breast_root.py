@@ -24,18 +24,10 @@ USUAL = np.radians(80.0), np.radians(28.0)
 HOLLOW = 0.002
 """A root is hollower than this [1/mm]."""
 
-INNER = Message(
-    "The most hollow place of the outline at the height of the bust point, between it and the middle."
-)
-NO_INNER = Message(
-    "Half way from the middle to the bust point: the outline shows no hollow between the breasts."
-)
-OUTER = Message(
-    "The most hollow place of the outline at the height of the bust point, to the side of it: a suggestion."
-)
-NO_OUTER = Message(
-    "Where the root of a breast usually ends: the breast passes into the side without a hollow."
-)
+INNER = Message("Deepest point of the contour at bust point height, between the bust point and the centre.")
+NO_INNER = Message("Midway between the centre and the bust point: no concavity between the breasts.")
+OUTER = Message("Deepest point of the contour at bust point height, lateral to the bust point (suggestion).")
+NO_OUTER = Message("Typical outer end of the breast root: no concavity between breast and side.")
 
 
 def breast_root_landmarks(mesh: Mesh, found: Landmarks) -> list[Landmark]:

@@ -16,11 +16,11 @@ from core.landmarks.nipple_pair import ALONE, BORNE, Nipple, find_nipples
 from core.landmarks.types import SIDES, Landmark
 from core.messages import Message
 
-NIPPLE = Message("The nipple: the spot that stands out of the smooth breast around it.")
-SMOOTH = Message("Between the foremost place and the middle of the breast: no nipple stands out.")
-MIRRORED = Message("The middle of the breast, shifted towards where the nipple of the other breast lies.")
+NIPPLE = Message("Nipple: local protrusion on the smooth breast surface.")
+SMOOTH = Message("No nipple detected: estimated between the foremost point and the centre of the breast.")
+MIRRORED = Message("Centre of the breast, shifted to mirror the nipple of the other breast.")
 
-ACROSS = Message("Estimated, as no breast stands out there: across from the bust point of the other breast.")
+ACROSS = Message("Estimated by mirroring the other bust point: no breast protrusion on this side.")
 
 OUTWARD = 18.0
 """On a smooth breast the bust point lies so far outside the foremost place, towards the pole [mm]."""

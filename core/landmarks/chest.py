@@ -81,7 +81,8 @@ def forward_places(survey: TorsoSections, anchor: Anchor) -> tuple[Points, Point
     left, right = (known[rows][:, side] * np.cos(turn) + out for side in both)
     if not (left.size and np.isfinite(left + right).any()):
         raise LandmarkError(
-            Message("The front of the chest is missing."), Message("Open a scan that shows the whole bust.")
+            Message("The front of the chest is missing."),
+            Message("Open a scan that includes the whole bust."),
         )
     row, column = np.unravel_index(np.argmax(left + right), left.shape)
     away = np.hypot((high[rows] - high[rows][row])[:, None], x[columns] - x[columns][column])
@@ -121,7 +122,8 @@ def find_poles(survey: TorsoSections, anchor: Anchor) -> tuple[Pole, Pole]:
 
 def _no_base() -> LandmarkError:
     return LandmarkError(
-        Message("The trunk under the breasts is missing."), Message("Open a scan that shows the whole trunk.")
+        Message("The trunk below the breasts is missing."),
+        Message("Open a scan that includes the whole trunk."),
     )
 
 
@@ -144,7 +146,8 @@ def _pole(
     """Find the pole among the points of one side: the highest summit near the ``forward`` place, centred."""
     if len(p) < 200:
         raise LandmarkError(
-            Message("The front of the chest is missing."), Message("Open a scan that shows the whole bust.")
+            Message("The front of the chest is missing."),
+            Message("Open a scan that includes the whole bust."),
         )
     high = p[:, 2] - anchor.z
     score = prominence - STRAYING * np.abs(azimuth - np.clip(azimuth, *USUAL))

@@ -40,7 +40,7 @@ UNMEASURED = 0.55
 ESTIMATED = 0.3
 """The most confidence [1] in a landmark on skin that fills a hole: no more than in one that a hole hides."""
 
-FILLED = Message("Found on skin that fills a hole by estimate.")
+FILLED = Message("Detected on skin that fills a hole (estimate).")
 
 
 def find_landmarks(

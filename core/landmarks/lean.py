@@ -29,14 +29,14 @@ def lean_hint(build: Build, pose: Pose) -> tuple[Hint, ...]:
     forward, lean = lean > 0.0, abs(lean)
     if forward:
         sentence = Message(
-            "The trunk leans forward by about {lean} degrees, and girths are measured level. Set "
-            "it upright at the Scan step.",
+            "The trunk leans forward by about {lean} degrees, and girths are measured "
+            "horizontally. Set it upright at the Scan step.",
             lean=f"{lean:.0f}",
         )
     else:
         sentence = Message(
-            "The trunk leans backward by about {lean} degrees, and girths are measured level. "
-            "Set it upright at the Scan step.",
+            "The trunk leans backward by about {lean} degrees, and girths are measured "
+            "horizontally. Set it upright at the Scan step.",
             lean=f"{lean:.0f}",
         )
     return (Hint("lean", sentence, up),)

@@ -37,16 +37,18 @@ counts as much as so many places that are seen [1]."""
 NEAR = 42.0
 """Behind a hole the crease is taken from what is seen of it so far to both sides [mm]."""
 
-CREASE = Message("The sharpest crease below the breast, on the upright profile through the bust point.")
-NO_CREASE = Message("The most hollow place below the breast: the upright profile shows no crease.")
-ESTIMATED = Message("Estimated, as the scan has a hole there: from the skin around the hole.")
-MIRRORED = Message("Estimated, as the scan has a hole there: from the fold of the other breast.")
-GUESSED = Message("Estimated, as the scan shows no fold there: from the height of the hole.")
-UNSEEN = Message("Estimated, as no fold shows there: a little above where the body comes forward.")
+CREASE = Message("Sharpest crease below the breast on the vertical profile through the bust point.")
+NO_CREASE = Message("Deepest concavity below the breast: the vertical profile has no crease.")
+ESTIMATED = Message("Estimated from the surrounding skin: the scan has a hole there.")
+MIRRORED = Message("Estimated from the inframammary fold of the other breast: the scan has a hole there.")
+GUESSED = Message("Estimated from the height of the hole: no inframammary fold visible in the scan.")
+UNSEEN = Message(
+    "No inframammary fold detected: estimated slightly above the start of the body's forward slope."
+)
 HIDDEN = (ESTIMATED, MIRRORED, GUESSED)
 """The rules of folds that a hole of the scan hides."""
 
-LOWEST = Message("The lowest point of the breast between the bust point and the fold.")
+LOWEST = Message("Lowest point of the breast between the bust point and the inframammary fold.")
 
 MISSING = 0.3
 """The most confidence [1] in a lowest point over a fold that shows in no crease, or hangs over."""

@@ -21,7 +21,7 @@ HELP = (
 )
 """What a user has to know to place a landmark."""
 
-PLACED = Message("Placed by hand.")
+PLACED = Message("Placed manually.")
 
 ASTRAY, ADRIFT = 15.0, 20.0
 """So far from where a rule finds it [mm], a placed landmark contradicts the rule: one that is sure of itself,
@@ -58,7 +58,7 @@ def check_place(name: str, place: Sequence[float] | Points) -> None:
         )
     if np.shape(place) != (3,) or not (np.abs(place) < MAX_COORDINATE).all():
         raise LandmarkError(
-            Message("{name} needs a place with three numbers.", name=name), Message("Give x, y and z.")
+            Message("{name} requires a position of three numbers.", name=name), Message("Enter x, y and z.")
         )
 
 
@@ -69,8 +69,8 @@ def placed_mark(text: str) -> PlacedMark:
         x, y, z = map(float, place.split(","))
     except ValueError:
         raise LandmarkError(
-            Message("'{text}' places no landmark.", text=text),
-            Message("Write NAME=x,y,z with the numbers of the scan file."),
+            Message("'{text}' is not a landmark position.", text=text),
+            Message("Enter NAME=x,y,z in the coordinates of the scan file."),
         ) from None
     return PlacedMark(name.strip().lower().replace("-", "_"), (x, y, z))
 
@@ -137,6 +137,6 @@ def _laid(mesh: Mesh, name: str, point: Points) -> Landmark:
                 name=LandmarkName(name.replace("_", " ")),
                 far=Length(REACH),
             ),
-            Message("Place it on the skin of the body."),
+            Message("Place it on the skin."),
         )
     return Landmark(name, place, 1.0, PLACED, by_hand=True)

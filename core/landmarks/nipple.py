@@ -135,8 +135,8 @@ def breast_patch(mesh: Mesh, pole: Pole) -> BreastPatch:
     height = _height(local, np.stack([u, v], axis=-1))
     if not np.isfinite(height).any():
         raise LandmarkError(
-            Message("The skin of a breast is missing, or its points are too far apart."),
-            Message("Open a scan that shows the whole bust."),
+            Message("The surface of a breast is missing, or its points are too sparse."),
+            Message("Open a scan that includes the whole bust."),
         )
     own = _hanging_together(height)
     points = pole.position + np.stack([u, v, np.where(own, height, np.nan)], axis=-1) @ frame

@@ -110,8 +110,9 @@ def clothes_hint(build: Build, landmarks: Landmarks) -> tuple[Hint, ...]:
     if not (wrinkled or (around > CREASED and hidden)):
         return ()
     sentence = Message(
-        "The surface under the bust has wrinkles like loose clothes. Bust points and folds "
-        "under cloth are uncertain: scan the body in close-fitting underwear, or check them."
+        "The surface under the bust has wrinkles like loose clothes. Bust points and "
+        "inframammary folds under cloth are uncertain: scan the body in close-fitting underwear, "
+        "or check them."
     )
     return (Hint("clothes", sentence),)
 

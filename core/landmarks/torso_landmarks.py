@@ -13,22 +13,20 @@ from core.landmarks.torso.torso_axis import STEP, TorsoAxis, torso_axis
 from core.landmarks.types import SIDES, Landmark, Landmarks
 from core.messages import Message
 
-FRONT = Message("On the centre line of the front, half way between the bust points, at the bust level.")
-FRONT_UNDER = Message(
-    "On the centre line of the front, half way between the bust points, at the under-bust level."
-)
-BACK = Message("In the hollow of the spine at the bust level.")
-BACK_UNDER = Message("In the hollow of the spine at the under-bust level.")
-FLAT_BACK = Message("In the middle of the back, half way between its sides: no hollow of the spine shows.")
-SIDE = Message("The place of the trunk farthest to the side, where the under-bust girth is measured.")
-ARMPIT = Message("The highest level on which the arm does not yet join the trunk, at its side.")
+FRONT = Message("On the front centre line, midway between the bust points, at bust level.")
+FRONT_UNDER = Message("On the front centre line, midway between the bust points, at under-bust level.")
+BACK = Message("In the spinal groove at bust level.")
+BACK_UNDER = Message("In the spinal groove at under-bust level.")
+FLAT_BACK = Message("Midway between the sides of the back: no spinal groove detected.")
+SIDE = Message("Outermost point of the trunk at the side, on the level of the under-bust girth.")
+ARMPIT = Message("At the side of the trunk, on the highest level with a separate arm.")
 WAIST = Message(
-    "On the centre line of the front, where the trunk is slimmest below the bust; the "
-    "waist between lowest rib and hip bone does not show and may lie some cm lower."
+    "On the front centre line, at the narrowest trunk below the bust. The anatomical waist "
+    "between lowest rib and hip bone is not detectable and may be some cm lower."
 )
-HIP = Message("On the centre line of the front, where the trunk is widest round below the waist.")
-NECK_FRONT = Message("The most hollow place of the centre line of the front between chest and neck.")
-NECK_BACK = Message("The most prominent place of the centre line of the back at the foot of the neck.")
+HIP = Message("On the front centre line, at the largest trunk girth below the waist.")
+NECK_FRONT = Message("Deepest point of the front centre line between chest and neck.")
+NECK_BACK = Message("Most prominent point of the back centre line at the base of the neck.")
 
 CLEAR, PLAIN = 0.8, 0.4
 """How sure a mark is that shows clearly, and one that hardly shows (0..1): our judgement."""

@@ -56,14 +56,17 @@ def refusal(why: Message, placed: bool = False) -> LandmarkError:
     """Return the error that says ``why`` there is no bust, or none with the points that were ``placed``."""
     if placed:
         return LandmarkError(
-            Message("No bust can be found with the points that were placed by hand: {why}.", why=why),
-            Message("Place bust points on the breasts and folds under them, or take them away."),
+            Message("No bust detected with the manually placed points: {why}.", why=why),
+            Message(
+                "Place bust points on the breasts and inframammary folds below them, or remove "
+                "the manual points."
+            ),
         )
     return LandmarkError(
-        Message("No bust can be found: {why}.", why=why),
+        Message("No bust detected: {why}.", why=why),
         Message(
-            "Open a scan of a whole upper body, say which way is up and which is the front, or "
-            "place both bust points and both folds by hand."
+            "Open a scan of a complete upper body, set its up and front axes, or place both bust "
+            "points and both inframammary folds manually."
         ),
     )
 
@@ -85,7 +88,7 @@ def check_placed(landmarks: Landmarks) -> None:
         if (left.by_hand or right.by_hand) and left.position[0] <= right.position[0]:
             raise refusal(Message("left and right are swapped"), _placed(landmarks))
     if _placed(landmarks) and landmarks.bust_level <= landmarks.underbust_level:
-        raise refusal(Message("the folds lie above the bust points"), _placed(landmarks))
+        raise refusal(Message("the inframammary folds are above the bust points"), _placed(landmarks))
 
 
 def _placed(landmarks: Landmarks) -> bool:
@@ -127,7 +130,7 @@ def _rules(
 ) -> Iterator[tuple[bool, Message]]:
     """Give what a bust must not be, whether it is so, and why it is refused then; the first is told."""
     under, bust = stable_level(mesh, landmarks.underbust_level), trunk_levels(mesh, landmarks.bust_level)[0]
-    yield under.tape == 0.0 or bust.tape == 0.0, Message("the trunk is missing there")
+    yield under.tape == 0.0 or bust.tape == 0.0, Message("the trunk is missing at the expected height")
     left, right = (landmarks.position(f"bust_point_{side}") for side in SIDES)
     across, middle = left - right, 0.5 * (left + right)
     wide, deep, _ = np.ptp(under.points, axis=0)
@@ -136,49 +139,55 @@ def _rules(
     more, depth = bust.tape - under.tape, landmarks.bust_level - landmarks.underbust_level
     yield (
         under.longest_straight > OPEN * under.tape,
-        Message("the trunk is open, as if only a part of it was scanned"),
+        Message("the trunk is open, possibly an incomplete scan"),
     )
     yield (
         not SLIMMEST < under.tape < WIDEST,
         Message("the girth under it would be {girth}", girth=Length(under.tape)),
     )
-    yield len(missing) > 0 and not clear, Message("only one side stands out of the chest")
+    yield len(missing) > 0 and not clear, Message("only one side of the chest protrudes")
     slight = more <= FLATTEST_BUST and not full
-    yield slight or more >= FULLEST_BUST, Message("it would not be wider than the trunk under it")
-    yield not ROUNDEST < wide / deep < FLATTEST, Message("the trunk is not as deep as a body")
+    yield slight or more >= FULLEST_BUST, Message("the bust would not be wider than the trunk below it")
+    yield not ROUNDEST < wide / deep < FLATTEST, Message("the trunk depth is implausible for a body")
     yield (
         not APART[0] < across[0] < APART[1],
         Message("its points would lie {distance} apart", distance=Length(across[0])),
     )
-    yield abs(across[2]) > UNEVEN and not missing, Message("its points would lie at very different heights")
+    yield (
+        abs(across[2]) > UNEVEN and not missing,
+        Message("the bust points would be at very different heights"),
+    )
     yield (
         abs(middle[0] - trunk.middle) > ASIDE and not missing,
-        Message("it would lie beside the middle of the body"),
+        Message("the bust would be off the centre of the body"),
     )
-    yield max(pole.prominence for pole in poles) < FLAT, Message("nothing stands out of the chest")
-    yield not 0.0 < depth < DEEPEST, Message("no fold lies at a likely depth under it")
+    yield max(pole.prominence for pole in poles) < FLAT, Message("the chest has no protrusion")
+    yield not 0.0 < depth < DEEPEST, Message("no inframammary fold at a plausible height below")
     rules = {landmarks.points[f"fold_{side}"].rule for side in SIDES}
-    yield rules == {NO_CREASE} and not (full and clear), Message("there is no crease under it")
+    yield rules == {NO_CREASE} and not (full and clear), Message("no crease below the breast")
 
 
 def _warnings(side: str, rule: Message, missing: bool) -> list[Message]:
     if missing:
         return [
             Message(
-                "On the {side} side no breast stands out of the chest: its points are uncertain.",
+                "No breast protrusion on the {side} side: its points are uncertain.",
                 side=SideName(side),
             )
         ]
     if rule in HIDDEN:
         return [
             Message(
-                "The scan has a hole where the fold of the {side} breast lies: its height is estimated.",
+                "The scan has a hole at the inframammary fold of the {side} breast: its height is estimated.",
                 side=SideName(side),
             )
         ]
     if rule == UNSEEN:
         return [
-            Message("No fold shows under the {side} breast: its height is estimated.", side=SideName(side))
+            Message(
+                "No inframammary fold detected under the {side} breast: its height is estimated.",
+                side=SideName(side),
+            )
         ]
     return []
 
@@ -188,7 +197,7 @@ def placed_warnings(landmarks: Landmarks) -> tuple[Message, ...]:
     pairs = {side: [landmarks.points[f"{name}_{side}"] for name in ("bust_point", "fold")] for side in SIDES}
     return tuple(
         Message(
-            "The fold of the {side} breast lies above its bust point, as placed by hand: please check both.",
+            "The manually placed inframammary fold of the {side} breast is above its bust point. Check both.",
             side=SideName(side),
         )
         for side, (bust, fold) in pairs.items()

@@ -14,13 +14,13 @@ ESSENTIAL = ("bust_point", "fold")
 
 def collect_warnings(body: Body, landmarks: Landmarks) -> list[Message]:
     """Return one sentence for each thing that should be looked at. Source: ours."""
-    unsure = Message("It is not certain how this scan is to be understood: please check unit, up and front.")
+    unsure = Message("The unit and orientation of this scan are uncertain. Check unit, up and front.")
     return [unsure] * (not body.pose.is_certain) + edit_warnings(body) + landmark_warnings(landmarks)
 
 
 def edit_warnings(body: Body) -> list[Message]:
     """Return what edits of the scan leave to be looked at."""
-    filled = Message("Holes of the scan are filled by hand: what is measured there is an estimate.")
+    filled = Message("Holes of the scan were filled manually: measurements there are estimates.")
     mirrored = [mirror_sentence(body.edits.kept)] if body.edits.kept else []
     return mirrored + [filled] * (len(body.estimated) > 0)
 
@@ -57,23 +57,23 @@ def _doubt(kind: str, sides: list[str], landmarks: Landmarks) -> list[Message]:
         return []
     if kind == "fold":
         one = Message(
-            "The fold under the {side} breast could not be seen clearly: please check it.",
+            "The inframammary fold of the {side} breast is not clearly visible. Please check.",
             side=SideName(sides[0]),
         )
-        two = Message("The folds under both breasts could not be seen clearly: please check them.")
+        two = Message("The inframammary folds of both breasts are not clearly visible. Please check.")
         return [two if len(sides) == 2 else one]
     shown = [side for side in sides if landmarks.points[f"bust_point_{side}"].rule == NIPPLE]
     if shown:
         one = Message(
-            "The nipple of the {side} breast is not clearly seen: please check its bust point.",
+            "The nipple of the {side} breast is not clearly visible. Check its bust point.",
             side=SideName(shown[0]),
         )
-        two = Message("The nipples are not clearly seen: please check both bust points.")
+        two = Message("The nipples are not clearly visible. Check both bust points.")
         rest = _doubt(kind, [side for side in sides if side not in shown], landmarks)
         return [two if len(shown) == 2 else one, *rest]
     one = Message(
-        "No nipple stands out clearly on the {side} breast: please check its bust point.",
+        "No nipple clearly detected on the {side} breast. Check its bust point.",
         side=SideName(sides[0]),
     )
-    two = Message("No nipple stands out clearly: the bust points follow the shape of the breasts.")
+    two = Message("No nipples clearly detected: the bust points are estimated from the shape of the breasts.")
     return [two if len(sides) == 2 else one]

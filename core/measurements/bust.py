@@ -19,15 +19,15 @@ from core.measurements.girths import UNSURE_LEVEL
 from core.measurements.subject import Subject, shows_breast
 from core.messages import EMPTY, Message
 
-NO_MARK = Message("The scan does not show the landmarks that it is taken from.")
-NO_BREAST = Message("No breast stands out on this side.")
-NO_FOLD = Message("The fold under the breast does not show.")
-UNSURE_FOLD = Message("The fold under the breast is uncertain, and its volume with it: an estimate.")
-NO_WAY = Message("There is no way over the skin between its two places.")
-NO_ROOT = Message("The ends of the root of the breast were not found.")
-OPEN_ROOT = Message("The skin round the root of the breast does not show far enough.")
-UNSEEN_CHEST = Message("The chest behind the breast and the top of its root do not show: an estimate.")
-HOLED = Message("A hole of the scan lies on its way: an estimate.")
+NO_MARK = Message("The landmarks of this measurement are not in the scan.")
+NO_BREAST = Message("No breast protrusion on this side.")
+NO_FOLD = Message("The inframammary fold is not visible.")
+UNSURE_FOLD = Message("The inframammary fold and the volume are uncertain: estimate.")
+NO_WAY = Message("No path over the skin connects the two points.")
+NO_ROOT = Message("The ends of the breast root were not detected.")
+OPEN_ROOT = Message("The skin around the breast root is incomplete in the scan.")
+UNSEEN_CHEST = Message("The chest behind the breast and the top of its root are not visible: estimate.")
+HOLED = Message("The path crosses a hole of the scan: estimate.")
 
 
 OF_A_CUP = ("bust_point_to_fold", "cup_depth", "cup_width", "root_length")

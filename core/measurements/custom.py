@@ -17,7 +17,7 @@ from core.messages import Message
 OWN = "own:"
 """The keys of the designer's own measures are this and their name."""
 
-NO_TRUNK = Message("The scan shows no trunk at that height.")
+NO_TRUNK = Message("The scan has no trunk at that height.")
 
 
 def measure_custom(subject: Subject, own: Iterable[CustomMeasurement]) -> Iterator[Measure]:

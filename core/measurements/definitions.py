@@ -50,12 +50,12 @@ class Measure:
 
 
 GIRTHS, CUPS, BUST = Message("Girths"), Message("Cups"), Message("Bust")
-AREAS, BOTH = Message("Sections and volumes"), Message("Left and right")
+AREAS, BOTH = Message("Sections and volumes"), Message("Symmetry")
 
-TAPE = Message("A tape lies level round the trunk and bridges hollows; arms are left out.")
+TAPE = Message("Horizontal tape around the trunk, bridging hollows, without arms.")
 """How a tape lies, said of every girth."""
 
-_SKIN = Message("The same level, but along the skin into every hollow.")
+_SKIN = Message("Same level, along the skin into every hollow.")
 
 _TABLE = (
     Definition(
@@ -69,7 +69,12 @@ _TABLE = (
         GIRTHS,
     ),
     Definition(
-        "bust_girth_skin", Message("Bust outline"), "mm", "", Message("Ours. {text}", text=_SKIN), GIRTHS
+        "bust_girth_skin",
+        Message("Bust outline"),
+        "mm",
+        "",
+        Message("Defined by Busk. {text}", text=_SKIN),
+        GIRTHS,
     ),
     Definition(
         "underbust_girth",
@@ -77,7 +82,7 @@ _TABLE = (
         "mm",
         "Under bust girth",
         Message(
-            "Directly below the breasts, at the first height where no breast is nicked any more. {tape}",
+            "Directly below the breasts, at the first level without breast tissue. {tape}",
             tape=TAPE,
         ),
         GIRTHS,
@@ -87,7 +92,7 @@ _TABLE = (
         Message("Under-bust outline"),
         "mm",
         "",
-        Message("Ours. {text}", text=_SKIN),
+        Message("Defined by Busk. {text}", text=_SKIN),
         GIRTHS,
     ),
     Definition(
@@ -95,7 +100,7 @@ _TABLE = (
         Message("High bust girth"),
         "mm",
         "",
-        Message("Ours: level, just below the lower one of the armpits. {tape}", tape=TAPE),
+        Message("Defined by Busk: horizontal, just below the lower armpit. {tape}", tape=TAPE),
         GIRTHS,
     ),
     Definition(
@@ -103,7 +108,7 @@ _TABLE = (
         Message("High bust outline"),
         "mm",
         "",
-        Message("Ours. {text}", text=_SKIN),
+        Message("Defined by Busk. {text}", text=_SKIN),
         GIRTHS,
     ),
     Definition(
@@ -112,8 +117,8 @@ _TABLE = (
         "mm",
         "Waist girth",
         Message(
-            "Where the trunk is narrowest. {tape} The standard goes midway between lowest rib "
-            "and hip bone, which a scan does not show.",
+            "At the narrowest trunk. {tape} The standard uses the level midway between lowest "
+            "rib and hip bone, which a scan does not show.",
             tape=TAPE,
         ),
         GIRTHS,
@@ -123,7 +128,7 @@ _TABLE = (
         Message("Waist outline (narrowest)"),
         "mm",
         "",
-        Message("Ours. {text}", text=_SKIN),
+        Message("Defined by Busk. {text}", text=_SKIN),
         GIRTHS,
     ),
     Definition(
@@ -132,21 +137,26 @@ _TABLE = (
         "mm",
         "Hip girth",
         Message(
-            "Where the trunk is widest round below the waist. {tape} The standard goes over the "
-            "greatest prominence of the buttocks.",
+            "At the largest trunk girth below the waist. {tape} The standard uses the greatest "
+            "prominence of the buttocks.",
             tape=TAPE,
         ),
         GIRTHS,
     ),
     Definition(
-        "hip_girth_skin", Message("Hip outline"), "mm", "", Message("Ours. {text}", text=_SKIN), GIRTHS
+        "hip_girth_skin",
+        Message("Hip outline"),
+        "mm",
+        "",
+        Message("Defined by Busk. {text}", text=_SKIN),
+        GIRTHS,
     ),
     Definition(
         "bust_point_distance",
         Message("Bust point distance"),
         "mm",
         "",
-        Message("Straight from bust point to bust point."),
+        Message("Straight distance between the bust points."),
         BUST,
     ),
     Definition(
@@ -154,7 +164,7 @@ _TABLE = (
         Message("Bust point to fold"),
         "mm",
         "",
-        Message("The shortest way over the skin from the bust point to the fold below it."),
+        Message("Shortest path over the skin from the bust point to the inframammary fold below."),
         CUPS,
         True,
     ),
@@ -164,8 +174,8 @@ _TABLE = (
         "mm",
         "",
         Message(
-            "Ours: how far the bust point stands out, level, from the straight line between the "
-            "inner and the outer end of the root."
+            "Defined by Busk: horizontal distance of the bust point from the straight line "
+            "between the inner and outer ends of the breast root."
         ),
         CUPS,
         True,
@@ -176,7 +186,8 @@ _TABLE = (
         "mm",
         "",
         Message(
-            "Ours: straight from the inner to the outer end of the root, at the height of the bust point."
+            "Defined by Busk: straight distance between the inner and outer ends of the breast "
+            "root, at bust point height."
         ),
         CUPS,
         True,
@@ -187,8 +198,8 @@ _TABLE = (
         "mm",
         "",
         Message(
-            "Ours: along the root of the breast where a wire lies, from its inner end down "
-            "through the fold to its outer end."
+            "Defined by Busk: length of the breast root along the wire, from the inner end "
+            "through the inframammary fold to the outer end."
         ),
         CUPS,
         True,
@@ -199,9 +210,9 @@ _TABLE = (
         "mm",
         "",
         Message(
-            "Ours: the mean height of the bust points over the under-bust level, which follows "
-            "the skin: it rises with the breast, so this may fall while the bust points are "
-            "lifted. The standard measures from the ground, which few scans show."
+            "Defined by Busk: mean height of the bust points above under-bust level. That level "
+            "follows the skin and rises with the breast, so the value may decrease while the "
+            "bust points rise. The standard measures from the floor, which few scans include."
         ),
         BUST,
     ),
@@ -211,33 +222,33 @@ _TABLE = (
         "mm",
         "",
         Message(
-            "Ours: how far the foremost places of both breasts lie, in the mean, before the "
-            "middle of the chest at the under-bust level."
+            "Defined by Busk: mean forward distance of the apexes of both breasts from the "
+            "centre of the chest at under-bust level."
         ),
         BUST,
     ),
     Definition(
         "apex_lift",
-        Message("Lift of the apex"),
+        Message("Apex lift"),
         "mm",
         "",
-        Message("Ours: how much higher the foremost places of the breasts lie, in the mean, than at rest."),
+        Message("Defined by Busk: mean rise of the apexes of both breasts from the original body."),
         BUST,
     ),
     Definition(
         "section_area_bust",
-        Message("Area at the bust"),
+        Message("Bust area"),
         "cm2",
         "",
-        Message("Ours: what the skin encloses at the level of the bust girth."),
+        Message("Defined by Busk: area enclosed by the skin at the level of the bust girth."),
         AREAS,
     ),
     Definition(
         "section_area_underbust",
-        Message("Area under the bust"),
+        Message("Under-bust area"),
         "cm2",
         "",
-        Message("Ours: what the skin encloses at the level of the under-bust girth."),
+        Message("Defined by Busk: area enclosed by the skin at the level of the under-bust girth."),
         AREAS,
     ),
     Definition(
@@ -261,15 +272,15 @@ _TABLE = (
         Message("Left bust point higher"),
         "mm",
         "",
-        Message("Ours: how much higher the left bust point lies than the right one."),
+        Message("Defined by Busk: height of the left bust point above the right one."),
         BOTH,
     ),
     Definition(
         "asymmetry_forward",
-        Message("Left bust point further out"),
+        Message("Left bust point further forward"),
         "mm",
         "",
-        Message("Ours: how much further forward the left bust point lies than the right one."),
+        Message("Defined by Busk: forward distance of the left bust point from the right one."),
         BOTH,
     ),
     Definition(
@@ -278,8 +289,8 @@ _TABLE = (
         "ml",
         "",
         Message(
-            "Ours, an estimate: the volume of the left breast less that of the right one. How "
-            "far off is not known; what Left and right tells is surer."
+            "Defined by Busk, estimate: volume of the left breast minus that of the right one. "
+            "The error is unknown; the values of Symmetry are more reliable."
         ),
         BOTH,
     ),

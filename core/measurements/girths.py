@@ -15,23 +15,23 @@ from core.messages import EMPTY, Message
 NAMES = ("bust", "underbust", "high_bust", "waist", "hip")
 
 WHY = {
-    "bust": Message("The scan shows no trunk at the level of the bust points."),
-    "underbust": Message("The scan shows no trunk below the breasts."),
-    "high_bust": Message("The scan does not show both armpits, or the arms hang too close."),
-    "waist": Message("The scan shows no waist: it ends too high, or the trunk is nowhere narrower."),
-    "hip": Message("The scan shows no hip: it ends above it, or the trunk does not widen."),
+    "bust": Message("The scan has no trunk at the level of the bust points."),
+    "underbust": Message("The scan has no trunk below the breasts."),
+    "high_bust": Message("The scan does not include both armpits, or the arms are too close to the body."),
+    "waist": Message("No waist detected: the scan ends too high, or the trunk has no narrowest level."),
+    "hip": Message("No hip detected: the scan ends above it, or the trunk does not widen."),
 }
 """Why a girth may be missing."""
 
-UNSURE_LEVEL = Message("The fold under the breast is uncertain: an estimate.")
+UNSURE_LEVEL = Message("The inframammary fold is uncertain: estimate.")
 
 NARROWEST = Message(
-    "At the narrowest place: the waist between lowest rib and hip bone does not show, "
-    "and its girth may differ by several centimetres, which the ± does not include."
+    "At the narrowest level: the anatomical waist between lowest rib and hip bone is not "
+    "visible, and its girth may differ by several centimetres, which ± does not include."
 )
 """What is said of the girth of the waist."""
 
-OVER_GAPS = Message("It goes over a hole of the scan or over a joined arm: an estimate.")
+OVER_GAPS = Message("Crosses a hole of the scan or a merged arm: estimate.")
 
 
 def girth_measures(subject: Subject) -> Iterator[Measure]:

@@ -15,20 +15,20 @@ class _Words(NamedTuple):
 
 
 _BAND_WORDS = _Words(
-    Message("Under-bust {value} gives band {name} ({low} to {high})."),
-    Message("Under-bust {value} lies below the smallest band, {name}, which begins at {low}."),
-    Message("Under-bust {value} lies above the largest band, {name}, which ends at {high}."),
+    Message("Under-bust {value}: band {name} ({low} to {high})."),
+    Message("Under-bust {value} is below the smallest band, {name} (from {low})."),
+    Message("Under-bust {value} is above the largest band, {name} (up to {high})."),
 )
 _CUP_WORDS = {
     UNDERBUST: _Words(
-        Message("Bust less under-bust {value} gives cup {name} ({low} to {high})."),
-        Message("Bust less under-bust {value} lies below the smallest cup, {name}, which begins at {low}."),
-        Message("Bust less under-bust {value} lies above the largest cup, {name}, which ends at {high}."),
+        Message("Bust minus under-bust {value}: cup {name} ({low} to {high})."),
+        Message("Bust minus under-bust {value} is below the smallest cup, {name} (from {low})."),
+        Message("Bust minus under-bust {value} is above the largest cup, {name} (up to {high})."),
     ),
     BAND: _Words(
-        Message("Bust less band {value} gives cup {name} ({low} to {high})."),
-        Message("Bust less band {value} lies below the smallest cup, {name}, which begins at {low}."),
-        Message("Bust less band {value} lies above the largest cup, {name}, which ends at {high}."),
+        Message("Bust minus band {value}: cup {name} ({low} to {high})."),
+        Message("Bust minus band {value} is below the smallest cup, {name} (from {low})."),
+        Message("Bust minus band {value} is above the largest cup, {name} (up to {high})."),
     ),
 }
 
@@ -44,7 +44,7 @@ def allowance_sentence(table: SizeTable, underbust: float, allowance: float) -> 
         f"{short(each)} {table.unit}" for each in (underbust, allowance, underbust - allowance)
     )
     return Message(
-        "Under-bust {value} less {taken} for a tape that is worn tight: {left}.",
+        "Under-bust {value} minus tape tension allowance {taken}: {left}.",
         value=value,
         taken=taken,
         left=left,
@@ -79,12 +79,12 @@ def _gap(name: str, least: str, most: str) -> Message:
     """Say that a value lies in no range of the source, but next to this one, which may be a single number."""
     if least == most:
         return Message(
-            "The table itself names {value} for {name}; what lies between two steps goes to the nearest.",
+            "The size chart lists {value} for {name}; intermediate values use the nearest step.",
             value=least,
             name=name,
         )
     return Message(
-        "The table itself names {low} to {high} for {name}; what lies between two steps goes to the nearest.",
+        "The size chart lists {low} to {high} for {name}; intermediate values use the nearest step.",
         low=least,
         high=most,
         name=name,

@@ -46,9 +46,7 @@ def read_table(path: Path) -> SizeTable:
         return table_of(path.stem, read_text(path, _LARGEST))
     except (OSError, ValueError) as problem:
         raise SizeError(
-            Message(
-                "The table of sizes {name} cannot be read: {why}.", name=path.name, why=reason_of(problem)
-            ),
+            Message("The size chart {name} cannot be read: {why}.", name=path.name, why=reason_of(problem)),
             Message("Correct the file or remove it."),
         ) from problem
 

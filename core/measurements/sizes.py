@@ -210,8 +210,8 @@ def user_tables() -> tuple[list[SizeTable], list[SizeError]]:
         try:
             if path.stem in _ORDER:
                 raise SizeError(
-                    Message("Busk has a table {name} itself.", name=path.stem),
-                    Message("Give {name} another name.", name=path.name),
+                    Message("{name} is the name of a built-in size chart.", name=path.stem),
+                    Message("Rename {name}.", name=path.name),
                 )
             tables.append(read_table(path))
         except SizeError as problem:
@@ -224,7 +224,7 @@ def _check(underbust_mm: float, bust_mm: float, allowance_mm: float) -> None:
         if not (isfinite(girth) and 0.0 < girth <= _LONGEST):
             raise SizeError(
                 Message("No body has a girth of {girth}.", girth=length_of(girth)),
-                Message("Look at the landmarks and the unit."),
+                Message("Check the landmarks and the unit."),
             )
     low, high = ALLOWANCE
     if not low <= allowance_mm <= high:
@@ -232,7 +232,7 @@ def _check(underbust_mm: float, bust_mm: float, allowance_mm: float) -> None:
             Message(
                 "{value} cannot be taken off for a tape that is worn tight.", value=length_of(allowance_mm)
             ),
-            Message("Choose {low} to {high}.", low=f"{low:g}", high=f"{high:g}"),
+            Message("Enter a value from {low} to {high}.", low=f"{low:g}", high=f"{high:g}"),
         )
 
 

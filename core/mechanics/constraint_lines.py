@@ -130,8 +130,10 @@ def length_ratio(text: str, name: str, rest_mm: float, whole_mm: float, unit: st
     typed, ratio = _typed(text, unit), parse_ratio(text, rest_mm, unit)
     if typed is None or ratio is None:
         raise LineError(
-            Message("'{text}' is not a length for {line}.", text=text, line=LineName(name)),
-            Message("Write 97% of the rest length, -20mm shorter, or 400mm absolute."),
+            Message("'{text}' is not a valid length for {line}.", text=text, line=LineName(name)),
+            Message(
+                "Enter a length such as 97% (of the original length), -20mm (change) or 400mm (absolute)."
+            ),
         )
     low, high = RATIO_LIMITS
     if low <= ratio <= high:
@@ -149,13 +151,13 @@ def length_ratio(text: str, name: str, rest_mm: float, whole_mm: float, unit: st
                 long=Length(long + back),
             ),
             Message(
-                "Lengths are those of the front part: for that whole band, write {length}mm.",
+                "Enter a front length. For that full length, enter {length}mm.",
                 length=f"{rest:.1f}",
             ),
         )
     raise LineError(
         Message(
-            "{text} asks {line} for {percent} % of its rest length.",
+            "{text} sets {line} to {percent} % of its original length.",
             text=text.strip(),
             line=LineName(name),
             percent=f"{100 * ratio:.1f}",

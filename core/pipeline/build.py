@@ -262,8 +262,8 @@ def _bind(body: Mesh, control: ControlMesh, fade: Floats, weights: Weights, scal
     loose = len(movable_border_triangles(control.mesh, control.fixed))
     if loose:
         raise FitError(
-            Message("Triangles at the border of the control mesh can move: {count}.", count=loose),
-            Message("Choose a template whose two outermost rings of points are fixed."),
+            Message("Movable triangles at the border of the control mesh: {count}.", count=loose),
+            Message("Choose a template with two fixed outer rings of points."),
         )
     # Single precision is exact to 1e-4 mm here, far below what a scan resolves, and read in half the time.
     return bind(
@@ -293,7 +293,7 @@ def _model(
     if unknown:
         raise LineError(
             Message("There is no line '{line}'.", line=LineName(unknown[0])),
-            Message("The lines are: {lines}.", lines=", ".join(control.line_names)),
+            Message("Available lines: {lines}.", lines=", ".join(control.line_names)),
         )
     return constrained_model(
         control,

@@ -54,6 +54,6 @@ def _solver(
 def _no_agreement(fitted: FittedModel) -> LineError:
     """Return what to say when the body and the elastics do not come to rest together."""
     return LineError(
-        Message("No balance was found with {lines} made of elastic.", lines=", ".join(fitted.elongations)),
-        Message("Set the lines nearer to 100 %, or choose no elastic."),
+        Message("No equilibrium found with elastics for {lines}.", lines=", ".join(fitted.elongations)),
+        Message("Set the lines closer to 100 %, or choose no elastic."),
     )

@@ -27,8 +27,8 @@ class NoEquilibriumError(LineError):
 
 
 _NOT_FOUND = (
-    Message("No balance was found with the lines at these lengths."),
-    Message("Set them nearer to 100 %, or let turns hold the volume."),
+    Message("No equilibrium found for these line lengths."),
+    Message("Set the lengths closer to 100 %, or choose an iterative volume control."),
 )
 
 
@@ -37,13 +37,13 @@ def _cannot_hold(design: Design) -> tuple[Message, Message]:
     late = design.line_force == "explicit"
     return (
         Message(
-            "{line} cannot be held at {percent} % of its rest length.",
+            "{line} cannot be fixed at {percent} % of its original length.",
             line=LineName(line.name),
             percent=f"{100 * line.ratio:.1f}",
         ),
-        Message("Let the force of lines act in step, or let lines spring back.")
+        Message("Choose implicit line forces, or make lines elastic.")
         if late
-        else Message("Set it nearer to 100 %, or let lines spring back."),
+        else Message("Set the length closer to 100 %, or make lines elastic."),
     )
 
 

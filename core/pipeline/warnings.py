@@ -50,17 +50,18 @@ def shape_warnings(shown: ShownState) -> list[Message]:
     if state == "folded":
         turn = f"{condition.largest_rotation:.0f}"
         said = Message(
-            "The shape is folded: a triangle of the control mesh has turned by {degrees} degrees.",
+            "The mesh is folded: a triangle of the control mesh has rotated by {degrees} degrees.",
             degrees=turn,
         )
     else:
         low, high = f"{100.0 * condition.shortest:.0f}", f"{100.0 * condition.longest:.0f}"
         said = Message(
-            "The shape is overstrained: edges of the mesh have {low} to {high} % of their rest lengths.",
+            "The mesh is overstrained: edges of the control mesh are at {low} to {high} % of "
+            "their original lengths.",
             low=low,
             high=high,
         )
-    return [join((said, Message("It does not tell how a body would look.")))]
+    return [join((said, Message("The shape does not represent a real body.")))]
 
 
 def immovable_lines(stages: Stages) -> list[Message]:
@@ -72,12 +73,12 @@ def immovable_lines(stages: Stages) -> list[Message]:
     still = [line.name for line in stages.model.lines if not line.constrains]
     return [
         Message(
-            "{name} lies on points that do not move: it is measured, and no length that is set moves it.",
+            "{name} is on fixed points: measured only, not affected by line lengths.",
             name=LineName(name),
         )
         if name in own
         else Message(
-            "{name} lies on the rib cage: it is measured, and no length that is set moves it.",
+            "{name} is on the rib cage: measured only, not affected by line lengths.",
             name=LineName(name),
         )
         for name in still
@@ -91,6 +92,6 @@ def warnings(stages: Stages) -> list[Message]:
     faded = (
         []
         if patch.rule == "flood"
-        else [Message("The reshaped part fades by distance: {why}", why=patch.reason)]
+        else [Message("The blend region is computed by distance: {why}", why=patch.reason)]
     )
     return [*stages.control.warnings, *faded]

@@ -137,12 +137,15 @@ def _body_of(
     said = scan.notes
     shape = scan.vertices, scan.faces
     if rebuilt:
-        said = (Message("Laid a surface through {count} points.", count=f"{len(scan.vertices):,}"), *said)
+        said = (
+            Message("Reconstructed a surface from {count} points.", count=f"{len(scan.vertices):,}"),
+            *said,
+        )
         shape = _surface(name, scan, progress)
     vertices, faces, repairs = repair(*shape, progress)
     if len(faces) == 0:
         raise ScanError(
-            Message("{file} has no sound triangles.", file=name), Message("Export the scan again.")
+            Message("{file} contains no valid triangles.", file=name), Message("Export the scan again.")
         )
     progress(STANDING, 0.0)
     try:
@@ -173,7 +176,7 @@ def _off_the_stand(skin: EditableMesh, level: float) -> tuple[EditableMesh, tupl
     body = skin.vertices[:, 2] > level
     if body.all():
         return skin, ()
-    return skin.with_vertices(body).compact(), (Message("Cut away the stand that the body is mounted on."),)
+    return skin.with_vertices(body).compact(), (Message("Removed the stand that supports the body."),)
 
 
 def raw_pose(vertices: Points, unit: str | None) -> Pose:
@@ -182,7 +185,9 @@ def raw_pose(vertices: Points, unit: str | None) -> Pose:
     likely = min(MILLIMETRES, key=lambda each: abs(np.log(height * MILLIMETRES[each] / TORSO)))
     unit = unit if unit in MILLIMETRES else likely
     scale = np.diag([*[MILLIMETRES[unit]] * 3, 1.0])
-    return Pose(unit, "+z", "-y", scale, False, Message("It is shown as it lies in its file."), 0.0)
+    return Pose(
+        unit, "+z", "-y", scale, False, Message("Shown in the original orientation of the file."), 0.0
+    )
 
 
 def scan_name(name: str) -> str:
@@ -195,16 +200,16 @@ def _surface(name: str, scan: RawScan, progress: Progress) -> tuple[Points, Face
     if len(scan.vertices) < FEWEST_POINTS:
         raise ScanError(
             Message(
-                "{file} has no sound triangles, and too few points for a surface: {count}.",
+                "{file} has no valid triangles and too few points for a surface: {count}.",
                 file=name,
                 count=f"{len(scan.vertices):,}",
             ),
-            Message("Scan with at least {few} points, better 30,000.", few=f"{FEWEST_POINTS:,}"),
+            Message("Scan with at least {few} points (30,000 recommended).", few=f"{FEWEST_POINTS:,}"),
         )
     try:
         return reconstruct_surface(scan.vertices, scan.normals, progress)
     except (ArithmeticError, ValueError, IndexError) as problem:
         raise ScanError(
-            Message("No surface can be laid through the points of {file}.", file=name),
-            Message("Mesh the points first, in the program of the scanner."),
+            Message("A surface cannot be reconstructed from the points of {file}.", file=name),
+            Message("Create a mesh from the points in the scanner software first."),
         ) from problem

@@ -24,7 +24,7 @@ from core.scan.repair.repair import hole_count
 NEAR = 25.0
 """The centre of a hole is recognised within this distance, or half the hole's length [mm]."""
 
-NO_BUST = Message("The edited scan shows no bust.")
+NO_BUST = Message("No bust detected on the edited scan.")
 KEEP_MORE = Message("Crop less: keep the body from the waist to the neck.")
 
 
@@ -43,7 +43,7 @@ def _edited(body: Body, edits: ScanEdits) -> Body:
     mesh, levels = _cropped(body, edits)
     sentences: list[Message] = []
     if levels:
-        sentences.append(Message("Cropped by hand."))
+        sentences.append(Message("Cropped manually."))
     scanned = mesh.vertices
     if edits.kept:
         sign = 1.0 if edits.kept == "left" else -1.0
@@ -58,7 +58,7 @@ def _edited(body: Body, edits: ScanEdits) -> Body:
         mesh, estimated, unfilled = fill_large_holes(mesh, chosen)
         if done := len(chosen) - unfilled:
             sentences.append(
-                Message("Filled {holes} by hand: the skin there is an estimate.", holes=hole_count(done))
+                Message("Filled {holes} manually: the skin there is an estimate.", holes=hole_count(done))
             )
         if unfilled:
             sentences.append(
@@ -75,8 +75,8 @@ def _edited(body: Body, edits: ScanEdits) -> Body:
 def mirror_sentence(kept: str) -> Message:
     """Return the warning that one half of a body is no scan of it."""
     if kept == "left":
-        return Message("The right half is a mirror image of the left one: left and right do not differ.")
-    return Message("The left half is a mirror image of the right one: left and right do not differ.")
+        return Message("The right half is a mirror image of the left one: left and right are identical.")
+    return Message("The left half is a mirror image of the right one: left and right are identical.")
 
 
 def _cropped(body: Body, edits: ScanEdits) -> tuple[Mesh, tuple[float, ...]]:

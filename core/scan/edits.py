@@ -40,27 +40,28 @@ class ScanEdits:
         levels = [level for level in (self.low, self.high) if level is not None]
         if not all(0.0 <= level < MAX_COORDINATE for level in levels):
             raise UserError(
-                Message("The height of a crop is out of range."), Message("Give a height of 0 mm or more.")
+                Message("The height of a crop is out of range."), Message("Enter a height of 0 mm or more.")
             )
         if len(levels) == 2 and levels[1] - levels[0] < LEAST_HEIGHT:
             raise UserError(
-                Message("The crop leaves no body."),
+                Message("The crop removes the whole body."),
                 Message("Keep at least {least} of its height.", least=Length(LEAST_HEIGHT)),
             )
         if self.kept not in ("", *SIDES):
             raise UserError(
-                Message("A body has no side '{kept}'.", kept=self.kept), Message("Choose left or right.")
+                Message("Unknown side of the body: '{kept}'.", kept=self.kept),
+                Message("Choose left or right."),
             )
         if len(self.filled) > MOST_FILLED:
             raise UserError(
-                Message("Too many holes are filled one by one: {count}.", count=len(self.filled)),
+                Message("Too many holes selected one by one: {count}.", count=len(self.filled)),
                 Message("Fill all of them at once."),
             )
         if not all(
             np.shape(place) == (3,) and (np.abs(place) < MAX_COORDINATE).all() for place in self.filled
         ):
             raise UserError(
-                Message("The centre of a hole needs three numbers."), Message("Give x, y and z in mm.")
+                Message("The centre of a hole requires three numbers."), Message("Enter x, y and z in mm.")
             )
 
     def with_filled(self, centre: tuple[float, float, float]) -> ScanEdits:
@@ -82,6 +83,6 @@ def hole_centre(text: str) -> tuple[float, float, float]:
         x, y, z = map(float, text.replace("\N{MINUS SIGN}", "-").split(","))
     except ValueError:
         raise UserError(
-            Message("The centre of a hole needs three numbers."), Message("Give x, y and z in mm.")
+            Message("The centre of a hole requires three numbers."), Message("Enter x, y and z in mm.")
         ) from None
     return x, y, z

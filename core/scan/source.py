@@ -32,7 +32,8 @@ class ScanSource:
     def __post_init__(self) -> None:
         if any(len(word or "") > _LONGEST_WORD for word in (self.unit, self.up, self.front)):
             raise UserError(
-                Message("The unit, up or front of the scan cannot be used."), Message("Choose it again.")
+                Message("The unit, up or front of the scan is not valid."),
+                Message("Choose the elastic again."),
             )
 
     def set_up(self, **told: str | None) -> ScanSource:

@@ -65,8 +65,8 @@ def test_help_finds_keys_commands_versions_and_licences() -> None:
             for row in range(keys.list.topLevelItemCount())
         }
         assert said["Ctrl+O"] == "Open"
-        assert said["Shift+Middle drag"] == "Move the body"
-        assert said["L"] == "Link left and right, or set apart"
+        assert said["Shift+Middle drag"] == "Move body"
+        assert said["L"] == "Link or unlink"
         assert {"Backspace", "← →, - +", "← → ↑ ↓", "Home, End", "Page Up, Page Down", "Del"} <= said.keys()
         keys.accept()
         recovery_folder().mkdir(parents=True, exist_ok=True)
@@ -140,8 +140,8 @@ def test_the_room_is_shared_out_by_keys() -> None:
         window.view.tools.actions_by_name["fit"].triggered.connect(fitted.append)
         focus = QApplication.focusWidget
         for name, key, part, size in (
-            ("Height of the live plot", Qt.Key.Key_Up, window.strip, QWidget.height),
-            ("Width of the inspector", Qt.Key.Key_Left, window.inspector, QWidget.width),
+            ("Live plot height", Qt.Key.Key_Up, window.strip, QWidget.height),
+            ("Inspector width", Qt.Key.Key_Left, window.inspector, QWidget.width),
         ):
             for _ in range(60):
                 if focus().accessibleName() == name:
@@ -156,7 +156,7 @@ def test_the_room_is_shared_out_by_keys() -> None:
             assert size(part) < before
         assert not fitted, "Home shows all of the body elsewhere"
         window.strip.set_folded(True)
-        assert "Height of the live plot" not in [each.accessibleName() for each in window.layout_._stops()]
+        assert "Live plot height" not in [each.accessibleName() for each in window.layout_._stops()]
 
     run_main([], script)
 

@@ -42,19 +42,17 @@ def test_a_vibration_is_told_at_once_and_ended_by_one_button() -> None:
         window.session.choose_control("conventional")
         window.session.change({"gain": 1.7}, "gain")
         yield settled(window)
-        assert "does not come to rest" in str(notice_of(window).sentence)
+        assert "does not converge" in str(notice_of(window).sentence)
         assert notice_of(window).tone == "bad", "as the verdict"
         assert words(window) == [], "what was not tried is not offered"
         yield lambda: told(window)
         notice = notice_of(window)
-        assert notice.sentence.startswith(
-            "Mid-bust and the volume pull against each other: the bust point swings"
-        )
-        assert notice.sentence.endswith("every 2 turns.")
-        assert words(window)[0].startswith("Use Adaptive"), "only the conventional control vibrates"
+        assert notice.sentence.startswith("Mid-bust and the volume conflict: the bust point oscillates")
+        assert notice.sentence.endswith("(period 2 iterations).")
+        assert words(window)[0].startswith("Use adaptive control"), "only the conventional control vibrates"
         assert len(words(window)) == 2
-        assert "Lower the gain to " in notice.details
-        assert "that this shape bears" in notice.details
+        assert "Reduce gain to " in notice.details
+        assert "for this shape" in notice.details
         steps = window.session.undo_stack.count()
         window.notices.buttons[0].click()
         yield settled(window)
@@ -62,12 +60,12 @@ def test_a_vibration_is_told_at_once_and_ended_by_one_button() -> None:
         assert frame is not None
         assert frame.verdict.display_state == "settled"
         assert window.session.undo_stack.count() == steps + 1
-        assert window.session.undo_stack.undoText() == "Use Adaptive"
+        assert window.session.undo_stack.undoText() == "Use adaptive control"
         assert window.notices.notice() is None
         window.actions_.undo.trigger()
         yield settled(window)
         yield lambda: told(window)
-        assert words(window)[0].startswith("Use Adaptive")
+        assert words(window)[0].startswith("Use adaptive control")
 
     run_main([], script)
 
@@ -115,8 +113,8 @@ def test_a_length_that_was_refused_gets_the_nearest_that_is_not() -> None:
         yield lambda: told(window)
         notice = notice_of(window)
         assert (notice.tone, notice.about) == ("bad", REFUSED)
-        assert notice.sentence == "Mid-bust cannot be held at 50.0 % of its rest length."
-        assert "pull against each other" in notice.hint
+        assert notice.sentence == "Mid-bust cannot be fixed at 50.0 % of its original length."
+        assert "conflict" in notice.hint
         assert words(window)[0].startswith("Set Mid-bust to ")
         window.notices.buttons[0].click()
         yield settled(window)
@@ -132,7 +130,7 @@ def test_asked_of_a_calm_design_he_says_that_nothing_is_wrong() -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
-        (command,) = (each for _, each in window.actions_.all() if each.text() == "What is wrong here?")
+        (command,) = (each for _, each in window.actions_.all() if each.text() == "Diagnose design…")
         command.trigger()
         yield lambda: told(window)
         overall = window.assessment_controller.of(window.session.frame)
@@ -253,14 +251,14 @@ def test_the_pill_opens_what_the_button_ends_and_what_will_still_be_strained() -
         window.lines_controller.commit_length("mid-bust", 0.848)
         yield lambda: told(window)
         said = words(window)[1]
-        assert "the second high pressure, strained skin" in str(notice_of(window).hint), "it is told before"
+        assert "high contact pressure, strained skin" in str(notice_of(window).hint), "it is told before"
         assert said.startswith("Lengthen Mid-bust by ")
         window.notices.buttons[1].click()
         yield settled(window)
         assert window.session.undo_stack.undoText() == said
         yield lambda: chip.state() in ("caution", "bad")
         assert window.notices.notice() is None
-        assert "what ends it" in chip.toolTip()
+        assert "suggest a fix" in chip.toolTip()
         chip.setFocus()
         QTest.keyClick(chip, Qt.Key.Key_Space)
         yield lambda: told(window)

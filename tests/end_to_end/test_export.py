@@ -57,7 +57,7 @@ def test_a_body_is_exported_by_keys_alone_in_the_unit_that_was_chosen(
         sheet.save.setFocus()
         QTest.keyClick(sheet.save, Qt.Key.Key_Return)
         yield written(window)
-        assert window.notices.notice().sentence == "anna.ply written, in cm, z-up."
+        assert window.notices.notice().sentence == "anna.ply saved, in cm, z-up."
         assert QApplication.activeModalWidget() is None
         body = pv.read(path)
         rest = window.session.frame.stages.body.mesh
@@ -177,7 +177,7 @@ def test_a_folded_body_is_told_before_it_is_written(tmp_path: Path, monkeypatch:
         yield settled(window)
         sheet = opened(window, "body")
         yield told(sheet)
-        assert sheet._doubt.text() == "Folded: this is no shape to work from."
+        assert sheet._doubt.text() == "Folded: do not use this shape for production."
         assert sheet.save.isEnabled()
         choose(sheet, "shape", "before")
         yield told(sheet)
@@ -186,7 +186,7 @@ def test_a_folded_body_is_told_before_it_is_written(tmp_path: Path, monkeypatch:
         window.actions_.export.trigger()
         said = [each.sentence for each in (window.notices.notice(), *window.notices._waiting)]
         assert len(said) == 2, "that of the fold itself, and of the file"
-        assert "Folded: this is no shape to work from." in said
+        assert "Folded: do not use this shape for production." in said
         yield lambda: window.notices.notice().sentence == "anna.stl written, in mm, z-up."
         assert window.notices.more.text() == "2 more"
 
@@ -206,7 +206,7 @@ def test_a_name_with_another_ending_is_that_format_with_the_unit_chosen_for_it(
         saved_as(monkeypatch, tmp_path / "anna.OBJ")
         sheet.save.click()
         yield written(window)
-        assert window.notices.notice().sentence == "anna.OBJ written, in inches, z-up."
+        assert window.notices.notice().sentence == "anna.OBJ saved, in inches, z-up."
 
     run_main([], script)
     assert (tmp_path / "anna.OBJ").read_text().count("\nf ") == 168
@@ -249,7 +249,7 @@ def test_it_speaks_japanese_and_no_word_is_cut(tmp_path: Path, monkeypatch: pyte
             sheet.reject()
         opened(window, "measures").save.click()
         yield written(window)
-        assert "書き出しました" in window.notices.notice().sentence
+        assert "保存しました" in window.notices.notice().sentence
 
     try:
         run_main([], script)

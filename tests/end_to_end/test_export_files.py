@@ -137,7 +137,7 @@ def test_a_full_disk_leaves_what_stood_there_and_is_told(
                 sheet.save.click()
                 yield written(window)
             notice = window.notices.notice()
-            assert (notice.tone, notice.hint) == ("bad", "Choose another folder or make room."), what
+            assert (notice.tone, notice.hint) == ("bad", "Choose another folder or free disk space."), what
             stands = [(each.name, each.read_text()) for each in path.parent.iterdir()]
             assert stands == [(path.name, "what stood there")]
             window.notices.clear()
@@ -161,7 +161,7 @@ def test_a_series_does_not_take_the_place_of_another_unasked(
         sheet = opened(window, "turntable")
         choose(sheet, "format", "png")
         sheet.save.click()
-        assert asked == ["anna-07.png is there already. Replace it?"]
+        assert asked == ["anna-07.png already exists. Replace it?"]
         assert QApplication.activeModalWidget() is sheet
         assert not any(job.waited for job in window.jobs.at_work())
         sheet.reject()
@@ -200,7 +200,7 @@ def test_a_body_is_written_as_it_is_when_the_dialog_closes(
         stages, points = window.session.frame.stages, window.session.frame.control_points
         away = pv.read(path).points - deform(stages.binding, points)
         assert abs(away).max() < 0.01
-        assert said == ["anna.ply written, in mm, z-up."], "nothing is under way any more"
+        assert said == ["anna.ply saved, in mm, z-up."], "nothing is under way any more"
 
     run_main(["resources/samples/mannequin.ply"], script)
 

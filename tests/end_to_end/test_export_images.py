@@ -57,7 +57,7 @@ def test_pictures_are_fine_and_leave_by_three_ways(tmp_path: Path, monkeypatch: 
         assert shown == [str(tmp_path)]
         yield lambda: view.panes.size() == room
         the_selected_line_is_not_marked(window, pixels(QImage(str(saved))))
-        action = next(action for _, action in window.actions_.all() if action.text() == "Copy the picture")
+        action = next(action for _, action in window.actions_.all() if action.text() == "Copy image")
         action.trigger()
         window.notices.clear()
         assert np.array_equal(pixels(QGuiApplication.clipboard().image()), pixels(QImage(str(saved))))

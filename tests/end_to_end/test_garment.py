@@ -46,7 +46,7 @@ def test_an_elastic_is_chosen_and_the_length_to_cut_is_that_of_the_core() -> Non
             yield made_of(window, *made)
         after = cut_rows(window)
         assert window.session.undo_stack.count() == steps + 3
-        assert window.session.undo_stack.undoText() == "Under-bust made of Bra band, plush back 18 mm"
+        assert window.session.undo_stack.undoText() == "Under-bust: Bra band, plush back 18 mm"
         for line in ("mid-bust", "full-bust"):
             assert after[line].reached_front_mm == pytest.approx(before[line].reached_front_mm, abs=SAME)
         for line, row in after.items():
@@ -77,7 +77,7 @@ def test_one_elastic_is_chosen_for_all_and_taken_off_again_without_moving_the_bo
         yield from pick(window, "Strap 15 mm")
         yield made_of(window, "mid-bust", "full-bust", "under-bust")
         assert not window.garment.offer.isVisible()
-        assert window.session.undo_stack.undoText() == "All lines made of Strap 15 mm"
+        assert window.session.undo_stack.undoText() == "All lines: Strap 15 mm"
         assert cut_rows(window)["under-bust"].elongation == pytest.approx(FIRST_STRETCH)
         yield from choose(window, "mid-bust", "No elastic")
         yield made_of(window, "full-bust", "under-bust")

@@ -50,7 +50,7 @@ def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(
         assert sheet.marked == "Roll 7"
         notice = sheet.notices.notice()
         assert notice is not None
-        assert "no allowance for seams: 20 mm go into every length" in notice.hint
+        assert "no seam allowance: 20 mm is added to each cut length" in notice.hint
         assert sheet.delete.isEnabled()
         assert sheet.views["Roll 7"].forces == ("1.3", "2.5", "3.7", "4.9")
         assert "4.9 N at 80 %" in sheet.curve.accessibleName()
@@ -120,7 +120,7 @@ def test_the_keyboard_alone_chooses_an_elastic() -> None:
             if QApplication.focusWidget() is not pull:
                 window.focusNextPrevChild(True)
         assert QApplication.focusWidget() is pull
-        assert pull.accessibleName() == "Mid-bust: elastic, Choose an elastic…"
+        assert pull.accessibleName() == "Mid-bust: elastic, Choose elastic…"
         QTest.keyClick(pull, Qt.Key.Key_Return)
         table = chooser_of(window).table
         yield table.hasFocus
@@ -169,7 +169,7 @@ def test_a_linked_pair_is_made_of_the_same_in_one_step() -> None:
         yield from choose(window, "strap right", "Strap 12 mm")
         yield made_of(window, "strap left", "strap right")
         assert window.session.undo_stack.count() == steps + 1
-        assert window.session.undo_stack.undoText() == "Straps made of Strap 12 mm"
+        assert window.session.undo_stack.undoText() == "Straps: Strap 12 mm"
         design = window.session.design
         assert design is not None
         assert design.linked_pair("strap left") == ("strap left", "strap right")
@@ -198,18 +198,18 @@ def test_one_that_is_called_as_ours_gets_a_name_of_its_own_and_none_is_called_me
         assert not sheet.views["Strap 15 mm"].own
         assert "does not say" in sheet.mark.text()
         sheet.table.mark("Strap 15 mm")
-        assert sheet.mark.text() == "An estimate, not measured"
+        assert sheet.mark.text() == "Estimate, not measured"
         sheet.reject()
         yield lambda: window.elastics_desk.sheet is None
         window.navigation.show_panel("garment")
-        yield from choose(window, "mid-bust", "Strap 15 mm, own")
+        yield from choose(window, "mid-bust", "Strap 15 mm, custom")
         yield made_of(window, "mid-bust")
         # Another one of that name, as a newer table has it: the project keeps its own.
         save_elastic(replace(user_elastics()[0][0], curve=((0.0, 0.0), (0.4, 5.0), (0.9, 12.0))))
         window.garment.rows["mid-bust"].elastic.click()
         chooser = chooser_of(window)
-        assert "Strap 15 mm, own" in [each.title for each in chooser.views()]
-        assert chooser.views()[chooser.current].title == "Strap 15 mm, own, as in this project"
+        assert "Strap 15 mm, custom" in [each.title for each in chooser.views()]
+        assert chooser.views()[chooser.current].title == "Strap 15 mm, own, from this project"
         chooser.reject()
 
     run_undrawn([], script)

@@ -151,8 +151,8 @@ def test_variants_side_by_side_are_pressed_in_one_range(asked: list[float]) -> N
 
 def test_the_legend_says_why_nothing_presses() -> None:
     nothing = PressureList((), {})
-    assert pressure_note(nothing, stale=False) == "No worn line presses whose tension is known."
-    assert pressure_note(None, stale=True).startswith("Worked out")
+    assert pressure_note(nothing, stale=False) == "No active line with known tension presses on the skin."
+    assert pressure_note(None, stale=True).startswith("Computed when")
 
 
 def test_beside_the_cut_list_stands_what_each_line_presses_with(asked: list[float]) -> None:
@@ -229,14 +229,14 @@ def test_an_opened_line_of_elastic_tells_what_it_presses_with(asked: list[float]
 def the_copied_list_has_it_in_the_order_of_the_panel(window: MainWindow, kpa: float) -> None:
     window.garment.copy_requested.emit()
     heading, *rows = (line.split("\t") for line in QGuiApplication.clipboard().text().splitlines())
-    at = heading.index("Largest pressure kPa")
+    at = heading.index("Maximum contact pressure kPa")
     assert [(row[0], row[at]) for row in rows] == [("Mid-bust", f"{kpa:.1f}")]
 
 
 def limits_and_what_is_left_out_are_told(card: PressureCard) -> None:
     limits = pressure_limits()
     assert limits.sources[0].name in card.limits.text()
-    assert "estimate" in card.sure.text()
+    assert "Estimate" in card.sure.text()
     assert card.scale._limits.words == ("gentle", "snug", "too tight")
     for fold, sentences in zip(card.folds, ([each.name for each in limits.sources], LEFT_OUT), strict=True):
         shut = {each.text() for each in card.findChildren(QLabel) if each.isVisible()}

@@ -70,7 +70,7 @@ def test_an_export_is_named_and_can_be_left_by_card_key_and_status_bar(
         for count, way in enumerate(("card", "key", "status bar"), start=1):
             window.actions_.export.trigger()
             yield lambda n=count: busy.isVisible() and status.stop.isVisible() and len(begun) == n
-            assert status._job_name.text() == "Writing body.ply"
+            assert status._job_name.text() == "Saving body.ply…"
             if way == "card":
                 QTest.mouseClick(busy.stop, Qt.MouseButton.LeftButton)
             elif way == "key":
@@ -78,7 +78,7 @@ def test_an_export_is_named_and_can_be_left_by_card_key_and_status_bar(
             else:
                 QTest.mouseClick(status.stop, Qt.MouseButton.LeftButton)
             assert not busy.isVisible(), "the window is free at once"
-            assert status._job_name.text() != "Writing body.ply", "limits may be at work beside it"
+            assert status._job_name.text() != "Saving body.ply…", "limits may be at work beside it"
             assert not window.actions_.cancel.isEnabled()
             yield jobs_end
             assert len(left) == count

@@ -67,18 +67,18 @@ def test_what_is_stopped_says_so_and_is_worked_out_when_it_is_looked_at_again(ga
         undrawn(window)
         yield settled(window)
         window.report_controller.open()
-        stop(window, "Making the sheet")
+        stop(window, "Creating report…")
         state = window.report_controller.page.state
-        assert state.text() == "Stopped: the sheet is made when you open it again."
+        assert state.text() == "Stopped. Open the report again to create it."
         window.report_controller.leave()
         window.navigation.show_panel("garment")
-        stop(window, "Working out the pressure")
-        assert window.notices.notice().sentence == "Stopped: Working out the pressure"
+        stop(window, "Computing contact pressure…")
+        assert window.notices.notice().sentence == "Stopped: Computing contact pressure…"
         yield lambda: window.strip.chip.state() != "pending"  # nothing is computed any more
         assert "pressure was not computed" in window.strip.hint.text()
         assert "was not computed" in window.pressure_controller.card.says.text()
         window.navigation.show_step("result")
-        stop(window, "Measuring the body")
+        stop(window, "Measuring body…")
         assert window.result._waiting.text().startswith("Stopped")
         gate.set()
         window.navigation.show_step("lines")
@@ -97,11 +97,11 @@ def test_a_measure_of_ones_own_that_is_stopped_is_measured_at_the_next_change(ga
         undrawn(window)
         yield settled(window)
         window.custom_measures_controller.action.trigger()
-        stop(window, "Measuring the body")
+        stop(window, "Measuring body…")
         form = window.result.editor
         for name in ("bust_point_left", "front_centre"):
             form.show_draft(form.draft.picked(name))
-        stop(window, "Measuring the body")
+        stop(window, "Measuring body…")
         assert form.doubt.text().startswith("Stopped")
         gate.set()
         form.show_draft(form.draft)
@@ -127,7 +127,7 @@ def test_what_fails_is_told_and_waits_no_longer(monkeypatch: pytest.MonkeyPatch)
         assert "inside Busk" in window.notices.notice().sentence
         yield lambda: "pressure was not computed" in window.strip.hint.text()
         window.report_controller.open()
-        yield lambda: window.report_controller.page.state.text() == "The sheet could not be made."
+        yield lambda: window.report_controller.page.state.text() == "The report could not be created."
 
     run_main([], script)
 

@@ -149,8 +149,8 @@ def test_what_is_amber_is_counted_and_can_be_confirmed(empty_house: None, qtbot:
     assert panel.rows["side_left"].view.tone == "control", "nothing hangs on it"
     panel.select("fold_left")
     assert panel.rows["fold_left"].view.tone == "warn"
-    assert panel._doubts._count.text() == "To look at: 1"
-    assert "drawn on the body" in panel.rows["fold_left"].toolTip()
+    assert panel._doubts._count.text() == "To review: 1"
+    assert "shown on the body" in panel.rows["fold_left"].toolTip()
     panel.right.click()
     assert heard == [("fold_left",)]
     panel.set_landmarks([LandmarkView("fold_left", "Fold", 1.0, "A rule.", "under", by_hand=True), calm])

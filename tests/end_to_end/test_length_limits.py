@@ -43,15 +43,18 @@ def plain(words: str) -> str:
 def test_the_hover_tells_zone_number_and_reason() -> None:
     assert plain(hint(LEEWAY, 0.95)).splitlines() == [
         "Green from 93.9 to 98.1 %",
-        "Strained below 93.9 %: skin is stretched or pressed together by more than 20 % somewhere.",
-        "Slack above 98.1 %: it would have to push, which no band can.",
-        "Pressure is not looked at: it is made of no elastic.",
+        "Strained below 93.9 %: skin is compressed or stretched by over 20 % in places.",
+        "Slack above 98.1 %: tension would be negative, which is not possible for a band.",
+        "Contact pressure is not checked: no elastic is chosen.",
     ]
     assert plain(hint(LEEWAY, 0.9)).startswith("Amber from 86.0 to 93.9 %\nStrained below 93.9 %: ")
     assert plain(hint(LEEWAY, 0.7)).splitlines() == [
-        "Folds below 86.0 %: a triangle of the control mesh turns to its side.",
+        "Folded below 86.0 %: a triangle of the control mesh is rotated on its side.",
     ]
-    assert plain(hint(LEEWAY, 1.1)) == "Slack above 98.1 %: it would have to push, which no band can."
+    assert (
+        plain(hint(LEEWAY, 1.1))
+        == "Slack above 98.1 %: tension would be negative, which is not possible for a band."
+    )
 
 
 def test_a_line_that_is_folded_is_told_so_and_its_slider_says_how_far_it_reaches() -> None:
@@ -69,15 +72,15 @@ def test_a_line_that_is_folded_is_told_so_and_its_slider_says_how_far_it_reaches
         assert leeway is not None
         assert frame.verdict.display_state == "folded"
         assert leeway.at(0.55).tone == "red"
-        assert "folds below 67.7 %".replace(" ", "\N{NO-BREAK SPACE}") in legend_entries(leeway)["red"], (
+        assert "folded below 67.7 %".replace(" ", "\N{NO-BREAK SPACE}") in legend_entries(leeway)["red"], (
             "kept together"
         )
         assert (
             plain(legend_entries(leeway)["red"])
-            == "Overstrained below 85.8 % \N{MIDDLE DOT} folds below 67.7 %"
+            == "Overstrained below 85.8 % \N{MIDDLE DOT} folded below 67.7 %"
         )
         assert "Folds below 67.7 %: a triangle" in plain(hint(leeway, 0.55))
-        assert row.slider.toolTip().startswith("Length of the front part, 50 to 112 % of its rest.")
+        assert row.slider.toolTip().startswith("Set the front length, 50 to 112 % of the original.")
 
     run_main([], script)
 
@@ -86,27 +89,27 @@ def test_where_pressure_is_known_nothing_is_said_of_it_but_where_it_is_too_much(
     pressing = Zone("amber", 0.5, 0.78, (Reason("pressing", 0.5, 0.78),))
     known = LengthLimits("waist", (pressing, Zone("green", 0.78, 1.3)), pressure_known=True)
     assert plain(hint(known, 0.6)).endswith(
-        "Presses too much below 78.0 %: its band presses with more than 4 kPa somewhere."
+        "Contact pressure too high below 78.0 %: contact pressure of the band exceeds 4 kPa in places."
     )
     assert "not looked at" not in hint(known, 0.9)
 
 
 def test_what_the_other_lines_do_is_told_as_theirs() -> None:
     assert short_reason(Reason("strained", 0.5, 1.3, others=True)) == (
-        "strained by the other lines, whatever this one does"
+        "strained due to other lines, at any length"
     )
     assert (
         short_reason(Reason("strained", 0.95, 1.3, others=True))
-        == "strained above 95.0 % (by the other lines)"
+        == "strained above 95.0 % (due to other lines)"
     )
-    assert short_reason(Reason("vibrating", 0.88, 0.92)) == "would vibrate from 88.0 to 92.0 %"
+    assert short_reason(Reason("vibrating", 0.88, 0.92)) == "may oscillate from 88.0 to 92.0 %"
 
 
 def test_an_opened_row_has_a_key_to_its_zones(qtbot: QtBot) -> None:
     assert {tone: plain(words) for tone, words in legend_entries(LEEWAY).items()} == {
-        "green": "Valid shape (without pressure) from 93.9 to 98.1 %",
+        "green": "Valid shape (contact pressure not checked) from 93.9 to 98.1 %",
         "amber": "Strained below 93.9 %",
-        "red": "Folds below 86.0 %",
+        "red": "Folded below 86.0 %",
         "slack": "Slack above 98.1 %",
     }
     free = LengthLimits("waist", (Zone("green", 0.5, 1.3),))
@@ -132,7 +135,7 @@ def test_the_key_says_where_green_is_no_word_on_pressure(qtbot: QtBot) -> None:
     qtbot.addWidget(shown)
     green = Zone("green", 0.5, 1.3)
     words = shown.rows["green"][1]
-    for known, told in ((False, "Valid shape (without pressure)"), (True, "Valid shape")):
+    for known, told in ((False, "Valid shape (contact pressure not checked)"), (True, "Valid shape")):
         shown.show_leeway(LengthLimits("waist", (green,), pressure_known=known), 0.9, stale=False)
         assert words.text() == f"{told} at any length"
         assert shown.pressure.isHidden()
@@ -142,14 +145,14 @@ def test_the_key_says_where_green_is_no_word_on_pressure(qtbot: QtBot) -> None:
         ("47.7 kPa", "bad", "bad"),
     ):
         shown.show_leeway(LengthLimits("waist", (green,)), 0.9, False, pressed, tone)
-        assert shown.pressure.text() == f"Pressure now: {pressed}"
+        assert shown.pressure.text() == f"Contact pressure: {pressed}"
         assert shown.pressure.property("tone") == tone
         assert words.property("tone") == seen, "a valid shape has no other colour than its pressure"
 
 
 def test_what_a_line_stands_in_and_why_a_hand_is_held_is_told() -> None:
     assert [tone_at(LEEWAY, ratio) for ratio in (0.8, 0.9, 0.95, 1.1)] == ["bad", "warn", "", ""]
-    assert resistance_reason(LEEWAY) == "Not this short: folds below 86.0 %."
+    assert resistance_reason(LEEWAY) == "Cannot be shorter: folded below 86.0 %."
     assert (resistance_reason(None), tone_at(None, 0.9)) == ("", "")
 
 
@@ -191,9 +194,7 @@ def test_a_slider_tells_the_zone_under_the_pointer_and_on_its_handle_the_set_one
     )
     assert hovered(slider, 0.9).endswith("\n\nkeys")
     slider.set_leeway(LEEWAY, stale=True)
-    assert hovered(slider, 0.9) == "How far it can go is being worked out.\n\nkeys", (
-        "nothing is told of zones that are old"
-    )
+    assert hovered(slider, 0.9) == "Computing length limits…\n\nkeys", "nothing is told of zones that are old"
 
 
 def test_zones_follow_an_edit_while_the_model_still_settles(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -90,7 +90,7 @@ def linked(window: MainWindow) -> Script:
     assert rows["strap left"]._open, "the row of the pair stands for both"
     QTest.keyClick(window.lines, Qt.Key.Key_L)
     yield lambda: "strap right" in window.lines.rows
-    assert last(window) == "Straps set apart"
+    assert last(window) == "Straps: left and right unlinked"
     window.lines.length_committed.emit("strap right", 0.98)
     assert session.design.ratio("strap left") == ratio
     left, right = rows["strap left"], window.lines.rows["strap right"]
@@ -145,7 +145,7 @@ def treated(window: MainWindow) -> Script:
     assert window.view.viewport._labels.band[1].startswith("Lift tape, right 9")
     row.details._palette.chosen.emit("#C2571A")
     yield lambda: bands.colour("strap right") == "#C2571A"
-    assert last(window) == "Lift tape: another colour"
+    assert last(window) == "Lift tape: colour changed"
     yield settled(window)
     stiff = session.frame.lengths["strap left"]
     field = row.details._stiffness
@@ -223,7 +223,7 @@ def a_preset_that_leads_lines_otherwise_says_so_and_can_be_taken_back(window: Ma
     window.notices.clear()
     window.presets_controller.wear(ours)
     assert left in session.design.own_lines
-    assert _notice(window).sentence == "Led as in the preset Ours: Lift tape"
+    assert _notice(window).sentence == "Line paths from preset Ours: Lift tape"
     (word, undo), *_ = _notice(window).actions
     undo()
     assert (word, session.design) == ("Undo", worn)

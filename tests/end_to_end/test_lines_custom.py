@@ -81,7 +81,7 @@ def test_a_line_goes_through_the_points_that_are_named(
         window.actions_.own_line.trigger()
         yield lambda: "edge" in window.lines.rows
         assert not window.lines.rows["edge"].view.constrained
-        assert window.lines.rows["edge"].note.text() == "On points that do not move: measured only."
+        assert window.lines.rows["edge"].note.text() == "On fixed points: measured only."
         window.actions_.own_line.trigger()
         assert window.session.undo_stack.count() == 2
         assert window.session.save(str(tmp_path / "v.busk"), None)
@@ -117,7 +117,7 @@ def test_a_line_is_drawn_from_point_to_point(qtbot: QtBot) -> None:
     dialog.name.setText("")
     QTest.keyClicks(dialog.name, "mid-bust")
     assert dialog.line is None
-    assert dialog._said.text() == "There is a line of that name already."
+    assert dialog._said.text() == "A line of that name already exists."
     dialog.points.clear()
     QTest.keyClicks(dialog.points, "r9c9, 3")
     assert "no place 'r9c9'" in dialog._said.text()

@@ -112,7 +112,7 @@ def test_a_line_on_the_rib_cage_is_said_to_measure_only_and_can_move_to_where_it
         window.view.viewport.setFocus()
         press(window, Qt.Key.Key_Return)
         assert not drawing._found.is_movable
-        assert "only measured" in card._what.text()
+        assert "measured only" in card._what.text()
         assert isinstance(drawing._found, FreeCurve)
         card.move_.click()
         assert card.snap.isChecked()
@@ -188,7 +188,7 @@ def led_elsewhere(window: MainWindow, path: tuple[int, ...]) -> Script:
     press(window, Qt.Key.Key_Return)
     own = {line.name: line.points for line in window.session.design.own_lines}
     assert own == {"line 1 left": led, "line 1 right": mirrored(led, TEMPLATE)}
-    assert window.session.undo_stack.undoText() == "Line 1 led elsewhere"
+    assert window.session.undo_stack.undoText() == "Line 1: path changed"
     window.actions_.undo.trigger()
     assert window.session.design.own_lines[0].points == path
     yield settled(window)
@@ -218,7 +218,7 @@ def let_go_of(window: MainWindow) -> Script:
     ways, drawing._ways, jobs = drawing._ways[1], None, window.jobs
     for _ in range(3):
         window.actions_.draw_line.trigger()
-    preparing = [job for job in jobs.at_work() if job.words == "Preparing the skin for drawing"]
+    preparing = [job for job in jobs.at_work() if job.words == "Preparing skin for drawing…"]
     assert len(preparing) == 1, "the skin is made ready once"
     drawing._take_ways(replace(session.frame.stages.body), ways)
     assert drawing._ways is None, "that was another body"

@@ -32,7 +32,7 @@ def test_the_sample_opens_in_a_finished_state() -> None:
         assert frame.marks.apex_z - frame.stages.rest_marks.apex_z > 1.0
         window.throttled.flush()
         yield lambda: window.strip.chip.state() in ("good", "caution", "bad")
-        assert window.strip._turns.text().startswith("Settled · ")
+        assert window.strip._turns.text().startswith("Converged · ")
         assert set(frame.tracks) == {"adaptive", "conventional"}
 
     assert run_main([], script) == 0
@@ -162,7 +162,7 @@ def test_the_conventional_force_vibrates_when_the_line_is_too_short() -> None:
         assert frame.verdict.state == "vibrating"
         window.throttled.flush()
         yield lambda: window.strip.chip.state() == "bad"
-        assert window.strip._turns.text().startswith("Vibrating · ")
+        assert window.strip._turns.text().startswith("Oscillating · ")
 
     run_undrawn([], script)
 

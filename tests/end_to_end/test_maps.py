@@ -180,7 +180,7 @@ def test_the_section_plane_cuts_before_and_after(answered: Path) -> None:
             np.concatenate([c.places for c in section.curves[role]]) for role in ("before", "after")
         )
         lift = frame.marks.bust_point_left_z - frame.stages.rest_marks.bust_point_left_z
-        assert panel.readout.text().startswith(f"Bust point left {lift:.1f} mm up, ")
+        assert panel.readout.text().startswith(f"Bust point left: {lift:.1f} mm up, ")
         ((at_rest, lifted),) = panel.plot._drawn.marks
         assert lifted[1] - at_rest[1] == pytest.approx(lift)
         assert away_from(section.curves["before"], at_rest) < 0.05

@@ -100,7 +100,7 @@ def as_the_core_measures(window: MainWindow) -> None:
     before, after = before_after(frame.stages, frame.control_points)
     view = next(view for view in window.result.measured if view.own)
     assert (view.before, view.after) == (before[view.key].value, after[view.key].value)
-    assert view.group == "Your own"
+    assert view.group == "Custom"
     assert "straight from bust point left" in view.tip
 
 
@@ -159,7 +159,7 @@ def test_a_girth_lies_where_the_skin_is_clicked_or_off_a_landmark() -> None:
         yield form.keep.isEnabled
         form.accepted.emit()
         assert own(window)[1] == CustomMeasurement(
-            "Girth, Under-bust fold left −30 mm", "girth", ("fold_left",), -30.0
+            "Girth, Inframammary fold left −30 mm", "girth", ("fold_left",), -30.0
         )
 
     run_main([], script)
@@ -195,11 +195,11 @@ def test_one_is_changed_renamed_and_deleted_by_keys_each_one_step() -> None:
         yield form.keep.isEnabled
         form.keep.click()
         assert own(window) == (CustomMeasurement("Arc", "skin", GORE.marks),)
-        assert window.session.undo_stack.undoText() == "Measure changed: Arc"
+        assert window.session.undo_stack.undoText() == "Measurement changed: Arc"
         yield lambda: listed(window, "Arc")
         QTest.keyClick(table, KEY.Key_Delete)
         assert own(window) == ()
-        assert window.session.undo_stack.undoText() == "Measure deleted: Arc"
+        assert window.session.undo_stack.undoText() == "Measurement deleted: Arc"
         window.actions_.undo.trigger()
         window.actions_.undo.trigger()
         assert own(window) == (GORE,)

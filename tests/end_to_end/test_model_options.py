@@ -61,7 +61,7 @@ def test_a_sliding_line_lifts_the_bust_points_and_undo_brings_the_old_result_bac
         yield settled(window)
         assert bust_points(window) > glued + 1.0
         assert frame_of(window).verdict.state == "settled"
-        assert window.session.undo_stack.undoText() == "Skin contact: Slides over it"
+        assert window.session.undo_stack.undoText() == "Skin contact: Frictionless sliding"
         assert window.session.undo_stack.index() == 2
         window.actions_.undo.trigger()
         yield settled(window)
@@ -155,7 +155,7 @@ def test_every_setting_is_one_step_and_the_reset_brings_back_all() -> None:
         assert window.model.fields["gain"].edit.text() == "1.20"
         window.model._reset.click()
         yield settled(window)
-        assert steps.undoText() == "Model reset to defaults"
+        assert steps.undoText() == "Model options reset to defaults"
         assert not window.model._reset.isEnabled()
         assert all(getattr(window.session.design, key) == value for key, value in defaults().items())
 
@@ -167,7 +167,10 @@ def test_what_cannot_be_is_refused_and_the_field_shows_what_is() -> None:
         yield settled(window)
         field = window.model.fields["line_stiffness"].edit
         told = field.accessibleDescription()
-        for typed, why in (("700", "It goes from 0.1 to 500.0 ×."), ("soft", "“soft” is no number.")):
+        for typed, why in (
+            ("700", "Enter a value from 0.1 to 500.0 ×."),
+            ("soft", "“soft” is not a number."),
+        ):
             choose(window, "line_stiffness", typed)
             assert field.accessibleDescription() == why, "the card under the field says it"
             assert field.property("wrong")
@@ -175,7 +178,10 @@ def test_what_cannot_be_is_refused_and_the_field_shows_what_is() -> None:
             assert field.text() == "16.0"
             assert field.accessibleDescription() == told
         choose(window, "line_height", "90")
-        assert window.model.fields["line_height"].edit.accessibleDescription() == "It goes from 25 to 75 %."
+        assert (
+            window.model.fields["line_height"].edit.accessibleDescription()
+            == "Enter a value from 25 to 75 %."
+        )
         assert window.notices.notice() is None
         assert window.session.undo_stack.count() == 0
         window.session.add_own_lines((CustomLine("strap", (35, 48, 61)),), "Strap")
@@ -207,8 +213,8 @@ def test_every_choice_has_its_words_and_the_door_says_what_is_not_usual() -> Non
     elsewhere |= {"own_measures", "elastics", "tissue_stiffness", "customer", "worn_tight_mm", "calibration"}
     assert {setting.key for setting in settings} == set(values) - elsewhere
     assert all(setting.tip.endswith(".") and setting.words(values[setting.key]) for setting in settings)
-    assert summary(values) == "Sticks to the skin · Springs back"
-    assert summary(values | {"firm_chest": 0.3}) == "Sticks to the skin · Springs back · Firm"
+    assert summary(values) == "Bonded · Elastic length"
+    assert summary(values | {"firm_chest": 0.3}) == "Bonded · Elastic length · Rib-cage support"
 
 
 def test_another_body_is_opened_with_its_lines_in_sight() -> None:

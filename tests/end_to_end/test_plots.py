@@ -116,7 +116,7 @@ def the_saved_table_holds_every_turn(window: MainWindow, folder: Path) -> None:
         heading, *rows = csv.reader(file)
     frame = window.session.frame
     assert frame is not None
-    assert heading[:4] == ["run", "turn", "volume error [%]", "volume error [ml]"]
+    assert heading[:4] == ["run", "iteration", "volume error [%]", "volume error [ml]"]
     made = {control: [row for row in rows if row[0] == control] for control in frame.tracks}
     for control, records in frame.tracks.items():
         assert [int(row[1]) for row in made[control]] == [record.iteration for record in records]

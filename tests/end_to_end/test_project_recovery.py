@@ -193,7 +193,7 @@ def test_two_windows_and_a_change_from_outside_are_told(
         yield lambda: window.notices.notice() is not None
         notice = window.notices.notice()
         assert notice is not None
-        assert "lotte is open in another window" in notice.sentence
+        assert "lotte is already open in another window" in notice.sentence
         window.notices.close_notice()
         assert window.session.save(str(path), None)
         assert window.session.finish_saving()
@@ -225,7 +225,7 @@ def test_the_history_goes_back_to_edits_and_results() -> None:
         assert panel.snapshots.count() == 2, "no result is kept twice"
         panel.snapshots.itemActivated.emit(panel.snapshots.item(0))
         assert session.design == short
-        assert session.undo_stack.undoText().startswith("Back to: ")
+        assert session.undo_stack.undoText().startswith("Restored: ")
         session.undo_stack.undo()
         assert session.design == long
         for _ in range(5):

@@ -78,7 +78,10 @@ def test_the_sheet_follows_and_a_former_one_is_not_given_away() -> None:
         assert former.report.cuts.rows == ()
         window.session.commit_line("mid-bust", "Mid-bust", 0.96)
         assert not any(press.isEnabled() for press in window.report_controller.page.does.values())
-        assert window.report_controller.page.state.text() == "The sheet is made as soon as the run rests."
+        assert (
+            window.report_controller.page.state.text()
+            == "The report is created when the solver has converged."
+        )
         yield made(window)
         sheet = window.report_controller.handout.report
         assert [row.line for row in sheet.cuts.rows] == ["mid-bust"]
@@ -201,7 +204,7 @@ def test_the_sheet_is_saved_in_another_language(tmp_path: Path, monkeypatch: pyt
         for what in ("pdf", "json", "csv"):
             page.does[what].click()
         pdf = Pdf(tmp_path / "sheet.pdf")
-        assert "補整シート" in pdf.text()
+        assert "補整レポート" in pdf.text()
         assert len(pdf.sizes) == 2
         data = json.loads((tmp_path / "sheet.json").read_text("utf-8"))
         assert data["measures"] == list(desk.handout.report.measures)

@@ -29,7 +29,7 @@ def test_of_a_run_that_ran_away_there_is_no_sheet_and_no_light() -> None:
         window.session.change({"volume": "conventional", "gain": 10.0}, "too much")
         yield lambda: window.session.frame.verdict.motion == "diverging" and settled(window)()
         yield lambda: not window.jobs.at_work()
-        assert card.says.text() == "Diverging: these figures are no result to sew for."
+        assert card.says.text() == "Diverged: do not use these values for production."
         assert window.pressure_controller.shown is None, "nor does it leave with the cut list"
         desk = window.report_controller
         desk.open()

@@ -65,7 +65,7 @@ def test_the_whole_window_tells_one_lift_that_of_the_bust_points() -> None:
         height, forth = (row_of(window, f"Bust point, {each}") for each in ("height", "forward"))
         assert (height, forth) == (pytest.approx(up, abs=1e-9), pytest.approx(forward, abs=1e-9))
         yield lambda: window.history.snapshots.count() == 1
-        assert kept(window).words[1] == f"Bust point {said}"
+        assert kept(window).words[1] == f"Bust points: {said}"
         window.navigation.show_panel("variants")
         yield (
             lambda: (
@@ -73,7 +73,7 @@ def test_the_whole_window_tells_one_lift_that_of_the_bust_points() -> None:
             )
         )
         table = {row.label: row.figures[0].values[1] for row in window.variants.view.rows}
-        assert (table["Bust point, up"], table["Bust point, forward"]) == (up, forward)
+        assert (table["Bust point lift"], table["Bust point, forward"]) == (up, forward)
         window.variants_controller.flip_side_by_side()
         assert title_of_b(window) == [
             f"Variant B   {window.strip.chip.accessibleName()}",
@@ -110,7 +110,7 @@ def test_a_settled_body_that_is_strained_says_so_in_one_voice() -> None:
         said = [message for message, _ in overall.reasons]
         assert any(each.startswith("Skin is compressed or stretched by over 20 %") for each in said)
         assert window.strip.hint.text() == overall.first, "the worst reason stands in the strip"
-        assert "Settled, strained" in window.strip._turns.text(), "the run has its own word"
+        assert "Converged, strained" in window.strip._turns.text(), "the run has its own word"
         looks = {"caution": "look", "bad": "bad"}[overall.level]
         assert {window.rail.items[step].state() for step in ("lines", "result")} == {looks}
         row = window.lines.rows["mid-bust"]
@@ -121,7 +121,7 @@ def test_a_settled_body_that_is_strained_says_so_in_one_voice() -> None:
         ratio = row.view.leeway.at(0.9).long + 0.005
         window.lines_controller.commit_length("mid-bust", ratio)
         yield settled(window)
-        yield lambda: window.strip._turns.text().startswith("Settled · ")
+        yield lambda: window.strip._turns.text().startswith("Converged · ")
         assert row.view.leeway.at(ratio).tone == "green"
 
     run_main([], script)
@@ -138,7 +138,7 @@ def test_a_run_that_never_rests_is_no_result_and_has_a_way_out() -> None:
         assert frame_of(window).verdict.state == "vibrating"
         notice = window.notices.notice()
         assert notice is not None
-        assert "swings by ±3.7 mm" in notice.sentence
+        assert "oscillates by ±3.7 mm" in notice.sentence
         assert strip_says(window)["Bust point"].endswith(" ± 3.7 mm")
         assert window.rail.items["result"].state() == "bad"
         window.navigation.show_panel("variants")
@@ -148,18 +148,18 @@ def test_a_run_that_never_rests_is_no_result_and_has_a_way_out() -> None:
             )
         )
         table = {row.label: row.figures[0].values for row in window.variants.view.rows}
-        assert table["Bust point, up"][0] is not None
-        assert table["Bust point, up"][1] is None
+        assert table["Bust point lift"][0] is not None
+        assert table["Bust point lift"][1] is None
         window.variants_controller.flip_side_by_side()
         assert title_of_b(window) == ["Variant B   Do not use", "Mid-bust 60.0 %"]
         window.navigation.show_step("result")
-        assert "no result" in window.result.doubt
+        assert "not valid" in window.result.doubt
         yield lambda: window.history.snapshots.count() >= 1
-        assert kept(window).words == ("Do not use", "No result to sew for")
+        assert kept(window).words == ("Do not use", "Not valid for production")
         assert kept(window).mark == ("bad", "warning-octagon")
 
         offered = [button.text() for button in window.notices.buttons]
-        assert "Use Adaptive" not in offered, "it would lead to a fold"
+        assert "Use adaptive control" not in offered, "it would lead to a fold"
         window.session.choose_control("adaptive")
         yield settled(window)
         assert frame_of(window).verdict.motion == "settled"
@@ -221,7 +221,7 @@ def test_measures_say_from_where_they_count_and_leave_as_a_table(
         above = rows["Bust point left, height"]
         assert above.before == pytest.approx(marks.bust_point_left_z - body[:, 2].min())
         line = frame_of(window).stages.model.lines[1]
-        whole = rows["Mid-bust, whole band"]
+        whole = rows["Mid-bust, full length"]
         assert (line.name, whole.before) == ("mid-bust", pytest.approx(line.whole_length))
         grown = frame_of(window).lengths["mid-bust"] - line.rest_length
         assert whole.change == pytest.approx(grown, abs=0.1)
@@ -229,7 +229,7 @@ def test_measures_say_from_where_they_count_and_leave_as_a_table(
         assert whole.written(whole.change) == number(shown[1] - shown[0]), "the columns agree"
         window.result.table_requested.emit()
         heading, *table = csv.reader(path.read_text(encoding="utf-8-sig").splitlines())
-        assert heading == ["Measure", "Counted from", "Unit", "Before", "After", "Change", "Note"]
+        assert heading == ["Measurement", "Reference", "Unit", "Before", "After", "Change", "Notes"]
         assert [row[0] for row in table] == list(rows)
         cells = table[list(rows).index("Mid-bust, whole band")]
         assert cells[2:] == ["mm", *(f"{each:.1f}" for each in (whole.before, whole.after, whole.change)), ""]

@@ -73,7 +73,7 @@ def test_an_unsure_scan_asks_and_the_answer_is_one_undo_step(
         yield window.view.question.isVisible
         notice, question, stack = window.notices.notice(), window.view.question, window.session.undo_stack
         assert notice is not None
-        assert "not sure" in notice.sentence
+        assert "ambiguous" in notice.sentence
         assert question.pictures[0].text() == "+z up, −y front"
         assert len(question.pictures) == 4
         QTest.mouseClick(question.pictures[0], Qt.MouseButton.LeftButton)

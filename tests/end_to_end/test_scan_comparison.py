@@ -59,7 +59,7 @@ def test_a_worn_scan_is_compared_and_learnt_from(pair: tuple[str, str, str]) -> 
         assert area.widget().width() <= area.viewport().width(), "nothing is cut off at the right"
         assert page.view.file == "worn.ply"
         heads = [each.text() for each in page.findChildren(QLabel) if each.isVisible()]
-        assert "Predicted less real [mm]" in heads, "its figures have no unit of their own"
+        assert "Residuals (prediction − scan) [mm]" in heads, "its figures have no unit of their own"
         assert page.view.lies.startswith("100 % of the skin that no line moves")
         frame = window.session.frame
         assert frame is not None
@@ -72,12 +72,12 @@ def test_a_worn_scan_is_compared_and_learnt_from(pair: tuple[str, str, str]) -> 
         page.calibrate.click()
         assert not page.calibrate.isEnabled(), "it is at work"
         yield lambda: bool(page.view.numbers)
-        assert [row.title for row in page.view.numbers] == ["Stiffness of lines", "Firm chest"]
+        assert [row.title for row in page.view.numbers] == ["Line stiffness", "Rib-cage support"]
         assert page.view.numbers[1].told is False
         assert (
             page.surely.text()
             == page.view.surely
-            == ("Told to within 5 %: Stiffness of lines. Told weakly, as ± says: Firm chest.")
+            == ("Determined to within 5 %: Line stiffness. Poorly determined (see ±): Rib-cage support.")
         )
         assert (page.apply.isVisible(), page.apply.property("kind")) == (True, "primary"), "one is told well"
         page.apply.click()
@@ -86,7 +86,7 @@ def test_a_worn_scan_is_compared_and_learnt_from(pair: tuple[str, str, str]) -> 
         assert after is not None
         assert after.calibration is not None
         assert after.line_stiffness == pytest.approx(6.0, rel=0.15)
-        assert page.view.record.startswith("Calibrated on worn.ply")
+        assert page.view.record.startswith("Calibration with worn.ply")
         assert not page.view.numbers, "what was found was of the design before"
         window.session.undo_stack.undo()
         assert window.session.design == before
@@ -163,9 +163,9 @@ def test_where_the_bust_points_are_is_said_without_a_sign() -> None:
     way = {"left": np.array([0.0, 0.7, -0.3]), "right": np.array([0.0, -0.2, 0.04])}
     words = bust_words(Residuals(np.zeros(3), figures, {}, way, {"left": 5.66, "right": 10.8}))
     assert words.startswith(
-        "Left bust point: predicted 0.3 mm lower (±5.7 mm), 0.7 mm less far out. Right bust point: "
+        "Bust point left: predicted 0.3 mm lower (±5.7 mm), 0.7 mm further back. Bust point right: "
     )
-    assert "predicted 0.0 mm higher (±10.8 mm), 0.2 mm further out." in words
+    assert "predicted 0.0 mm higher (±10.8 mm), 0.2 mm further forward." in words
 
 
 def test_what_is_no_finding_is_not_offered_with_the_strongest_button(qapp: QApplication) -> None:

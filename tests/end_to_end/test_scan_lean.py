@@ -43,7 +43,7 @@ def test_a_leaning_body_is_set_upright_in_steps_that_can_be_undone(leaning: Path
         yield settled(window)
         notice, panel, stack = window.notices.notice(), window.scan.lean, window.session.undo_stack
         assert notice is not None
-        assert "Stand upright" in [words for words, _ in notice.actions]
+        assert "Set upright" in [words for words, _ in notice.actions]
         assert lean(window) == (0.0, 0.0)
         window.navigation.show_step("scan")
         assert panel.upright.isVisible()

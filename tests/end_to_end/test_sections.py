@@ -92,7 +92,9 @@ def a_plane_that_faces_the_eye_is_dragged_up_and_down(window: MainWindow) -> Non
     assert "away from you" not in handle.toolTip()
     section.choose_axis("y")
     assert handle.at_eye
-    assert "Up moves it away from you" in handle.toolTip(), "arrows up and down alone would tell another way"
+    assert "Drag up to move the plane away from you" in handle.toolTip(), (
+        "arrows up and down alone would tell another way"
+    )
     at = place_of(window)
     drag_handle(handle, np.array([0.0, -30.0]))
     release(handle, handle.rect().center())

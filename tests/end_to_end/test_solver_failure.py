@@ -47,7 +47,7 @@ def test_a_solver_that_fails_for_long_loses_nothing(
         assert window.strip._state == "stale"
         assert window.rail.items["result"].state() == "available", "no tick on what is not computed"
         assert window.lines.rows["mid-bust"].slider.ratio() == pytest.approx(0.9), "as it is set"
-        assert "Settled" not in window.status._facts.text()
+        assert "Converged" not in window.status._facts.text()
         window.report_controller.open()
         assert window.report_controller.page.state.text().startswith("The shape could not be computed")
         window.report_controller.leave()

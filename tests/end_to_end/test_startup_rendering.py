@@ -122,5 +122,5 @@ def test_who_needs_the_libraries_while_they_are_loaded_waits_for_them(script: st
 
 
 def test_where_there_are_no_such_libraries_it_is_said_once() -> None:
-    said = "There is no 3D view: the libraries that it needs cannot be loaded."
+    said = "The 3D view is not available: its libraries could not be loaded."
     assert told_by(MISSING) == f"False None ['UserError'] {said} True 0"

@@ -83,8 +83,8 @@ def tells_and_fades(window: MainWindow) -> Script:
     assert len(seen) == 4
     card.fold.click()
     seen = [row.title.text() for row in card._rows if row.title.isVisible()]
-    assert "Left stands out [ml]" in seen
-    assert "keep its volume" in card.notes.text()
+    assert "Left excess [ml]" in seen
+    assert "at constant volume" in card.notes.text()
     window.session.preview_line("mid-bust", 0.93)
     yield lambda: faint(card) and card.summary is not None
     assert not card.make.isEnabled()
@@ -96,15 +96,15 @@ def tells_and_fades(window: MainWindow) -> Script:
 def shows_the_map(window: MainWindow) -> None:
     """The button lays the map on the body and takes it off; the legend tells ml."""
     card, maps = window.symmetry_controller.card, window.maps_controller
-    assert card.look.text() == "Show on the body"
+    assert card.look.text() == "Show on body"
     card.look.click()
     assert maps.name == "sides"
-    assert card.look.text() == "Hide the map"
+    assert card.look.text() == "Hide map"
     skin = told(window).after.skin
     assert skin is not None
     assert f"left {skin.left_more:.0f} ml, right {skin.right_more:.0f} ml" in maps.legend.note.text()
     maps.choose("displacement")
-    assert card.look.text() == "Show on the body"
+    assert card.look.text() == "Show on body"
     assert "ml" not in maps.legend.note.text()
     maps.choose("sides")
     card.look.click()
@@ -117,7 +117,7 @@ def takes_the_spread_of_the_table(window: MainWindow, monkeypatch: pytest.Monkey
 
     def off() -> str:
         assert desk.card.summary is not None
-        return next(view.off for view in desk.card.summary.views if view.title == "Higher [mm]")
+        return next(view.off for view in desk.card.summary.views if view.title == "Height [mm]")
 
     assert off() == ""
     known = {"after:asymmetry_height": 36.2}
@@ -125,7 +125,7 @@ def takes_the_spread_of_the_table(window: MainWindow, monkeypatch: pytest.Monkey
         patch.setattr(desk, "_uncertainty_of", lambda _: SimpleNamespace(whole=True, plus_minus=known.get))
         desk.follow()
         assert off() == "± 36"
-        assert "Within the error they lie alike." in desk.card.says.text()
+        assert "No significant difference in position." in desk.card.says.text()
     desk.follow()
     assert off() == ""
 
@@ -151,7 +151,7 @@ def makes_even(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
         window.target_shape_controller,
         window.session.design,
     )
-    assert card.hint.text() == "Make even begins by setting left and right apart: Full bust, Mid-bust."
+    assert card.hint.text() == "Balancing separates left and right: Full bust, Mid-bust."
     count = window.session.undo_stack.count()
     for end in (desk.leave, desk.apply):
         card.make.click()
@@ -161,12 +161,12 @@ def makes_even(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
             ("left further out", 0.0),
         ]
         assert {"lift", "out"} <= set(desk.card.wishes), "what moves besides is seen"
-        assert desk.card.note.text() == "Left and right apart: Full bust, Mid-bust"
+        assert desk.card.note.text() == "Left and right separated: Full bust, Mid-bust"
         first, *nearer = desk.card.answer.text().splitlines()
-        assert first in ("Reached.", "Not reachable. Nearest:")
+        assert first in ("All targets reached.", "Not reachable. Closest result:")
         assert nearer[0].startswith("Right higher: 11.8 → "), "from where to where, with no sign"
         assert "Mid-bust (left) 95.0 → " in desk.card.changes.text()
-        assert desk.card.price.text().startswith("At the price of: ") != desk.card.price.isHidden()
+        assert desk.card.price.text().startswith("Trade-off: ") != desk.card.price.isHidden()
         assert window.session.design is before, "seen, not taken"
         assert window.session.undo_stack.count() == count
         end()
@@ -179,7 +179,7 @@ def makes_even(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
     assert after is not None
     assert after.active_lines() == {f"{line} {side}" for line in ("mid-bust", "full-bust") for side in SIDES}
     assert window.session.undo_stack.count() == count + 1
-    asked = "Left and right apart: Full bust, Mid-bust · Asked for: Left higher than right 0.0 mm"
+    asked = "Left and right separated: Full bust, Mid-bust · Targets: Left higher than right 0.0 mm"
     assert window.session.undo_stack.undoText().startswith(asked)
     window.actions_.undo.trigger()
     yield settled(window)
@@ -211,7 +211,7 @@ def splits(window: MainWindow) -> Script:
         link.click,
     ):
         window.lines.select("mid-bust")
-        assert "Split it" in link.toolTip()
+        assert "Split at" in link.toolTip()
         ask_for()
         yield lambda: "mid-bust left" in window.lines.rows and window.is_settled()
         assert window.session.undo_stack.undoText() == "Mid-bust split into left and right"
@@ -267,7 +267,7 @@ def test_an_even_body_has_nothing_to_be_made_even_and_a_line_is_split_all_the_sa
         window.navigation.show_step("result")
         yield lambda: is_fresh(window)
         card = window.symmetry_controller.card
-        assert card.says.text() == "Both bust points lie alike within 0.5 mm."
+        assert card.says.text() == "Bust points are symmetric within 0.5 mm."
         assert not card.make.isEnabled()
         assert len(asked) == 1
         yield from splits(window)

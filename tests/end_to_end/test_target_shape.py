@@ -40,14 +40,14 @@ def is_typed_seen_taken_and_undone_or_left(window: MainWindow) -> Script:
     assert card.isVisible()
     assert list(card.wishes) == ["lift", "out", "pressure"]
     yield answered(window)
-    assert card.wishes["out"].field.placeholderText() == "free"
+    assert card.wishes["out"].field.placeholderText() == "no target"
     assert not card.apply.isEnabled(), "nothing is wished yet"
     assert card.wishes["lift"].field.text() == "", "nothing is asked for yet"
     now = window.target_shape_controller.answer.now["out"]
     assert figure(card.wishes["out"].now.text()) == pytest.approx(now, abs=0.06)
     type_wish(window, "out", "-4")
     yield answered(window)
-    assert card.answer.text() == "Reached."
+    assert card.answer.text() == "All targets reached."
     assert "Mid-bust 97.0 → " in card.changes.text() or "Full bust 98.0 → " in card.changes.text()
     result, change = card.wishes["out"].result.text().split(" ")
     assert figure(result) == -4.0
@@ -59,7 +59,7 @@ def is_typed_seen_taken_and_undone_or_left(window: MainWindow) -> Script:
     assert not card.isVisible()
     yield settled(window)
     assert window.session.undo_stack.count() == steps + 1
-    assert window.session.undo_stack.undoText() == "Asked for: Bust point forward −4.0 mm"
+    assert window.session.undo_stack.undoText() == "Targets: Bust point, forward −4.0 mm"
     marks, rest = window.session.frame.exact_marks, window.session.frame.stages.rest_marks
     outs = [
         marks.bust_point_left_out - rest.bust_point_left_out,
@@ -107,7 +107,7 @@ def tells_what_keeps_a_wish_from_being_met(window: MainWindow) -> Script:
     desk.add("girth")
     desk.wish("girth", 1200.0)
     yield answered(window)
-    assert card.answer.text().startswith("Not reachable: nearest is Bust girth ")
+    assert card.answer.text().startswith("Not reachable. Closest result: Bust girth ")
     assert "because Mid-bust, Full bust may not be longer: a longer line would" in card.answer.text()
     assert set(ratios(desk.answer.reply.design).values()) == {0.999}, "no line is off"
     desk.drop("girth")
@@ -117,11 +117,11 @@ def tells_what_keeps_a_wish_from_being_met(window: MainWindow) -> Script:
     window.session.edit(lambda d: lock(d, "mid-bust"), "Lock it")
     desk.wish("out", -4.0)
     yield answered(window)
-    assert card.note.text() == "Locked, so kept: Mid-bust."
+    assert card.note.text() == "Locked, not changed: Mid-bust."
     assert desk.answer.reply.design.ratio("mid-bust") == 0.97
     window.session.edit(lambda d: lock(d, "full-bust"), "Lock it too")
     assert "All worn lines are locked" in card.hint.text()
-    assert card.help_.text() == "Unlock them", "other lines are not what is missing"
+    assert card.help_.text() == "Unlock lines", "other lines are not what is missing"
     card.help_.click()
     yield answered(window)
     assert set(ratios(desk.answer.reply.design)) == {"mid-bust", "full-bust"}
@@ -161,8 +161,8 @@ def loses_nothing_meanwhile(window: MainWindow, tmp_path: Path) -> Script:
     assert [goal.name for goal in desk.goals()] == ["lift"], "the same, unless another is wished"
     assert max(desk.answer.reply.pressure.values()) < 1.02 < before
     said = desk.card.answer.text()
-    assert said.startswith("Presses with ")
-    assert "kPa at most; then Bust point up " in said
+    assert said.startswith("Contact pressure at most ")
+    assert "kPa; result: Bust point lift " in said
     assert desk.card.wishes["lift"].field.text() == "", "it is not what was asked for"
     window.session.undo_stack.setClean()
     window.project_controller.open_sample("person")

@@ -91,7 +91,7 @@ def is_taken_back_step_by_step(window: MainWindow) -> Script:
     assert do.undo.text() == "Undo Wear them", "nothing is asked for yet"
     type_wish(window, "lift", "4")
     yield answered(window)
-    assert do.undo.text() == "Undo Bust point up"
+    assert do.undo.text() == "Undo Bust point lift"
     desk.drawing.begin("left")
     yield answered(window)
     drag(handles(window)[1], -4, -4)

@@ -51,7 +51,7 @@ def names_the_conflict_and_follows_priorities(window: MainWindow) -> Script:
     card.optional.click()
     yield answered(window)
     assert "full-bust" in desk.answer.reply.design.active_lines()
-    assert "Switched on: Full bust." in card.changes.text()
+    assert "Activated: Full bust." in card.changes.text()
     desk.leave()
     yield settled(window)
 

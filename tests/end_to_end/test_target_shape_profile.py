@@ -64,9 +64,9 @@ def wishes_what_is_dragged(window: MainWindow) -> Script:
     assert drawn.steps[middle] == pytest.approx([0.0, -12.0 * scale], abs=0.2 * 12.0 * scale)
     assert desk.answer.reply is not None
     assert not desk.answer.question.hurried
-    assert "Moves along: Bust point " in desk.card.price.text(), "what is free may move as well"
+    assert "Also changes: Bust point " in desk.card.price.text(), "what is free may move as well"
     words = desk.card.wishes["profile left"].now.text()
-    assert words.startswith("off by ")
+    assert words.startswith("error ")
     off = np.array([desk.answer.reply.reached[goal.name] - goal.value for goal in desk.goals()])
     assert words == f"off by {np.abs(off).mean():.1f} mm, at most {np.abs(off).max():.1f} mm"
     # Esc gives the curve back while it is in the hand.
@@ -88,7 +88,7 @@ def tells_lines_that_are_tried_on(window: MainWindow) -> Script:
     desk.card.apply.click()
     yield settled(window)
     assert not any(row.view.tried for row in window.lines.rows.values())
-    assert window.session.undo_stack.undoText() == "Asked for: Profile through the left bust point"
+    assert window.session.undo_stack.undoText() == "Targets: Profile through the left bust point"
     assert not any(handle.isVisible() for handle in desk.handles.profile.all())
 
 

@@ -37,7 +37,7 @@ def is_applied_as_it_is_typed(window: MainWindow) -> Script:
     assert card.apply.isEnabled(), "it need not be entered first"
     type_wish(window, "out", "-5")
     yield answered(window)
-    assert (card.answer.text(), card.answer.property("tone")) == ("Reached.", "ok")
+    assert (card.answer.text(), card.answer.property("tone")) == ("All targets reached.", "ok")
     field = half_typed(window, "out", "-4")
     assert card.answer.property("tone") == "faint", "it answers what is typed over"
     QTest.keyClick(field, Qt.Key.Key_Escape)
@@ -46,7 +46,7 @@ def is_applied_as_it_is_typed(window: MainWindow) -> Script:
     click(card.apply)
     yield lambda: not desk.is_open
     yield settled(window)
-    assert window.session.undo_stack.undoText() == "Asked for: Bust point forward −4.0 mm"
+    assert window.session.undo_stack.undoText() == "Targets: Bust point, forward −4.0 mm"
     window.session.undo_stack.undo()
     yield settled(window)
 

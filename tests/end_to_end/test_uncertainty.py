@@ -43,7 +43,7 @@ def test_it_is_told_where_it_is_looked_at_and_fades_while_a_line_moves() -> None
         assert waist.off[0] == pytest.approx(2.5, abs=0.1)
         assert "scan 100 %" in waist.told()
         assert views["hip_girth"].off == (), "what is not known has none"
-        assert volume.caption == "an estimate", "the ± stands beside it, with all sources"
+        assert volume.caption == "estimate", "the ± stands beside it, with all sources"
         assert any(view.moves == "lift" and view.off[2] for view in window.result.rows)
         assert "twice the standard deviation" in card.meaning.text()
         assert "slid over the skin" in card.contact.text()
@@ -108,8 +108,8 @@ def test_where_it_is_given_up_there_is_none_and_the_reason_stands_there(
 ) -> None:
     def refused(*_: object) -> object:
         raise UserError(
-            Message("No balance was found with the lines at these lengths."),
-            Message("Set them nearer to 100 %."),
+            Message("No equilibrium found for these line lengths."),
+            Message("Set the lengths closer to 100 %."),
         )
 
     monkeypatch.setattr(core.analysis.uncertainty.estimate.UncertaintyEstimator, "estimate", refused)
@@ -120,7 +120,7 @@ def test_where_it_is_given_up_there_is_none_and_the_reason_stands_there(
         desk, card = window.uncertainty_controller, window.uncertainty_controller.card
         window.navigation.show_step("result")
         yield lambda: "No balance was found" in card.meaning.text()
-        assert card.meaning.text().startswith("How far they may be off was not worked out.")
+        assert card.meaning.text().startswith("Uncertainties were not computed.")
         assert desk.shown == (None, True), "without the landmarks it would be too small for good"
         yield lambda: bool(window.result.measured)
         assert all(view.off == () for view in window.result.measured)

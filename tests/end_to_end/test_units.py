@@ -172,7 +172,7 @@ def every_part(window: MainWindow) -> Iterator[str | Callable[[], bool]]:
     )
     yield "measures"
     window.custom_measures_controller.action.trigger()
-    yield "own measures"
+    yield "custom measurements"
     window.ask_door.click()
     yield answered(window)
     yield "targets"

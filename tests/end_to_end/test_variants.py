@@ -81,13 +81,13 @@ def test_the_figures_of_all_variants_stand_beside_each_other(
         assert percent.apart(1) == -3.0
         rest = next(line.rest_length for line in first.stages.model.lines if line.name == "mid-bust")
         assert length.values == pytest.approx((0.95 * rest, 0.92 * rest))
-        lift = next(row for row in panel.view.rows if row.label == "Bust point, up").figures[0]
+        lift = next(row for row in panel.view.rows if row.label == "Bust point lift").figures[0]
         assert lift.values[1] == pytest.approx(lift_of(window.session.frame))
         assert lift.values[0] == pytest.approx(lift_of(first), abs=0.2), "solved anew, from rest"
         monkeypatch.setattr(app.gui.file_export, "ask_save", lambda *_: str(path))
         desk.export()
         table = list(csv.reader(path.read_text("utf-8-sig").splitlines()))
-        assert table[0] == ["Figure", "Unit", "A", "B", "B - A"]
+        assert table[0] == ["Quantity", "Unit", "A", "B", "B - A"]
         assert ["Mid-bust", "%", "95.0", "92.0", "-3.0"] in table
         desk.copy()
         assert "Mid-bust\t%\t95.0\t92.0\t-3.0\n" in QGuiApplication.clipboard().text()
@@ -116,7 +116,7 @@ def test_variants_that_differ_in_elastics_alone_are_told_apart() -> None:
 
         def known() -> bool:
             rows = {row.label: row for row in panel.view.rows} if panel.view is not None else {}
-            piece = rows.get("Mid-bust: to cut, elastic, pressure")
+            piece = rows.get("Mid-bust: cut length, elastic, contact pressure")
             return piece is not None and piece.figures[2].values[1] is not None
 
         yield known
@@ -125,7 +125,7 @@ def test_variants_that_differ_in_elastics_alone_are_told_apart() -> None:
         cuts = {row.line: row for row in cut_list(frame.stages, frame.control_points).rows}
         assert "Mid-bust" not in rows, "the length of an elastic unstretched is compared with nothing"
         assert rows["Mid-bust, on the body"][1].values[1] == pytest.approx(cuts["mid-bust"].reached_front_mm)
-        cut, made_of, kpa = rows["Under-bust: to cut, elastic, pressure"]
+        cut, made_of, kpa = rows["Under-bust: cut length, elastic, contact pressure"]
         assert cut.values == (None, pytest.approx(cuts["under-bust"].cut_mm))
         assert made_of.values == ("", band.name)
         assert kpa.values[1] == pytest.approx(window.pressure_controller.of(frame).rows[0].max_kpa)

@@ -13,7 +13,7 @@ import app.gui.features.export.controller
 from app.gui.features.export.dialog import ExportDialog
 from app.gui.main_window import MainWindow
 
-READY = "Looking what will be in it…"
+READY = "Preparing preview…"
 
 
 def opened(window: MainWindow, what: str = "") -> ExportDialog:

@@ -43,7 +43,7 @@ OF_LINES = {
     "max_kpa": ("maximum contact pressure", "kPa"),
     "mean_kpa": ("mean contact pressure", "kPa"),
 }
-OF_BUST = {"lift": "Bust point up", "out": "Bust point forward"}
+OF_BUST = {"lift": "Bust point lift", "out": "Bust point, forward"}
 WORDS = {"glued": "bonded", "sliding": "sliding"}
 
 

@@ -35,10 +35,10 @@ _ROW = 15.0
 def keys_in_words() -> list[tuple[str, str]]:
     """Return what the keys do in the plots, ready to read."""
     return [
-        ("← →", tr("Read the next turn, with Shift ten on")),
-        ("+ -", tr("Closer or farther")),
-        ("Home", tr("Show all turns")),
-        ("Esc", tr("Read no turn any more")),
+        ("← →", tr("Next or previous iteration (Shift: 10)")),
+        ("+ -", tr("Zoom")),
+        ("Home", tr("Show all iterations")),
+        ("Esc", tr("Hide iteration values")),
     ]
 
 
@@ -98,7 +98,7 @@ class PlotCanvas(QWidget):
         if self._turn is None:
             return []
         plotted = self.plotted
-        rows = [(tr("turn"), number(self._turn, 0), "")]
+        rows = [(tr("iteration"), number(self._turn, 0), "")]
         for curve, value in plotted.at(self._turn):
             rows.append((curve.name, self._said(value), ROLE_COLORS[curve.role]))
         if plotted.exact is not None:

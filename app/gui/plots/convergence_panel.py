@@ -38,10 +38,10 @@ def control_segment() -> Segment:
 
 def _control_tips() -> tuple[str, str, str, str]:
     return (
-        tr("Keeps the volume with an adaptive force: it learns in each turn how strong it must be"),
-        tr("Keeps the volume with a force in proportion to the volume error; it may vibrate"),
-        tr("Does not keep the volume"),
-        tr("Keeps the volume exactly: the balance is solved at once"),
+        tr("Adaptive: adjusts the volume force at every iteration"),
+        tr("Conventional: volume force proportional to the volume error; may oscillate"),
+        tr("Volume is not conserved"),
+        tr("Exact: conserves the volume in one direct solution"),
     )
 
 
@@ -226,7 +226,7 @@ class ConvergencePanel(QWidget):
         row.setContentsMargins(14, 7, 6, 7)
         row.setSpacing(18)
         row.addLayout(self._verdict())
-        self._nothing = sentence(tr("The plots fill while you drag a line."))
+        self._nothing = sentence(tr("Plots appear while you drag a line."))
         self._nothing.setAlignment(Qt.AlignmentFlag.AlignCenter)
         plots = QGridLayout()
         plots.setHorizontalSpacing(18)
@@ -243,9 +243,9 @@ class ConvergencePanel(QWidget):
         """Return the buttons at the right edge; the window adds its own to them."""
         self.tools = QVBoxLayout()
         self.tools.setSpacing(2)
-        fold = ToolButton("caret-down", tr("Fold the plots away (Ctrl+J)"), size=14, room=26)
+        fold = ToolButton("caret-down", tr("Collapse plots (Ctrl+J)"), size=14, room=26)
         fold.clicked.connect(lambda: self.set_folded(True))
-        self.save = ToolButton("export", tr("Save what the plots show"), size=16, room=26)
+        self.save = ToolButton("export", tr("Save plots or their values"), size=16, room=26)
         self.save.clicked.connect(lambda: self._show_menu(self.save.mapToGlobal(self.save.rect().topLeft())))
         for each in (fold, self.save):
             self.tools.addWidget(each)
@@ -258,13 +258,13 @@ class ConvergencePanel(QWidget):
     def _build_menu(self) -> None:
         self.menu = Menu(self)
         for kind, text in (
-            ("csv", tr("Save the turns as a table (CSV)…")),
-            ("png", tr("Save the plots as a picture (PNG)…")),
-            ("svg", tr("Save the plots as a drawing (SVG)…")),
+            ("csv", tr("Save iterations as CSV…")),
+            ("png", tr("Save plots as PNG…")),
+            ("svg", tr("Save plots as SVG…")),
         ):
             self.menu.addAction(text, partial(self.export_requested.emit, kind))
         self.menu.addSeparator()
-        self.menu.addAction(tr("Show all turns"), partial(self.show_turns, None))
+        self.menu.addAction(tr("Show all iterations"), partial(self.show_turns, None))
 
     def _verdict(self) -> QVBoxLayout:
         column = QVBoxLayout()
@@ -303,7 +303,7 @@ class ConvergencePanel(QWidget):
         row.setContentsMargins(14, 4, 6, 4)
         row.setSpacing(12)
         self._said = StatusLine()
-        unfold = ToolButton("caret-up", tr("Show the plots (Ctrl+J)"), size=14, room=26)
+        unfold = ToolButton("caret-up", tr("Show plots (Ctrl+J)"), size=14, room=26)
         unfold.clicked.connect(lambda: self.set_folded(False))
         row.addWidget(self._small_chip)
         row.addWidget(self._said, 1)

@@ -123,7 +123,7 @@ class QuantityTitle(QAbstractButton):
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
         if self._pulls:
             self.setCursor(Qt.CursorShape.PointingHandCursor)
-            set_tip(self, tr("Choose what is plotted"))
+            set_tip(self, tr("Choose plotted values"))
         self.menu = Menu(self)
         group = QActionGroup(self)
         self._entries = {}

@@ -167,7 +167,7 @@ def _paint_turns(painter: QPainter, plotted: Plotted, scale: Scale, tokens: Toke
         room = QRectF(scale.x(turn) - 30, ground + 3, 60, 14)
         painter.drawText(room, Qt.AlignmentFlag.AlignCenter, number(turn, 0))
     end = QRectF(area.right() - 60, ground + 3, 60 + RIGHT - 2, 14)
-    painter.drawText(end, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter, tr("turn"))
+    painter.drawText(end, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter, tr("iteration"))
     painter.setPen(QPen(QColor(tokens.control), 1.6))
     for event in plotted.events:
         if scale.first <= event.turn <= scale.last:
@@ -232,8 +232,8 @@ def run_title(control: str) -> str:
     return {
         "adaptive": tr("Adaptive"),
         "conventional": tr("Conventional"),
-        "accumulating": tr("Accumulating"),
-        "none": tr("Volume free"),
+        "accumulating": tr("Integral"),
+        "none": tr("No volume control"),
     }[control]
 
 

@@ -74,7 +74,7 @@ class SectionPlot(QWidget):
         self._mark: tuple[Floats, Floats, str] | None = None
         self._at: int | None = None
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.setAccessibleName(tr("Curves of the section"))
+        self.setAccessibleName(tr("Section curves"))
 
     def sizeHint(self) -> QSize:
         return QSize(244, 190)

@@ -121,7 +121,7 @@ class StatusChip(QAbstractButton):
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents, not on)
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus if on else Qt.FocusPolicy.NoFocus)
         self.setCursor(Qt.CursorShape.PointingHandCursor if on else Qt.CursorShape.ArrowCursor)
-        set_tip(self, tr("Say what fights in this design, and what ends it") if on else "")
+        set_tip(self, tr("Find conflicting lines and suggest a fix") if on else "")
 
     def _run_spin(self) -> None:
         if self._state in _SPINNING and self.isVisible():

@@ -154,13 +154,13 @@ class DocumentEditor(QObject):
         if self.design is None:
             return
         worn = None if is_original_length(ratio) else ratio
-        text = tr("{line} off") if worn is None else tr("{line} {percent} %")
+        text = tr("{line} deactivated") if worn is None else tr("{line} {percent} %")
         said = text.format(line=title, percent=number(100.0 * ratio, 1))
         self.edit(lambda design: design.with_linked(name, worn), said, what=f"length of {name}")
 
     def reset_lines(self) -> None:
         """Take every line off: the body as scanned."""
-        self.edit(Design.with_lines_reset, tr("Reset to scan"))
+        self.edit(Design.with_lines_reset, tr("Reset all lines"))
 
     def choose_control(self, control: str) -> None:
         """Choose the volume control."""

@@ -74,9 +74,10 @@ def load_libraries() -> None:
         trouble = _trouble_of_loading(is_painted())
     if trouble is not None:
         raise UserError(
-            Message("There is no 3D view: the libraries that it needs cannot be loaded."),
+            Message("The 3D view is not available: its libraries could not be loaded."),
             Message(
-                "'busk self-test' tells what is missing; 'busk --safe-mode' does without the graphics driver."
+                "Run 'busk self-test' to list missing libraries, or 'busk --safe-mode' to start "
+                "without the graphics driver."
             ),
         ) from trouble
 

@@ -24,9 +24,9 @@ _KEYS = {
 def keys_in_words() -> list[tuple[str, str]]:
     """Return what the keys do while a line is drawn or led, ready to read."""
     return [
-        ("Enter", tr("Keep the line")),
-        ("Backspace", tr("Take the last point back")),
-        ("Esc", tr("Leave it as it was")),
+        ("Enter", tr("Finish line")),
+        ("Backspace", tr("Remove last point")),
+        ("Esc", tr("Cancel")),
     ]
 
 

@@ -100,7 +100,7 @@ class LandmarkPins:
             if kind_of(mark.name) in PINNED or mark.by_hand or mark.name == self._selected
         }
         for name, place in self._carried.items() if self._shown else ():
-            pins[name] = Pin(name, landmark_title(name), place, "accent", tr("by hand"))
+            pins[name] = Pin(name, landmark_title(name), place, "accent", tr("manual"))
         chosen = found.get(self._hovered or self._selected) if not self._carried else None
         for viewport in self._viewports:
             if viewport.shows_body:

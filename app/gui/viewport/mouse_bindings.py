@@ -62,7 +62,7 @@ def chosen_gestures() -> MouseBindings:
 
 def gestures_in_words(gestures: MouseBindings) -> list[tuple[str, str]]:
     """Return what a hand does in the view and what comes of it, ready to read."""
-    acts = {ORBIT: tr("Turn the body"), PAN: tr("Move the body"), ZOOM: tr("Closer or farther")}
+    acts = {ORBIT: tr("Rotate body"), PAN: tr("Move body"), ZOOM: tr("Zoom")}
     buttons = {_LEFT: tr("Left drag"), _MIDDLE: tr("Middle drag"), _RIGHT: tr("Right drag")}
     keys = {_NONE: "", _SHIFT: "Shift+", _CTRL: "Ctrl+"}
     drags = [(keys[held] + buttons[button], acts[act]) for (button, held), act in gestures.drags.items()]
@@ -70,9 +70,9 @@ def gestures_in_words(gestures: MouseBindings) -> list[tuple[str, str]]:
     return [
         *drags,
         *wheel,
-        (tr("Double-click"), tr("Turn about this place")),
-        (tr("Click"), tr("Select a line by its band")),
-        (f"{tr('Left drag')} ↑ ↓", tr("Selected band: shorter, longer")),
-        (tr("Left drag"), tr("Handle of the section: move the plane")),
-        (f"Shift+{tr('Left drag')}", tr("Band or section in the hand: a tenth as far")),
+        (tr("Double-click"), tr("Set rotation centre")),
+        (tr("Click"), tr("Select the line of a band")),
+        (f"{tr('Left drag')} ↑ ↓", tr("Selected band: shorten, lengthen")),
+        (tr("Left drag"), tr("Section handle: move plane")),
+        (f"Shift+{tr('Left drag')}", tr("Dragged band or section: fine steps (1/10)")),
     ]

@@ -35,8 +35,10 @@ class PlaneHandle(Handle):
     dragged = Signal(float)
 
     def __init__(self, viewport: Viewport) -> None:
-        name = tr("Handle of the section plane")
-        super().__init__(viewport, SIZE, name, tr("Drag to move the section plane; Shift: finer, Esc: back"))
+        name = tr("Section plane handle")
+        super().__init__(
+            viewport, SIZE, name, tr("Drag to move the section plane (Shift: fine, Esc: cancel)")
+        )
         self._plane = Plane("x", 0.0)
         self._ends = np.zeros(2), np.zeros(2)
         self._flat: Floats | None = None  # where it stands on the plane [mm]
@@ -95,8 +97,8 @@ class PlaneHandle(Handle):
         across = view.to_picture(beside, self._viewport.width(), self._viewport.height())[0] - spot
         full = float(np.linalg.norm(across[:2]))
         self.at_eye = bool(np.linalg.norm(way[:2]) < _FLATTEST * full)
-        said = tr("Drag to move the section plane; Shift: finer, Esc: back")
-        towards = tr("Up moves it away from you, down towards you.")
+        said = tr("Drag to move the section plane (Shift: fine, Esc: cancel)")
+        towards = tr("Drag up to move the plane away from you, down to move it towards you.")
         set_tip(self, "\n".join((said, towards)) if self.at_eye else said)
         if not self.at_eye:
             return way[:2]

@@ -41,7 +41,7 @@ _KNOB = (22.0, 32.0)
 
 def keys_in_words() -> list[tuple[str, str]]:
     """Return what the keys do on the handle, ready to read."""
-    return [("← →", tr("Wipe by 1 %")), ("Page Up, Page Down", tr("Wipe by 10 %"))]
+    return [("← →", tr("Move divider by 1 %")), ("Page Up, Page Down", tr("Move divider by 10 %"))]
 
 
 class SplitHandle(QAbstractSlider):
@@ -57,8 +57,8 @@ class SplitHandle(QAbstractSlider):
         self.setFixedWidth(2 * REACH)
         self.setCursor(Qt.CursorShape.SplitHCursor)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setAccessibleName(tr("Border between before and after"))
-        set_tip(self, tr("Drag, or use the arrow keys. A double click puts it in the middle."))
+        self.setAccessibleName(tr("Divider between before and after"))
+        set_tip(self, tr("Drag, or use the arrow keys. Double-click to centre."))
         self._room = parent
         self._grip = 0.0
         self._bare = False

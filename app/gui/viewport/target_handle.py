@@ -38,7 +38,7 @@ class TargetHandle(Handle):
 
     def __init__(self, viewport: Viewport, side: str, name: str, *, small: bool = False) -> None:
         self._size = SMALL if small else SIZE
-        tip = tr("Drag to where it is to be; Shift: finer, Esc: back. Arrows: {step}")
+        tip = tr("Drag to the target position (Shift: fine, Esc: cancel). Arrow keys: {step}")
         super().__init__(viewport, self._size, name, tip.format(step=length(arrow_step(), 0)))
         self.side, self._small = side, small
         self._place, self._foot = np.zeros(3), np.zeros(3)

@@ -96,7 +96,7 @@ class ViewTools(Toolbar):
         colours.setCheckable(True)
         colours.setEnabled(False)
         colours.triggered.connect(lambda on: self.toggled.emit("colours", on))
-        self._add("picture", "camera", tr("Save a picture"), "Ctrl+Shift+P")
+        self._add("picture", "camera", tr("Save image"), "Ctrl+Shift+P")
         self.actions_by_name["picture"].triggered.connect(self.picture_requested)
 
     def set_view(self, name: str | None) -> None:
@@ -122,11 +122,11 @@ class CompareTools(Toolbar):
         self._segment = Segment((("before", tr("Before")), ("after", tr("After"))))
         self._segment.chosen.connect(self.way_chosen)
         for name in ("before", "after"):
-            set_tip(self._segment.button(name), tr("Body at rest and reshaped  Space"))
+            set_tip(self._segment.button(name), tr("Original and reshaped body (Space)"))
         self.row.addWidget(self._segment)
         self.row.addSpacing(4)
-        self._add_layer("ghost", "ghost", tr("Body at rest as a fringe"), "G")
-        self._add_way("wipe", "wipe", tr("Wipe between before and after"), "W")
+        self._add_layer("ghost", "ghost", tr("Original outline"), "G")
+        self._add_way("wipe", "wipe", tr("Swipe before / after"), "W")
         self._add_way("side", "columns", tr("Before and after side by side"), "D")
         self.set_way("after")
 

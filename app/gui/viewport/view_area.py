@@ -142,7 +142,7 @@ class ViewArea(QWidget):
             self.viewport.make()
             done()
 
-        words = tr("Getting the 3D view ready")
+        words = tr("Preparing 3D view")
         self._jobs.run(words, lambda _: load_libraries(), make, failed)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
@@ -316,7 +316,7 @@ class ViewArea(QWidget):
 
     def _bake(self, body: Body) -> Job:
         return self._jobs.run(
-            tr("Shading the body"),
+            tr("Computing shading…"),
             lambda progress: bake_occlusion(body.mesh, progress=progress),
             lambda occlusion: self._shade(body, occlusion),
         )

@@ -97,13 +97,13 @@ def ask_save(parent: QWidget, title: str, name: str, kinds: str, ending: str) ->
 
 
 def _may_replace(parent: QWidget, name: str) -> bool:
-    question = tr("{name} is there already. Replace it?").format(name=name)
+    question = tr("{name} already exists. Replace it?").format(name=name)
     return ask(parent, question, "", [("replace", tr("Replace"))]) == "replace"
 
 
 def ask_about_changes(parent: QWidget | None, name: str) -> str:
     """Return what to do with unsaved changes: "save", "discard" or "stay"."""
-    question, said = tr("Save the changes to {name}?").format(name=name), tr("Otherwise they are lost.")
+    question, said = tr("Save the changes to {name}?").format(name=name), tr("Unsaved changes will be lost.")
     return ask(parent, question, said, [("save", tr("Save")), ("discard", tr("Don't save"))]) or "stay"
 
 
@@ -115,13 +115,13 @@ def ask_overwrite(parent: QWidget, name: str, protected: bool = False) -> str:
     question = tr("{name} was changed outside this window.").format(name=name)
     if protected:
         question = tr("{name} is write-protected.").format(name=name)
-    said = tr("Saving replaces that version. Busk tries to keep it under File, Open a backup.")
+    said = tr("Saving overwrites that version. Busk tries to keep a copy under File, Open backup.")
     answers = [("elsewhere", tr("Save as…")), ("overwrite", tr("Replace"))]
     return ask(parent, question, said, answers) or "stay"
 
 
 def may_discard(parent: QWidget, name: str) -> bool:
     """Ask whether what was kept of a document after a crash may go for good."""
-    question = tr("Discard the changes that were kept of {name}?").format(name=name)
-    said = tr("They cannot be had back.")
+    question = tr("Discard the recovered changes to {name}?").format(name=name)
+    said = tr("This cannot be undone.")
     return ask(parent, question, said, [("discard", tr("Discard"))]) == "discard"

@@ -31,7 +31,7 @@ _RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 
 def keys_in_words() -> list[tuple[str, str]]:
     """Return what the keys do in a field that is typed into, ready to read."""
-    return [("Enter", tr("Take what is typed")), ("Esc", tr("Leave it as it was"))]
+    return [("Enter", tr("Apply value")), ("Esc", tr("Cancel"))]
 
 
 def read_number(text: str) -> float | None:

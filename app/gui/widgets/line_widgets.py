@@ -65,7 +65,7 @@ class SideMark(QWidget):
         super().__init__()
         self._letter = ""
         self.setFixedSize(QSize(17, 16))
-        set_tip(self, tr("Set apart: left and right have lengths of their own"))
+        set_tip(self, tr("Unlinked: left and right have separate lengths"))
 
     def show_side(self, side: str) -> None:
         """Show "left" or "right"; anything else is no side, and nothing is shown."""
@@ -153,8 +153,8 @@ class _Editor(QLineEdit):
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
         self.setMaxLength(LONGEST_TITLE)
-        self.setAccessibleName(tr("Name of the line"))
-        set_tip(self, tr("Enter keeps the name, Esc the old one; nothing typed brings the usual name back."))
+        self.setAccessibleName(tr("Line name"))
+        set_tip(self, tr("Enter saves the name, Esc cancels, an empty name restores the default."))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if event.key() == Qt.Key.Key_Escape:
@@ -177,8 +177,8 @@ class StiffnessField(InlineEdit):
         self.setFixedWidth(104)
         low, high = RANGES["line_stiffness"]
         tip = tr(
-            "Stiffness of this line, {low} to {high} times that of the skin at a point;"
-            " leave it empty to have it as the model."
+            "Set the stiffness of this line, {low} to {high} times that of the skin at a point. "
+            "Leave empty for the model value."
         )
         set_tip(self, tip.format(low=low, high=number(high, 0)))
         self.name_line("")
@@ -200,7 +200,7 @@ class StiffnessField(InlineEdit):
         plain, (low, high) = text.strip().replace(",", "."), RANGES["line_stiffness"]
         stiffness = (read_number(plain) or 0.0) if plain else None
         if stiffness is not None and not low <= stiffness <= high:
-            said = tr("A stiffness goes from {low} to {high}; left empty it is that of the model.")
+            said = tr("Enter a stiffness from {low} to {high}, or leave the field empty for the model value.")
             raise ValueError(said.format(low=low, high=number(high, 0)))
         return stiffness
 
@@ -235,7 +235,7 @@ class PaletteMenu(Menu):
         for colour, name in zip(LINE_COLORS, names, strict=True):
             self.addAction(_swatch(colour), name, lambda colour=colour: self.chosen.emit(colour))
         self.addSeparator()
-        self.addAction(tr("The usual colour"), lambda: self.chosen.emit(""))
+        self.addAction(tr("Default colour"), lambda: self.chosen.emit(""))
 
 
 def _swatch(colour: str) -> QIcon:
@@ -265,8 +265,8 @@ class ElasticButton(QPushButton):
 
     def show_elastic(self, line: str, elastic: str) -> None:
         """Show what a line is made of, or that it can be chosen."""
-        self._elastic = elastic or tr("Choose an elastic…")
-        set_tip(self, elastic or tr("What this line is made of: its length to cut follows"))
+        self._elastic = elastic or tr("Choose elastic…")
+        set_tip(self, elastic or tr("Choose an elastic to compute the cut length"))
         self.setAccessibleName(tr("{line}: elastic, {elastic}").format(line=line, elastic=self._elastic))
         self.update()
 

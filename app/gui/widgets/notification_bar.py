@@ -181,7 +181,7 @@ class NotificationBar(FloatingPanel):
         row.setSpacing(8)
         self._icon = IconLabel("info", "info", 19)
         self._words, self.more = label("", "body"), button("", "quiet")
-        set_tip(self.more, tr("Show the next of them; this one waits"))
+        set_tip(self.more, tr("Show next notice"))
         self.more.clicked.connect(self._turn_over)
         self._words.setTextFormat(Qt.TextFormat.RichText)
         self._words.setWordWrap(True)

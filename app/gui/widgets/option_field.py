@@ -163,9 +163,9 @@ class AmountEdit(InlineEdit):
             return None
         figure, (low, high) = read_number(text), self._amount.limits
         if figure is None:
-            raise ValueError(tr("“{text}” is no number.").format(text=text))
+            raise ValueError(tr("“{text}” is not a number.").format(text=text))
         if not low <= figure / self._amount.scale <= high:
-            said = tr("It goes from {low} to {high}{unit}.")
+            said = tr("Enter a value from {low} to {high}{unit}.")
             unit = f" {self._amount.unit}" if self._amount.unit else ""
             raise ValueError(said.format(low=self._plain(low), high=self._plain(high), unit=unit))
         return figure / self._amount.scale
@@ -207,7 +207,7 @@ class LandmarkCombo(OptionCombo):
         self._titles: Mapping[str, str] = {}
         self._menu = Menu(self)
         self.setAccessibleName(title)
-        set_tip(self, tr("Choose a landmark, or click it on the body"))
+        set_tip(self, tr("Choose a landmark or click it on the body"))
         self.setMinimumHeight(28)
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.clicked.connect(lambda: pull_down(self._menu, self))
@@ -227,7 +227,7 @@ class LandmarkCombo(OptionCombo):
 
     def show_mark(self, name: str) -> None:
         """Show a landmark, or that there is none yet."""
-        title = self._titles.get(name, self._none or tr("not chosen yet"))
+        title = self._titles.get(name, self._none or tr("not chosen"))
         self.setText(title)
         self.setAccessibleDescription(title)
         for action in self._menu.actions():

@@ -44,7 +44,7 @@ class ProgressCard(FloatingPanel):
         words.addWidget(self._bar)
         words.addWidget(self._steps)
         self.stop = button(tr("Cancel"))
-        set_tip(self.stop, tr("What was there before stays (Esc)"))
+        set_tip(self.stop, tr("Keep previous result (Esc)"))
         self.stop.clicked.connect(self.cancelled)
         self.row.setContentsMargins(28, 20, 24, 24)
         self.row.addLayout(words)

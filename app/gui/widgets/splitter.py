@@ -24,8 +24,8 @@ _WAYS = {
 def keys_in_words() -> list[tuple[str, str]]:
     """Return what the keys do on the line between two parts, ready to read."""
     return [
-        ("← → ↑ ↓", tr("Share the room out by {count} pixels").format(count=STEP)),
-        ("Home, End", tr("As far as it goes")),
+        ("← → ↑ ↓", tr("Resize by {count} pixels").format(count=STEP)),
+        ("Home, End", tr("Resize to the limit")),
     ]
 
 

@@ -61,7 +61,7 @@ class ValueEdit(InlineEdit):
     def _read(self, text: str) -> float:
         value = read_length(text) if self._of == "mm" else read_number(text)
         if value is None:
-            raise ValueError(tr("“{text}” is no number.").format(text=text))
+            raise ValueError(tr("“{text}” is not a number.").format(text=text))
         return value
 
     def _take(self, value: float) -> None:

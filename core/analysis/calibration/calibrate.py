@@ -95,7 +95,7 @@ def require_active_line(stages: Stages) -> None:
     """Raise UserError if no line that moves the body is worn."""
     if not len(stages.model.acting_lines):
         raise UserError(
-            Message("No line that moves the body is worn."), Message("Wear the lines of the garment first.")
+            Message("No active line moves the body."), Message("Activate the lines of the garment first.")
         )
 
 
@@ -123,11 +123,11 @@ def calibrate(
     if seen.sum() < FEWEST:
         raise UserError(
             Message(
-                "The worn scan shows {count} places of the skin that moves; {least} are needed.",
+                "The fitting scan covers {count} points of the reshaped skin; {least} are required.",
                 count=f"{seen.sum():.0f}",
                 least=FEWEST,
             ),
-            Message("Scan the front of the body too."),
+            Message("Include the front of the body in the scan."),
         )
     here = fit.minimize(stages.design, np.ones(len(numbers), dtype=bool))
     stays = unidentifiable(_sure(fit, here), numbers)

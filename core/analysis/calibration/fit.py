@@ -194,7 +194,7 @@ def residual_jacobian(
         moved = point_sensitivities(stages, answer, numbers)
     except ValueError as unbounded:
         raise LineError(
-            Message("The body moves without bound there."), Message("Set the lines longer.")
+            Message("The equilibrium is not unique for these values."), Message("Make the lines longer.")
         ) from unbounded
     for column, free in enumerate(moved.T):
         way = np.zeros_like(points)

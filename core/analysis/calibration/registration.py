@@ -252,11 +252,11 @@ def _refuse_other_size(body: Body, worn: Body) -> None:
         return
     raise ScanError(
         Message(
-            "The worn scan is {times} times as large as the first one: it was read in {unit}.",
+            "The fitting scan is {times} times as large as the first scan: it was read in {unit}.",
             times=f"{times:.2g}",
             unit=worn.pose.unit,
         ),
-        Message("Tell its unit."),
+        Message("Set its unit."),
     )
 
 
@@ -270,12 +270,12 @@ def _refuse_other_body(found: Alignment) -> None:
     if found.seen < LEAST_SEEN:
         raise ScanError(
             Message(
-                "The worn scan shows {seen} % of the skin that no line moves; {least} % are needed "
-                "to lay it on the first.",
+                "The fitting scan covers {seen} % of the unaffected skin; {least} % is required "
+                "for registration.",
                 seen=f"{100.0 * found.seen:.0f}",
                 least=f"{100.0 * LEAST_SEEN:.0f}",
             ),
-            Message("Scan the back, the ribs and the shoulders too."),
+            Message("Include the back, the ribs and the shoulders in the scan."),
         )
     if found.met < LEAST_MET:
         raise ScanError(
@@ -286,5 +286,5 @@ def _refuse_other_body(found: Alignment) -> None:
                 mm=Length(MET),
                 least=f"{100.0 * LEAST_MET:.0f}",
             ),
-            Message("Take a scan of the same person in the same posture, arms as before."),
+            Message("Use a scan of the same person in the same posture and arm position."),
         )

@@ -100,8 +100,10 @@ def require_not_mirrored(stages: Stages, worn: FittingScan) -> None:
     off, mirrored = (summarize(residuals_at(stages, points, skin, 0.0)).rms for skin in skins)
     if off > max(_OFF, _MIRRORED * mirrored):
         raise ScanError(
-            Message("The worn scan looks like the mirror image of the first: its left lies on her right."),
-            Message("Export it again without mirroring it."),
+            Message(
+                "The fitting scan appears to be a mirror image of the first scan: left and right are swapped."
+            ),
+            Message("Export it again without mirroring."),
         )
 
 

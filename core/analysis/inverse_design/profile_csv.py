@@ -38,10 +38,10 @@ def read_profile(path: str) -> Floats:
         if isinstance(why, OSError) and why.errno == errno.EFBIG:
             raise UserError(
                 Message("{path} is too large for a profile.", path=path),
-                Message("A few dozen rows are enough."),
+                Message("A few dozen rows are sufficient."),
             ) from why
         raise UserError(
-            Message("{path} cannot be read as a table.", path=path), Message("Give a CSV file in UTF-8.")
+            Message("{path} cannot be read as a table.", path=path), Message("Use a CSV file in UTF-8.")
         ) from why
     first = text.partition("\n")[0]
     sign = next((each for each in (";", "\t") if each in first), ",")
@@ -49,7 +49,7 @@ def read_profile(path: str) -> Floats:
         table = list(csv.reader(text.splitlines(), delimiter=sign))
     except csv.Error as why:  # a cell without an end
         raise UserError(
-            Message("{path} cannot be read as a table.", path=path), Message("Give a CSV file in UTF-8.")
+            Message("{path} cannot be read as a table.", path=path), Message("Use a CSV file in UTF-8.")
         ) from why
     rows = [[cell.strip() for cell in row] for row in table if row]
     head = [cell.lower() for cell in rows[0]] if rows else []
@@ -60,8 +60,8 @@ def read_profile(path: str) -> Floats:
         raise UserError(
             Message("{path} has no columns height_mm and out_mm.", path=path),
             Message(
-                "Write them over two columns: the height on the body and how far the skin is to "
-                "stand out there."
+                "Use them as headings of two columns: the height on the body and the target "
+                "depth of the skin there."
             ),
         )
     found = np.array([[_number(path, row, column) for column in columns] for row in rows[1:]])
@@ -83,7 +83,7 @@ def profile_goals(stages: Stages, section: str, curve: Floats) -> tuple[Goal, ..
                 "No height of the profile lies where the body can be reshaped, {range}.",
                 range=LengthRange(low, high),
             ),
-            Message("Heights are those of the body as Busk shows it, in millimetres."),
+            Message("Use the heights of the body in Busk, in millimetres."),
         )
     chosen = inside[:: -(-len(inside) // _MOST)]
     return tuple(Goal(profile_name(section, height), out) for height, out in chosen.tolist())
@@ -131,9 +131,7 @@ def _outline(path: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> F
     curve = [row[head.index("curve")] if "curve" in head else "" for row in kept]
     joined = np.array([one == other for one, other in pairwise(curve)], dtype=bool)
     if not joined.any():
-        raise UserError(
-            Message("{path} has no curve in it.", path=path), Message("Export the section once more.")
-        )
+        raise UserError(Message("{path} contains no curve.", path=path), Message("Export the section again."))
     a, b = (np.stack([z[each], -y[each]], axis=1)[joined] for each in (slice(None, -1), slice(1, None)))
     return _in_order(path, _foremost(a, b, _STEP))
 
@@ -146,8 +144,8 @@ def _number(path: str, row: Sequence[str], column: int) -> float:
         value = np.nan
     if not np.isfinite(value) or abs(value) > 10_000.0:
         raise UserError(
-            Message("'{text}' in {path} is no length.", text=text, path=path),
-            Message("Write millimetres, one number a cell."),
+            Message("'{text}' in {path} is not a length.", text=text, path=path),
+            Message("Enter millimetres, one number per cell."),
         )
     return value
 
@@ -155,11 +153,12 @@ def _number(path: str, row: Sequence[str], column: int) -> float:
 def _in_order(path: str, found: Floats) -> Floats:
     if not len(found):
         raise UserError(
-            Message("{path} has no heights in it.", path=path), Message("Write one row for each height.")
+            Message("{path} contains no heights.", path=path), Message("Enter one row for each height.")
         )
     found = found[np.argsort(found[:, 0])]
     if len(found) > 1 and np.diff(found[:, 0]).min() < 1e-6:
         raise UserError(
-            Message("{path} has a height twice.", path=path), Message("Write one row for each height.")
+            Message("{path} contains a duplicate height.", path=path),
+            Message("Enter one row for each height."),
         )
     return np.asarray(found)

@@ -303,8 +303,8 @@ def profile_reader(stages: Stages, names: Sequence[str]) -> ReadMany:
     for name, match in zip(names, found, strict=True):
         if match is None:
             raise UserError(
-                Message("'{name}' names no place of a profile.", name=name),
-                Message("Name the section and a height: profile left 1150."),
+                Message("'{name}' is not a position on a profile.", name=name),
+                Message("Specify the section and a height: profile left 1150."),
             )
     known = [match for match in found if match is not None]
     at, heights = section_at(stages, known[0][1]), np.array([float(match[2]) for match in known])
@@ -320,7 +320,7 @@ def profile_reader(stages: Stages, names: Sequence[str]) -> ReadMany:
                     height=Length(height),
                     at=Length(at),
                 ),
-                Message("Heights are those of the body as Busk shows it, in millimetres."),
+                Message("Use the heights of the body in Busk, in millimetres."),
             )
         return values, slopes
 
@@ -355,8 +355,8 @@ def reading(stages: Stages, name: str) -> Read:
         if family.has(name):
             return family.read(stages, name)
     raise UserError(
-        Message("'{name}' cannot be asked for.", name=name),
-        Message("Ask for one of: {names}.", names=", ".join(NAMES)),
+        Message("'{name}' is not a target.", name=name),
+        Message("Choose one of: {names}.", names=", ".join(NAMES)),
     )
 
 

@@ -83,8 +83,8 @@ class Search:
         self._groups = free_lines(stages, bounds.kept)
         if not goals or not self._groups:
             raise UserError(
-                Message("No line that moves the body may change."),
-                Message("Wear one that is not locked, and name a figure."),
+                Message("No unlocked line moves the body."),
+                Message("Activate an unlocked line, and set a target."),
             )
         read = QuantityReaders(stages).reader([goal.name for goal in goals]) if read is None else read
         self._answers = LinearizedSolutions(stages, self._groups, read)

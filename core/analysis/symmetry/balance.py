@@ -95,7 +95,7 @@ def balance_sides(
     UserError if a breast is missing, no worn line can move one side alone, or nothing balances; Cancelled.
     """
     if not all(shows_breast(stages.landmarks, side) for side in SIDES):
-        raise UserError(NO_BREAST, Message("Place its bust point, or change lines by hand."))
+        raise UserError(NO_BREAST, Message("Place its bust point, or edit the lines manually."))
     exact = build(replace(stages.design, volume="exact"), stages, progress)
     names: tuple[str, ...] = ()
     if not moves_one_side(exact):
@@ -104,8 +104,8 @@ def balance_sides(
         exact = build(split_sides(exact.design, template), exact, progress)
     if not moves_one_side(exact):
         raise UserError(
-            Message("No worn line can move one side alone."),
-            Message("Wear a line that is not locked: one across both sides is split, a pair set apart."),
+            Message("No active line can move one side alone."),
+            Message("Activate an unlocked line: lines across both sides are split, pairs are unlinked."),
         )
     best = _best(exact, names, lambda goals: solve_targets(exact, goals, shortest, kept, progress))
     design = replace(best.result.design, volume=stages.design.volume)

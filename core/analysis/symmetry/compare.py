@@ -21,7 +21,7 @@ from core.messages import Message
 from core.pipeline.build import Stages
 from core.scan.body import Body
 
-NO_BREAST = Message("On one side no breast stands out: its bust point only mirrors the other one.")
+NO_BREAST = Message("One side has no breast protrusion: its bust point is mirrored from the other side.")
 
 
 @dataclass(frozen=True)

@@ -42,14 +42,13 @@ from core.pipeline.build import Stages
 from core.progress import Progress, quiet
 
 SLIDING = Message(
-    "Lines that slide answer less evenly than the ± says: on two bodies it held nine of "
-    "ten draws of the lift, not 95 %, and single ones lay far outside."
+    "Sliding lines respond less smoothly than ± implies: on two bodies, ± contained nine of ten "
+    "samples of the lift in place of 95 %, and some samples were far outside."
 )
 
 WAIST = Message(
-    "The waist girth is measured where the trunk is narrowest: the anatomical waist may "
-    "be elsewhere, and its girth may differ by several centimetres, which the ± does not "
-    "include."
+    "The waist girth is measured at the narrowest trunk. The girth of the anatomical waist may "
+    "differ by several centimetres, which ± does not include."
 )
 
 _UNTOLD = tuple(f"{kind}:asymmetry_volume" for kind in (BEFORE, AFTER))

@@ -41,8 +41,12 @@ class InputUncertainty:
         for name in NUMBERS:
             if not 0.0 <= getattr(self, name) <= 20.0:
                 raise UserError(
-                    Message("{name} cannot be {number}.", name=name, number=f"{getattr(self, name):g}"),
-                    Message("It goes from 0 to 20."),
+                    Message(
+                        "The value {number} of {name} is out of range.",
+                        name=name,
+                        number=f"{getattr(self, name):g}",
+                    ),
+                    Message("Enter a value from 0 to 20."),
                 )
 
     def scaled(self, share: float) -> InputUncertainty:
@@ -81,15 +85,15 @@ def with_overrides(texts: Sequence[str], base: InputUncertainty) -> InputUncerta
         name = name.strip().replace("-", "_")
         if name not in NUMBERS:
             raise UserError(
-                Message("Nothing called '{name}' is assumed.", name=name),
+                Message("Unknown assumption '{name}'.", name=name),
                 Message("Choose one of: {choices}.", choices=", ".join(NUMBERS)),
             )
         try:
             told[name] = float(value)
         except ValueError:
             raise UserError(
-                Message("'{value}' is no number for {name}.", value=value, name=name),
-                Message("Write {name}=2.", name=name),
+                Message("'{value}' is not a number for {name}.", value=value, name=name),
+                Message("Enter {name}=2.", name=name),
             ) from None
     return replace(base, **told)
 

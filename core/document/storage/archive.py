@@ -45,7 +45,7 @@ def project_archive(path: Path) -> Iterator[zipfile.ZipFile]:
             yield archive
     except FileNotFoundError:
         raise ProjectError(
-            Message("There is no project {file}.", file=str(path)),
+            Message("Project {file} does not exist.", file=str(path)),
             Message("Check the name, or choose another one."),
         ) from None
     except OSError as problem:
@@ -54,7 +54,9 @@ def project_archive(path: Path) -> Iterator[zipfile.ZipFile]:
             Message("Check the file, or open a backup."),
         ) from problem
     except _BROKEN as problem:
-        raise ProjectError(Message("{file} is not a whole Busk project.", file=path.name), _HINT) from problem
+        raise ProjectError(
+            Message("{file} is an incomplete Busk project.", file=path.name), _HINT
+        ) from problem
 
 
 def member_bytes(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
@@ -66,12 +68,12 @@ def member_bytes(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
         member = archive.getinfo(name)
     except KeyError:
         raise ProjectError(
-            Message("This file is no Busk project."), Message("Open a .busk file or a scan.")
+            Message("This file is not a Busk project."), Message("Open a .busk file or a scan.")
         ) from None
     # Other ways of packing are not unpacked piece by piece.
     if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
         raise ProjectError(
-            Message("{name} of this project is packed in a way that Busk does not read.", name=name), _HINT
+            Message("{name} of this project uses an unsupported compression.", name=name), _HINT
         )
     packed = min(member.compress_size, os.fstat(archive.fp.fileno()).st_size)  # type: ignore[union-attr]
     within, out = min(most, HEADROOM + _RATIO * packed), io.BytesIO()

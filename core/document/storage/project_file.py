@@ -78,7 +78,7 @@ def open_project(path: str | os.PathLike[str]) -> Document:
         member = document.design.scan.member
         if member not in archive.namelist():
             raise ProjectError(
-                Message("{file} holds no scan.", file=source.name),
+                Message("{file} contains no scan.", file=source.name),
                 Message("Open a backup, or start again from the scan."),
             )
     return with_scan(document, str(source.absolute()), member)
@@ -93,7 +93,7 @@ def with_scan(document: Document, path: str, member: str) -> Document:
 def read_scan_file(source: ScanSource, progress: Progress = quiet) -> ScanFile:
     """Read the bytes of a scan, alone or inside a project. Raises ScanError, ProjectError, Cancelled."""
     if not source.path:
-        raise ScanError(Message("No file is named."), Message("Choose a scan or a project."))
+        raise ScanError(Message("No file specified."), Message("Choose a scan or a project."))
     if source.member:
         with project_archive(Path(source.path)) as archive:
             return ScanFile(source.name, member_bytes(archive, source.member, LARGEST_SCAN))
@@ -140,7 +140,7 @@ def _checked_texts(document: Document) -> dict[str, bytes]:
         from_texts(texts)
     except UserError as problem:
         raise ProjectError(
-            Message("This project could not be opened again: {problem}", problem=problem.message),
+            Message("The saved project cannot be opened again: {problem}", problem=problem.message),
             Message("Undo the last change, then save."),
         ) from problem
     written = {name: text.encode() for name, text in texts.items()}

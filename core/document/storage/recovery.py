@@ -203,15 +203,15 @@ def _unkept(folder: Path, problem: Exception) -> ProjectError:
     cause = problem.__cause__ or problem
     return ProjectError(
         Message(
-            "Busk cannot keep your changes in {folder}: {reason}.",
+            "Changes cannot be autosaved in {folder}: {reason}.",
             folder=str(folder),
             reason=reason_of(cause),
         ),
-        Message("Make room on the disk, or save often."),
+        Message("Free disk space, or save often."),
     )
 
 
 def _unreadable(folder: Path) -> ProjectError:
     return ProjectError(
-        Message("What was kept in {folder} cannot be read.", folder=str(folder)), Message("Open a backup.")
+        Message("The recovery data in {folder} is damaged.", folder=str(folder)), Message("Open a backup.")
     )

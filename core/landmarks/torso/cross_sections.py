@@ -199,8 +199,8 @@ class TorsoSections:
         full = self.tape > 0.0
         if not full.any():
             raise LandmarkError(
-                Message("No body is in the middle of the scan."),
-                Message("Open a scan of a whole upper body."),
+                Message("The scan has no body in its centre."),
+                Message("Open a scan of a complete upper body."),
             )
         w = self.half_width
         alone = full & (w < 1.25 * np.median(w[full & (w >= np.median(w[full]))]))
@@ -213,7 +213,7 @@ class TorsoSections:
         if not 400.0 < girth < 2000.0:
             raise LandmarkError(
                 Message("The trunk measures {girth} round, which no adult does.", girth=Length(girth)),
-                Message("Say in which unit the scan is."),
+                Message("Set the unit of the scan."),
             )
         return float(width), usable
 
@@ -234,7 +234,7 @@ def scan_torso(mesh: Mesh) -> TorsoSections:
     if not 100.0 < high - low < 2500.0:
         raise LandmarkError(
             Message("The scan is {height} high, no upper body is.", height=Length(high - low)),
-            Message("Say in which unit it is."),
+            Message("Set the unit of the scan."),
         )
     guide = torso_axis(mesh)
     segments, row = guide.cuts.segments[guide.keep], guide.cuts.level[guide.keep]

@@ -23,12 +23,12 @@ MUCH = 50.0
 """Over more than this of an outline that is no skin a girth is an estimate [mm]."""
 
 ESTIMATES = {
-    "bust": Message("The bust girth goes over a hole of the scan or over a joined arm: it is an estimate."),
-    "underbust": Message(
-        "The under-bust girth goes over a hole of the scan or over a joined arm: it is an estimate."
-    ),
+    "bust": Message("The bust girth crosses a hole of the scan or a merged arm: estimate."),
+    "underbust": Message("The under-bust girth crosses a hole of the scan or a merged arm: estimate."),
 }
-UNCERTAIN = Message("The under-bust girth is uncertain, as the height of the folds is.")
+UNCERTAIN = Message(
+    "The under-bust girth is uncertain because the heights of the inframammary folds are uncertain."
+)
 
 
 @dataclass(frozen=True)

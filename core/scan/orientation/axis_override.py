@@ -47,8 +47,8 @@ def parse_axis(text: str | None) -> AxisOverride | None:
     length = float(np.linalg.norm(direction))
     if direction.shape != (3,) or not (np.isfinite(length) and length > 0.0):
         raise ScanError(
-            Message("The axis {axis} is not known.", axis=f"{text!r}"),
-            Message("Choose one of {axes}, or a direction like 0,0.2,1.", axes=", ".join(AXES)),
+            Message("Unknown axis {axis}.", axis=f"{text!r}"),
+            Message("Choose one of {axes}, or a direction such as 0,0.2,1.", axes=", ".join(AXES)),
         )
     return AxisOverride(direction / length, exact=True)
 
@@ -58,7 +58,7 @@ def parse_axes(up: str | None, front: str | None) -> tuple[AxisOverride | None, 
     told_up, told_front = parse_axis(up), parse_axis(front)
     if told_up and told_front and abs(told_up.direction @ told_front.direction) > 0.9:
         raise ScanError(
-            Message("Up {up} and front {front} lie along the same axis.", up=up or "", front=front or ""),
+            Message("Up {up} and front {front} are on the same axis.", up=up or "", front=front or ""),
             Message("Choose two different axes."),
         )
     if told_up and told_front and told_front.exact:  # up is believed first, front lies level

@@ -251,15 +251,15 @@ def _arms(seen: TorsoFeatures) -> float:
 
 
 CUES = (
-    Cue(Message("the bust with the folds under it"), 1.0, _bust),
+    Cue(Message("the bust with the inframammary folds"), 1.0, _bust),
     Cue(Message("two breasts"), 0.6, _breasts),
     Cue(Message("the cleft of the buttocks"), 1.0, _buttocks),
-    Cue(Message("the hollow of the back"), 1.0, _spine),
-    Cue(Message("shoulders nearer to the back"), 0.5, _shoulders),
-    Cue(Message("the narrow end"), 1.2, _taper),
-    Cue(Message("where the arms join"), 0.5, _arms),
+    Cue(Message("the curve of the lower back"), 1.0, _spine),
+    Cue(Message("shoulders closer to the back"), 0.5, _shoulders),
+    Cue(Message("the tapered end"), 1.2, _taper),
+    Cue(Message("the attachment of the arms"), 0.5, _arms),
     Cue(Message("the legs"), 0.6, _legs),
-    Cue(Message("a trunk that stands"), 1.5, _upright),
+    Cue(Message("an upright trunk"), 1.5, _upright),
 )
 """What tells up and front; weights are ours, from bodies deformed in many ways."""
 

@@ -33,7 +33,7 @@ SHORT, FAINT = 300.0, 12.0
 FACING = 0.6
 """At a rim the skin runs up to the plane of the opening [cosine]; what only touches a plane faces it."""
 
-WHOLE = Message("Open a scan of a whole upper body, or say which way is up and which way is front.")
+WHOLE = Message("Open a scan of a complete upper body, or set its up and front axes.")
 
 
 def require_plausible(cloud: Cloud, readings: Sequence[PoseCandidate]) -> None:
@@ -44,25 +44,28 @@ def require_plausible(cloud: Cloud, readings: Sequence[PoseCandidate]) -> None:
     best = readings[0]
     trunk = best.seen.trunk
     if _halved(cloud, readings):
-        raise ScanError(Message("Only a half of an upper body is here: its other half is missing."), WHOLE)
+        raise ScanError(Message("The scan contains only half of an upper body."), WHOLE)
     if best.residual > UNLIKE:
         raise ScanError(
-            Message("Left and right are not alike enough for an upper body: a half of it may be missing."),
+            Message("Left and right differ too much for an upper body: one half may be missing."),
             WHOLE,
         )
     if trunk.stoutness > STOUTNESS[1] and best.evidence > 0.0:
         raise ScanError(
-            Message("This is too flat for an upper body: the front or the back of the trunk is missing."),
+            Message("The scan is too flat for an upper body: the front or the back of the trunk is missing."),
             WHOLE,
         )
     if trunk.height[-1] < SHORT and (best.evidence < LEAST or best.seen.fold.strength < FAINT):
         raise ScanError(
-            Message("Too little is here for an upper body: no bust shows on a short piece of trunk."), WHOLE
+            Message("The scan is too short for an upper body: no bust detected on the trunk section."), WHOLE
         )
     if best.evidence < LEAST or not STOUTNESS[0] < trunk.stoutness < STOUTNESS[1]:
         raise ScanError(
-            Message("This does not look like an upper body: no bust was found in front of an even trunk."),
-            Message("Cut away all but the body, or say which way is up and which way is front."),
+            Message(
+                "The scan does not resemble an upper body: no bust detected on the front of a "
+                "symmetric trunk."
+            ),
+            Message("Remove everything except the body, or set the up and front axes."),
         )
 
 

@@ -31,7 +31,7 @@ READINGS = 4
 RIVAL = 2.0
 """Ways to stand that score less than the best by this [1] stay rough: they cannot win."""
 
-NOTHING_ELSE = Message("It should hold an upper body, and little else.")
+NOTHING_ELSE = Message("The scan must contain an upper body and little else.")
 
 DIFFERENT = 30.0
 """Ways to stand whose up and front lie nearer than this [degrees] are one."""
@@ -88,11 +88,11 @@ def estimate_pose(
     unit = unit and unit.strip().lower()
     if unit is not None and unit not in MILLIMETRES:
         raise ScanError(
-            Message("The unit {unit} is not known.", unit=f"{unit!r}"),
+            Message("Unknown unit {unit}.", unit=f"{unit!r}"),
             Message("Choose one of {choices}.", choices=", ".join(MILLIMETRES)),
         )
     if len(faces) == 0:
-        raise ScanError(Message("No trunk can be made out in this scan."), NOTHING_ELSE)
+        raise ScanError(Message("No trunk detected in this scan."), NOTHING_ELSE)
     told_up, told_front = parse_axes(up, front)
     told = told_up is not None and told_front is not None
     cloud = sample_uniformly(vertices, faces)
@@ -117,7 +117,7 @@ def _pose(cloud: Cloud, readings: list[PoseCandidate], unit: str | None, told: b
     reason = join((size.reason, _reason(best, axes, told, clear)))
     if tilt > 0.0:
         lean = Message(
-            "The body stands {tilt} degrees off {up} in its file and was set upright.",
+            "The body was tilted by {tilt} degrees from {up} in its file and was set upright.",
             tilt=f"{tilt:.0f}",
             up=axes[0],
         )
@@ -146,7 +146,7 @@ def _readings(cloud: Cloud, up: AxisOverride | None, front: AxisOverride | None)
         planes = [_told_plane(cloud, up, front)]
     found = [stance for plane in planes for stance in rank_candidates(cloud, plane, up, front)]
     if not found:
-        raise ScanError(Message("No trunk can be made out in this scan."), NOTHING_ELSE)
+        raise ScanError(Message("No trunk detected in this scan."), NOTHING_ELSE)
     chosen: list[PoseCandidate] = []
     for stance in sorted(found, key=lambda stance: -stance.score):
         if len(chosen) < READINGS and all(stance.differs(other, DIFFERENT) for other in chosen):
@@ -208,15 +208,13 @@ def _scaled(turn: Floats, factor: float) -> Floats:
 def _reason(best: PoseCandidate, axes: tuple[str, str], told: bool, sure: bool) -> Message:
     up, front = axes
     if told:
-        words = Message("That {up} is up and {front} is front was told.", up=up, front=front)
-        return words if sure else join((words, Message("The shape speaks against it: please look.")))
+        words = Message("Up {up} and front {front} were set manually.", up=up, front=front)
+        return words if sure else join((words, Message("This contradicts the detected shape. Please check.")))
     if not sure:
-        return Message(
-            "It is not certain that {up} is up and {front} is front: please look.", up=up, front=front
-        )
+        return Message("Up {up} and front {front} are uncertain. Please check.", up=up, front=front)
     first, second, third = sorted(best.cue_scores, key=lambda words: -best.cue_scores[words])[:3]
     return Message(
-        "That {up} is up and {front} is front is told by {first}, {second} and {third}.",
+        "Up {up} and front {front} were detected from {first}, {second} and {third}.",
         up=up,
         front=front,
         first=first,

@@ -46,7 +46,7 @@ def estimate_unit(girth: float, told: str | None = None) -> UnitEstimate:
                 unit=told,
                 mm=_plain_length(mm),
             ),
-            Message("Check the unit, and that the scan holds an upper body."),
+            Message("Check the unit, and that the scan contains an upper body."),
         )
     usual, rare = (
         [unit for unit, mm in MILLIMETRES.items() if low < girth * mm < high]
@@ -55,10 +55,10 @@ def estimate_unit(girth: float, told: str | None = None) -> UnitEstimate:
     if not rare:
         raise ScanError(
             Message(
-                "The trunk measures {girth} round in the file, which is the size of a body in no unit.",
+                "The trunk girth in the file is {girth}, which is implausible for a body in any unit.",
                 girth=_plain(girth),
             ),
-            Message("Check that the scan holds an upper body, or say in which unit it is."),
+            Message("Check that the scan contains an upper body, or set the unit of the scan."),
         )
     unit = (usual or rare)[0]
     mm = girth * MILLIMETRES[unit]

@@ -34,7 +34,7 @@ _KINDS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126:
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 _DEEPEST = 100
-_WHOLE = Message("Put that file beside it, or export all as one GLB file.")
+_WHOLE = Message("Place that file in the same folder, or export everything as one GLB file.")
 
 Json = Any
 Matrix = Floats
@@ -63,7 +63,7 @@ def read_gltf(name: str, data: bytes, progress: Progress) -> RawScan:
 
 def _packed(name: str) -> ScanError:
     return ScanError(
-        Message("{file} is compressed in a way that Busk does not read.", file=name),
+        Message("{file} uses an unsupported compression.", file=name),
         Message("Export it without mesh compression."),
     )
 
@@ -72,7 +72,7 @@ def _glb(name: str, data: bytes) -> tuple[bytes, memoryview]:
     """Return the two chunks of a GLB file: the description, and what it describes."""
     if int.from_bytes(data[4:8], "little") != 2:
         raise ScanError(
-            Message("{file} is a glTF file of an old kind.", file=name), Message("Export it as glTF 2.0.")
+            Message("{file} uses an outdated glTF version.", file=name), Message("Export it as glTF 2.0.")
         )
     whole, chunks, at = memoryview(data), dict[bytes, memoryview](), 12
     while at + 8 <= len(data):
@@ -91,7 +91,7 @@ class _Reader:
         self.name, self.json = name, document
         if document["asset"]["version"].split(".")[0] != "2":
             raise ScanError(
-                Message("{file} is a glTF file of an old kind.", file=name), Message("Export it as glTF 2.0.")
+                Message("{file} uses an outdated glTF version.", file=name), Message("Export it as glTF 2.0.")
             )
         needed = document.get("extensionsRequired", [])
         if any("draco" in each or "meshopt" in each for each in needed):
@@ -106,7 +106,7 @@ class _Reader:
             return binary
         head, comma, _ = uri[:200].partition(",")
         if not uri.startswith("data:") or not head.endswith(";base64") or not comma:
-            raise ScanError(Message("{file} keeps its triangles in another file.", file=self.name), _WHOLE)
+            raise ScanError(Message("{file} stores its triangles in another file.", file=self.name), _WHOLE)
         return base64.b64decode(uri[len(head) + 1 :], validate=True)
 
     def placed(self) -> Iterator[tuple[Json, Matrix]]:
@@ -202,7 +202,7 @@ class _Reader:
         kind, width = np.dtype(_KINDS[accessor["componentType"]]), _WIDTHS[accessor["type"]]
         if "sparse" in accessor or "bufferView" not in accessor:
             raise ScanError(
-                Message("{file} is written in a way that Busk does not read.", file=self.name),
+                Message("{file} uses an unsupported encoding.", file=self.name),
                 Message("Export it as PLY."),
             )
         view = self.json["bufferViews"][accessor["bufferView"]]

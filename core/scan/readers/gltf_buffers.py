@@ -124,5 +124,6 @@ def marks(document: bytes) -> int:
 def cut_short(name: str) -> ScanError:
     """Return the refusal of a file that holds less than its header tells."""
     return ScanError(
-        Message("{file} is cut short: its header promises more than the file holds.", file=name), AGAIN
+        Message("{file} is truncated: the header declares more data than the file contains.", file=name),
+        AGAIN,
     )

@@ -28,8 +28,8 @@ def read_off(name: str, data: bytes, progress: Progress) -> RawScan:
         raise ScanError(Message("{file} is not an OFF file.", file=name), AGAIN)
     if head[4] or head[5] or b"BINARY" in head[0]:
         raise ScanError(
-            Message("{file} is an OFF file of a rare kind.", file=name),
-            Message("Export it as plain OFF or as PLY."),
+            Message("{file} uses an unsupported OFF variant.", file=name),
+            Message("Export it as standard OFF or as PLY."),
         )
     found = whole_table(name, data[head.end() :], progress)
     if len(found.counts) == 0 or found.counts[0] < 2:
@@ -37,7 +37,8 @@ def read_off(name: str, data: bytes, progress: Progress) -> RawScan:
     points, polygons = (int(count) for count in whole(found.numbers[:2]))
     if min(points, polygons) < 0 or 1 + points + polygons > len(found.counts):
         raise ScanError(
-            Message("{file} is cut short: its header promises more than the file holds.", file=name), AGAIN
+            Message("{file} is truncated: the header declares more data than the file contains.", file=name),
+            AGAIN,
         )
     check_size(name, points, polygons, len(data))
     rows = found.rows(1, 1 + points)
@@ -56,7 +57,7 @@ def read_points(name: str, data: bytes, progress: Progress) -> RawScan:
     start = _first_point(data)
     if start is None:
         raise ScanError(
-            Message("{file} is no scan: it is a text without points.", file=name),
+            Message("{file} is not a scan: the text contains no points.", file=name),
             Message("Choose another scan."),
         )
     data = data[start : _last_point(data)]
@@ -88,8 +89,8 @@ def has_decimal_commas(name: str, data: bytes) -> bool:
     elif not apart:
         return False
     raise ScanError(
-        Message("In {file} a comma may stand between two numbers or within one.", file=name),
-        Message("Export the points with semicolons or blanks between the numbers."),
+        Message("In {file}, commas may be separators or decimal marks.", file=name),
+        Message("Export the points with semicolons or spaces between the numbers."),
     )
 
 

@@ -110,7 +110,8 @@ def read_ply(name: str, data: bytes, progress: Progress) -> RawScan:
     least = sum(each.rows * each.least(not order) for each in elements)
     if least > len(data) - start + (not order):  # the last number of a text needs no blank behind it
         raise ScanError(
-            Message("{file} is cut short: its header promises more than the file holds.", file=name), AGAIN
+            Message("{file} is truncated: the header declares more data than the file contains.", file=name),
+            AGAIN,
         )
     for each in elements:
         check_size(name, *((each.rows, 0) if each.name == "vertex" else (0, each.rows)))

@@ -73,12 +73,12 @@ def read_header(name: str, data: bytes) -> tuple[str, list[Element], int]:
     newline = b"\r\n" if data[:5] == b"ply\r\n" else data[3:4]
     end = data.find(newline + b"end_header", 0, _HEAD_BYTES)
     if data[:3] != b"ply" or newline not in (b"\n", b"\r", b"\r\n") or end < 0:
-        raise ScanError(Message("{file} is not a PLY file, or its header is cut short.", file=name), AGAIN)
+        raise ScanError(Message("{file} is not a PLY file, or its header is truncated.", file=name), AGAIN)
     start = data.find(newline, end + 1)
     try:
         order, elements = _elements(data[:end].decode("latin-1").replace("\r", "\n").split("\n"))
     except (IndexError, KeyError, ValueError) as problem:
-        raise ScanError(Message("{file} has a header that makes no sense.", file=name), AGAIN) from problem
+        raise ScanError(Message("{file} has an invalid header.", file=name), AGAIN) from problem
     return order, elements, start + len(newline) if start >= 0 else len(data)
 
 

@@ -57,13 +57,13 @@ def check_size(name: str, points: int, triangles: int = 0, size: int | None = No
     if points > max(MOST_POINTS, 3 * triangles) or triangles > MOST_TRIANGLES:
         raise ScanError(
             Message(
-                "{file} is too fine: it holds {points} points and {triangles} triangles.",
+                "{file} is too large: {points} points and {triangles} triangles.",
                 file=name,
                 points=f"{points:,}",
                 triangles=f"{triangles:,}",
             ),
             Message(
-                "Thin the scan to at most {points} points and {triangles} triangles.",
+                "Reduce the scan to at most {points} points and {triangles} triangles.",
                 points=f"{MOST_POINTS:,}",
                 triangles=f"{MOST_TRIANGLES:,}",
             ),
@@ -77,7 +77,7 @@ def check_packed(name: str, unpacked: int, packed: int) -> None:
     if unpacked > PACKED_FREE + PACKED_TIMES * packed:
         raise ScanError(
             Message(
-                "{file} unpacks to more than {count} times its size, which no scan does.",
+                "{file} decompresses to more than {count} times its size, which is implausible for a scan.",
                 file=name,
                 count=PACKED_TIMES,
             ),
@@ -88,7 +88,8 @@ def check_packed(name: str, unpacked: int, packed: int) -> None:
 def too_much(name: str) -> ScanError:
     """Return the refusal of a file with more in it than the finest body has."""
     return ScanError(
-        Message("{file} describes more than a scan needs.", file=name), Message("Export the body alone.")
+        Message("{file} contains too much data that does not belong to a scan.", file=name),
+        Message("Export only the body."),
     )
 
 

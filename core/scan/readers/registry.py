@@ -57,7 +57,9 @@ LARGEST_FILE = 600_000_000
 MOST_MEMBERS = 10_000
 """A packed file may be packed in so many pieces; programs that pack in blocks need one for each 64 kB."""
 
-_THINNER = Message("Thin the scan until its file is smaller than {size} MB.", size=LARGEST_FILE // 1_000_000)
+_THINNER = Message(
+    "Reduce the scan until its file is smaller than {size} MB.", size=LARGEST_FILE // 1_000_000
+)
 _STEP = 1 << 20
 
 
@@ -74,7 +76,7 @@ def scan_bytes(path: Path, progress: Progress = quiet) -> bytes:
         return with_buffers(path, data, LARGEST_FILE, progress)
     except FileNotFoundError:
         raise ScanError(
-            Message("There is no file {file}.", file=str(path)),
+            Message("{file} does not exist.", file=str(path)),
             Message("Check the name, or choose another scan."),
         ) from None
     except (OSError, ValueError) as problem:
@@ -108,14 +110,16 @@ def read_raw(name: str, data: bytes, progress: Progress = quiet) -> RawScan:
             scan = _reader(name, data)(name, data, progress)
         check_size(name, len(scan.vertices), len(scan.faces))
         if scan.faces.size and not (scan.faces.min() >= 0 and scan.faces.max() < len(scan.vertices)):
-            raise ScanError(Message("{file} has triangles with corners that do not exist.", file=name), AGAIN)
+            raise ScanError(
+                Message("{file} contains triangles with vertices that do not exist.", file=name), AGAIN
+            )
     except (ScanError, Cancelled):
         raise
     except MemoryError:
         raise no_memory(name) from None
     except Exception as problem:  # a malformed file makes a reader fail in any way
         raise ScanError(
-            Message("{file} cannot be read: it is damaged or cut short.", file=name), AGAIN
+            Message("{file} cannot be read: the file is damaged or truncated.", file=name), AGAIN
         ) from problem
     progress("reading", 1.0)
     return scan
@@ -124,8 +128,8 @@ def read_raw(name: str, data: bytes, progress: Progress = quiet) -> RawScan:
 def no_memory(name: str) -> ScanError:
     """Return the refusal of a scan that needs more memory than there is."""
     return ScanError(
-        Message("There is not enough memory for {file}.", file=name),
-        Message("Close other programs, or thin the scan before opening it."),
+        Message("Not enough memory to open {file}.", file=name),
+        Message("Close other programs, or reduce the points of the scan before opening it."),
     )
 
 
@@ -139,7 +143,7 @@ def _reader(name: str, data: bytes) -> Reader:
         told = "xyz"
     if told is None and ending not in _READERS:
         raise ScanError(
-            Message("{file} is not a scan that can be read.", file=name),
+            Message("{file} is not a supported scan file.", file=name),
             Message("Export it as one of: PLY, OBJ, STL, OFF, glTF, VTP, XYZ."),
         )
     return _READERS[told or ending]
@@ -161,7 +165,7 @@ def _unpacked(name: str, data: bytes, progress: Progress) -> bytes:
             held += len(parts[-1])
             check_packed(name, held, len(data))
             if held > LARGEST_FILE:
-                raise ScanError(Message("{file} is too large when unpacked.", file=name), _THINNER)
+                raise ScanError(Message("{file} is too large after decompression.", file=name), _THINNER)
         waiting = unpacker.unused_data or data[at : at + _STEP]
         at += 0 if unpacker.unused_data else _STEP
         if not waiting.strip(b"\0"):  # some programs fill up with zeros

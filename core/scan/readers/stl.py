@@ -28,7 +28,7 @@ def read_stl(name: str, data: bytes, progress: Progress) -> RawScan:
         check_size(name, 3 * count, count)
         corners = np.frombuffer(data, _ROW, count, _HEAD)["corners"].reshape(-1, 3).astype(np.float64)
     else:
-        raise ScanError(Message("{file} is cut short, or it is not an STL file.", file=name), AGAIN)
+        raise ScanError(Message("{file} is truncated, or it is not an STL file.", file=name), AGAIN)
     return RawScan(corners, np.arange(len(corners)).reshape(-1, 3))
 
 
@@ -39,7 +39,7 @@ def is_binary_stl(data: bytes) -> bool:
 
 def _text_corners(name: str, data: bytes, progress: Progress) -> Points:
     if b"endsolid" not in data[-1000:].lower():
-        raise ScanError(Message("{file} is cut short, or it is not an STL file.", file=name), AGAIN)
+        raise ScanError(Message("{file} is truncated, or it is not an STL file.", file=name), AGAIN)
     found = Growing("d")
     for block in blocks(name, data, progress):
         lines = lines_of(block)

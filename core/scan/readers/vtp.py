@@ -38,7 +38,7 @@ _DEEPEST = 20
 _MOST_PARTS = 1000
 _MOST_ARRAYS, _MOST_BLOCKS = 10_000, 100_000
 _LONGEST_TAG = 1 << 24
-_PLAIN = Message("Save it from its program without compression, or as PLY.")
+_PLAIN = Message("Save it in its original program without compression, or as PLY.")
 
 
 @dataclass(eq=False)
@@ -119,7 +119,7 @@ def read_vtp(name: str, data: bytes, progress: Progress) -> RawScan:
             raise ValueError("a tag without an end")
     if outline.head.get("type") != "PolyData" or not outline.pieces:
         raise ScanError(
-            Message("{file} is no VTP file with a surface.", file=name),
+            Message("{file} is not a VTP surface file.", file=name),
             Message("Export the surface as VTP or PLY."),
         )
     values = _Values(name, outline.head, data, data.find(b"_", end) + 1, b'"raw"' in data[at:end])
@@ -158,9 +158,7 @@ class _Values:
         self._compressed = "compressor" in head
         self._name, self._data, self._start, self._raw = name, data, start, raw
         if head.get("compressor", "vtkZLibDataCompressor") != "vtkZLibDataCompressor":
-            raise ScanError(
-                Message("{file} is compressed in a way that Busk does not read.", file=name), _PLAIN
-            )
+            raise ScanError(Message("{file} uses an unsupported compression.", file=name), _PLAIN)
 
     def of(self, array: _Array, count: int) -> Values:
         """Return the ``count`` numbers of an array, shape (count,)."""

@@ -56,10 +56,10 @@ class Hole:
         share = (self.centre[2] - low[2]) / (high[2] - low[2])
         eighth = round(float(np.arctan2(x / (high[0] - low[0]), -y / (high[1] - low[1]))) / (np.pi / 4)) % 8
         if share < 1 / 3:
-            return Message("low on the {side}", side=AROUND[eighth])
+            return Message("lower {side}", side=AROUND[eighth])
         if share > 2 / 3:
-            return Message("high on the {side}", side=AROUND[eighth])
-        return Message("half way up on the {side}", side=AROUND[eighth])
+            return Message("upper {side}", side=AROUND[eighth])
+        return Message("middle {side}", side=AROUND[eighth])
 
 
 def find_holes(mesh: Mesh) -> tuple[Hole, ...]:
@@ -151,13 +151,13 @@ def hole_sentences(mesh: Mesh, holes: tuple[Hole, ...]) -> tuple[Message, ...]:
     open_ones = [hole for hole in holes if not hole.opening]
     named = [hole_sentence(mesh, hole) for hole in open_ones[:NAMED]]
     more = len(open_ones) - NAMED
-    return tuple(named) + ((Message("{count} more holes stay open.", count=more),) if more > 0 else ())
+    return tuple(named) + ((Message("{count} more holes are unfilled.", count=more),) if more > 0 else ())
 
 
 def hole_sentence(mesh: Mesh, hole: Hole) -> Message:
     """Return the size of a hole of an upright skin, and where it is."""
     return Message(
-        "A hole of {long} x {wide} cm stays open, {place}.",
+        "Unfilled hole of {long} x {wide} cm: {place}.",
         long=f"{hole.length / 10.0:.0f}",
         wide=f"{hole.width / 10.0:.0f}",
         place=hole.place(mesh),

@@ -31,8 +31,8 @@ BLOCK = 8
 """How many places are asked at a time: what is reckoned for them is to fit into the cache."""
 
 BURIED = Message(
-    "Much of the scan lay deep inside another part of it and was dropped: please check "
-    "that the skin is measured, and no clothes over it."
+    "A large part of the scan was enclosed by another part and was removed. Check that the scan "
+    "shows the skin and not clothing over it."
 )
 """What is said if so much was inside that what is left may be no skin."""
 

@@ -43,19 +43,19 @@ def repair(
     Source: ours.
     """
     steps: tuple[tuple[Step, Message, Callable[[int], Message]], ...] = (
-        (_drop_positionless, Message("Dropped {count} without a position."), vertex_count),
-        (_drop_unused, Message("Dropped {count} outside any face."), vertex_count),
-        (_drop_far, Message("Dropped {count} far away from all others."), vertex_count),
-        (_merge_equal, Message("Merged {count} with others at the same place."), vertex_count),
-        (_drop_empty_faces, Message("Dropped {count} without an area or listed before."), face_count),
-        (remove_fins, Message("Dropped {count} standing off the skin like a fin."), face_count),
-        (_part_sheets, Message("Parted the skin at {count} in which two sheets touched."), vertex_count),
-        (remove_scan_stand, Message("Dropped {count} shaped like a floor, a wall or a stand."), piece_count),
-        (remove_small_components, Message("Dropped {count} beside the body."), speck_count),
-        (_drop_spikes, Message("Dropped {count} sticking out of the skin like a spike."), vertex_count),
-        (_wind_outward, Message("Turned {count} to look outward."), face_count),
-        (remove_inner, Message("Dropped {count} inside the body or doubling its skin."), piece_count),
-        (remove_occluded, Message("Dropped {count} of parts that reach into the body."), face_count),
+        (_drop_positionless, Message("Removed {count} without a position."), vertex_count),
+        (_drop_unused, Message("Removed {count} outside any face."), vertex_count),
+        (_drop_far, Message("Removed {count} far from all others."), vertex_count),
+        (_merge_equal, Message("Merged {count} with others at the same position."), vertex_count),
+        (_drop_empty_faces, Message("Removed {count} with zero area or listed twice."), face_count),
+        (remove_fins, Message("Removed {count} shaped like a fin."), face_count),
+        (_part_sheets, Message("Separated two touching layers of the surface at {count}."), vertex_count),
+        (remove_scan_stand, Message("Removed {count} shaped like a floor, a wall or a stand."), piece_count),
+        (remove_small_components, Message("Removed {count} separate from the body."), speck_count),
+        (_drop_spikes, Message("Removed {count} shaped like a spike."), vertex_count),
+        (_wind_outward, Message("Reversed {count} to face outward."), face_count),
+        (remove_inner, Message("Removed {count} inside the body or duplicating its surface."), piece_count),
+        (remove_occluded, Message("Removed {count} of parts that extend into the body."), face_count),
     )
     skin, sentences = EditableMesh(vertices, faces), []
     for done, (step, sentence, counted) in enumerate(steps):
@@ -86,7 +86,7 @@ def piece_count(count: int) -> Message:
 
 def speck_count(count: int) -> Message:
     """Return a number of specks."""
-    return plural_message("{count} speck", "{count} specks", count)
+    return plural_message("{count} small component", "{count} small components", count)
 
 
 def hole_count(count: int) -> Message:

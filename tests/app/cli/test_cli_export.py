@@ -72,7 +72,7 @@ def test_original_is_the_undeformed_body(tmp_path, anna):
     assert abs(before.vertices - rest.vertices).max() < 1e-3 < abs(after.vertices - rest.vertices).max()
     told = [json.loads((tmp_path / f"{name}.json").read_text("utf-8")) for name in ("before", "after")]
     assert told[0]["measures"]["bust_girth"] != told[1]["measures"]["bust_girth"]
-    assert "at rest" in told[0]["note"]
+    assert "original" in told[0]["note"]
     assert "apex_lift" not in told[0]["measures"]
 
 

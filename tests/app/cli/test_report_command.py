@@ -120,7 +120,7 @@ def test_a_report_without_pictures_where_they_cannot_be_rendered(
     out = tmp_path / "sheet.pdf"
     assert main(["report", str(mannequin), "--out", str(out)]) == DONE
     assert "could not be rendered" in capsys.readouterr().err
-    assert "The pictures of the body could not be drawn here" in Pdf(out).text()
+    assert "The images of the body could not be drawn" in Pdf(out).text()
 
 
 def test_a_full_disk_leaves_the_old_report_or_one_without_pictures(
@@ -138,7 +138,7 @@ def test_a_full_disk_leaves_the_old_report_or_one_without_pictures(
     out, room = tmp_path / "sheet.pdf", 1
     assert main(["report", str(mannequin), "--out", str(out)]) == DONE
     assert "No space left on device" in capsys.readouterr().err
-    assert "The pictures of the body could not be drawn here" in Pdf(out).text()
+    assert "The images of the body could not be drawn" in Pdf(out).text()
     before, room = out.read_bytes(), 0
     assert main(["report", str(mannequin), "--out", str(out)]) == BAD_INPUT
     assert "cannot be written: No space left on device" in capsys.readouterr().err

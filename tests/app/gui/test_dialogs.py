@@ -113,9 +113,9 @@ def test_dialogs_begin_where_files_of_their_kind_were_last(
     ask_save(parent, "Save as", "anna.busk", "Projects (*.busk)", ".busk")
     ask_open(parent)
     choose(gone / "anna.png")
-    ask_save(parent, "Save a picture", "anna.png", "PNG (*.png)", ".png")
+    ask_save(parent, "Save image", "anna.png", "PNG (*.png)", ".png")
     (projects / "anna.png").touch()
-    ask_save(parent, "Save a picture", "anna.png", "PNG (*.png)", ".png")
+    ask_save(parent, "Save image", "anna.png", "PNG (*.png)", ".png")
     assert last_folder("written") == projects, "what is gone is no place to begin"
     ask_save(parent, "Save as", str(scans / "anna.busk"), "Projects (*.busk)", ".busk")
     assert [Path(at) for at in offered] == [
@@ -183,9 +183,9 @@ def test_a_name_that_is_asked_for_is_not_empty(parent: QWidget) -> None:
         assert not buttons(sheet)[-1].isEnabled()
 
     when_asked(type_nothing)
-    assert ask_name(parent, "Save lines as preset", "Name", "My lines", 60) == ""
+    assert ask_name(parent, "Save lines as preset", "Name", "Custom lines", 60) == ""
     when_asked(press("Save"))
-    assert ask_name(parent, "Save lines as preset", "Name", " My lines ", 60) == "My lines"
+    assert ask_name(parent, "Save lines as preset", "Name", " Custom lines ", 60) == "Custom lines"
 
 
 def test_dialogs_of_the_toolkit_speak_the_language_of_the_window(qapp: QApplication) -> None:

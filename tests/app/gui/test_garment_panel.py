@@ -35,7 +35,7 @@ def test_all_tabs_fit_the_narrowest_inspector(qtbot: QtBot, language: str) -> No
     use_language(language)
     inspector = Inspector()
     qtbot.addWidget(inspector)
-    titles = tr("Lines"), tr("Measures"), tr("Garment"), tr("Variants"), tr("History")
+    titles = tr("Lines"), tr("Measurements"), tr("Garment"), tr("Variants"), tr("History")
     for title in titles:
         inspector.add(title, QWidget(), title)
     inspector.resize(Inspector.LEAST, 400)
@@ -67,11 +67,11 @@ def test_a_row_says_everything_to_ears(qtbot: QtBot) -> None:
     panel = panel_of(qtbot, STRAP, BAND, BARE)
     panel.set_pressures({"strap left": PressureView("2.1", "amber", "snug", "why")})
     strap, band, bare = panel.rows.values()
-    assert strap.accessibleName() == "Strap left: cut 432 mm, stretched by +43 %, 5.0 N"
+    assert strap.accessibleName() == "Strap left: cut 432 mm, elongation +43 %, 5.0 N"
     assert strap.elastic.accessibleName() == "Strap left: elastic, Strap 15 mm"
     assert strap.pressure.accessibleName() == "2.1 kPa snug"
     assert strap.pressure.toolTip() == "why"
-    assert band.set_stretch.accessibleName() == "Under-bust: stretched by, in percent"
+    assert band.set_stretch.accessibleName() == "Under-bust: elongation in percent"
     assert bare.accessibleName() == "Mid-bust: 5.1 N, It lies slack."
     assert bare.pressure.accessibleName() == ""
 

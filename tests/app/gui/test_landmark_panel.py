@@ -85,8 +85,8 @@ def test_what_the_colour_says_is_told_in_words_and_by_a_mark(panel: LandmarksPan
         ("control", "unneeded"),
         ("warn", "doubtful"),
     ]
-    assert "from 50 % on it needs no second look" in views[0].words()
-    assert "below 50 % it wants a look" in views[2].words()
+    assert "50 % or more needs no review" in views[0].words()
+    assert "below 50 % the landmark needs review" in views[2].words()
     row, dots = panel.rows["side_left"], []
     for sureness in ("certain", "unneeded", "doubtful"):
         view = next(view for view in views if view.sureness == sureness)
@@ -105,7 +105,7 @@ def test_a_point_by_hand_far_from_a_sure_rule_says_so_and_a_near_one_does_not() 
     assert mark.off == pytest.approx(np.linalg.norm(mark.position - place))
     assert str(mark.rule) == f"Placed by hand, {mark.off:.0f} mm from where the rule finds it."
     said = landmark_view(mark.name, mark)
-    assert (said.tone, said.state, said.weak) == ("warn", f"by hand, {mark.off:.0f} mm off", True)
+    assert (said.tone, said.state, said.weak) == ("warn", f"manual, {mark.off:.0f} mm off", True)
     again = landmark_view(mark.name, mark, {spot_of(mark)})
     assert (again.tone, again.weak) == ("accent", False), "the designer has said that it is right"
     assert near.points["bust_point_left"].off == 0.0
@@ -115,7 +115,7 @@ def test_a_point_by_hand_far_from_a_sure_rule_says_so_and_a_near_one_does_not() 
             body(sample("mannequin")), {"bust_point_left": smooth - np.array([0.0, 0.0, down])}
         )
         assert (moved.points["bust_point_left"].off > 0.0) == told
-    assert landmark_view(mark.name, near.points["bust_point_left"]).state == "by hand"
+    assert landmark_view(mark.name, near.points["bust_point_left"]).state == "manual"
 
 
 def test_a_fold_by_hand_makes_nobody_surer_of_the_lowest_point_above_it() -> None:
@@ -134,6 +134,6 @@ def test_the_first_doubt_is_of_the_landmark_that_is_shown_and_does_not_deny_its_
     }
     landmarks = Landmarks(points, 1.0, 0.0)
     said = landmark_warnings(landmarks)
-    assert str(said[0]) == "The nipple of the left breast is not clearly seen: please check its bust point."
+    assert str(said[0]) == "The nipple of the left breast is not clearly visible. Check its bust point."
     assert len(said) == 2
     assert first_warning(landmarks) == "bust_point_left"

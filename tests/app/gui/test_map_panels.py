@@ -56,7 +56,7 @@ def test_where_there_is_little_room_the_legend_still_says_what_the_sign_means(le
     legend.set_size("folded")
     legend.show_map("sides")
     assert (legend.note.isHidden(), legend.bar.isHidden()) == (True, True)
-    assert legend.title.toolTip().endswith("+ stands out more than the other side")
+    assert legend.title.toolTip().endswith("+ protrudes beyond the other side")
 
 
 def test_a_typed_end_sets_both_ends_where_values_go_both_ways(legend: Legend) -> None:
@@ -104,9 +104,9 @@ def test_ranges_are_round_and_colours_start_at_the_material() -> None:
 
 def test_a_section_tells_how_far_the_bust_points_went() -> None:
     move = BustShift(BustStep(4.0, -1.5), BustStep(-3.0, 2.5))
-    assert section_words("x", "left", move) == "Bust point left 4.0 mm up, 1.5 mm back"
+    assert section_words("x", "left", move) == "Bust point left: 4.0 mm up, 1.5 mm back"
     assert section_words("x", "right", move) == "Bust point right 3.0 mm down, 2.5 mm forward"
-    both = "Bust point 0.5 mm up, 0.5 mm forward (left 4.0 mm up, right 3.0 mm down)"
+    both = "Bust points: 0.5 mm up, 0.5 mm forward (left 4.0 mm up, right 3.0 mm down)"
     assert section_words("z", "left", move) == both
     alike = BustShift(BustStep(4.0, -1.5), BustStep(4.4, -1.1))
     assert section_words("y", "left", alike) == "Bust point 4.2 mm up, 1.3 mm back"
@@ -119,17 +119,17 @@ def test_a_section_tells_how_far_that_may_be_off() -> None:
     }
     spread = OutputUncertainties(doubts, np.zeros(0), 0.2, 2.0, SOURCES, {}, "sliding")
     said = section_words("x", "left", move, spread).replace("\N{NO-BREAK SPACE}", " ")
-    assert said == "Bust point left 4.0 ± 1.2 mm up, 1.5 ± 0.1 mm back"
+    assert said == "Bust point left: 4.0 ± 1.2 mm up, 1.5 ± 0.1 mm back"
     assert section_words("x", "right", move, spread) == "Bust point right 4.4 mm up, 2.5 mm forward"
     said = section_words("z", "left", move, spread).replace("\N{NO-BREAK SPACE}", " ")
-    assert said.startswith("Bust point 4.2 ± 12 mm up, 0.5 mm forward")
+    assert said.startswith("Bust points: 4.2 ± 12 mm up, 0.5 mm forward")
 
 
 def test_sides_are_compared_in_words() -> None:
     pair = (np.array([200.0, 300.0]), np.array([198.5, 304.0]))
     assert sides_words("x", [pair]).endswith("the other side: 4.0 mm up, 1.5 mm back")
     level = [(np.array([80.0, -200.0]), np.array([80.0, -203.0])), (np.array([-80.0, -200.0]),) * 2]
-    assert sides_words("z", level) == "Foremost place left, against right: 3.0 mm forward"
+    assert sides_words("z", level) == "Apex left, relative to right: 3.0 mm forward"
     assert sides_words("y", []) == ""
 
 

@@ -125,7 +125,7 @@ def test_a_card_has_room_for_all_that_it_shows(qtbot: QtBot, word: str) -> None:
     qtbot.addWidget(card)
     card.show()
     for what, keys in ((20, 12), (3, 2), (30, 1)):
-        card.say("Draw a line", what * word, keys * word)
+        card.say("Draw line", what * word, keys * word)
         card.adjustSize()
         QApplication.processEvents()
         for words in card.findChildren(Sentence):

@@ -44,9 +44,9 @@ def test_a_row_tells_its_largest_pressure_and_more_where_it_is_pointed_at() -> N
     view = pressure_views(LISTED, DESIGN, stale=False)["mid-bust"]
     assert (view.kpa, view.light, view.word, view.stale) == ("2.4", AMBER, "snug", False)
     assert view.tip.splitlines()[:3] == [
-        "Largest 2.4 kPa · 18 mmHg, back left, 342 mm above the lowest point of the scan",
-        "Mean where it lies on the skin 1.2 kPa · 9 mmHg",
-        "Presses on the skin with 5.5 N in all",
+        "Maximum 2.4 kPa · 18 mmHg, back left, 342 mm above the lowest point of the scan",
+        "Mean on the skin 1.2 kPa · 9 mmHg",
+        "Total force on the skin 5.5 N",
     ]
     assert view.tip.endswith(pressure_limits().lights[AMBER].en)
     stale = pressure_views(LISTED, DESIGN, stale=True)["mid-bust"]
@@ -54,12 +54,12 @@ def test_a_row_tells_its_largest_pressure_and_more_where_it_is_pointed_at() -> N
 
 
 def test_a_line_that_is_not_known_says_why() -> None:
-    row = PressureRow("mid-bust", "mid-bust", "", notes=(Message("It is slack: it does not press."),))
+    row = PressureRow("mid-bust", "mid-bust", "", notes=(Message("Slack: no contact pressure."),))
     view = pressure_views(PressureList((row,), {}), DESIGN, stale=False)["mid-bust"]
-    assert (view.kpa, view.light, view.tip) == ("", "", "It is slack: it does not press.")
+    assert (view.kpa, view.light, view.tip) == ("", "", "Slack: no contact pressure.")
     summary = pressure_summary(PressureList((row,), {}), DESIGN)
-    assert (summary.largest, summary.says) == ("", "No worn line presses whose tension is known.")
-    assert pressure_summary(None, DESIGN).says == "Worked out as soon as the run rests."
+    assert (summary.largest, summary.says) == ("", "No active line with known tension presses on the skin.")
+    assert pressure_summary(None, DESIGN).says == "Computed when the solver has converged."
 
 
 def test_the_card_says_how_much_where_and_what_that_means(card: PressureCard) -> None:

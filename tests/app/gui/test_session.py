@@ -69,7 +69,7 @@ def test_who_goes_on_working_while_a_file_opens_loses_nothing(
     assert session.document is kept
     assert session.path is None
     assert session.undo_stack.count() == (2 if way == "edit" else 1)
-    assert [str(each).split(",")[0] for each in told] == ["berta.busk was not opened"]
+    assert [str(each).split(" because")[0] for each in told] == ["berta.busk was not opened"]
 
 
 def test_what_a_drag_was_refused_late_is_no_news_of_the_length_it_ended_at(session: Session) -> None:

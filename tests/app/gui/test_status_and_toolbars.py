@@ -121,9 +121,9 @@ def test_the_status_bar_shows_a_job_only_while_it_runs(qtbot: QtBot) -> None:
     qtbot.addWidget(bar)
     bar.show()
     bar.set_volume(-0.021, -1.14)
-    bar.set_job("Reading the scan", 0.4)
+    bar.set_job("Reading scan", 0.4)
     said = [label.text() for label in bar.findChildren(QLabel) if label.isVisible()]
-    assert "Reading the scan" in said
+    assert "Reading scan" in said
     assert "Volume −0.02 % (−1.1 ml)" in said
     bar.set_job("")
     bar.set_volume(None)
@@ -183,7 +183,7 @@ class Said:
     numbers: list[tuple[str, str]] = field(default_factory=lambda: [("Volume error", "0.1 %")])
     hint: str = ""
     pace: str = "0.9 s"
-    effort: str = "Worked out in 1,200 turns"
+    effort: str = "Converged in 1,200 iterations"
     settling: bool = False
 
 

@@ -50,6 +50,6 @@ def test_titles_and_units_are_whole_beside_what_figures_may_be_off(words: str, q
 
 def test_a_click_beside_figures_puts_no_frame_round_all_of_them(qapp: QApplication) -> None:
     panel = MeasurementsPanel()
-    areas = [area for area in panel.findChildren(QScrollArea) if area.accessibleName() == "Measures"]
+    areas = [area for area in panel.findChildren(QScrollArea) if area.accessibleName() == "Measurements"]
     assert [area.focusPolicy() for area in areas] == [Qt.FocusPolicy.TabFocus]
     panel.deleteLater()

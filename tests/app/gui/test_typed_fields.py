@@ -76,7 +76,7 @@ def test_a_refusal_says_under_the_field_what_can_be_typed_and_goes_with_the_next
 
 @pytest.mark.parametrize("text", ["soft", "0.001", "1e9"])
 def test_a_stiffness_that_cannot_be_names_its_range(text: str) -> None:
-    with pytest.raises(ValueError, match="A stiffness goes from"):
+    with pytest.raises(ValueError, match="Enter a stiffness from"):
         StiffnessField()._read(text)
 
 

@@ -181,7 +181,7 @@ def test_rows_stay_while_values_change(lines: LinesPanel) -> None:
     lines.select("waist")
     said = [label.text() for label in row.findChildren(QLabel) if label.isVisible()]
     assert any(text.startswith("+1.9") for text in said), "reached minus set"
-    assert any("95.0 % of the front part, side to side" in text for text in said)
+    assert any("95.0 % of the front length, side to side" in text for text in said)
     assert any("680.0 of 700.0 mm (97.1 %)" in text for text in said)
 
 
@@ -204,7 +204,7 @@ def test_a_gap_has_the_tone_of_the_groove_at_its_length(lines: LinesPanel, ratio
     shown = [each for each in lines.rows["waist"].findChildren(QLabel) if each.isVisible()]
     gap = next(each for each in shown if each.text().startswith(("+", "−")))
     assert (gap.property("tone") or "") == tone
-    assert any("does not pull" in each.text() for each in shown) == (ratio == 1.0)
+    assert any("no tension" in each.text() for each in shown) == (ratio == 1.0)
 
 
 def test_the_key_of_an_elastic_line_has_the_tone_of_its_pressure(lines: LinesPanel) -> None:
@@ -243,7 +243,7 @@ def test_a_measured_line_has_no_slider(lines: LinesPanel) -> None:
     assert row.slider.isHidden()
     assert row.percent.isHidden()
     said = [label.text() for label in row.findChildren(QLabel) if label.isVisible()]
-    assert "On the rib cage: measured, it does not move." in said
+    assert "On the rib cage: measured only." in said
     assert "390.0 mm" in said
 
 

@@ -35,12 +35,12 @@ def test_what_a_designer_types_is_found() -> None:
         assert first("lif") == "Map on the body"
         assert first("リフト")
         assert first("unit") == first("インチ") == "Preferences"
-        assert first("prin") == "Print the picture"
+        assert first("prin") == "Print image"
         for typed in ("waist", "bust", "report", "cup", "ＳＴＬ", "断面", "カップ", "レポート", "symm"):
             assert first(typed), typed
         assert "Result" in found("waist") & found("ウエスト") & found("hip"), "its measures stand there"
         assert first("Lines") == "Lines", "what begins so comes first"
-        assert first("picture copy") == "Copy the picture"
+        assert first("picture copy") == "Copy image"
         assert not first("zzz")
         sheet.reject()
 

@@ -40,7 +40,7 @@ def test_words_say_the_way_and_need_no_sign(step: BustStep, words: str) -> None:
 def test_sides_are_told_apart_from_one_millimetre_on() -> None:
     near = BustShift(BustStep(3.0, 1.0), BustStep(2.0, 1.0))
     assert not near.differs
-    assert bust_sentence(near) == "Bust point 2.5 mm up, 1.0 mm forward"
+    assert bust_sentence(near) == "Bust points: 2.5 mm up, 1.0 mm forward"
     apart = BustShift(BustStep(3.0, 4.0), BustStep(2.0, -1.0))
     assert apart.differs
     assert bust_sentence(apart).endswith("2.5 mm up, 1.5 mm forward (left 4.0 mm forward, right 1.0 mm back)")

@@ -43,7 +43,7 @@ LIMITS = Message(
 @pytest.mark.parametrize(
     ("language", "unit", "message", "text"),
     [
-        ("en", "mm", CLOSED, "Closed 7 holes up to 12 mm across."),
+        ("en", "mm", CLOSED, "Filled 7 holes up to 12 mm across."),
         ("en", "in", CLOSED, "Closed 7 holes up to 1/2 in across."),
         ("ja", "cm", CLOSED, "1.2 cm までの穴 7 個をふさぎました。"),
         ("en", "cm", LIMITS, "Stay between 50 and 130 %: 30.0 to 169.1 cm of the front part."),
@@ -64,16 +64,16 @@ def test_a_message_has_its_lengths_in_the_unit_in_use(
 def test_a_line_is_named_by_the_title_that_it_was_given() -> None:
     design = Design(ScanSource("x")).with_line_settings(LineSettings("strap left", title="lift tape"))
     strap, template_line = LineName("strap left"), LineName("full-bust")
-    assert render(Message("{line} is slack: it has no tension.", line=strap), design) == (
-        "Lift tape, left is slack: it has no tension."
+    assert render(Message("{line} is slack (no tension).", line=strap), design) == (
+        "Lift tape, left is slack (no tension)."
     )
     locked = Message("The line {name} is locked.", name=strap)
     assert render(locked, design) == "The line lift tape, left is locked."
     assert render(locked) == "The line strap left is locked."
     locked = Message("The line {name} is locked.", name=LineName("strap left", "lift tape"))
     assert render(locked) == "The line lift tape, left is locked."
-    slack = Message("{line} is slack: it has no tension.", line=template_line)
-    assert render(slack, design) == render(slack) == "Full bust is slack: it has no tension."
+    slack = Message("{line} is slack (no tension).", line=template_line)
+    assert render(slack, design) == render(slack) == "Full bust is slack (no tension)."
     use_language("ja")
     assert render(slack, design).startswith(line_title("full-bust"))
 

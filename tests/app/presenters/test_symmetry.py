@@ -45,17 +45,17 @@ def test_each_figure_names_the_side_that_is_more(person: Stages) -> None:
     summary = symmetry_view(BeforeAfter(left, replace(left, higher=-1.2), ()), person)
     views = {view.title: view for view in summary.views}
     assert summary.says == "Bust points: right 1.2 mm higher."
-    assert (views["Higher [mm]"].before, views["Higher [mm]"].after) == (
+    assert (views["Height [mm]"].before, views["Height [mm]"].after) == (
         "L 2.0",
         "R 1.2",
     )
-    assert views["Higher [mm]"].shares == pytest.approx((0.204, -0.12))
-    assert views["Further aside [mm]"].after == "0.0"
-    assert views["Stands out [ml]"].after == "L 29", "what the legend of the map tells, all in all"
+    assert views["Height [mm]"].shares == pytest.approx((0.204, -0.12))
+    assert views["Lateral offset [mm]"].after == "0.0"
+    assert views["Excess volume [ml]"].after == "L 29", "what the legend of the map tells, all in all"
     assert "left 41 ml, right 12 ml" in map_note(BeforeAfter(left, left, ()), True)
-    assert views["Skin apart [mm]"].shares == (None, None)
+    assert views["Mean distance [mm]"].shares == (None, None)
     none = symmetry_view(BeforeAfter(left, replace(left, skin=None), ()), person).views
-    assert next(view for view in none if view.title == "Skin apart [mm]").after == "–"
+    assert next(view for view in none if view.title == "Mean distance [mm]").after == "–"
 
 
 def test_a_difference_within_the_error_is_said_to_be_none(person: Stages) -> None:
@@ -69,14 +69,17 @@ def test_a_difference_within_the_error_is_said_to_be_none(person: Stages) -> Non
         return symmetry_view(BeforeAfter(there, there, ()), person, spread=spread)
 
     both = told(-2.0, 3.0)
-    assert both.says == "Bust points: right 2.0 ± 5.9 mm higher, left 3.0 ± 1.2 mm further out."
+    assert both.says == "Bust points: right 2.0 ± 5.9 mm higher, left 3.0 ± 1.2 mm further forward."
     assert [(view.off, view.within) for view in both.views[:3]] == [
         ("± 5.9", True),
         ("± 1.2", False),
         ("", False),
     ]
-    assert "Within the error both are alike." in both.views[0].tip
-    assert told(-2.0, 0.1).says == "Bust points: right 2.0 ± 5.9 mm higher. Within the error they lie alike."
+    assert "No significant difference." in both.views[0].tip
+    assert (
+        told(-2.0, 0.1).says
+        == "Bust points: right 2.0 ± 5.9 mm higher. No significant difference in position."
+    )
 
 
 def test_of_a_doubtful_run_only_before_is_told(person: Stages, told: BeforeAfter) -> None:
@@ -93,13 +96,13 @@ def test_the_hint_says_what_is_parted_first_or_what_is_lacking(person: Stages, t
     for line in ready_made_lines(TEMPLATE)["straps"]:
         design = design.with_custom_line(line).with_line(line.name, 0.95)
     summary = symmetry_view(told, build(design, person))
-    assert summary.hint == "Make even begins by setting left and right apart: Mid-bust, Straps."
+    assert summary.hint == "Balancing separates left and right: Mid-bust, Straps."
     assert summary.possible
     halves = symmetry_view(told, build(split(person.design, TEMPLATE, "mid-bust"), person))
     assert (halves.hint, halves.possible) == ("", True)
     locked = person.design.with_line_settings(LineSettings("mid-bust", locked=True))
     summary = symmetry_view(told, build(locked, person))
-    assert "wear a line that moves one side" in summary.hint
+    assert "activate a line on one side" in summary.hint
     assert not summary.possible
 
 
@@ -130,8 +133,8 @@ def evened(**changes: object) -> InverseResult:
 
 EVEN = (Goal("left higher", 0.0), Goal("left further out", 0.0), Goal("lift", 6.9))
 BY_TURNS = (
-    "Figures are those of the exact answer, where each breast keeps its volume. Turns keep both together: "
-    "Measures may differ by up to 1 mm and 10 to 20 ml."
+    "Values of the exact solution, which conserves the volume of each breast. Iterations conserve "
+    "the combined volume: values in Measurements may differ by up to 1 mm and 10 to 20 ml."
 )
 NOW = {"left higher": -11.5, "left further out": -0.1, "lift": 6.9, "out": 1.2}
 
@@ -141,28 +144,28 @@ def test_what_makes_it_even_is_told_from_where_to_where_with_its_price() -> None
     assert not has_balance_targets(EVEN[2:])
     said, price, why = balance_result_texts(evened(), EVEN, NOW, {"out": -3.0})
     assert said.splitlines() == [
-        "Not reachable. Nearest:",
+        "Not reachable. Closest result:",
         "Right higher: 11.5 → 2.7 mm",
     ]
     assert price == (
-        "At the price of: Right further forward 0.1 → 3.6 mm, Bust point up +6.9 → +4.2 mm, "
-        "Bust point forward +1.2 → −3.0 mm"
+        "Trade-off: Right further forward 0.1 → 3.6 mm, Bust point lift +6.9 → +4.2 mm, Bust "
+        "point, forward +1.2 → −3.0 mm"
     )
     assert why == (
-        "Because Strap (right), Mid-bust (left) may not be longer: a longer line would have to push, "
-        f"and the body would be strained more than looks natural.\n{BY_TURNS}"
+        "Reasons: Strap (right), Mid-bust (left): upper length limit, a longer line would be slack; "
+        f"the skin strain would exceed its limit.\n{BY_TURNS}"
     )
     with using_language("ja"):
         said, _, why = balance_result_texts(evened(), EVEN, NOW, {"out": -3.0})
         assert said.splitlines()[1] == "右が高い：11.5 → 2.7 mm"
-        assert "ストラップ（右）、バスト下部（左）は" in why
+        assert "ストラップ（右）、バスト下部（左）：" in why
 
 
 def test_a_side_that_changes_is_named_and_what_is_even_has_none() -> None:
     turned = evened(reached={"left higher": 2.0, "left further out": 0.0}, reachable=True)
     said, price, why = balance_result_texts(turned, EVEN[:2], NOW, {"lift": 6.9, "out": 1.2})
     assert said.splitlines() == [
-        "Reached.",
+        "All targets reached.",
         "Right higher 11.5 mm → Left higher 2.0 mm",
         "Right further forward: 0.1 → 0.0 mm",
     ]
@@ -171,6 +174,6 @@ def test_a_side_that_changes_is_named_and_what_is_even_has_none() -> None:
         exact = replace(turned, design=replace(turned.design, **same))
         assert balance_result_texts(exact, EVEN[:2], NOW, {"lift": 6.9, "out": 1.2})[2] == ""
     said, price, why = balance_result_texts(evened(agreed=False), EVEN, NOW, {"out": 1.2})
-    assert said.startswith("Nearest so far:\n")
-    assert price.startswith("At the price of: ")
-    assert why.startswith("Lengths, elastics and pressures did not come to agree.")
+    assert said.startswith("Closest result:\n")
+    assert price.startswith("Trade-off: ")
+    assert why.startswith("The iteration over lengths, elastics and contact pressure did not converge.")

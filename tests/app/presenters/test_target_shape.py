@@ -45,32 +45,47 @@ GOALS = (Goal("lift", 5.0),)
 @pytest.mark.parametrize(
     ("changes", "english", "japanese"),
     [
-        ({"reachable": True}, "Reached.", "到達できます。"),
+        ({"reachable": True}, "All targets reached.", "すべての目標に到達します。"),
         (
             {"at_limit": ("full-bust", "mid-bust")},
-            "Not reachable: nearest is Bust point up +2.0 mm, because Mid-bust may not be shorter, and "
-            "Full bust may not be longer: a longer line would have to push.",
-            "到達できません。最も近いのは BPの上昇 +2.0 mm。理由：バスト下部はこれ以上短くできません、"
-            "トップバストはこれ以上長くできません（長いラインは押すことになります）。",
+            (
+                "Not reachable. Closest result: Bust point lift +2.0 mm. Reasons: Mid-bust: lower "
+                "length limit; Full bust: upper length limit, a longer line would be slack."
+            ),
+            (
+                "到達できません。最も近い結果：BPの上昇 +2.0 mm。理由：バスト下部：長さの下限、"
+                "トップバスト：長さの上限（長くするとたるみます）。"
+            ),
         ),
         (
             {"at_pressure_limit": ("mid-bust",), "strained": True},
-            "Not reachable: nearest is Bust point up +2.0 mm, because Mid-bust may not press more than 4.0 "
-            "kPa, and the body would be strained more than looks natural.",
-            "到達できません。最も近いのは BPの上昇 +2.0 mm。理由：バスト下部は 4.0 kPa を超えて押せません、"
-            "肌の伸縮が自然な範囲を超えます。",
+            (
+                "Not reachable. Closest result: Bust point lift +2.0 mm. Reasons: Mid-bust: contact "
+                "pressure limit of 4.0 kPa; the skin strain would exceed its limit."
+            ),
+            (
+                "到達できません。最も近い結果：BPの上昇 +2.0 mm。理由：バスト下部：接触圧の上限 4.0 "
+                "kPa、肌のひずみが限界を超えます。"
+            ),
         ),
         (
             {"slack": ("full-bust",)},
-            "Not reachable: nearest is Bust point up +2.0 mm, because Full bust would have to push, which no "
-            "band can.",
-            "到達できません。最も近いのは BPの上昇 +2.0 mm。理由：トップバストは押すことになります"
-            "（ベルトは押せません）。",
+            (
+                "Not reachable. Closest result: Bust point lift +2.0 mm. Reasons: Full bust: slack, "
+                "the tension would be negative."
+            ),
+            (
+                "到達できません。最も近い結果：BPの上昇 +2.0 mm。理由：トップバスト："
+                "たるみ（張力が負になります）。"
+            ),
         ),
         (
             {"agreed": False},
-            "Nearest so far: Bust point up +2.0 mm. Lengths, elastics and pressures did not come to agree.",
-            "これまでで最も近い結果：BPの上昇 +2.0 mm。長さ、ゴム、圧力が折り合いませんでした。",
+            (
+                "Closest result: Bust point lift +2.0 mm. The iteration over lengths, elastics and "
+                "contact pressure did not converge."
+            ),
+            "最も近い結果：BPの上昇 +2.0 mm。長さ、ゴムテープ、接触圧の反復が収束しませんでした。",
         ),
     ],
 )
@@ -85,18 +100,18 @@ def test_of_a_profile_it_is_told_how_far_it_is_off() -> None:
     heights = [profile_name("left", 300.0), profile_name("left", 310.0)]
     goals = [Goal(name, 100.0) for name in heights]
     answer = reply(reached={heights[0]: 103.0, heights[1]: 96.0})
-    because = "because these lines do not move the body that way."
-    said = "Not reachable: nearest is a profile off by 3.5 mm on average (4.0 mm at most), "
+    because = "Reasons: the active lines cannot produce this movement."
+    said = "Not reachable. Closest result: profile deviation 3.5 mm on average (4.0 mm maximum). "
     assert result_text(answer, goals) == said + because
     with using_language("ja"):
-        assert "最も近いのは 輪郭のずれが平均 3.5 mm（最大 4.0 mm）の結果。理由：" in result_text(
-            answer, goals
-        )
+        assert "最も近い結果：輪郭のずれが平均 3.5 mm（最大 4.0 mm）。理由：" in result_text(answer, goals)
     both = [*goals, Goal(profile_name("right", 300.0), 100.0)]
     answer = replace(answer, reached={**answer.reached, both[-1].name: 106.0})
-    assert "nearest is Profile through the left bust point: off by 3.5 mm on " in result_text(answer, both)
+    assert "Closest result: Profile through the left bust point: deviation 3.5 mm on " in result_text(
+        answer, both
+    )
     assert step_words([*GOALS, *goals]) == (
-        "Asked for: Bust point up +5.0 mm, Profile through the left bust point"
+        "Targets: Bust point lift +5.0 mm, Profile through the left bust point"
     )
 
 
@@ -104,16 +119,19 @@ def test_changes_are_told_line_by_line_and_what_presses() -> None:
     before = design().with_line("mid-bust", 0.95)
     assert change_words(before, reply(pressure={"mid-bust": 2.46})) == [
         "Mid-bust 95.0 → 93.0 % (\N{MINUS SIGN}2.0)",
-        "presses with 2.5 kPa at most",
+        "contact pressure at most 2.5 kPa",
     ]
     assert change_words(design(), reply()) == ["No line changes"]
-    assert change_words(design(), reply(unchecked=("mid-bust",)))[-1] == "pressure not looked at: see Garment"
+    assert (
+        change_words(design(), reply(unchecked=("mid-bust",)))[-1]
+        == "contact pressure not checked: see Garment"
+    )
     some = reply(unchecked=("full-bust",), pressure={"mid-bust": 2.46})
     assert change_words(design(), some)[-2:] == [
-        "presses with 2.5 kPa at most",
-        "pressure of Full bust not looked at: see Garment",
+        "contact pressure at most 2.5 kPa",
+        "contact pressure of Full bust not checked: see Garment",
     ]
-    assert locked_lines_text(design(), ["mid-bust", "strap left"]) == "Locked, so kept: Mid-bust."
+    assert locked_lines_text(design(), ["mid-bust", "strap left"]) == "Locked, not changed: Mid-bust."
     assert locked_lines_text(design(), []) == ""
 
 
@@ -129,7 +147,7 @@ def test_a_profile_that_is_nearly_met_is_reached_within_so_much() -> None:
     names = [goal.name for goal in goals]
     near = reply(reached=dict(zip(names, (200.2, 199.6), strict=True)))
     assert result_text(near, goals) == "Reached within 0.4 mm."
-    assert deviation_text(goals, near.reached, "profile left") == "off by 0.3 mm, at most 0.4 mm"
+    assert deviation_text(goals, near.reached, "profile left") == "deviation 0.3 mm, at most 0.4 mm"
     assert is_met(near, goals)
     assert not is_met(near, [*goals[:1], Goal(names[1], 201.0)])
     both = replace(near, reached={**near.reached, "lift": 4.0})
@@ -144,14 +162,17 @@ def test_what_a_hand_draws_is_met_on_average() -> None:
         return reply(reached=reached)
 
     near = off_by(-0.1, 3.0)
-    assert result_text(near, goals) == "Met within 0.4 mm on average, 3.0 mm at most."
+    assert result_text(near, goals) == "Reached with a deviation of 0.4 mm on average, 3.0 mm maximum."
     assert (is_near(near, goals), is_met(near, goals)) == (True, False)
     with using_language("ja"):
         assert result_text(near, goals) == "平均 0.4 mm、最大 3.0 mm のずれで到達できます。"
     now = {goal.name: 200.9 for goal in goals}
-    assert result_text(near, goals, None, now) == "Met within 0.4 mm on average, 3.0 mm at most."
+    assert (
+        result_text(near, goals, None, now)
+        == "Reached with a deviation of 0.4 mm on average, 3.0 mm maximum."
+    )
     now = {goal.name: 200.5 for goal in goals}
-    said = "Nearest is 0.4 mm off on average, 3.0 mm at most (was 0.5 mm)."
+    said = "Closest result: deviation 0.4 mm on average, 3.0 mm maximum (before: 0.5 mm)."
     assert result_text(near, goals, None, now) == said, "what hardly comes nearer is not met"
     assert not is_near(off_by(1.1, 1.0), goals), "a millimetre is seen"
     assert not is_near(off_by(0.1, 5.2), goals), "nor is one place far off"
@@ -170,12 +191,12 @@ def test_of_a_drawn_profile_it_is_told_what_it_was_off_and_how_the_bust_point_mo
     then = {"lift": 6.5, "out": -5.33}
     said = result_text(off, goals, None, now)
     assert said.startswith(
-        "Not reachable: nearest is a profile off by 3.5 mm on average (6.0 mm at most), 2.0 mm before, "
+        "Not reachable. Closest result: profile deviation 3.5 mm on average (6.0 mm maximum), 2.0 mm before. "
     )
-    assert bust_movement_text(goals, now, then) == "Moves along: Bust point up +7.3 → +6.5 mm"
+    assert bust_movement_text(goals, now, then) == "Also changes: Bust point lift +7.3 → +6.5 mm"
     with using_language("ja"):
-        assert "の結果（変更前 2.0 mm）。理由：" in result_text(off, goals, None, now)
-        assert bust_movement_text(goals, now, then) == "あわせて変わるもの：BPの上昇 +7.3 → +6.5 mm"
+        assert "（変更前 2.0 mm）。理由：" in result_text(off, goals, None, now)
+        assert bust_movement_text(goals, now, then) == "あわせて変わる値：BPの上昇 +7.3 → +6.5 mm"
     assert bust_movement_text([*goals, Goal("lift", 6.5)], now, then) == "", "it is asked for"
     assert bust_movement_text([Goal("out", -4.0)], now, then) == "", "no profile is"
     assert bust_movement_text(goals, {}, then) == "", "not known yet"
@@ -195,9 +216,9 @@ def test_values_of_a_row_are_now_and_the_result_with_its_change() -> None:
 def test_what_the_limit_of_pressure_costs_is_one_sentence() -> None:
     free = reply(pressure={"mid-bust": 25.8})
     assert unlimited_words(free, GOALS, {}) == (
-        "Nearest without the pressure limit: Bust point up +2.0 mm, with 25.8 kPa."
+        "Closest result without the contact pressure limit: Bust point lift +2.0 mm, at 25.8 kPa."
     )
     met = replace(free, reachable=True)
     assert unlimited_words(met, GOALS, {}) == (
-        "All targets are met without the pressure limit, with 25.8 kPa."
+        "All targets are reached without the contact pressure limit, at 25.8 kPa."
     )

@@ -111,7 +111,7 @@ CHANGES: dict[str, Callable[[Scene], object]] = {
     "a ghost": lambda scene: scene.set_visible("ghost", True),
     "shadows": lambda scene: scene.set_occlusion(np.linspace(0.0, 1.0, len(scene.body.rest.vertices))),
     "a map": lambda scene: scene.body.show_map(np.full((len(scene.body.rest.vertices), 3), 90.0)),
-    "at rest": lambda scene: scene.before(True),
+    "original": lambda scene: scene.before(True),
     "more of it moves": lambda scene: scene.move_body(
         side(scene), 1.1 * scene.body.rest.vertices[side(scene)]
     ),

@@ -46,7 +46,7 @@ def test_no_name_of_a_line_is_cut(bra: Report, tmp_path: Path) -> None:
     english, japanese = (printed(bra, tmp_path / f"{words}.pdf", words).text() for words in ("en", "ja"))
     assert all(name in english for name in ("Mid-bust", LONG, "Strap right"))
     assert all(name in japanese for name in ("バスト下部", "ストラップ右"))
-    assert "…" not in english.partition("To cut")[2].partition("Notes")[0]
+    assert "…" not in english.partition("Cut list")[2].partition("Notes")[0]
 
 
 def test_what_is_noted_of_every_line_is_said_once(bra: Report) -> None:

@@ -77,7 +77,7 @@ def test_long_names_end_in_dots(qapp: QApplication) -> None:
 
 def test_the_last_line_of_a_text_is_never_a_letter_or_two(qapp: QApplication) -> None:
     load_fonts()
-    text = "乳頭がはっきり見えません。バストポイントは乳房の形から推定しています。"
+    text = "乳頭をはっきり検出できません。バストポイントは乳房の形から推定しています。"
     for width in range(30, 100):
         lines = wrap(text, "small", float(width))
         assert "".join(lines) == text

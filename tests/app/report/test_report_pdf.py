@@ -158,19 +158,19 @@ def test_what_is_missing_is_said(sheet: Report, built: Built, tmp_path: Path) ->
     bare = solve(build(replace(stages.design, lines=()), stages))
     at_rest = make_report(bare, bare.records, HEADING)
     text = written(handout(at_rest, drawn=False), tmp_path / "bare.pdf").text()
-    assert "No line is worn: there is nothing to cut." in text
-    assert "No turns to plot: no line is worn." in text
-    assert "The pictures of the body could not be drawn here" in text
+    assert "No active lines: the cut list is empty." in text
+    assert "No iterations to plot: no active lines." in text
+    assert "The images of the body could not be drawn" in text
     plain = tuple(replace(row, elastic="", cut_mm=None, elongation=None) for row in sheet.cuts.rows)
     without = replace(sheet, cuts=replace(sheet.cuts, rows=plain))
-    assert "No elastic is chosen yet" in written(handout(without), tmp_path / "plain.pdf").text()
-    found = Finding("convergence", "bad", Message("The calculation does not converge: it oscillates."))
+    assert "No elastics chosen" in written(handout(without), tmp_path / "plain.pdf").text()
+    found = Finding("convergence", "bad", Message("The solver does not converge: it oscillates."))
     wrong = {"state": "vibrating", "lift": None, "assessment": Assessment((found,))}
     sizeless = replace(sheet, sizes=(), no_size=Message("The scan shows no bust."), **wrong)
     text = written(handout(sizeless), tmp_path / "none.pdf").text()
     assert "The scan shows no bust." in text
     assert "Do not use The calculation does not converge: it oscillates." in text
-    assert "No figure: the shape is no result." in text
+    assert "No value: the shape is not valid." in text
 
 
 @pytest.mark.parametrize(
@@ -178,7 +178,8 @@ def test_what_is_missing_is_said(sheet: Report, built: Built, tmp_path: Path) ->
 )
 def test_doubts_stand_on_the_first_page(sheet: Report, tmp_path: Path, words: str, said: str) -> None:
     unclear = Message(
-        "The fold under the {side} breast could not be seen clearly: please check it.", side=SideName("left")
+        "The inframammary fold of the {side} breast is not clearly visible. Please check.",
+        side=SideName("left"),
     )
     doubted = replace(sheet, assessment=Assessment((Finding("landmarks", "caution", unclear),)))
     page = written(handout(doubted), tmp_path / "sheet.pdf", words)
@@ -189,9 +190,9 @@ def test_doubts_stand_on_the_first_page(sheet: Report, tmp_path: Path, words: st
 def test_a_shape_that_is_no_result_tells_no_figure_of_it(sheet: Report, tmp_path: Path) -> None:
     folded = replace(sheet, state="folded", lift=None)
     text = written(handout(folded), tmp_path / "folded.pdf").text()
-    assert text.count("No figure: the shape is no result.") == 3 + len(sheet.cuts.rows)
-    assert text.count("NOT TO CUT") == len(sheet.cuts.rows)
-    assert "Bust points, mm up" not in text
+    assert text.count("No value: the shape is not valid.") == 3 + len(sheet.cuts.rows)
+    assert text.count("DO NOT CUT") == len(sheet.cuts.rows)
+    assert "Bust point lift, mm" not in text
     for cut in sheet.cuts.rows:
         assert cut.cut_mm is None or f" {cut.cut_mm:,.0f} " not in text
     measured = [row for row in sheet.measures if row["before"] is not None and row["unit"] == "mm"]
@@ -203,7 +204,7 @@ def test_a_shape_that_is_no_result_tells_no_figure_of_it(sheet: Report, tmp_path
 def test_a_front_part_alone_is_no_great_figure(sheet: Report, tmp_path: Path) -> None:
     parts = tuple(replace(row, front_only=True) for row in sheet.cuts.rows)
     text = written(handout(replace(sheet, cuts=replace(sheet.cuts, rows=parts))), tmp_path / "p.pdf").text()
-    assert "No whole piece: front parts alone stand in the cut list." in text
+    assert "No full lengths: the cut list contains front lengths only." in text
     for cut in sheet.cuts.rows:
         assert cut.cut_mm is None or f"{cut.cut_mm:,.0f} mm" not in text
 

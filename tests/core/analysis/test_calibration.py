@@ -166,7 +166,7 @@ def test_the_scan_without_the_garment_tells_nothing_of_its_lines(
     assert found.after.total.rms < 0.5 * found.before.total.rms, "it fits, by numbers of no line"
     assert found.at_end
     assert not found.is_improved
-    assert improvement_text(found, stages.design).startswith("Not found: ")
+    assert improvement_text(found, stages.design).startswith("Calibration failed: ")
 
 
 def test_where_most_remains_it_is_not_of_the_numbers(
@@ -192,7 +192,7 @@ def test_numbers_that_are_all_told_weakly_are_a_hint(found: CalibrationResult) -
         (True, True),
     ]
     assert improvement_text(well, well.design).endswith(" mm."), "the plain outcome"
-    assert improvement_text(weakly, weakly.design).endswith("take them as a hint.")
+    assert improvement_text(weakly, weakly.design).endswith("Treat the values as indicative.")
 
 
 def test_a_calibration_is_cancelled(pair: tuple[Stages, FittingScan, Design]) -> None:

@@ -107,9 +107,9 @@ def test_of_a_double_change_it_is_known_what_each_part_ends() -> None:
     assert found.best_fix.change.setting[0] == "gain"
     assert found.stages.design.volume == found.best_fix.change.design.volume == "conventional"
     assert (found.best_fix.option_result, found.best_fix.lengths_result) == ("vibrating", "folded")
-    assert "The gain ends the swing, the length the fold" in details(found)
+    assert "The gain fixes the oscillation, the length the fold" in details(found)
     alike = replace(found, fixes=(replace(found.best_fix, lengths_result="vibrating"),))
-    assert "Neither is enough alone: it would still end as “Vibrating”" in details(alike)
+    assert "One change alone is not enough: status “Oscillating”" in details(alike)
 
 
 def test_all_lines_together_are_told_with_how_far_they_go() -> None:
@@ -120,11 +120,11 @@ def test_all_lines_together_are_told_with_how_far_they_go() -> None:
     change = replace(found.best_fix.change, kind="together", design=after, lines=lines, setting=("", None))
     most = 0.1 * found.line("mid-bust").rest_length
     assert found.moves_mm(change) == pytest.approx(most)
-    assert change_words(found, change) == f"Bring all lines up to {most:.0f} mm nearer to 100 %"
+    assert change_words(found, change) == f"Move all lines up to {most:.0f} mm closer to 100 %"
 
 
 def test_forces_are_told_as_sums_over_points() -> None:
-    assert "Forces at all points added up" in details(twice_sick())
+    assert "Sum of the forces at all points" in details(twice_sick())
 
 
 def test_a_line_at_its_rest_length_has_one_way_and_that_leads_away_from_it() -> None:

@@ -202,7 +202,7 @@ def test_a_line_of_elastic_ends_where_a_shorter_one_is_refused(built, contact):
     assert all(span.long.ratio > end.ratio for span in others), "nothing begins where a length is refused"
     assert told.red_below == end.ratio
     assert tone_at(told, 0.52) == "bad"
-    assert "eyond the table of its elastic below" in legend_entries(told)["red"]
+    assert "utside the elastic's curve below" in legend_entries(told)["red"]
 
 
 def test_a_line_of_nothing_in_particular_ends_at_no_table(built):

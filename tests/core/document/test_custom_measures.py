@@ -32,15 +32,15 @@ def test_own_measures_are_written_as_they_are_read() -> None:
 
 
 def test_each_says_how_it_is_taken() -> None:
-    assert str(GORE.text) == "Yours: straight from bust point left to front centre."
-    assert str(RIBS.text) == "Yours: a tape, level, 30 mm below fold left."
+    assert str(GORE.text) == "Custom: straight distance from bust point left to front centre."
+    assert str(RIBS.text) == "Custom: horizontal tape, 30 mm below fold left."
     assert (
         str(parse_measurement("Ribs=girth:waist_front+60").text)
-        == "Yours: a tape, level, 60 mm above waist front."
+        == "Custom: horizontal tape, 60 mm above waist front."
     )
-    assert str(parse_measurement("Ribs=girth:waist_front").text) == "Yours: a tape, level, at waist front."
+    assert str(parse_measurement("Ribs=girth:waist_front").text) == "Custom: horizontal tape at waist front."
     told = parse_measurement("Chest=girth:1250").text
-    assert str(told) == "Yours: a tape, level, 1250 mm above the lowest point of the scan."
+    assert str(told) == "Custom: horizontal tape, 1250 mm above the lowest point of the scan."
 
 
 @pytest.mark.parametrize(

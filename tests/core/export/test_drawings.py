@@ -259,7 +259,7 @@ def test_nothing_else_is_left_in_the_folders_of_the_user(tmp_path):
 
 def test_a_design_without_worn_lines_is_refused(solution):
     stages = build(Design(solution.stages.design.scan), solution.stages)
-    with pytest.raises(LineError, match="No line is worn"):
+    with pytest.raises(LineError, match="No active lines"):
         line_curves(stages, solution.control_points, {}, {})
 
 

@@ -29,7 +29,7 @@ from core.pipeline.build import build, line_targets
 from core.pipeline.solve import solve
 
 EDGE = Elastic("edge", 10.0, ((0.0, 0.0), (0.2, 0.8), (0.5, 1.8), (1.0, 4.0)), 15.0)
-HOOKE = Elastic("straight", 10.0, ((0.0, 0.0), (1.0, 6.0)), 20.0, "by hand", estimate=False)
+HOOKE = Elastic("straight", 10.0, ((0.0, 0.0), (1.0, 6.0)), 20.0, "manual", estimate=False)
 
 
 def stages_of(stages, lines, elastics=(), **choices):
@@ -159,7 +159,7 @@ def test_a_held_line_on_the_rib_cage_is_not_refused_and_has_no_known_tension(bui
     stages = stages_of(built("mannequin"), [("under-bust", 0.6)], [("under-bust", short)], line_hold="held")
     _, rows, _, _ = listed(stages)
     assert (rows["under-bust"].tension_n, rows["under-bust"].cut_mm) == (None, None)
-    assert any("not known" in str(note) for note in rows["under-bust"].notes)
+    assert any("unknown" in str(note) for note in rows["under-bust"].notes)
 
 
 def test_an_open_line_is_its_own_whole_and_a_ring_is_closed(built):
@@ -275,7 +275,7 @@ def test_the_command_prints_what_python_says(mannequin, built, capsys, tmp_path)
         ([], "No active lines"),
         (["--line", "mid-bust=70%", "--elastic", "waist=picot 10"], "is not an active line.*: mid-bust"),
         (["--line", "mid-bust=70%", "--elastic", "mid-bust=rope"], "No elastic is called 'rope'"),
-        (["--line", "mid-bust=52%", "--elastic", "mid-bust=strap 10"], "stretched by .*ends at 70 %"),
+        (["--line", "mid-bust=52%", "--elastic", "mid-bust=strap 10"], "elongation .*ends at 70 %"),
     ],
 )
 def test_what_cannot_be_cut_is_said_in_a_sentence(mannequin, capsys, words, sentence):
@@ -291,7 +291,7 @@ def test_the_list_leaves_in_the_order_of_the_window_with_what_presses(built):
     heading, *rows = as_table(stages, cuts, pressed)
     assert [row[0] for row in rows] == ["Full bust", "Mid-bust", "Under-bust"]
     most = {row.line: f"{row.max_kpa:.1f}" for row in pressed.rows}
-    at = heading.index("Largest pressure kPa")
+    at = heading.index("Maximum contact pressure kPa")
     assert [row[at] for row in rows] == [most[name] for name in ("full-bust", "mid-bust", "under-bust")]
     assert {row[at] for row in as_table(stages, cuts, None)[1:]} == {""}
     told = dict(zip([row.line for row in cuts.rows], [row.estimate for row in cuts.rows], strict=True))

@@ -93,7 +93,7 @@ def test_the_length_that_a_refusal_names_works(built: Callable[[str], Stages]) -
 
 def test_numbers_that_round_alike_are_told_apart() -> None:
     message = STRAP.overstretch_error(0.7004, LineName("mid-bust")).message
-    assert "stretched by 70.04 % as mid-bust; its table ends at 70 %" in str(message)
+    assert "elongation 70.04 % as mid-bust; its table ends at 70 %" in str(message)
     assert "pulled with 9.95 N as mid-bust; its table ends at 9.9 N" in str(
         STRAP.overload_error(9.949, LineName("mid-bust")).message
     )
@@ -179,7 +179,7 @@ def test_the_command_line_lists_effects_and_names_the_nearest(
     assert "Too weak" in listed
     assert "Lift kept: 1" in listed
     assert main([*words, "--elastic", "mid-bust=strap 15", "--keep-fit"]) == 2
-    assert "Nearest elastic that works: Strap 20 mm." in capsys.readouterr().err
+    assert "Nearest suitable elastic: Strap 20 mm." in capsys.readouterr().err
     assert main([*words, "--elastic", "mid-bust=strap 20", "--keep-fit"]) in (0, 3)
     assert "with a band that does not stretch." in capsys.readouterr().out
     assert main([*words, "--elastic", "mid-bust=strap 20", "--keep-fit", "--json"]) in (0, 3)

@@ -197,10 +197,10 @@ def test_a_slack_band_does_not_press_and_says_so() -> None:
     band = polar(lambda t: 100.0 + LOBED * np.cos(2.0 * t))
     slack = band_pressure(replace(band, tension=-band.tension), WIDTH)
     assert slack.kpa.max() == slack.force == slack.mean == 0.0
-    assert tuple(map(str, slack.notes)) == ("It is slack: it does not press.",)
+    assert tuple(map(str, slack.notes)) == ("Slack: no contact pressure.",)
     band = ellipse(160.0, 110.0)
     half = band_pressure(replace(band, tension=np.where(band.points[:, 1] < 0.0, NEWTONS, -1.0)), WIDTH)
-    assert tuple(map(str, half.notes)) == ("Part of it is slack: it does not press there.",)
+    assert tuple(map(str, half.notes)) == ("Partly slack: no contact pressure there.",)
     assert (half.kpa[band.points[:, 1] > 1.0] == 0.0).all()
 
 
@@ -273,7 +273,7 @@ def test_worn_lines_press_with_their_tensions_on_the_reshaped_body() -> None:
     assert (~worn.front).any()
     assert worn.tension[~worn.front] == pytest.approx(tension.mean)
     assert set(worn.tension[worn.front].round(9)) <= set(np.maximum(tension.segments, 0.0).round(9))
-    assert str(worn.notes[0]) == "Its tension follows from the stiffness of tissue alone, an estimate."
+    assert str(worn.notes[0]) == "Its tension is computed from the tissue stiffness alone (estimate)."
     touching = worn.places[worn.gap == 0.0]
     far = np.linalg.norm(solution().body.vertices[:, None] - touching[None, ::9], axis=2).min(axis=0)
     assert far.max() < 6.0
@@ -288,7 +288,7 @@ def test_a_band_of_no_told_width_is_taken_as_wide_as_it_is_drawn() -> None:
     )
     worn = pressures(plain, solution().control_points)["mid-bust"]
     assert worn.width == 12.0
-    assert "It is taken to be 12 mm wide: no width was told." in map(str, worn.notes)
+    assert "Width not specified: 12 mm assumed." in map(str, worn.notes)
 
 
 def test_straps_of_a_preset_are_open_and_press_below_the_shoulder() -> None:

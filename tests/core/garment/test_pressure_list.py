@@ -142,7 +142,7 @@ def test_the_command_prints_limits_with_their_sources_and_what_is_left_out(
     assert main(["pressure", SCAN, *WORDS]) == 0
     plain, limits = capsys.readouterr().out, pressure_limits()
     assert re.search(r"^Full bust +0\.83 +6\.2 +2\.36 +17\.7 .* 5\.5 +293  front \w+, \d+ mm", plain, re.M)
-    assert "from 2 kPa" in plain
+    assert "source 2 kPa" in plain
     assert all(each.name in plain and each.words.en in plain for each in limits.sources)
     assert all(sentence in plain for sentence in (*map(str, LEFT_OUT), *(each.en for each in limits.doubts)))
 

@@ -93,7 +93,7 @@ def test_the_command_line_places_as_the_design_does_in_any_frame(
     assert main([*told, "--landmark", "fold_left=" + ",".join(map(str, place))]) == 0
     found = json.loads(capsys.readouterr().out)
     mark = found["landmarks"]["fold_left"]
-    assert mark["rule"] == "Placed by hand."
+    assert mark["rule"] == "Placed manually."
     assert np.linalg.norm(np.array(mark["file"]) - place) * 25.4 < 4.0, "it is laid on the skin nearby"
     stages = build(Design(ScanSource(str(path), up="+y", front="+x")).with_placed("fold_left", tuple(place)))
     assert stages.landmarks.position("fold_left") == pytest.approx(mark["mm"], abs=1e-9)

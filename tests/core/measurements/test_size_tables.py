@@ -60,7 +60,7 @@ def test_an_own_table_is_one_more_system(folder):
     answers = sizes(650.0, 790.0)
     assert list(answers)[-1] == "ours"
     assert answers["ours"].label == "S-1"
-    assert str(answers["ours"].rule[-1]) == "Bust less under-bust 14 cm gives cup 1 (9.5 to 14.5)."
+    assert str(answers["ours"].rule[-1]) == "Bust minus under-bust 14 cm: cup 1 (9.5 to 14.5)."
     assert sizes(650.0, 795.0)["ours"].label == "S-1"
     assert sizes(650.0, 795.1)["ours"].label == "S-2"
     assert sizes(700.0, 850.0)["ours"].label == "M-2"

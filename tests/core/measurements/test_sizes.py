@@ -95,14 +95,14 @@ def test_cups_are_those_that_the_sources_list(key, differences, cups):
 def test_the_rule_is_told_with_the_numbers_put_in():
     answer = made("jp", 72.3, 87.1)
     assert tuple(map(str, answer.rule)) == (
-        "Under-bust 72.3 cm gives band 70 (67.5 to 72.5).",
-        "Bust less under-bust 14.8 cm gives cup C (13.75 to 16.25).",
+        "Under-bust 72.3 cm: band 70 (67.5 to 72.5).",
+        "Bust minus under-bust 14.8 cm: cup C (13.75 to 16.25).",
     )
     gap = made("jp", 70, 81.3)
     assert gap.label == "B70"
     assert tuple(map(str, gap.rule[1:])) == (
-        "Bust less under-bust 11.3 cm gives cup B (11.25 to 13.75).",
-        "The table itself names 11.5 to 13.5 for B; what lies between two steps goes to the nearest.",
+        "Bust minus under-bust 11.3 cm: cup B (11.25 to 13.75).",
+        "The size chart lists 11.5 to 13.5 for B; intermediate values use the nearest step.",
     )
     assert "The table itself names 3 for C" in str(made("uk", 32, 35.2).rule[-1])
 
@@ -149,12 +149,12 @@ def test_where_others_find_quite_another_size_a_few_words_say_so():
 def test_what_a_tight_tape_takes_off_is_told():
     answer = made("eu", 68.2, 84, 10.0)
     assert answer.label == "65C"
-    assert str(answer.rule[0]) == "Under-bust 68.2 cm less 1 cm for a tape that is worn tight: 67.2 cm."
+    assert str(answer.rule[0]) == "Under-bust 68.2 cm minus tape tension allowance 1 cm: 67.2 cm."
     assert (answer.allowance_mm, answer.underbust_mm) == (10.0, 682.0)
     assert made("eu", 68.2, 84).label == "70B"
     assert not any("tight" in str(sentence) for sentence in made("eu", 68.2, 84).rule)
     for wrong in (-0.1, 20.1, float("nan")):
-        with pytest.raises(SizeError, match="Choose 0 to 20"):
+        with pytest.raises(SizeError, match="Enter 0 to 20"):
             made("eu", 68.2, 84, wrong)
 
 

@@ -68,10 +68,10 @@ def test_a_scan_in_metres_with_all_kinds_of_dirt_gives_the_clean_body(tmp_path):
     body = read_scan(path)
     assert body.pose.unit == "m"
     assert tuple(map(str, body.repairs)) == (
-        "Dropped 1 vertex without a position.",
-        "Dropped 1 vertex outside any face.",
-        "Dropped 8 faces without an area or listed before.",
-        "Dropped 1 speck beside the body.",
+        "Removed 1 vertex without a position.",
+        "Removed 1 vertex outside any face.",
+        "Removed 8 faces with zero area or listed twice.",
+        "Removed 1 speck separate from the body.",
         f"Turned {flipped.sum():,} faces to look outward.",
     )
     assert np.abs(body.mesh.vertices - mm).max() < 1e-4  # the file holds single precision
@@ -143,7 +143,7 @@ def test_a_fin_goes_and_a_flap_at_the_border_stays():
     flap = [border[1], border[0], len(vertices) + 1]
     vertices = np.concatenate([vertices, 1.2 * vertices[inner[:1]], 1.1 * vertices[border[:1]]])
     _, mended, sentences = repair(vertices, np.concatenate([faces, [fin, flap]]))
-    assert "Dropped 1 face standing off the skin like a fin." in plain(sentences)
+    assert "Removed 1 face shaped like a fin." in plain(sentences)
     assert len(mended) == len(faces) + 1
 
 
@@ -152,7 +152,7 @@ def test_vertices_too_far_for_arithmetic_are_dropped():
     far = np.concatenate([vertices, [[1e300, 0, 0], [-np.inf, 0, 0]]])
     spikes = [[0, 1, len(vertices)], [2, 3, len(vertices) + 1]]
     kept, mended, sentences = repair(far, np.concatenate([faces, spikes]))
-    assert tuple(map(str, sentences)) == ("Dropped 2 vertices without a position.",)
+    assert tuple(map(str, sentences)) == ("Removed 2 vertices without a position.",)
     assert np.array_equal(kept, vertices)
     assert np.array_equal(mended, faces)
 

@@ -34,7 +34,7 @@ def test_the_cleft_of_the_buttocks_is_read_above_the_legs():
 
 def test_what_stands_out_further_than_any_breast_is_no_better_bust():
     bust, chin = (
-        cue("the bust with the folds under it", FLAT, FLAT, Fold(strength, 18.0, 0.8))
+        cue("the bust with the inframammary folds", FLAT, FLAT, Fold(strength, 18.0, 0.8))
         for strength in (70.0, 120.0)
     )
     assert chin < bust - 1.0

@@ -227,8 +227,8 @@ def test_what_is_no_file_is_not_even_opened(tmp_path):
     with open(tmp_path / "large.ply", "wb") as large:
         large.truncate(LARGEST_FILE + 1)
     for path, words in (
-        (tmp_path / "pipe.ply", "it is not a file"),
-        (Path("/dev/zero"), "it is not a file"),
+        (tmp_path / "pipe.ply", "not a file"),
+        (Path("/dev/zero"), "not a file"),
         (tmp_path, "cannot be read"),
         (tmp_path / "large.ply", "too large"),
         (Path("a\0b.ply"), "cannot be read"),

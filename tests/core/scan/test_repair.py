@@ -74,7 +74,7 @@ STANDS = {
 def test_what_the_body_stands_on_or_by_goes_and_the_body_stays(stand):
     *mended, sentences = repair(*beside(person(), STANDS[stand]))
     assert same_skin(mended, person())
-    assert "Dropped 1 piece shaped like a floor, a wall or a stand." in plain(sentences)
+    assert "Removed 1 piece shaped like a floor, a wall or a stand." in plain(sentences)
 
 
 def test_a_closed_dress_form_is_no_furniture():
@@ -95,7 +95,7 @@ def test_a_lining_goes_and_the_outer_skin_stays(depth):
     vertices, faces = person()
     lining = vertices - depth * Mesh(vertices, faces).vertex_normals, faces[:, ::-1]
     *mended, sentences = repair(*beside((vertices, faces), lining))
-    assert "Dropped 1 piece inside the body or doubling its skin." in plain(sentences)
+    assert "Removed 1 piece inside the body or duplicating its surface." in plain(sentences)
     assert len(mended[1]) == pytest.approx(len(faces), abs=3)
     low, high = mended[0].min(axis=0), mended[0].max(axis=0)
     assert np.allclose([low, high], [vertices.min(axis=0), vertices.max(axis=0)], atol=0.5)
@@ -119,7 +119,7 @@ def test_specks_go_and_a_part_near_the_body_stays():
     part = shape(trimesh.creation.icosphere(3, 35.0), (0, -140, 590))
     *mended, sentences = repair(*beside(person(), *tiny, far, part))
     assert same_skin(mended, beside(person(), part))
-    assert tuple(map(str, sentences)) == ("Dropped 8 specks beside the body.",)
+    assert tuple(map(str, sentences)) == ("Removed 8 specks separate from the body.",)
 
 
 @pytest.mark.parametrize("whole", [0.0, 0.5])
@@ -180,7 +180,7 @@ def test_two_bodies_of_skin_that_touch_in_a_vertex_are_parted():
     both = beside((vertices, faces), (other, faces))
     assert len(both[0]) == len(np.unique(both[0], axis=0)) + 1
     *mended, sentences = repair(*both)
-    assert "Parted the skin at 1 vertex in which two sheets touched." in plain(sentences)
+    assert "Separated two touching layers of the surface at 1 vertex." in plain(sentences)
     assert same_skin(mended, both)
 
 
@@ -190,7 +190,7 @@ def test_a_skin_pinched_to_a_point_is_parted_there():
     one, other = np.argsort(np.linalg.norm(vertices - place, axis=1))[[0, 25]]
     pinched = np.where(faces == other, one, faces)
     kept, mended, sentences = repair(vertices, pinched)
-    assert "Parted the skin at 1 vertex in which two sheets touched." in plain(sentences)
+    assert "Separated two touching layers of the surface at 1 vertex." in plain(sentences)
     assert len(kept) == len(vertices)
     assert len(mended) == len(faces)
 
@@ -201,8 +201,8 @@ def test_a_spike_and_a_vertex_far_away_go():
     vertices[7] *= 3.0
     vertices[90] = [4e5, 0.0, 0.0]
     kept, mended, sentences = repair(vertices, faces)
-    assert str(sentences[0]) == "Dropped 1 vertex far away from all others."
-    assert "Dropped 1 vertex sticking out of the skin like a spike." in plain(sentences)
+    assert str(sentences[0]) == "Removed 1 vertex far from all others."
+    assert "Removed 1 vertex shaped like a spike." in plain(sentences)
     assert len(faces) - 12 <= len(mended) <= len(faces) - 10
     assert np.linalg.norm(kept, axis=1).max() < 100.01
 

@@ -35,10 +35,10 @@ class ConvergenceController(QObject):
         self._marked: Design | None = None
         self._first: object = None
         self._events: list[Event] = []
-        said = tr("Make each turn slowly enough to see it, as the paper shows them; the verdict waits")
-        self.slow = context.actions.add("solve", tr("Turn by turn"), "T", said, checkable=True)
+        said = tr("Step through the iterations slowly")
+        self.slow = context.actions.add("solve", tr("Slow motion"), "T", said, checkable=True)
         tool = ToolButton("slow-turns", size=16, room=26, action=self.slow)
-        tool.setAccessibleName(tr("Turn by turn"))
+        tool.setAccessibleName(tr("Slow motion"))
         panel.tools.insertWidget(1, tool)
         context.session.design_changed.connect(lambda design: panel.set_control(design.volume))
         panel.control_chosen.connect(context.session.choose_control)
@@ -85,9 +85,9 @@ class ConvergenceController(QObject):
         if frame is None:
             return
         title, kinds = {
-            "csv": (tr("Save the turns"), "CSV (*.csv)"),
-            "png": (tr("Save a picture"), "PNG (*.png)"),
-            "svg": (tr("Save a drawing"), "SVG (*.svg)"),
+            "csv": (tr("Save iterations"), "CSV (*.csv)"),
+            "png": (tr("Save image"), "PNG (*.png)"),
+            "svg": (tr("Save drawing"), "SVG (*.svg)"),
         }[kind]
         name = f"{context.session.name}-turns.{kind}"
         path = ask_save(context.window, title, name, kinds, f".{kind}")
@@ -100,7 +100,7 @@ class ConvergenceController(QObject):
             write_file(context.notifications, title, path, write_whole(figure))
 
     def _last_edit(self) -> str:
-        return self._context.session.undo_stack.undoText() or tr("As it was opened")
+        return self._context.session.undo_stack.undoText() or tr("Opened")
 
 
 def _write_table(path: Path, frame: Frame) -> None:

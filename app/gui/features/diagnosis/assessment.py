@@ -52,7 +52,7 @@ class AssessmentController(QObject):
         self._girths = FrameCache(
             context.session,
             context.jobs,
-            tr("Measuring the bust girth"),
+            tr("Measuring bust girth…"),
             lambda frame, _: bust_girths(frame),
             failed=context.notifications.error,
         )

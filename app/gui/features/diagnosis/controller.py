@@ -86,8 +86,8 @@ class DiagnosisController(QObject):
         self._later = QTimer(self, interval=PATIENCE, singleShot=True)
         self._later.timeout.connect(self._look)
         context.session.failed.connect(self.refuse)
-        said = tr("Say what fights in this design, and what ends it")
-        context.actions.add("solve", tr("What is wrong here?"), tip=said, do=self.ask, of_document=True)
+        said = tr("Find conflicting lines and suggest a fix")
+        context.actions.add("solve", tr("Diagnose design…"), tip=said, do=self.ask, of_document=True)
 
     def follow(self, frame: Frame) -> None:
         """Tell of a design that has come to its end; whatever is edited meanwhile ends that."""
@@ -159,9 +159,7 @@ class DiagnosisController(QObject):
     def _run(
         self, work: Callable[[Progress], object], done: Callable[[object], None], *, waited: bool = False
     ) -> None:
-        self._job = self._context.jobs.run(
-            tr("Finding out what fights"), work, done, self._miss, waited=waited
-        )
+        self._job = self._context.jobs.run(tr("Diagnosing…"), work, done, self._miss, waited=waited)
 
     def _miss(self, error: Exception) -> None:
         self._job = None
@@ -171,7 +169,7 @@ class DiagnosisController(QObject):
             logging.error("the doctor failed", exc_info=error)
 
     def _tell_at_once(self, frame: Frame) -> None:
-        hint = tr("No garment does that: what is seen here is no result.")
+        hint = tr("The solution is not physically valid. Do not use these values.")
         self._show(BAD, explanation(frame), hint, [], "", _Trouble(display_state(frame)))
 
     def _found(self, frame: Frame, found: object, *, asked: bool = False) -> None:
@@ -208,7 +206,7 @@ class DiagnosisController(QObject):
             details = "\n".join((*map(joined, reasons), words.details(found)))
             self._show(level, said, hint, actions, details, trouble, asked=True)
             return
-        said = tr("Nothing is wrong: the calculation comes to rest, and the skin is calm.")
+        said = tr("No problems found: the solver converges and skin strain is within limits.")
         self._show(GOOD, said, "", [], words.details(found), None)
 
     def _judged(self, frame: Frame, found: Diagnosis) -> AssessmentView:

@@ -103,9 +103,9 @@ class ExportController(QObject):
         what = self._choices.export.what
         name, outcome, manner = self._file_name(what), self._outcome_of(frame), self._manner(what)
         doubt = "" if manner.before and what != "flat" else self._doubt(frame)
-        sheet.show_contents(name, tr("Looking what will be in it…"), doubt)
+        sheet.show_contents(name, tr("Preparing preview…"), doubt)
         self._job = context.jobs.run(
-            tr("Preparing the export"),
+            tr("Preparing export…"),
             lambda progress: prepare_export(what, name, outcome, manner),
             lambda ready: sheet.show_contents(name, _sentence(cast(ExportPreview, ready)), doubt),
             partial(self._show_refused, name),
@@ -159,7 +159,7 @@ class ExportController(QObject):
         there = [each.name for each in turntable_files(path, manner.frames) if each != path and each.exists()]
         if not there:
             return True
-        question = tr("{name} is there already. Replace it?").format(name=there[0])
+        question = tr("{name} already exists. Replace it?").format(name=there[0])
         return ask(self._parent, question, "", [("replace", tr("Replace"))]) == "replace"
 
     # -- what is known
@@ -191,13 +191,15 @@ class ExportController(QObject):
     def _doubt(self, frame: Frame) -> str:
         """Return what to mind of a reshaped body that would be written, or nothing."""
         if self._context.session.failure is not None:
-            return tr("The design could not be computed: the file holds the last computed shape.")
+            return tr("The design could not be computed. The file contains the last computed shape.")
         if frame.is_running:
-            return tr("The run is still under way: what is written is how far it is.")
+            return tr("The solver is still running. The export contains the current, unconverged state.")
         if is_result(frame):
             overall = self._assess(frame)
             return f"{overall.headline}{colon()}{overall.first}" if overall.level == BAD else ""
-        return tr("{state}: this is no shape to work from.").format(state=state_title(display_state(frame)))
+        return tr("{state}: do not use this shape for production.").format(
+            state=state_title(display_state(frame))
+        )
 
     def _file_name(self, what: str) -> str:
         return free_name(last_folder("written"), f"{self._stem(what)}.{self._choices.kind(what)}").name

@@ -37,7 +37,7 @@ class ExportWorker:
 
     def begin(self) -> None:
         """Begin with the first of the jobs."""
-        self._run(tr("Writing {name}"), self._prepare, self._prepared)
+        self._run(tr("Saving {name}…"), self._prepare, self._prepared)
 
     def _prepare(self, progress: Progress) -> tuple[ExportPreview, list[Path]]:
         ready = self._make()
@@ -49,14 +49,14 @@ class ExportWorker:
         if ready.draw is None:
             self._done(ready, files)
             return
-        words, jobs = tr("Drawing {name}").format(name=self.path.name), self._context.jobs
+        words, jobs = tr("Drawing {name}…").format(name=self.path.name), self._context.jobs
         self._job = jobs.run_pieces(
             words, ready.draw(), partial(self._drawn, ready), self._failed, waited=True
         )
 
     def _drawn(self, ready: ExportPreview, pictures: Any) -> None:
         write = partial(self._write, ready, pictures)
-        self._run(tr("Writing {name}"), write, lambda files: self._done(ready, cast(list[Path], files)))
+        self._run(tr("Saving {name}…"), write, lambda files: self._done(ready, cast(list[Path], files)))
 
     def _write(self, ready: ExportPreview, pictures: Any, progress: Progress) -> list[Path]:
         return ready.write(self.path, pictures, progress) or [self.path]
@@ -71,7 +71,7 @@ class ExportWorker:
     def _done(self, ready: ExportPreview, files: list[Path]) -> None:
         first, last = files[0].name, files[-1].name
         name = first if len(files) == 1 else tr("{first} to {last}").format(first=first, last=last)
-        said = tr("{name} written, {how}.") if ready.how else tr("{name} written.")
+        said = tr("{name} saved, {how}.") if ready.how else tr("{name} saved.")
         self._context.notifications.file_written(
             self._about, said.format(name=name, how=ready.how), str(files[0])
         )

@@ -38,7 +38,7 @@ class GarmentController(QObject):
         panel.tissue.entered.connect(self._set_tissue)
         panel.copy_requested.connect(lambda: copy_table(context, self._as_table()))
         panel.table_requested.connect(
-            lambda: save_table(context, self._as_table(), tr("Save the cut list"), "cut-list")
+            lambda: save_table(context, self._as_table(), tr("Save cut list"), "cut-list")
         )
 
     def follow(self, frame: Frame) -> None:
@@ -73,7 +73,7 @@ class GarmentController(QObject):
             self._panel.set_view(cut_list_view(frame, cuts), invalid_reason(frame))
 
     def _set_tissue(self, stiffness: float) -> None:
-        said = tr("Tissue {value} N/m").format(value=number(stiffness, 0))
+        said = tr("Tissue stiffness {value} N/m").format(value=number(stiffness, 0))
         self._context.session.change({"tissue_stiffness": stiffness}, said)
 
     def _as_table(self) -> list[list[str]]:

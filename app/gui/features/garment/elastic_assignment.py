@@ -70,7 +70,7 @@ class ElasticAssignmentController(QObject):
         self._asked, self._variant = design, self._shown_variant()
         asked, mode = ElasticRequest(frame, design, names), self.offer.mode
         self._job = self._context.jobs.run(
-            tr("Computing the cut length…"),
+            tr("Computing cut length…"),
             lambda progress: asked.option(elastic, mode),
             lambda option: self._take(asked, elastic, cast(ElasticOption, option)),
             self._context.notifications.error,
@@ -82,7 +82,7 @@ class ElasticAssignmentController(QObject):
         design = self._session.design
         if design is None:
             return
-        words = tr("{line} stretched by {percent} %")
+        words = tr("{line}: elongation {percent} %")
         said = words.format(line=row_title(name, design), percent=number(100.0 * share))
         self._session.edit(lambda before: before.with_linked(name, 1.0 / (1.0 + share)), said)
 
@@ -127,7 +127,7 @@ class ElasticAssignmentController(QObject):
             return
         if _is_made(asked, outcome, elastic):
             return
-        words = tr("{line} made of {elastic}") if elastic else tr("{line} without an elastic")
+        words = tr("{line}: {elastic}") if elastic else tr("{line}: no elastic")
         text = words.format(line=asked.title(), elastic=title_of(elastic))
         self._session.edit(lambda _: outcome.design, text)
         if self._session.design is outcome.design and self._reshapes(asked):
@@ -153,7 +153,7 @@ def _is_made(asked: ElasticRequest, outcome: Outcome, elastic: Elastic | None) -
 def _told(before: float, after: float, cut: bool) -> str:
     """Return in a sentence what stayed and what did not."""
     if abs(after - before) < LIFT_TOLD:
-        same = tr("Cut to reach the same length; the lift stays.")
-        return same if cut else tr("Set to reach the same length; the lift stays.")
+        same = tr("Cut length adapted; fitted length and lift unchanged.")
+        return same if cut else tr("Set length adapted; fitted length and lift unchanged.")
     words = tr("Bust point height changed from {before} to {after}; adjust the length if needed.")
     return words.format(before=up_words(before), after=up_words(after))

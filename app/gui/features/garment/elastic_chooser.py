@@ -61,7 +61,7 @@ class ElasticChooser(Dialog):
         foot.addLayout(self._offers)
         self.body.addLayout(foot)
         library = self.add_button(tr("Elastics…"), self.elastics_requested.emit, "quiet")
-        set_tip(library, tr("See, bring in and hand on elastics"))
+        set_tip(library, tr("View, import and export elastics"))
         self.foot.removeWidget(library)
         self.foot.insertWidget(0, library)
         self.add_button(tr("Cancel"), self.reject)
@@ -164,9 +164,9 @@ class _Table(ElasticTable):
         unit = length_unit()
         heads = (
             tr("Elastic"),
-            tr("Stretch %"),
+            tr("Elongation %"),
             tr("cut {unit}"),
-            tr("on the body {unit}"),
+            tr("on body {unit}"),
             tr("lift {unit}"),
             "",
         )

@@ -23,7 +23,7 @@ def elastic_entries(kept: Iterable[Elastic]) -> tuple[list[Entry], list[LineErro
     own, problems = user_elastics()
     known = {each.name: each for each in (*built_in(), *own)}
     brought = [each for each in kept if known.get(each.name) != each]
-    here, twice = tr("{name}, in this project"), tr("{name}, as in this project")
+    here, twice = tr("{name}, in this project"), tr("{name}, from this project")
     return [
         (tr("No elastic"), None),
         *((each.name, each) for each in own),

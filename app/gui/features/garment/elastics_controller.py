@@ -44,9 +44,9 @@ class ElasticsController(QObject):
         self._context = context
         do = context.actions
         do.rule("lines")
-        said = tr("See the elastics there are, bring in your own, take them away")
+        said = tr("View, import and delete elastics")
         do.add("lines", tr("Elastics…"), tip=said, do=self.show)
-        said = tr("See how long to cut each worn line, of what, and how far it is stretched")
+        said = tr("Show cut length, elastic and elongation of all active lines")
         do.add("lines", tr("Cut list"), tip=said, do=self._show_cuts, of_document=True)
         panel.elastics_requested.connect(self.show)
         self.sheet: ElasticsDialog | None = None
@@ -65,15 +65,13 @@ class ElasticsController(QObject):
     def bring_in(self) -> None:
         """Ask for a table of the designer's own and keep its elastic."""
         sheet = self.sheet
-        path = ask_table(sheet or self._context.window, tr("Import an elastic"))
+        path = ask_table(sheet or self._context.window, tr("Import elastic"))
         if not path or sheet is None:
             return
         try:
             elastic = _beside_ours(read_elastic(Path(path)))
             taken = elastic.name in {each.name for each in user_elastics()[0]}
-            question = tr("There is an elastic {name} of yours already. Replace it?").format(
-                name=elastic.name
-            )
+            question = tr("A custom elastic {name} already exists. Replace it?").format(name=elastic.name)
             if taken and ask(sheet, question, "", [("replace", tr("Replace"))]) != "replace":
                 return
             save_elastic(elastic)
@@ -83,7 +81,7 @@ class ElasticsController(QObject):
             sheet.notices.show_notice("bad", problem.message, problem.hint, lasting=True)
             return
         sheet.notices.clear()
-        said = tr("{name} is one of your elastics now.").format(name=elastic.name)
+        said = tr("Custom elastic {name} added.").format(name=elastic.name)
         sheet.notices.show_notice("ok", said, seams, lasting=bool(seams))
         self._fill(elastic.name)
 
@@ -91,13 +89,13 @@ class ElasticsController(QObject):
         """Ask for a place and write an elastic as a table."""
         design = self._context.session.design
         known = {each.name: each for each in (*(design.elastics if design else ()), *library().values())}
-        title = tr("Export an elastic")
+        title = tr("Export elastic")
         self._write(title, name, lambda path: write_elastic(path, known[name]), "")
 
     def save_template(self) -> None:
         """Ask for a place and write a table to fill in."""
-        hint = tr("Fill in what you measure, then import it.")
-        self._write(tr("Save a template"), "elastic", write_template, hint)
+        hint = tr("Enter your measurements, then import the file.")
+        self._write(tr("Save template"), "elastic", write_template, hint)
 
     def _write(self, title: str, name: str, write: Callable[[Path], None], hint: str) -> None:
         sheet = self.sheet
@@ -110,13 +108,13 @@ class ElasticsController(QObject):
         except UserError as problem:
             sheet.notices.show_notice("bad", problem.message, problem.hint, lasting=True)
         else:
-            sheet.notices.show_notice("ok", tr("{name} written.").format(name=Path(path).name), hint)
+            sheet.notices.show_notice("ok", tr("{name} saved.").format(name=Path(path).name), hint)
 
     def take_away(self, name: str) -> None:
         """Ask, and take one of the designer's own away."""
         sheet = self.sheet
-        question = tr("Delete the elastic {name}?").format(name=name)
-        said = tr("Its table is removed from your folder. Projects that use it keep its curve.")
+        question = tr("Delete elastic {name}?").format(name=name)
+        said = tr("Its table is deleted from your folder. Projects that use it keep its curve.")
         if sheet is None or ask(sheet, question, said, [("delete", tr("Delete"))]) != "delete":
             return
         try:
@@ -145,7 +143,7 @@ class ElasticsController(QObject):
 
 def _assumed() -> str:
     """Return what goes into every length to cut though no table told it."""
-    words = tr("Its table tells no allowance for seams: {length} go into every length to cut.")
+    words = tr("The elastic has no seam allowance: {length} is added to each cut length.")
     return words.format(length=length(ALLOWANCE, 0))
 
 
@@ -153,4 +151,4 @@ def _beside_ours(elastic: Elastic) -> Elastic:
     """Return an elastic under a name that none of ours has: in lists they could not be told apart."""
     if elastic.name not in {each.name for each in built_in()}:
         return elastic
-    return replace(elastic, name=tr("{name}, own").format(name=elastic.name))
+    return replace(elastic, name=tr("{name}, custom").format(name=elastic.name))

@@ -44,9 +44,7 @@ class ElasticsDialog(Dialog):
         self.table, self.curve = _Table(), ElasticCurve()
         self.title, self.source = label("", "name"), sentence("", "caption")
         self.mark = label("", "caption")
-        said = tr(
-            "Forces in N for the whole width. Those that come with Busk are estimates: measure your roll."
-        )
+        said = tr("Forces in N for the full width. Built-in curves are estimates; test your own material.")
         self.body.addWidget(sentence(said))
         self.body.insertWidget(0, self.notices)
         self.body.addWidget(self.table, 1)
@@ -80,15 +78,15 @@ class ElasticsDialog(Dialog):
 
     def _make_foot(self) -> None:
         brought = self.add_button(tr("Import CSV…"), self.import_requested.emit)
-        set_tip(brought, tr("Bring in a table of your own: elongation and force, with units"))
+        set_tip(brought, tr("Import elongation and force from a table with units"))
         handed_on = self.add_button(
             tr("Export CSV…"), lambda: self.export_requested.emit(self.marked), "quiet"
         )
-        set_tip(handed_on, tr("Write the marked elastic as a table, to hand it on or to change it"))
-        template = self.add_button(tr("Save a template…"), self.template_requested.emit, "quiet")
-        set_tip(template, tr("Write an empty table (CSV) to fill in with what you measure"))
+        set_tip(handed_on, tr("Export the selected elastic as a table"))
+        template = self.add_button(tr("Save template…"), self.template_requested.emit, "quiet")
+        set_tip(template, tr("Save an empty table (CSV) for your measurements"))
         self.delete = self.add_button(tr("Delete…"), lambda: self.delete_requested.emit(self.marked), "quiet")
-        set_tip(self.delete, tr("Take an elastic of your own away; projects that use it keep it"))
+        set_tip(self.delete, tr("Delete a custom elastic; projects that use it keep it"))
         for place, each in enumerate((brought, handed_on, template, self.delete)):
             self.foot.removeWidget(each)
             self.foot.insertWidget(place, each)
@@ -100,8 +98,8 @@ class ElasticsDialog(Dialog):
         if view is None:
             return
         self.title.setText(view.title)
-        told = tr("Measured") if view.source else tr("Its table does not say where it was measured")
-        self.mark.setText(tr("An estimate, not measured") if view.estimate else told)
+        told = tr("Measured") if view.source else tr("Source of the measurement unknown")
+        self.mark.setText(tr("Estimate, not measured") if view.estimate else told)
         set_tag(self.mark, "tone", "ok" if view.source and not view.estimate else "warn")
         self.source.setText(view.source)
         self.curve.show_elastic(view)
@@ -133,7 +131,7 @@ class _Table(ElasticTable):
         at = [f"{number(100.0 * each, 0)} %" for each in TOLD_AT]
         lengths = (tr("width {unit}"), tr("allowance {unit}"))
         wide, allowance = (each.format(unit=length_unit()) for each in lengths)
-        super().__init__([tr("Elastic"), wide, *at, allowance, tr("from")], 0)
+        super().__init__([tr("Elastic"), wide, *at, allowance, tr("source")], 0)
         for column in range(1, self.columnCount() - 1):
             self.headerItem().setTextAlignment(column, _RIGHT)
 
@@ -172,7 +170,7 @@ class ElasticCurve(QWidget):
     def show_elastic(self, view: ElasticView) -> None:
         """Show the curve of an elastic."""
         self._view = view
-        words = tr("Curve of {elastic}: up to {force} N at {percent} %")
+        words = tr("Curve of {elastic}: up to {force} N at {percent} % elongation")
         end, strength = view.curve[-1]
         force, percent = number(strength, 1), number(100.0 * end, 0)
         self.setAccessibleName(words.format(elastic=view.title, force=force, percent=percent))

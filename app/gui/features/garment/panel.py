@@ -48,7 +48,7 @@ class TissueCard(QWidget):
         column.setContentsMargins(8, 4, 8, 4)
         column.setSpacing(4)
         row = QHBoxLayout()
-        words = label(tr("Stiffness of skin and tissue"), "secondary")
+        words = label(tr("Tissue stiffness"), "secondary")
         set_tip(words, self.field.toolTip())
         row.addWidget(words, 1)
         row.addWidget(self.field)
@@ -66,10 +66,10 @@ class _TissueField(ValueEdit):
     """A stiffness within what tissue may have."""
 
     def __init__(self) -> None:
-        super().__init__("N/m", tr("Stiffness of skin and tissue"), digits=0, widest="2000")
+        super().__init__("N/m", tr("Tissue stiffness"), digits=0, widest="2000")
         tip = tr(
-            "Force per metre of width and strain, {low} to {high}; at first {usual}, from skin alone."
-            " It was not measured on this body: all newtons go with it, and how far elastics pull it in."
+            "Set the tissue stiffness, {low}–{high} N/m (default {usual}). Assumed, not "
+            "measured; all forces scale with it."
         )
         low, high = TISSUE_LIMITS
         set_tip(self, tip.format(low=f"{low:g}", high=f"{high:g}", usual=f"{TISSUE_STIFFNESS:g}"))
@@ -77,7 +77,7 @@ class _TissueField(ValueEdit):
     def _read(self, text: str) -> float:
         value, (low, high) = super()._read(text.replace("N/m", "")), TISSUE_LIMITS
         if not low <= value <= high:
-            words = tr("Choose {low} to {high} N/m: an estimate, skins alone have 160 to 1150.")
+            words = tr("Enter {low} to {high} N/m. Measured values of skin alone are 160 to 1150.")
             raise ValueError(words.format(low=number(low, 0), high=f"{high:g}"))
         return value
 
@@ -164,7 +164,7 @@ class GarmentRow(QFrame):
         self.stretch.setVisible(view.stretch_percent is None)
         self.set_stretch.setVisible(view.stretch_percent is not None)
         self.set_stretch.show_value(view.stretch_percent or 0.0)
-        self.set_stretch.setAccessibleName(tr("{line}: stretched by, in percent").format(line=view.title))
+        self.set_stretch.setAccessibleName(tr("{line}: elongation in percent").format(line=view.title))
         for each in (self.cut, self.tension, self.stretch):
             far = "warn" if view.far and each is self.stretch else ""
             set_tag(each, "tone", "faint" if stale else far)
@@ -225,7 +225,7 @@ class _StretchField(ValueEdit):
     MOST = 100.0
 
     def __init__(self) -> None:
-        said = tr("How far it is stretched on the body")
+        said = tr("Elongation on the body")
         super().__init__("%", said, digits=0, signed=True, widest="+100")
         self.setFont(font("caption", tabular=True))
         self.setProperty("ring", "true")  # beside figures that cannot be set
@@ -234,7 +234,7 @@ class _StretchField(ValueEdit):
     def _read(self, text: str) -> float:
         value = super()._read(text)
         if not 0.0 <= value <= self.MOST:
-            raise ValueError(tr("Choose 0 to {most} %.").format(most=number(self.MOST, 0)))
+            raise ValueError(tr("Enter 0 to {most} %.").format(most=number(self.MOST, 0)))
         return value
 
 
@@ -243,7 +243,7 @@ def accessible_text(view: CutView) -> str:
     cut = view.cut and f"{view.cut} {length_unit()}"
     figures = (
         (cut, tr("front part {value}") if view.front_only else tr("cut {value}")),
-        (view.stretch, tr("stretched by {value}")),
+        (view.stretch, tr("elongation {value}")),
         (view.tension, "{value} N"),
     )
     told = [words.format(value=value) for value, words in figures if value]
@@ -280,9 +280,9 @@ class GarmentPanel(QWidget):
         self.cards = QVBoxLayout()
         self.nothing = EmptyState(
             "lines",
-            tr("No line is worn"),
-            tr("A line that is set shorter pulls: then it can be cut."),
-            tr("Set lines"),
+            tr("No active lines"),
+            tr("Shorten a line to add it to the cut list."),
+            tr("Edit lines"),
         )
         self.nothing.requested.connect(self.lines_requested)
         self.offer = self._make_offer()
@@ -375,16 +375,16 @@ class GarmentPanel(QWidget):
         """Make what stands over the list while no line is made of an elastic."""
         card = EmptyState(
             "bands",
-            tr("No elastic chosen yet"),
-            tr("Of an elastic, Busk knows how long to cut it. Choose one for all lines, or for each below."),
-            tr("Choose for all lines…"),
+            tr("No elastic chosen"),
+            tr("Cut lengths depend on the elastic. Choose one for all lines or for each line below."),
+            tr("Choose for all…"),
         )
         card.requested.connect(self.all_requested)
         return card
 
     def _make_again(self) -> QPushButton:
         """Make what stands under the list once a line is made of an elastic: all can be changed at once."""
-        again = button(tr("Choose for all lines…"), "quiet")
+        again = button(tr("Choose for all…"), "quiet")
         again.clicked.connect(self.all_requested)
         return again
 
@@ -434,11 +434,11 @@ class GarmentPanel(QWidget):
             (
                 (
                     tr("Copy"),
-                    tr("Copy the cut list, to paste into a spreadsheet or a letter"),
+                    tr("Copy the cut list for a spreadsheet or document"),
                     self.copy_requested,
                 ),
-                (tr("CSV…"), tr("Write the cut list to a file (CSV)"), self.table_requested),
-                (tr("Elastics…"), tr("See, bring in and hand on elastics"), self.elastics_requested),
+                (tr("CSV…"), tr("Save the cut list as CSV"), self.table_requested),
+                (tr("Elastics…"), tr("View, import and export elastics"), self.elastics_requested),
             ),
             top=4,
         )

@@ -121,13 +121,13 @@ class PressureCard(QWidget):
         self.place.clicked.connect(self.place_requested)
         self.scale = PressureScale(limits)
         self.limits = sentence(
-            tr("The limits are an estimate of ours between measured ones, such as {source}.").format(
+            tr("The limits are our estimate, interpolated between measured values such as {source}.").format(
                 source=limits.source
             ),
             "caption",
         )
         self.sure = sentence(
-            tr("An estimate, and rather too much: good for comparing two designs on one body."), "caption"
+            tr("Estimate, rather too high: use it to compare designs on one body."), "caption"
         )
         column = QVBoxLayout(self)
         column.setContentsMargins(8, 2, 8, 2)
@@ -139,8 +139,8 @@ class PressureCard(QWidget):
         for each in (self.says, self.force, self.scale, self.sure, self.limits):
             column.addWidget(each)
         self.folds = [
-            folded_list(column, tr("Where the limits come from"), limits.sources),
-            folded_list(column, tr("What the figures leave out"), limits.left_out),
+            folded_list(column, tr("Sources of the limits"), limits.sources),
+            folded_list(column, tr("Not included"), limits.left_out),
         ]
 
     def show_summary(self, view: PressureSummary, faint: bool) -> None:
@@ -162,8 +162,8 @@ class PressureCard(QWidget):
             set_tag(each, "tone", "faint" if faint else "")
 
     def _where(self) -> QHBoxLayout:
-        self._most = label(tr("Most:"), "secondary")
-        self.eye = ToolButton("eye", tr("Look at it, with the map of pressure"), size=14, room=24)
+        self._most = label(tr("Maximum:"), "secondary")
+        self.eye = ToolButton("eye", tr("Show on the map of contact pressure"), size=14, room=24)
         self.eye.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # the words beside it do the same by keyboard
         self.eye.clicked.connect(self.place_requested)
         row = QHBoxLayout()

@@ -39,7 +39,7 @@ class PressureController(QObject):
         self._stale: bool | None = None
         self._doubt = ""  # why the present values are no result
         self._body: object = None
-        title = tr("Working out the pressure")
+        title = tr("Computing contact pressure…")
         self._cache = FrameCache(
             context.session,
             context.jobs,

@@ -24,8 +24,8 @@ class AboutDialog(Dialog):
 
     def __init__(self, parent: QWidget, version: str, licences: Sequence[tuple[str, str]]) -> None:
         super().__init__(parent, tr("Busk {version}").format(version=version), (680, 560))
-        self.body.addWidget(sentence(tr("See how a foundation garment reshapes a body."), "body"))
-        self.body.addWidget(sentence(tr("Apache-2.0. Nothing leaves this computer."), "secondary"))
+        self.body.addWidget(sentence(tr("Simulate how a foundation garment reshapes a body."), "body"))
+        self.body.addWidget(sentence(tr("Apache-2.0. All data stays on this computer."), "secondary"))
         names = [str(place) for place in range(len(licences))]
         self.tabs = Segment([(name, title) for name, (title, _) in zip(names, licences, strict=True)])
         self.texts = QStackedWidget()
@@ -55,7 +55,7 @@ class DiagnosticsDialog(Dialog):
 
     def __init__(self, parent: QWidget, facts: Facts, folders: Sequence[tuple[str, Path]]) -> None:
         super().__init__(parent, tr("Diagnostics"), (680, 560))
-        said = tr("For a report: versions, graphics and folders. No scan, no measures, no names of files.")
+        said = tr("System information for bug reports. Contains no scans, measurements or file names.")
         self.body.addWidget(sentence(said))
         self.text = as_text(facts)
         self.body.addWidget(text_viewer(self.text, tr("Diagnostics"), code=True), 1)
@@ -67,13 +67,13 @@ class DiagnosticsDialog(Dialog):
         """Return a row with a button for each folder; one that nothing was written to yet waits."""
         row = QHBoxLayout()
         row.setSpacing(6)
-        row.addWidget(label(tr("Open the folder:"), "secondary"))
+        row.addWidget(label(tr("Open folder:"), "secondary"))
         self.openers: dict[str, QPushButton] = {}
         for title, folder in folders:
             opener = self.openers[title] = button(title)
             opener.setEnabled(folder.is_dir())
-            set_tip(opener, str(folder) if folder.is_dir() else tr("Nothing has been written there yet."))
-            opener.setAccessibleName(tr("Open the folder: {name}").format(name=title))
+            set_tip(opener, str(folder) if folder.is_dir() else tr("This folder is empty."))
+            opener.setAccessibleName(tr("Open folder: {name}").format(name=title))
             opener.setAutoDefault(False)
             opener.clicked.connect(lambda _=False, folder=folder: self.folder_requested.emit(folder))
             row.addWidget(opener)

@@ -102,7 +102,7 @@ class CommandPalette(Dialog):
         self.search.installEventFilter(self)
         self.search.textChanged.connect(self._find)
         self.list = CommandList(title)
-        self._nothing = sentence(tr("Nothing is called that."))
+        self._nothing = sentence(tr("No matching command."))
         for each in (self.search, self.list, self._nothing):
             self.body.addWidget(each)
         if to_give:

@@ -42,21 +42,24 @@ class HelpController(QObject):
         super().__init__(context.session)
         self._context, self._keys_of_parts, self._pages = context, keys_of_parts, pages
         add = context.actions.add
-        said = tr("Find any command by its words, and give it")
-        self.palette = add("help", tr("Find a command…"), "Ctrl+K", said, do=self.find_command)
+        said = tr("Search and run commands")
+        self.palette = add("help", tr("Find command…"), "Ctrl+K", said, do=self.find_command)
         add("help", tr("Keyboard shortcuts"), "Ctrl+/", do=self.show_keys)
         explain(parts)
-        said = tr("Then click on something, and read what it is for")
+        said = tr("Click a part of the window to read its description")
         add("help", tr("What's this?"), "Shift+F1", said, do=QWhatsThis.enterWhatsThisMode)
         context.actions.rule("help")
         add(
-            "help", tr("Diagnostics"), tip=tr("Versions, graphics and folders, to copy"), do=self.show_machine
+            "help",
+            tr("Diagnostics"),
+            tip=tr("Show versions, graphics and folders to copy"),
+            do=self.show_machine,
         )
         context.actions.guide.triggered.connect(self.show_guide)
         context.actions.first_steps.triggered.connect(self.show_first_steps)
         context.actions.about.triggered.connect(self.show_about)
         self.menu = QAction(tr("Help"), self)
-        set_tip(self.menu, tr("Keys, tour, What's This and more"))
+        set_tip(self.menu, tr("Shortcuts, tour, user guide and more"))
 
     def commands(self) -> list[Command]:
         """Return every command of the menus."""
@@ -64,7 +67,7 @@ class HelpController(QObject):
 
     def find_command(self) -> None:
         """Search all commands by their words."""
-        CommandPalette(self._context.window, tr("Find a command"), self.commands(), to_give=True).open()
+        CommandPalette(self._context.window, tr("Find command"), self.commands(), to_give=True).open()
 
     def show_keys(self) -> None:
         """Show every key: those of the commands, and those that parts of the window read themselves."""

@@ -33,19 +33,19 @@ class CrashDialog(Dialog):
     quit_requested = Signal()
 
     def __init__(self, parent: QWidget, kept: str, trace: str, machine: str) -> None:
-        super().__init__(parent, tr("Something went wrong inside Busk"), (620, 0))
+        super().__init__(parent, tr("An internal error occurred in Busk"), (620, 0))
         self._trace, self._machine = trace, machine
         said = (
-            tr("Your design is kept aside until you save or discard it: {place}").format(place=kept)
+            tr("A copy of your design is stored until you save or discard it: {place}").format(place=kept)
             if kept
-            else tr("Your design is still open. Save it under a new name to be safe.")
+            else tr("Your design is still open. Save it under a new name.")
         )
         self.said = sentence(said, "body")
         self.body.addWidget(self.said)
-        self.body.addWidget(sentence(tr("You can go on. If it happens again, start Busk anew.")))
-        self._unfold = Disclosure(tr("Details for a report"))
-        self._unfold.setAccessibleName(tr("Details for a report"))
-        self.details = text_viewer(self.report(), tr("Details for a report"), code=True)
+        self.body.addWidget(sentence(tr("You can continue. If the error occurs again, restart Busk.")))
+        self._unfold = Disclosure(tr("Details for a bug report"))
+        self._unfold.setAccessibleName(tr("Details for a bug report"))
+        self.details = text_viewer(self.report(), tr("Details for a bug report"), code=True)
         self.details.setMinimumHeight(220)
         self.details.hide()
         self._unfold.toggled.connect(self._show_details)
@@ -54,7 +54,7 @@ class CrashDialog(Dialog):
         self.body.addStretch(0)
         self.copy = self.add_button(tr("Copy details"), self._copy)
         self.leave = self.add_button(tr("Quit"), self._quit)
-        self.go_on = self.add_button(tr("Go on"), self.accept, "primary")
+        self.go_on = self.add_button(tr("Continue"), self.accept, "primary")
         self.go_on.setFocus()
 
     def report(self) -> str:
@@ -162,7 +162,7 @@ class CrashHandler(QObject):
             return as_text(system_info(self._context.window))
         except Exception:
             logging.exception("the machine could not be looked at")
-            return tr("not known")
+            return tr("unknown")
 
     def _forget(self) -> None:
         self.sheet = None

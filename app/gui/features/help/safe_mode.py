@@ -39,11 +39,11 @@ class SafeMode(QObject):
             self._clock.start()
             return
         said = {
-            "asked": tr("Safe mode: the 3D view is painted without the graphics driver."),
-            "failed": tr("Safe mode, because Busk has twice ended before the 3D view was drawn."),
+            "asked": tr("Safe mode: the 3D view does not use the graphics driver."),
+            "failed": tr("Safe mode: Busk failed to start the 3D view twice."),
         }
-        hint = tr("All else works as ever, the view more slowly.")
-        act = (tr("Normal next time"), graphics_work) if self._why == "failed" else None
+        hint = tr("All features work; the 3D view is slower.")
+        act = (tr("Use normal mode at next start"), graphics_work) if self._why == "failed" else None
         self._context.notifications.warn(said[self._why], hint, [act] if act else ())
 
     def _stop(self) -> None:

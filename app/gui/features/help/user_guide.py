@@ -52,5 +52,5 @@ def show_page(page: str, notifications: Notifications) -> None:
     if path.is_file():
         hint = tr("Open this file in a browser: {file}").format(file=path)
     else:
-        hint = tr("It is not built here. In a checkout of Busk, 'make docs' builds it.")
-    notifications.info(tr("The user guide cannot be opened here."), hint, lasting=True)
+        hint = tr("The user guide has not been built. In a checkout of Busk, build it with 'make docs'.")
+    notifications.info(tr("The user guide could not be opened."), hint, lasting=True)

@@ -18,56 +18,55 @@ def explain(parts: Mapping[str, QWidget]) -> None:
 def _work() -> dict[str, str]:
     return {
         "steps": tr(
-            "The way from a scan to a result. No step is locked: go back and forth as you like. A green tick "
-            "says that a step is done, an amber badge that something there wants a look."
+            "Steps from scan to result. All steps can be opened at any time. A green tick marks "
+            "a finished step, an amber badge marks items to review."
         ),
         "view": tr(
-            "The body as the model reshapes it. What you see moves at once while you drag a line, and is the "
-            "model's answer when the verdict below says settled. How near a worn garment comes to it is not "
-            "measured. The selected band can be pulled up or down to make its line shorter or longer."
+            "Reshaped body as computed by the model. It follows at once while you drag a line; "
+            "the result is final when the status below is Converged. The agreement with a real "
+            "garment has not been measured. Drag the selected band up to shorten its line, down "
+            "to lengthen it."
         ),
         "section": tr(
-            "The body cut by a plane, before and after. Move the plane by the handle on it "
-            "in the view, by the slider here, or by typing where it is."
+            "Section of the body before and after. Move the plane with its handle in the 3D "
+            "view, with the slider, or by entering a position."
         ),
         "report": tr(
-            "The sheet to work from, as it comes out of the printer: size, lengths to cut, measures, "
-            "pressures and pictures. It follows the design; the customer's name is saved with the project."
+            "Report as printed: size, cut lengths, measurements, contact pressures and images. "
+            "It follows changes of the design. The customer's name is saved with the project."
         ),
         "convergence": tr(
-            "The model comes to rest turn by turn. A garment whose model vibrates or folds tells nothing "
-            "yet: look at the verdict before you trust a shape. The dashed line is the exact answer."
+            "Convergence of the solver over the iterations. Do not use the shape while the "
+            "status is Oscillating or Folded. The dashed line is the exact solution."
         ),
-        "notifications": tr(
-            "What needs your attention, one at a time, with what you can do. Close it with the cross."
-        ),
+        "notifications": tr("Notices with possible actions, one at a time. Close a notice with the cross."),
     }
 
 
 def _panels() -> dict[str, str]:
     return {
         "scan": tr(
-            "What Busk understood of the scan: unit, up and front. All lengths follow from the unit, so that "
-            "it is worth a look on a new scanner."
+            "Detected unit, up and front of the scan. All lengths depend on the unit: check it "
+            "with a new scanner."
         ),
         "landmarks": tr(
-            "Places on the body that the control mesh rests on. Where the skin did not show one clearly, its "
-            "confidence is low: drag its pin to where you would put it."
+            "Landmarks are the basis of the control mesh. Where a landmark is unclear on the "
+            "scan, its confidence is low: drag its pin to the correct position."
         ),
         "lines": tr(
-            "Each line stands for a band of the garment. Shorter than at rest it pulls; the skin gives way "
-            "as far as the volume of the body allows. Set and reached differ by what the body does not give."
+            "Each line represents a band of the garment. A shorter line compresses the body. Set "
+            "is the requested length, Reached the actual length, Gap the difference."
         ),
         "result": tr(
-            "The scan, and what the model makes of it, measured alike in the same places, so that the change "
-            "is the model's alone."
+            "Measurements of the scan and of the model result at the same places: all "
+            "differences come from the model."
         ),
         "garment": tr(
-            "How long to cut the elastic of each worn line, how far it is stretched on the body and what it "
-            "pulls with. All newtons are estimates: they rest on the stiffness of tissue that stands below."
+            "Cut length, elongation on the body and tension of all active lines. All forces in N "
+            "are estimates that depend on the tissue stiffness below."
         ),
         "model": tr(
-            "How lines, skin and volume act. The choices of the paper are marked; they change the result, "
-            "and are saved with the design."
+            "Line, skin and volume behaviour. The choices of the paper are marked. They affect "
+            "the result and are saved with the design."
         ),
     }

@@ -117,11 +117,11 @@ class LandmarksController(QObject):
         if tone_of(worst.confidence) == "bad" or stages.landmarks.warnings:
             said, *more = landmark_warnings(stages.landmarks)
             spoken_of = first_warning(stages.landmarks)
-            actions = [(tr("Look at it"), lambda: self._look_at(spoken_of))]
+            actions = [(tr("Review"), lambda: self._look_at(spoken_of))]
             if stages.landmarks.size_doubted:
                 actions.insert(0, (tr("Check unit"), lambda: self._context.navigation.show_step("scan")))
             if up := stages.landmarks.upright:
-                actions.insert(0, (tr("Stand upright"), lambda: self._stand_upright(up)))
+                actions.insert(0, (tr("Set upright"), lambda: self._stand_upright(up)))
             self._context.notifications.show(
                 "warn", said, joined(map(render, more)), actions, lasting=True, topic=_DOUBT
             )
@@ -254,8 +254,10 @@ class LandmarksController(QObject):
             again = reduce(lambda design, name: design.with_placed(name, None), names, stuck.design)
             self._session.open_design(again)
             return
-        text = tr("{name} found again").format(name=landmark_title(names[0]))
-        self._session.reset_landmarks(names, text if len(names) == 1 else tr("Landmarks found again"))
+        text = tr("{name} reset to detected position").format(name=landmark_title(names[0]))
+        self._session.reset_landmarks(
+            names, text if len(names) == 1 else tr("Landmarks reset to detected positions")
+        )
 
     def link(self, linked: bool) -> None:
         """Place both sides together from now on, or each alone."""

@@ -22,9 +22,9 @@ from app.presenters.messages import render
 def keys_in_words() -> list[tuple[str, str]]:
     """Return what the keys do in the list and then on a pin, ready to read."""
     return [
-        ("↑ ↓", tr("The landmark above or below")),
-        ("Enter", tr("Move its pin by keys, then put it down")),
-        ("← → ↑ ↓", tr("Move the pin by {step}, with Shift by {far}").format(**_steps())),
+        ("↑ ↓", tr("Select previous or next landmark")),
+        ("Enter", tr("Start or end pin movement with the arrow keys")),
+        ("← → ↑ ↓", tr("Move pin by {step} (Shift: {far})").format(**_steps())),
     ]
 
 
@@ -70,7 +70,7 @@ class LandmarksPanel(QWidget):
         self._summary.setContentsMargins(4, 2, 0, 6)
         self._doubts = LandmarkWarnings()
         self._empty = EmptyState(
-            "map-pin", tr("No landmarks yet"), tr("They are found on the scan. Open one first.")
+            "map-pin", tr("No landmarks yet"), tr("Landmarks are detected on a scan. Open a scan first.")
         )
         column.addLayout(self._head())
         for each in (self._summary, self._doubts, self._empty):
@@ -84,7 +84,7 @@ class LandmarksPanel(QWidget):
         head = QHBoxLayout()
         heading = label(tr("Landmarks"), "heading")
         heading.setContentsMargins(4, 0, 0, 0)
-        self.link = ToolButton("link", tr("Place left and right together, as in a mirror"))
+        self.link = ToolButton("link", tr("Move left and right landmarks symmetrically"))
         self.link.setCheckable(True)
         self.link.toggled.connect(self.linked)
         head.addWidget(heading, 1)
@@ -101,7 +101,7 @@ class LandmarksPanel(QWidget):
         self._heads: dict[str, QWidget] = {
             "bust": label(tr("Bust"), "caption"),
             "under": label(tr("Folds and breast roots"), "caption"),
-            "further": Disclosure(tr("Further landmarks")),
+            "further": Disclosure(tr("Other landmarks")),
         }
         self.further = QWidget()
         for name, head in self._heads.items():
@@ -133,9 +133,9 @@ class LandmarksPanel(QWidget):
         rule.setSpacing(3)
         self._rule_title, self._rule = sentence("", "name"), sentence()
         self._hint = sentence(role="caption")
-        self.place, self.right = button(tr("Place it")), button(tr("It is right"))
-        set_tip(self.right, tr("Keep it where it was found, and ask no more"))
-        self.reset, self.reset_all = button(tr("Find it again")), button(tr("Find all again"), "quiet")
+        self.place, self.right = button(tr("Place")), button(tr("Confirm"))
+        set_tip(self.right, tr("Confirm the detected position"))
+        self.reset, self.reset_all = button(tr("Reset")), button(tr("Reset all"), "quiet")
         self.place.clicked.connect(lambda: self.place_requested.emit(self._selected))
         self.right.clicked.connect(self._confirm)
         self.reset.clicked.connect(lambda: self.reset_requested.emit((self._selected,)))
@@ -169,7 +169,7 @@ class LandmarksPanel(QWidget):
             self.rows[view.name].show_view(view)
         self.link.setVisible(bool(landmarks))
         self._doubts.show_doubts(sum(view.weak for view in landmarks), doubts)
-        self._summary.setText(tr("Drag a pin over the skin: the model follows."))
+        self._summary.setText(tr("Drag a pin over the skin to move the landmark; the model is updated."))
         self._summary.setVisible(bool(landmarks) and placing)
         self._empty.setVisible(not landmarks)
         self._area.setVisible(bool(landmarks))
@@ -196,10 +196,11 @@ class LandmarksPanel(QWidget):
             self._rule_title.setText(view.title)
             self._rule.setText(view.words())
             drag = tr(
-                "Drag its pin to correct it, or press Enter and use the arrow keys: {step}, Shift {far}."
+                "Drag the pin to correct the landmark, or press Enter and use the arrow keys: "
+                "{step}, Shift {far}."
             )
             drag = drag.format(**_steps())
-            self._hint.setText(tr("Puts a pin in the middle of the view.") if absent else drag)
+            self._hint.setText(tr("Place the landmark in the middle of the view.") if absent else drag)
             self._hint.setVisible(self._placing or not absent)
             if view.group == "further":
                 self._open_further()
@@ -279,8 +280,8 @@ class LandmarkWarnings(QFrame):
 
     def show_doubts(self, count: int, doubts: Sequence[str]) -> None:
         """Tell how many landmarks of the list are weak, and what is doubted."""
-        do = tr("Select each: drag its pin if it lies wrong, or say that it is right.")
-        self._count.setText(tr("To look at: {count}").format(count=count))
+        do = tr("Select each landmark: drag its pin to correct it, or confirm it.")
+        self._count.setText(tr("To review: {count}").format(count=count))
         self._count.setVisible(bool(count))
         self._said.setText(joined([*map(render, doubts), *[do] * bool(count)]))
         self.setVisible(bool(doubts) or bool(count))

@@ -145,7 +145,7 @@ class LinesController(QObject):
 
     def _lead_over_shoulder(self, name: str, design: Design, over: bool) -> None:
         """Let a line and its linked partner run on over the shoulder, or end on the upper chest."""
-        text = tr("{line} runs over the shoulder") if over else tr("{line} ends on the upper chest")
+        text = tr("{line} extended over shoulder") if over else tr("{line} ends at upper chest")
         text = text.format(line=row_title(name, design))
         names = design.linked_pair(name)
 
@@ -164,7 +164,7 @@ class LinesController(QObject):
         self._context.selection.select_line(f"{name} left")
 
     def _linked_text(self, design: Design, name: str, linked: bool) -> str:
-        words = tr("{line} linked") if linked else tr("{line} set apart")
+        words = tr("{line} linked") if linked else tr("{line}: left and right unlinked")
         return words.format(line=pair_title(name, design))
 
     def _add_actions(self) -> None:
@@ -175,12 +175,12 @@ class LinesController(QObject):
             (tr("Rename"), "F2", "rename"),
             (tr("Show or hide"), "H", "hide"),
             (tr("Lock or unlock"), "Shift+L", "lock"),
-            (tr("Link left and right, or set apart"), "L", "link"),
+            (tr("Link or unlink"), "L", "link"),
             (tr("Split into left and right"), None, "split"),
         ):
             do.add("lines", text, key, do=partial(self._row_asked, act), of_document=True)
-        said = tr("Lines of the control mesh stay: at 100 % they are off")
-        remove = do.add("lines", tr("Remove the line"), "Del", said, do=partial(self._row_asked, "remove"))
+        said = tr("Built-in lines cannot be removed: at 100 % they are inactive")
+        remove = do.add("lines", tr("Remove line"), "Del", said, do=partial(self._row_asked, "remove"))
         # Elsewhere the key takes other things away.
         remove.setShortcutContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
         self._panel.addAction(remove)
@@ -201,7 +201,7 @@ def _text(title: str, trait: str, value: object) -> str:
     if trait == "title":
         return tr("{line} renamed").format(line=title)
     if trait == "colour":
-        return tr("{line}: another colour").format(line=title)
+        return tr("{line}: colour changed").format(line=title)
     if value is None:
-        return tr("{line}: stiffness as the model").format(line=title)
+        return tr("{line}: stiffness from model").format(line=title)
     return tr("{line}: stiffness {value}").format(line=title, value=number(float(str(value)), 1))

@@ -57,9 +57,9 @@ class LineDetails(QWidget):
         self._part, self._whole = sentence("", "caption"), sentence("", "caption")
         column.addWidget(self._part)
         column.addWidget(self._whole)
-        self.over = QCheckBox(tr("Runs over the shoulder"))
+        self.over = QCheckBox(tr("Extend over shoulder"))
         self.over.setFont(font("body"))
-        set_tip(self.over, tr("Continue the line over the shoulder and down the back to the under-bust band"))
+        set_tip(self.over, tr("Extend the line over the shoulder and down the back to the under-bust band"))
         self.over.clicked.connect(lambda over: self.decided.emit("over_shoulder", over))
         column.addWidget(self.over)
         outside.addWidget(self._set)
@@ -85,13 +85,13 @@ class LineDetails(QWidget):
             _show_side(side, ratio, "" if view.elastic else tone, unit, figures, bool(view.elastic))
         if view.parted and not worn:
             self._figures[0][3].setText("–")  # what pulls there is told by the rows of its halves
-        made = tr("Unstretched"), tr("Reached"), tr("Stretched by")
+        made = tr("Unstretched"), tr("Reached"), tr("Elongation")
         for head, title in zip(self._heads, made if view.elastic else _titles(), strict=True):
             head.setText(title)
         part = _part_words(view).format(percent=number(ratio * 100))
-        off = tr("At 100 % the line is off: it measures and does not pull.")
+        off = tr("At 100 % the line is inactive: measured only, no tension.")
         if view.parted:
-            off = tr("Off: its left and right halves are worn instead.")
+            off = tr("Inactive: replaced by its left and right halves.")
         self._part.setText(part if worn else off)
         self._show_whole(view, ratio)
 
@@ -128,9 +128,9 @@ class LineDetails(QWidget):
         link.setVisible(bool(view.partner) or view.splits)
         link.show_icon("columns" if view.splits else "unlink" if view.sides else "link")
         if view.splits:
-            set_tip(link, tr("Split it at the front centre into a left and a right line (L)"))
+            set_tip(link, tr("Split at the front centre into a left and a right line (L)"))
         else:
-            apart, linked = tr("Set left and right apart (L)"), tr("Link with the other side (L)")
+            apart, linked = tr("Unlink left and right (L)"), tr("Link with the other side (L)")
             set_tip(link, apart if view.sides else linked)
 
     def _row(self, row: int) -> list[QLabel]:
@@ -172,7 +172,7 @@ class LineDetails(QWidget):
         column.setSpacing(1)
         self._pressed = label("", "body", tabular=True)
         self._pressed.setFixedHeight(self._stiffness.sizeHint().height())
-        column.addWidget(label(tr("Largest pressure, estimated"), "caption"))
+        column.addWidget(label(tr("Maximum contact pressure, estimated"), "caption"))
         column.addWidget(self._pressed)
         return self._presses
 
@@ -192,7 +192,7 @@ class LineDetails(QWidget):
         if view.strap:
             self._whole.setText(view.strap)
             return
-        whole = tr("Whole band: {set} of {rest} ({percent} %)")
+        whole = tr("Full length: {set} of {rest} ({percent} %)")
         percent = number(whole_mm / view.whole_mm * 100)
         self._whole.setText(
             whole.format(set=length_number(whole_mm), rest=length(view.whole_mm), percent=percent)
@@ -201,11 +201,11 @@ class LineDetails(QWidget):
 
 def _tools() -> Sequence[tuple[str, str, str]]:
     return (
-        ("rename", "rename", tr("Give the line a name of your own (F2)")),
+        ("rename", "rename", tr("Rename the line (F2)")),
         ("colour", "palette", tr("Choose the colour of this line")),
         ("link", "link", tr("Link with the other side (L)")),
-        ("path", "edit-path", tr("Change the course of this line")),
-        ("reset", "arrow-counter-clockwise", tr("Set this line back to its length at rest (Backspace)")),
+        ("path", "edit-path", tr("Edit the line path")),
+        ("reset", "arrow-counter-clockwise", tr("Reset this line to its original length (Backspace)")),
         ("remove", "trash", tr("Remove this line (Del)")),
     )
 
@@ -217,10 +217,10 @@ def _titles() -> tuple[str, str, str]:
 def _part_words(view: LineView) -> str:
     """Return what the set length is a share of."""
     if view.elastic:
-        return tr("Its elastic, unstretched, is {percent} % of the length at rest")
+        return tr("Unstretched: {percent} % of the original length")
     if view.own:
-        return tr("{percent} % of its length at rest")
-    return tr("{percent} % of the front part, side to side")
+        return tr("{percent} % of its original length")
+    return tr("{percent} % of the front length, side to side")
 
 
 def _show_side(

@@ -29,23 +29,23 @@ class DrawCard(FloatingPanel):
         head = QHBoxLayout()
         self._title = label("", "heading")
         head.addWidget(self._title, 1)
-        close = ToolButton("x", tr("Leave without a change (Esc)"), size=14, room=26)
+        close = ToolButton("x", tr("Cancel without changes (Esc)"), size=14, room=26)
         close.clicked.connect(self.closed)
         head.addWidget(close)
         self._what, self._keys = sentence(""), sentence("", "caption")
         self._words = self._what, self._keys
         for words in self._words:
             words.setFixedWidth(WIDTH)
-        self.both = QCheckBox(tr("Mirror to the other side, linked"))
+        self.both = QCheckBox(tr("Mirror the line to the other side and link both"))
         self.snap = QCheckBox(tr("Snap to control points"))
-        set_tip(self.snap, tr("Move the line onto the nearest control points instead of keeping the curve"))
+        set_tip(self.snap, tr("Move the line to the nearest control points instead of keeping the curve"))
         for choice in (self.both, self.snap):
             choice.setFont(font("body"))
             choice.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.move_ = button(tr("Move it where it can pull"))
+        self.move_ = button(tr("Move to reshaped region"))
         self.move_.hide()
         self.move_.clicked.connect(self.moved)
-        self.keep, self.undo = button(tr("Keep line"), "primary"), button(tr("One step back"), "quiet")
+        self.keep, self.undo = button(tr("Keep line"), "primary"), button(tr("Undo step"), "quiet")
         for each in (self.keep, self.undo, self.move_):
             each.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click leaves the keys to the hand that draws
         self.keep.clicked.connect(self.accepted)

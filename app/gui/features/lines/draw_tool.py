@@ -118,7 +118,7 @@ class LineDrawTool(QObject):
             jobs.cancel(self._job)
             self._job_body = body
             self._job = jobs.run(
-                tr("Preparing the skin for drawing"),
+                tr("Preparing skin for drawing…"),
                 lambda _: SurfacePaths(body.mesh),
                 lambda ways: self._take_ways(body, ways),
                 self._context.session.failed.emit,
@@ -223,7 +223,7 @@ class LineDrawTool(QObject):
             over = again.over_shoulder and not found.closed
             after = CustomLine(again.name, points, found.closed, places, over)
             self.leave()
-            text = tr("{line} led elsewhere").format(line=row_title(again.name, design))
+            text = tr("{line}: path changed").format(line=row_title(again.name, design))
             session.edit(lambda before: with_new_path(before, again, after), text)
             return
         template = read_template(design.template)
@@ -249,17 +249,17 @@ class LineDrawTool(QObject):
         card.undo.setEnabled(bool(self._places))
         card.move_.setVisible(found is not None and not found.is_movable)
         if found is not None:
-            keys = tr("Enter: keep · Backspace: draw on · Esc: leave")
+            keys = tr("Enter: keep · Backspace: continue drawing · Esc: cancel")
             card.say(tr("Keep this line?"), "\n".join(_fit_words(found)), keys)
         else:
             what = tr(
-                "Click on the body: the line follows the skin from click to click. A drag turns the body."
-                " Off the breasts a line is only measured."
+                "Click points on the body: the line follows the skin from point to point. Drag "
+                "to rotate the body. Outside the breasts a line is only measured."
             )
             keys = tr(
-                "Enter or double click: done · first point: close it · Backspace: one back · Esc: leave"
+                "Enter or double-click: finish · first point: close · Backspace: undo step · Esc: cancel"
             )
-            title = tr("Draw a line")
+            title = tr("Draw line")
             if self._again is not None and design is not None:
                 title = tr("Path of {line}").format(line=row_title(self._again.name, design))
             card.say(title, what, keys)
@@ -291,12 +291,12 @@ def _fit_words(found: Snapped | FreeCurve) -> list[str]:
     if isinstance(found, FreeCurve):
         said = [tr("Deviation from the drawn curve: up to {length}.").format(length=length(found.deviation))]
         if found.cut:
-            said.append(tr("The part outside the control mesh was left out: the body is fixed there."))
+            said.append(tr("The part outside the control mesh was removed: the body is fixed there."))
     else:
-        what = tr("It follows the control mesh, off what you drew by up to {length}.")
+        what = tr("Snapped to the control mesh; maximum deviation {length}.")
         if found.deviation > _WIDE:
-            what = tr("It can follow the control mesh only: off what you drew by up to {length}.")
+            what = tr("Restricted to the control mesh; maximum deviation {length}.")
         said = [what.format(length=length(found.deviation, 0))]
     if not found.is_movable:
-        said.append(tr("No point of it can move, so it is only measured and pulls nothing."))
+        said.append(tr("All points are fixed: the line is measured only and does not reshape the body."))
     return said

@@ -104,7 +104,7 @@ class LimitsController(QObject):
         keys = [key for key in (_key(design, name) for name in rows) if key not in self._known]
         if keys:
             self._job = self._context.jobs.run(
-                tr("Finding how far lines can go"), partial(self._work, stages, keys), self._done
+                tr("Computing length limits…"), partial(self._work, stages, keys), self._done
             )
 
     def _in_order(self, stages: Stages) -> Sequence[Line]:

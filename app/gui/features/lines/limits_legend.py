@@ -77,6 +77,6 @@ class LimitsLegend(QWidget):
             swatch.show_stale(stale)
             for each in (swatch, words):
                 each.setVisible(tone in told)
-        self.pressure.setText(tr("Pressure now: {pressure}").format(pressure=pressed))
+        self.pressure.setText(tr("Contact pressure: {pressure}").format(pressure=pressed))
         set_tag(self.pressure, "tone", pressed_tone)
         self.pressure.setVisible(bool(pressed))

@@ -47,10 +47,10 @@ class LinesHeader(QWidget):
         self.presets.clicked.connect(self.presets_requested)
         self.reset = ToolButton(
             "arrow-counter-clockwise",
-            tr("Set all lines back to their length at rest, but for locked ones (Ctrl+R)"),
+            tr("Reset all unlocked lines to their original length (Ctrl+R)"),
         )
-        self.draw = _in_words(tr("Draw"), tr("Draw a line on the body (N)"))
-        self.add = _in_words(tr("Add"), tr("Add lines: a pair, or through control points"))
+        self.draw = _in_words(tr("Draw"), tr("Draw line on body (N)"))
+        self.add = _in_words(tr("Add"), tr("Add lines: pairs, or lines through control points"))
         self.note = sentence("", "caption")
         for tool, signal in (
             (self.reset, self.reset_requested),
@@ -95,7 +95,7 @@ class _PullDown(QPushButton):
         self.setFont(font("name"))
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setCursor(Qt.CursorShape.PointingHandCursor)
-        set_tip(self, tr("Sets of lines to begin with, and your own"))
+        set_tip(self, tr("Load or save sets of lines"))
 
     def setText(self, text: str) -> None:
         """Show a title, shortened where there is no room for it."""
@@ -121,16 +121,16 @@ __all__ = ["LineView", "LinesPanel"]
 def keys_in_words() -> list[tuple[str, str]]:
     """Return what the keys do in the list and on a slider that no menu has, ready to read."""
     return [
-        ("↑ ↓", tr("The line above or below")),
-        ("← →, - +", tr("Shorter or longer by 0.1 %, with Shift 1 %, with Alt 0.01 %")),
-        ("Backspace", tr("Back to the length at rest")),
-        ("Enter", tr("Type the length in percent, Tab: in {unit}").format(unit=length_unit())),
-        ("Esc", tr("Put back what is being dragged")),
+        ("↑ ↓", tr("Select previous or next line")),
+        ("← →, - +", tr("Shorten or lengthen by 0.1 % (Shift 1 %, Alt 0.01 %)")),
+        ("Backspace", tr("Reset to original length")),
+        ("Enter", tr("Enter the length in percent (Tab: in {unit})").format(unit=length_unit())),
+        ("Esc", tr("Cancel the drag")),
     ]
 
 
 def _no_lines() -> tuple[str, str]:
-    return tr("No lines yet"), tr("They appear once the control mesh lies on the body.")
+    return tr("No lines yet"), tr("Landmarks appear when the control mesh has been fitted.")
 
 
 class _Area(QScrollArea):
@@ -209,7 +209,7 @@ class LinesPanel(QWidget):
     def show_opening(self, name: str) -> None:
         """Say in the place of lines that a document is being opened; an empty name: that there are none."""
         if name:
-            hint = tr("The lines appear once the control mesh has been fitted.")
+            hint = tr("Lines appear when the control mesh has been fitted.")
             self._empty.show_words(tr("Opening {name}…").format(name=name), hint)
         else:
             self._empty.show_words(*_no_lines())
@@ -264,7 +264,9 @@ class LinesPanel(QWidget):
         self._list.setContentsMargins(8, 0, 8, 12)
         self._list.setSpacing(2)
         # Lasting, and before anybody looks for a waist to lock.
-        said = tr("Lines lie on the control mesh, under-bust to armpits: waist, hip and shoulders have none.")
+        said = tr(
+            "Lines run on the control mesh, from under-bust to armpits. Waist, hip and shoulders are outside."
+        )
         self._reach = sentence(said, "caption")
         self._reach.setContentsMargins(10, 10, 10, 0)
         self._list.addWidget(self._reach)

@@ -120,7 +120,7 @@ class LineDialog(QDialog):
         self.map = PointMap(template)
         self.name, self.points = QLineEdit(self._free_name()), QLineEdit()
         self.points.setPlaceholderText("r2c3, r3c3, r4c2")
-        self.ends = Segment((("open", tr("Open ends")), ("closed", tr("Closed, goes round"))), small=True)
+        self.ends = Segment((("open", tr("Open ends")), ("closed", tr("Closed"))), small=True)
         self.ends.set_choice("open")
         self._said = sentence("", "caption")
         self._buttons = QDialogButtonBox()
@@ -145,8 +145,8 @@ class LineDialog(QDialog):
         column = QVBoxLayout(self)
         column.setContentsMargins(20, 18, 20, 16)
         column.setSpacing(10)
-        what = tr("Click from point to point; click the last one again to take it back.")
-        how = tr("Seen from the front; full points can move, rings are the bust points.")
+        what = tr("Click control points in order. Click the last point again to remove it.")
+        how = tr("Front view. Filled points can move; rings mark the bust points.")
         column.addWidget(sentence(f"{what} {how}"))
         column.addWidget(self.map, alignment=Qt.AlignmentFlag.AlignHCenter)
         form = QFormLayout()
@@ -174,7 +174,7 @@ class LineDialog(QDialog):
             closed = ",closed" if self.ends.button("closed").isChecked() else ""
             line = parse_line(f"{self.name.text()}={text}{closed}", self._template)
             if line.name in self._names:
-                line, said = None, tr("There is a line of that name already.")
+                line, said = None, tr("A line of that name already exists.")
         except UserError as error:
             said = error.message if text.count(",") + text.count(":") else ""
         self.line = line

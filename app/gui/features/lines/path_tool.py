@@ -110,7 +110,7 @@ class LinePathTool(QObject):
             return
         self.leave()
         if path != line.points:
-            text = tr("{line} led elsewhere").format(line=row_title(line.name, design))
+            text = tr("{line}: path changed").format(line=row_title(line.name, design))
             session.edit(lambda before: with_new_path(before, line, replace(line, points=path)), text)
 
     def _check(self, design: Design) -> None:
@@ -174,10 +174,10 @@ class LinePathTool(QObject):
         card.keep.setEnabled(path != line.points)
         card.undo.setEnabled(len(self._steps) > 1)
         what = tr(
-            "Drag a point of the line to another control point. Click beside an end to go on there,"
-            " on a point to take it out."
+            "Drag a point of the line to another control point. Click next to an end to extend "
+            "the line, on a point to remove it."
         )
-        keys = tr("Enter: keep · Backspace: one back · Esc: leave")
+        keys = tr("Enter: keep · Backspace: undo step · Esc: cancel")
         card.say(tr("Path of {line}").format(line=row_title(line.name, design)), what, keys)
         corners = self._points()[[*path, *path[:1] * line.closed]]
         colour = line_colours([each.name for each in design.own_lines], design)[line.name]

@@ -94,18 +94,18 @@ class PresetsController(QObject):
             return
         led = _led_anew(before, session.design)
         if led:
-            said = tr("Led as in the preset {name}: {lines}").format(name=title, lines=led)
+            said = tr("Line paths from preset {name}: {lines}").format(name=title, lines=led)
             undo = tr("Undo"), partial(session.undo_stack.setIndex, step)
             self._context.notifications.info(said, preset_note(preset), [undo])
 
     def ask(self) -> None:
         """Ask for a name, and keep the present lines as a preset."""
         # Not the name of the project: a set of lines is for more than one customer.
-        taken, name = {preset.title for preset in user_presets()[0]}, tr("My lines")
+        taken, name = {preset.title for preset in user_presets()[0]}, tr("Custom lines")
         names = chain([name], (f"{name} {number}" for number in count(2)))
         offered = next(each for each in names if each not in taken)
         while title := ask_name(
-            self._context.window, tr("Save lines as preset"), tr("Name of the preset"), offered, LONGEST_TITLE
+            self._context.window, tr("Save lines as preset"), tr("Preset name"), offered, LONGEST_TITLE
         ):
             if not user_file(title).exists() or self._may_replace(title):
                 self.save(title)
@@ -115,7 +115,7 @@ class PresetsController(QObject):
     def _may_replace(self, title: str) -> bool:
         """Ask whether the preset of that name may go; without an answer the name is asked for again."""
         question = tr("Replace the preset {name}?").format(name=title)
-        said = tr("There is one of that name already. Its lines will be lost.")
+        said = tr("A preset of that name already exists. Its lines will be lost.")
         return ask(self._context.window, question, said, [("replace", tr("Replace"))]) == "replace"
 
     def save(self, title: str) -> None:

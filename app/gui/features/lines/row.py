@@ -61,7 +61,7 @@ class LineRow(QFrame):
         self.view = view
         self.title.setText(view.pair_title if view.apart else view.title)  # its side stands beside it
         self._show_names(view.title)
-        set_tip(self.title, f"{view.title}\n{tr('Double click or F2: another name')}")
+        set_tip(self.title, f"{view.title}\n{tr('Rename (double-click or F2)')}")
         set_tag(self.title, "tone", "" if view.visible else "faint")
         self._side.show_side(view.apart)
         self.title.setMinimumWidth(LEAST - 22 if view.apart else LEAST)  # its mark takes no more room
@@ -164,7 +164,7 @@ class LineRow(QFrame):
         self._chip, self.title = LineChip(), LineTitle()
         self._both, self._side = label(tr("left + right"), "caption"), SideMark()
         self._link = ToolButton(
-            "link", tr("Link with the other side, which takes this length (L)"), size=15, room=20
+            "link", tr("Link both sides and copy this length to the other side (L)"), size=15, room=20
         )
         self._eye = ToolButton("eye", tr("Show or hide this line (H)"), size=15, room=20)
         self._lock = ToolButton(
@@ -268,25 +268,28 @@ class LineRow(QFrame):
 def _still_words(view: LineView) -> str:
     """Return what a line on points that do not move is good for."""
     if view.elastic:
-        words = tr("Made of {elastic}. It moves nothing, but presses and is cut: see the tab Garment.")
+        words = tr(
+            "Elastic: {elastic}. The line does not move the body but has contact pressure and a "
+            "cut length: see tab Garment."
+        )
         return words.format(elastic=view.elastic)
     if view.own:
-        return tr("On points that do not move: measured only.")
-    return tr("On the rib cage: measured, it does not move.")
+        return tr("On fixed points: measured only.")
+    return tr("On the rib cage: measured only.")
 
 
 def _tip(view: LineView) -> str:
     """Return what is said on hovering over a line's length instead of the usual."""
     if view.tried:
-        return tr("Tried on by what is asked for: taken with Apply.")
+        return tr("Preview of the target shape. Choose Apply to accept.")
     return locked_tip() if view.locked else elastic_tip() if view.elastic else ""
 
 
 def elastic_tip() -> str:
     """Return what the length of a line means that is made of an elastic."""
-    return tr("How long its elastic is unstretched, as a share of the front part at rest.")
+    return tr("Set the unstretched length of the elastic, in percent of the original front length.")
 
 
 def locked_tip() -> str:
     """Return why the length of a line stays."""
-    return tr("This line is locked: its length stays. Unlock it with the lock, or Shift+L.")
+    return tr("This line is locked: its length is kept. Unlock it with the lock button or Shift+L.")

@@ -123,7 +123,7 @@ class LengthSlider(QAbstractSlider):
         if self._leeway is None:
             return self.toolTip()
         known = hint(self._leeway, self._ratio_under(place.x()))
-        told = tr("How far it can go is being worked out.") if self._stale else known
+        told = tr("Computing length limits…") if self._stale else known
         return f"{told}\n\n{self.toolTip()}"
 
     def mousePressEvent(self, event: QMouseEvent) -> None:

@@ -47,7 +47,7 @@ class LegendBar(QWidget):
         self._unit, self._digits, self._signed = "", 1, False
         self._marks: tuple[Mark, ...] = ()
         self._bar = QRectF(BAR)
-        ends = tr("Highest value of the colours"), tr("Lowest value of the colours")
+        ends = tr("Maximum of the colour scale"), tr("Minimum of the colour scale")
         self.high, self.low = (ValueEdit("", name, widest="−100.0") for name in ends)
         for field in (self.high, self.low):
             field.setParent(self)
@@ -62,7 +62,7 @@ class LegendBar(QWidget):
 
     def say(self, note: str) -> None:
         """Tell in a tip what the values are, and how their range is set."""
-        how = tr("Drag an end or type a number to set the range; double click: automatic.")
+        how = tr("Drag an end or enter a value to set the range. Double-click for the automatic range.")
         set_tip(self, "\n".join(filter(None, (note, how))))
 
     def set_small(self, small: bool) -> None:

@@ -53,7 +53,7 @@ class Legend(FloatingPanel):
         )
         self.title.chosen.connect(self.chosen)
         self._add_to(self.title.menu)
-        close = ToolButton("x", tr("Close the map  C"), size=14, room=24)
+        close = ToolButton("x", tr("Close map (C)"), size=14, room=24)
         close.clicked.connect(lambda: self.chosen.emit(""))
         head.addWidget(self.title)
         head.addStretch(1)
@@ -122,7 +122,7 @@ class Legend(FloatingPanel):
         menu.addSeparator()
         self.automatic = menu.addAction(tr("Automatic range"))
         self.automatic.triggered.connect(self.range_freed)
-        menu.addAction(tr("Remove the values on the body")).triggered.connect(self.flags_cleared)
+        menu.addAction(tr("Clear values on body")).triggered.connect(self.flags_cleared)
 
     def _set_end(self, is_high: bool, value: float) -> None:
         low, high = self.bar.range_

@@ -116,4 +116,4 @@ class MapValues:
             listed = None if self.now is None else self._pressed.get(self.now)
             missing = "" if self.now is None else self._pressure.missing(self.now.frame)
             return missing or pressure_note(listed, shown.stale)
-        return "" if shown.values else tr("No worn line pulls like a spring.")
+        return "" if shown.values else tr("No active elastic line has tension.")

@@ -57,7 +57,7 @@ class MeasurementsController(QObject):
         context.view.compared.connect(self._show_mark)
         panel.copy_requested.connect(lambda: copy_table(context, self._as_table()))
         panel.table_requested.connect(
-            lambda: save_table(context, self._as_table(), tr("Save the table of measures"), "measures")
+            lambda: save_table(context, self._as_table(), tr("Save table of measurements"), "measures")
         )
         panel.sizes.chosen.connect(self._choose)
         panel.sizes.allowed.connect(self._allow)
@@ -105,7 +105,7 @@ class MeasurementsController(QObject):
         if context.session.is_at_rest:
             self._asked = frame
             self._job = context.jobs.run(
-                tr("Measuring the body"),
+                tr("Measuring body…"),
                 lambda progress: before_after(frame.stages, frame.control_points),
                 self._show_measured,
                 self._fail,
@@ -117,8 +117,8 @@ class MeasurementsController(QObject):
         if self._context.session.failure is not None:
             return not_computed()
         if self._context.session.is_at_rest:
-            return tr("Measuring the body")
-        return tr("The body is measured as soon as the run rests.")
+            return tr("Measuring body…")
+        return tr("Measurements appear when the solver has converged.")
 
     def _show_measured(self, found: object) -> None:
         self._rest, self._worn = cast(tuple[Measures, Measures], found)
@@ -134,8 +134,8 @@ class MeasurementsController(QObject):
         self._give_up(tr("The body could not be measured."))
 
     def _leave_off(self) -> None:
-        self._context.notifications.stopped(tr("Measuring the body"))
-        self._give_up(tr("Stopped: the body is measured when this list is shown again."))
+        self._context.notifications.stopped(tr("Measuring body…"))
+        self._give_up(tr("Stopped. Open this list again to measure the body."))
 
     def _give_up(self, why: str) -> None:
         """Be ready to be asked again; what was measured before stays, as of a former shape."""
@@ -176,7 +176,7 @@ class MeasurementsController(QObject):
         self._show_sizes()
 
     def _allow(self, mm: float) -> None:
-        said = tr("Worn tight: {length} off the under-bust").format(length=length(mm))
+        said = tr("Tape tension allowance: {length}").format(length=length(mm))
         self._context.session.change({"worn_tight_mm": mm}, said)
         self._show_sizes()
 

@@ -61,10 +61,10 @@ class CustomMeasuresController(QObject):
         panel.removing.connect(self.remove)
         context.session.frame_ready.connect(self._follow)
         context.session.opened.connect(lambda *_: self.leave())
-        said = tr("Measure between two landmarks, or round the body at a height")
+        said = tr("Measure between two landmarks, or a girth at a height")
         do = context.actions
         do.rule("edit")
-        self.action = do.add("edit", tr("Add a measure…"), tip=said, do=self.begin, of_document=True)
+        self.action = do.add("edit", tr("Add measurement…"), tip=said, do=self.begin, of_document=True)
 
     @property
     def at_work(self) -> bool:
@@ -109,7 +109,7 @@ class CustomMeasuresController(QObject):
         wished, former = self._wished(), self._former
         if wished is None:
             return
-        text = tr("Measure changed: {name}") if former else tr("Measure added: {name}")
+        text = tr("Measurement changed: {name}") if former else tr("Measurement added: {name}")
         self.leave()
         self._context.session.edit(
             lambda design: design.with_custom_measurement(wished, former), text.format(name=wished.name)
@@ -121,7 +121,7 @@ class CustomMeasuresController(QObject):
         name = key.removeprefix(OWN)
         self.leave()
         self._panel.unmark()
-        text = tr("Measure deleted: {name}").format(name=name)
+        text = tr("Measurement deleted: {name}").format(name=name)
         self._context.session.edit(lambda design: design.without_custom_measurement(name), text)
 
     # -- the view speaks
@@ -161,7 +161,7 @@ class CustomMeasuresController(QObject):
         if wished is None:
             self._show(None)
         elif not self._context.session.is_at_rest:
-            self._show(None, tr("The body is measured as soon as the run rests."))
+            self._show(None, tr("Measurements appear when the solver has converged."))
         elif (frame, replace(wished, name="?")) != self._asked:
             self._begin_measuring(frame, replace(wished, name="?"))
 
@@ -170,11 +170,11 @@ class CustomMeasuresController(QObject):
         self._asked = frame, wished
         self._form.show_value("", "", "", self._suggested())  # the former one is of another measure
         self._job = self._context.jobs.run(
-            tr("Measuring the body"),
+            tr("Measuring body…"),
             lambda progress: custom_before_after(frame.stages, frame.control_points, wished),
             lambda found: self._show(cast(tuple[Measure, Measure], found)),
             self._fail,
-            left=lambda: self._show(None, tr("Stopped: change something to measure again.")),
+            left=lambda: self._show(None, tr("Stopped. Change the measurement to compute it again.")),
         )
 
     def _fail(self, error: Exception) -> None:

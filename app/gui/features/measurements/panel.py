@@ -44,7 +44,7 @@ class MeasurementsPanel(QStackedWidget):
         self._measured: tuple[MeasureView, ...] = ()
         self._stale = False
         self._empty = EmptyState(
-            "result", tr("No measures yet"), tr("They appear once the control mesh lies on the body.")
+            "result", tr("No measurements yet"), tr("Landmarks appear when the control mesh has been fitted.")
         )
         self._doubt = sentence("", "secondary")
         self._doubt.setContentsMargins(4, 2, 4, 4)
@@ -74,7 +74,7 @@ class MeasurementsPanel(QStackedWidget):
         self.set_rows([])
 
     def _make_area(self) -> QScrollArea:
-        self._note = sentence(tr("The bars show the change: blue less, orange more."), "caption")
+        self._note = sentence(tr("Bars show the change: blue decrease, orange increase."), "caption")
         self._note.setContentsMargins(4, 8, 4, 8)
         self._waiting = sentence("", "caption")
         self._waiting.setContentsMargins(4, 6, 4, 6)
@@ -97,7 +97,7 @@ class MeasurementsPanel(QStackedWidget):
         self._column.addLayout(self.feet)
         self._column.addStretch(1)
         self._area = QScrollArea()
-        self._area.setAccessibleName(tr("Measures"))
+        self._area.setAccessibleName(tr("Measurements"))
         self._area.setWidgetResizable(True)
         self._area.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click beside its figures is no wish for keys
         self._area.setFrameShape(QFrame.Shape.NoFrame)
@@ -200,10 +200,10 @@ class MeasurementsPanel(QStackedWidget):
         self._area.verticalScrollBar().setValue(card.y())
 
     def _make_buttons(self) -> QWidget:
-        copied = tr("Copy the table, to paste into a spreadsheet or a letter")
-        written = tr("Write the table to a file (CSV)")
+        copied = tr("Copy the table for a spreadsheet or document")
+        written = tr("Save the table as CSV")
         choices = (
-            (tr("Add a measure…"), tr("Measure between two landmarks, or round the body"), self.adding),
+            (tr("Add measurement…"), tr("Measure between two landmarks, or a girth"), self.adding),
             (tr("Copy"), copied, self.copy_requested),
             (tr("CSV…"), written, self.table_requested),
         )

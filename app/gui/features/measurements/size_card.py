@@ -36,14 +36,14 @@ class SizeCard(QWidget):
         self._grid.setSpacing(2)
         self.within, self.rule, self.doubt, self.near = (sentence("", "secondary") for _ in range(4))
         set_tag(self.doubt, "tone", "warn")
-        self.fold, self.doubts = Disclosure(tr("What is uncertain in it")), sentence("", "caption")
+        self.fold, self.doubts = Disclosure(tr("Uncertainties")), sentence("", "caption")
         self.fold.toggled.connect(self.doubts.setVisible)
-        self.allowance = _AllowanceField("mm", tr("Taken off the under-bust, worn tight"), widest="20.0")
+        self.allowance = _AllowanceField("mm", tr("Tape tension allowance"), widest="20.0")
         self.allowance.entered.connect(self.allowed)
         column = QVBoxLayout(self)
         column.setContentsMargins(4, 2, 4, 6)
         column.setSpacing(4)
-        column.addWidget(label(tr("Band and cup, of the body at rest"), "caption"))
+        column.addWidget(label(tr("Band and cup size, original body"), "caption"))
         column.addLayout(self._make_head())
         for each in (
             self.within,
@@ -145,6 +145,6 @@ class _AllowanceField(ValueEdit):
     def _read(self, text: str) -> float:
         value, (low, high) = super()._read(text), ALLOWANCE
         if not low <= value <= high:
-            refusal = tr("Choose {low} to {high}: an estimate, no norm.")
+            refusal = tr("Enter {low} to {high} (typical range, no standard).")
             raise ValueError(refusal.format(low=length_number(low, 0), high=length(high, 0)))
         return value

@@ -221,12 +221,12 @@ _OWN_KEYS = (Qt.Key.Key_Home, Qt.Key.Key_End, Qt.Key.Key_F2)
 def keys_in_words() -> list[tuple[str, str]]:
     """Return what the keys do in the table, ready to read."""
     return [
-        ("↑ ↓", tr("Show the measure above or below on the body")),
-        ("Home, End", tr("Show the first or the last measure")),
-        ("Enter", tr("Bring it near")),
-        ("F2", tr("Change it, if it is your own")),
-        ("Del", tr("Delete it, if it is your own")),
-        ("Esc", tr("Show none")),
+        ("↑ ↓", tr("Select previous or next measurement")),
+        ("Home, End", tr("Select first or last measurement")),
+        ("Enter", tr("Zoom to the measurement")),
+        ("F2", tr("Edit custom measurement")),
+        ("Del", tr("Delete custom measurement")),
+        ("Esc", tr("Clear selection")),
     ]
 
 
@@ -256,8 +256,8 @@ class MeasurementsTable(QWidget):
         self._remove.connect(lambda: self.removing.emit(self.mark))
         self.tools = button_row(
             (
-                (tr("Change…"), tr("Change this measure (F2)"), self._change),
-                (tr("Delete"), tr("Delete this measure (Del)"), self._remove),
+                (tr("Edit…"), tr("Edit measurement (F2)"), self._change),
+                (tr("Delete"), tr("Delete measurement (Del)"), self._remove),
             )
         )
         self.tools.setParent(self)

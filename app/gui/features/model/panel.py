@@ -29,12 +29,14 @@ class ModelPanel(QWidget):
         self._rows: dict[str, QWidget] = {}
         self._present: dict[str, Any] = defaults()
         self._reset = button(tr("Reset to defaults"), "quiet")
-        self._reset.clicked.connect(lambda: self.changed.emit(defaults(), tr("Model reset to defaults")))
+        self._reset.clicked.connect(
+            lambda: self.changed.emit(defaults(), tr("Model options reset to defaults"))
+        )
         self._limit = sentence("", "caption")
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
-        column.addLayout(page_head(tr("How the model works"), tr("Back to the lines"), self.closed))
+        column.addLayout(page_head(tr("Model options"), tr("Back to lines"), self.closed))
         column.addWidget(self._scroll_area(), 1)
         column.addWidget(self._foot())
         self.set_values(self._present)
@@ -54,7 +56,9 @@ class ModelPanel(QWidget):
         field.edit.setPlaceholderText(number(gain, 2))
         above = gain > limit
         said = (
-            tr("Above {limit} it vibrates: this is too much.") if above else tr("It vibrates above {limit}.")
+            tr("Above {limit} the solver oscillates. Enter a lower gain.")
+            if above
+            else tr("The solver oscillates above {limit}.")
         )
         self._limit.setText(said.format(limit=number(limit, 2)))
         set_tag(self._limit, "tone", "warn" if above else "")
@@ -91,7 +95,7 @@ class ModelPanel(QWidget):
         column.addWidget(self._limit)
         column.addStretch(1)
         area = QScrollArea()
-        area.setAccessibleName(tr("How the model works"))
+        area.setAccessibleName(tr("Model options"))
         area.setWidgetResizable(True)
         area.setFrameShape(QFrame.Shape.NoFrame)
         area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
@@ -124,7 +128,7 @@ class ModelRow(NavigationRow):
     """The way to the settings from under the lines: what is chosen, in a line."""
 
     def __init__(self) -> None:
-        super().__init__(tr("How the model works"))
+        super().__init__(tr("Model options"))
 
     def set_values(self, present: Mapping[str, Any]) -> None:
         """Say what is chosen."""

@@ -34,11 +34,11 @@ class PreferencesController(QObject):
         self._context, self._may_leave = context, may_leave
         do = context.actions
         do.rule("edit")
-        self.open = do.add("edit", tr("Preferences…"), "Ctrl+,", tr("Language, theme, mouse and more"))
+        self.open = do.add("edit", tr("Preferences…"), "Ctrl+,", tr("Set language, theme, mouse and more"))
         self.open.setMenuRole(QAction.MenuRole.PreferencesRole)
         self.open.triggered.connect(self.show)
         do.end("edit", 2)
-        do.add("help", tr("Open the log folder"), tip=tr("Faults are written there"), do=self.open_log)
+        do.add("help", tr("Open log folder"), tip=tr("Show the folder of error logs"), do=self.open_log)
         for key, actions in (("theme", do.themes), ("language", do.languages)):
             for value, action in actions.items():
                 action.triggered.connect(lambda _=False, key=key, value=value: self.choose(key, value))
@@ -59,9 +59,9 @@ class PreferencesController(QObject):
         if key == "theme" and isinstance(app, QApplication):
             apply_theme(app, chosen_dark(value))
         elif key in ("language", "unit"):
-            said = tr("The language changes when Busk is started again.")
+            said = tr("The language changes when Busk restarts.")
             if key == "unit":
-                said = tr("The unit of lengths changes when Busk is started again.")
+                said = tr("The unit of lengths changes when Busk restarts.")
             self._context.notifications.info(said, "", [(tr("Restart now"), self.restart)])
         elif key == "motion":
             self.set_motion()

@@ -40,8 +40,8 @@ class PreferencesDialog(Dialog):
                 self._add(grid, setting, values[setting.key])
         self.body.addLayout(grid)
         self.body.addStretch(1)
-        log = self.add_button(tr("Open the log folder"), self.log_requested.emit, "quiet")
-        set_tip(log, tr("Busk writes faults there, never a scan or its measures"))
+        log = self.add_button(tr("Open log folder"), self.log_requested.emit, "quiet")
+        set_tip(log, tr("Show the error logs. They contain no scans or measurements"))
         self.foot.removeWidget(log)
         self.foot.insertWidget(0, log)
         self.add_close()
@@ -73,7 +73,7 @@ class PreferencesDialog(Dialog):
 
 
 def _autosave() -> Amount:
-    every = tr("What is not saved yet is kept aside this often, from {least} to {most} s.")
+    every = tr("Interval of autosave for unsaved changes, {least} to {most} s.")
     least, most = AUTOSAVE
     unit = tr("{seconds} s").format(seconds="").strip()
     said = every.format(least=least, most=most)
@@ -81,32 +81,32 @@ def _autosave() -> Amount:
 
 
 def _groups() -> tuple[tuple[str, tuple[Setting, ...]], ...]:
-    themes = (("system", tr("As the system")), ("light", tr("Light")), ("dark", tr("Dark")))
+    themes = (("system", tr("System default")), ("light", tr("Light")), ("dark", tr("Dark")))
     units = (("mm", tr("Millimetres")), ("cm", tr("Centimetres")), ("in", tr("Inches")))
-    starts = (("page", tr("Start page")), ("last", tr("The last project")))
+    starts = (("page", tr("Start page")), ("last", tr("Last project")))
     hands = (("busk", "Busk"), ("cad", "CAD"), ("blender", "Blender"), ("trackpad", tr("Trackpad")))
     materials = (("clay", tr("Clay")), ("plaster", tr("Plaster")), ("graphite", tr("Graphite")))
     motions = (("full", tr("Full")), ("reduced", tr("Reduced")))
-    turns = tr("How buttons and wheel turn, move and scale the body.")
-    again = tr("In force when Busk is started again.")
-    lengths = tr("On screen and in reports. In force when Busk is started again.")
+    turns = tr("Mouse buttons for rotating, moving and zooming the body.")
+    again = tr("Takes effect when Busk restarts.")
+    lengths = tr("On screen and in reports. Takes effect when Busk restarts.")
     return (
         (
             tr("Window"),
             (
                 Choice("language", tr("Language"), again, tuple(LANGUAGES.items())),
                 Choice("unit", tr("Lengths"), lengths, units),
-                Choice("theme", tr("Theme"), tr("Light for a bright room, dark for a dim one."), themes),
-                Choice("start", tr("On start"), tr("What the window shows first."), starts),
+                Choice("theme", tr("Theme"), tr("Light or dark colours of the window."), themes),
+                Choice("start", tr("On start"), tr("First page shown in the window."), starts),
             ),
         ),
         (
             tr("3D view"),
             (
                 Choice("mouse", tr("Mouse"), turns, hands),
-                Choice("material", tr("Material"), tr("What the body looks made of."), materials),
-                Choice("motion", tr("Motion"), tr("Reduced: the view jumps where it would glide."), motions),
+                Choice("material", tr("Material"), tr("Material of the body in the view."), materials),
+                Choice("motion", tr("Motion"), tr("Reduced: no camera animation."), motions),
             ),
         ),
-        (tr("Safety"), (_autosave(),)),
+        (tr("Recovery"), (_autosave(),)),
     )

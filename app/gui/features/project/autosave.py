@@ -172,12 +172,12 @@ class AutosaveController(QObject):
         since = self._lock.take(self._session.path)
         if since is None:
             return
-        sentence = tr("{name} is open in another window ({time}).")
+        sentence = tr("{name} is already open in another window ({time}).")
         self._context.notifications.show(
             "warn",
             sentence.format(name=self._session.name, time=day_of(since, time.time())),
-            tr("Who saves last replaces what the other has saved."),
-            ((tr("Open as a copy"), self._detach), (tr("Open anyway"), _do_nothing)),
+            tr("The last save overwrites the other one."),
+            ((tr("Open as copy"), self._detach), (tr("Open anyway"), _do_nothing)),
             lasting=True,
             topic=_HELD,
         )

@@ -96,7 +96,7 @@ class ProjectController(QObject):
         remember_file(path)
         self._context.notifications.withdraw(FILES)
         without = self._session.trial is not None
-        said = tr("Saved {time} without what is asked for") if without else tr("Saved {time}")
+        said = tr("Saved {time} (pending targets not included)") if without else tr("Saved {time}")
         self.save_state.emit(said.format(time=time.strftime("%H:%M")))
         self.show_title()
 

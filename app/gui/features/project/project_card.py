@@ -52,7 +52,7 @@ class ProjectView:
 
 def keys_in_words() -> list[tuple[str, str]]:
     """Return what the keys do on a picture of the start page, ready to read."""
-    return [("← → ↑ ↓", tr("Another project")), ("Enter", tr("Open it")), ("Del", tr("Take it off the page"))]
+    return [("← → ↑ ↓", tr("Select another project")), ("Enter", tr("Open")), ("Del", tr("Remove from list"))]
 
 
 class ProjectCard(QAbstractButton):
@@ -69,12 +69,12 @@ class ProjectCard(QAbstractButton):
         self.setCursor(Qt.CursorShape.PointingHandCursor)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
-        said = tr("It is no longer there.") if view.gone else view.look
+        said = tr("File not found.") if view.gone else view.look
         self.setAccessibleName(view.name)
         self.setAccessibleDescription("  ".join(filter(None, (view.day, said))))
         set_tip(self, "\n".join(filter(None, (view.path, said))))
         self.clicked.connect(self._act)
-        self._remove = ToolButton("x", tr("Remove from this list (Del)"), size=14, room=26)
+        self._remove = ToolButton("x", tr("Remove from list (Del)"), size=14, room=26)
         self._remove.setParent(self)
         self._remove.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._remove.setCursor(Qt.CursorShape.ArrowCursor)
@@ -111,7 +111,7 @@ class ProjectCard(QAbstractButton):
         menu = Menu(self)
         for text, act in (
             (tr("Locate…") if self.view.gone else tr("Open"), self._act),
-            (tr("Remove from this list"), self._forget),
+            (tr("Remove from list"), self._forget),
         ):
             entry = QAction(text, menu)
             entry.triggered.connect(act)

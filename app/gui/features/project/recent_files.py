@@ -84,7 +84,7 @@ def fill_recent_menu(menu: QMenu, open_file: Callable[[str], None]) -> None:
         action.setEnabled(Path(path).exists())
         action.triggered.connect(lambda _=False, chosen=path: open_file(chosen))
     if menu.isEmpty():
-        menu.addAction(tr("Nothing yet")).setEnabled(False)
+        menu.addAction(tr("No recent files")).setEnabled(False)
 
 
 def project_views() -> list[ProjectView]:

@@ -38,10 +38,10 @@ class BackupsDialog(QDialog):
 
     def __init__(self, parent: QWidget | None, found: Sequence[Backup]) -> None:
         super().__init__(parent)
-        self.setWindowTitle(tr("Open a backup"))
+        self.setWindowTitle(tr("Open backup"))
         self.resize(520, 560)
         self.rows = ThumbnailList(ThumbnailRowPainter(self))
-        self.rows.setAccessibleName(tr("Former versions"))
+        self.rows.setAccessibleName(tr("Previous versions"))
         self.rows.show_rows([_row_of(backup) for backup in found])
         self.rows.itemActivated.connect(self.accept)
         self.rows.itemDoubleClicked.connect(self.accept)
@@ -57,7 +57,10 @@ class BackupsDialog(QDialog):
         column.setSpacing(10)
         column.addWidget(
             sentence(
-                tr("Each time a project is saved, the version before it is kept. The last ones are here.")
+                tr(
+                    "Each save keeps the previous version of the project. The latest versions "
+                    "are listed here."
+                )
             )
         )
         if found:
@@ -65,7 +68,7 @@ class BackupsDialog(QDialog):
             self.rows.setCurrentRow(0)
         else:
             self.rows.hide()
-            hint = tr("Save a project a second time: its first version will be here.")
+            hint = tr("Save a project twice: the first version is then listed here.")
             column.addWidget(EmptyState("clock-counter-clockwise", tr("No backups yet"), hint))
             column.addStretch(1)
         column.addWidget(box)
@@ -138,7 +141,7 @@ class RecoveryCard(OverlayCard):
     def offer(self, view: RecoveryView) -> None:
         """Offer one document."""
         self._heading.setText(tr("{name} was not saved").format(name=view.name))
-        said = tr("Busk did not close in order. Kept: {time}. Anything done after that is gone.")
+        said = tr("Busk was not closed properly. Last autosave: {time}. Later changes are lost.")
         said = said.format(time=view.time)
         self._words.setText(said)
         self._more.setText(tr("{count} more").format(count=view.more) if view.more else "")
@@ -188,8 +191,8 @@ class RecoveryController(QObject):
         self.card.discard.connect(self.discard)
         self.card.later.connect(self.close)
         context.window.installEventFilter(self)
-        said = tr("Have a former version of a project back")
-        context.actions.add("file", tr("Open a backup…"), tip=said, do=self.open_backup)
+        said = tr("Open a previous version of a project")
+        context.actions.add("file", tr("Open backup…"), tip=said, do=self.open_backup)
 
     def look(self) -> None:
         """Look for what was left behind, at the start."""
@@ -217,7 +220,7 @@ class RecoveryController(QObject):
             self._offer()
         elif self._offers and not self._at_start:
             self.close()
-            said = tr("What was not saved is offered again at the next start.")
+            said = tr("Unsaved changes are offered for recovery at the next start.")
             self._context.notifications.info(said)
         self._at_start = False
 
@@ -258,8 +261,8 @@ class RecoveryController(QObject):
 
     def _tell_broken(self) -> None:
         for folder in self._broken:
-            sentence = tr("What was kept of an earlier session cannot be read.")
-            hint = tr("It was put aside in {folder}.").format(folder=folder)
+            sentence = tr("The recovery data of a previous session is damaged.")
+            hint = tr("The data was moved to {folder}.").format(folder=folder)
             self._context.notifications.warn(sentence, hint)
 
     def _offer(self) -> None:

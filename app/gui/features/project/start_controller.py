@@ -58,10 +58,10 @@ class StartController(QObject):
         self.veil = DropVeil(context.window)
         context.window.installEventFilter(self)
         self._connect()
-        said = tr("Begin with a scan, or go on with what was open before")
+        said = tr("Start with a scan or continue a recent project")
         context.actions.add("file", tr("Start page"), "Ctrl+Shift+N", said, do=self.show_page)
         context.actions.add(
-            "help", tr("Tour"), tip=tr("Show the main parts of the window, step by step"), do=self.take_tour
+            "help", tr("Tour"), tip=tr("Show the main parts of the window step by step"), do=self.take_tour
         )
 
     def _connect(self) -> None:

@@ -36,11 +36,11 @@ class DropZone(QFrame):
         column.addSpacing(6)
         for text, role in (
             (tr("Drop a scan or a project here"), "name"),
-            (tr("{kinds}. The unit is found, and shown.").format(kinds=KINDS), "caption"),
+            (tr("{kinds}. The unit is detected and shown.").format(kinds=KINDS), "caption"),
         ):
             column.addWidget(_centred(text, role))
         column.addSpacing(10)
-        self.choose = button(tr("Choose a file…"), "primary")
+        self.choose = button(tr("Choose file…"), "primary")
         self.choose.clicked.connect(self.requested)
         column.addWidget(self.choose, alignment=Qt.AlignmentFlag.AlignHCenter)
         column.addStretch(1)
@@ -66,7 +66,7 @@ class DropVeil(QWidget):
 
     def show_for(self, name: str) -> None:
         """Cover the window and name the file."""
-        self._said = tr("Let go to open {name}").format(name=name)
+        self._said = tr("Release to open {name}").format(name=name)
         self.setAccessibleName(self._said)
         self.setGeometry(self._window.rect())
         self.raise_()
@@ -164,7 +164,7 @@ class StartPage(QWidget):
         column = QVBoxLayout(side)
         column.setContentsMargins(_MARGIN, 28, _MARGIN, 24)
         column.setSpacing(8)
-        heading = label(tr("New from a scan"), "page")
+        heading = label(tr("New from scan"), "page")
         heading.setMinimumHeight(self.search.height())
         column.addWidget(heading)
         column.addSpacing(8)
@@ -172,18 +172,18 @@ class StartPage(QWidget):
         self.zone.requested.connect(self.open_requested)
         column.addWidget(self.zone)
         column.addSpacing(16)
-        column.addWidget(label(tr("Or look at a sample"), "secondary"))
+        column.addWidget(label(tr("Or open a sample"), "secondary"))
         column.addLayout(self._samples())
-        tour = button(tr("Take the tour"))
+        tour = button(tr("Start tour"))
         tour.clicked.connect(self.tour_requested)
         column.addWidget(tour)
-        guide = button(tr("First customer in ten minutes"), "quiet")
-        set_tip(guide, tr("In the user guide, which opens in the browser"))
+        guide = button(tr("Quick start"), "quiet")
+        set_tip(guide, tr("Open the user guide in the browser"))
         guide.clicked.connect(self.guide_requested)
         column.addWidget(guide)
         column.addStretch(1)
         self.back = button("", "secondary")
-        set_tip(self.back, tr("Back to what is open  Esc"))
+        set_tip(self.back, tr("Back to the current design (Esc)"))
         self.back.clicked.connect(self.closed)
         self.back.hide()
         column.addWidget(self.back)
@@ -220,7 +220,7 @@ class StartPage(QWidget):
         column.addLayout(head)
         column.addSpacing(16)
         self._nothing = EmptyState(
-            "folder-open", tr("Nothing yet"), tr("Scans and projects that you open stand here with pictures.")
+            "folder-open", tr("No recent files"), tr("Opened scans and projects are listed here with images.")
         )
         self._nothing.setFixedWidth(2 * WIDTH + _APART)
         empty = QHBoxLayout()
@@ -247,8 +247,8 @@ class StartPage(QWidget):
     def _search_field(self) -> QLineEdit:
         search = QLineEdit()
         search.setPlaceholderText(tr("Search"))
-        search.setAccessibleName(tr("Search the recent files"))
-        set_tip(search, tr("Show only files with these letters in their names"))
+        search.setAccessibleName(tr("Search recent files"))
+        set_tip(search, tr("Show only files whose names contain these letters"))
         search.setClearButtonEnabled(True)
         search.setFixedSize(220, 30)
         self._glass = QAction(self)

@@ -68,7 +68,7 @@ class ReportController(QObject):
         self._laid: tuple[ReportDocument | None, str] = (None, "")
         self._whole: Frame | None = None  # its figures are of
         self._occlusion: tuple[object, Floats] | None = None
-        said = tr("Sizes, lengths to cut, measures, pressures and pictures on paper: look, save, print")
+        said = tr("Preview, save or print sizes, cut lengths, measurements, contact pressures and images")
         do = context.actions
         self.action = do.add("file", tr("Report…"), "Ctrl+P", said, do=self.open, of_document=True)
         self.page.closed.connect(self.leave)
@@ -176,18 +176,18 @@ class ReportController(QObject):
             sheet, whole, baked = cast(tuple[Report, Frame, Floats], found)
             self._occlusion, self._whole = (body, baked), whole
             finish, left = partial(done, ReportDocument(sheet, {}, self._colours(frame))), self._leave_off
-            drawing, pieces = tr("Drawing the pictures of the sheet"), render_images(whole, baked)
+            drawing, pieces = tr("Drawing report images"), render_images(whole, baked)
             self._job = context.jobs.run_pieces(drawing, pieces, finish, lambda _: finish({}), left=left)
 
         def done(plain: ReportDocument, pictures: Mapping[str, QImage]) -> None:
             self._frame, self._asked, self._job = frame, None, None
             self._take(replace(plain, pictures=pictures))
 
-        self._job = context.jobs.run(tr("Making the sheet"), work, draw, self._fail, left=self._leave_off)
+        self._job = context.jobs.run(tr("Creating report…"), work, draw, self._fail, left=self._leave_off)
 
     def _leave_off(self) -> None:
         self._job = self._asked = None
-        self._refused = tr("Stopped: the sheet is made when you open it again.")
+        self._refused = tr("Stopped. Open the report again to create it.")
         self._show()
 
     def _fail(self, error: Exception) -> None:
@@ -196,7 +196,7 @@ class ReportController(QObject):
             self._refused = render(error.text)
         else:
             self._context.notifications.error(error)
-            self._refused = tr("The sheet could not be made.")
+            self._refused = tr("The report could not be created.")
         self._show()
 
     def _take(self, handout: ReportDocument) -> None:
@@ -222,12 +222,12 @@ class ReportController(QObject):
     def _waits_for(self) -> str:
         """Return why there is no sheet yet."""
         if self._context.session.failure is not None:
-            return tr("The shape could not be computed: there is no sheet of this design.")
+            return tr("The shape could not be computed: no report is available for this design.")
         if self._context.session.is_converged:
-            return tr("The sheet is being made.")
+            return tr("Creating report…")
         if self._context.session.is_at_rest:
-            return tr("The sheet is of what is applied: apply what is asked for, or cancel it, first.")
-        return tr("The sheet is made as soon as the run rests.")
+            return tr("Apply or cancel the pending targets before creating a report.")
+        return tr("The report is created when the solver has converged.")
 
     def _heading(self) -> Heading:
         document = self._context.session.document
@@ -252,14 +252,14 @@ class ReportController(QObject):
 
     def _save_pdf(self) -> None:
         pages = self.pages
-        if (path := self._asked_for(tr("Save the sheet"), ".pdf", "PDF (*.pdf)")) and pages is not None:
+        if (path := self._asked_for(tr("Save report"), ".pdf", "PDF (*.pdf)")) and pages is not None:
             self._write(path, lambda: write_pdf(path, pages, self._context.session.name))
 
     def _save_data(self) -> None:
-        self._save_text(tr("Save the data of the sheet"), ".json", "JSON (*.json)")
+        self._save_text(tr("Save report data"), ".json", "JSON (*.json)")
 
     def _save_table(self) -> None:
-        self._save_text(tr("Save the figures of the sheet"), ".csv", "CSV (*.csv)")
+        self._save_text(tr("Save report values"), ".csv", "CSV (*.csv)")
 
     def _save_text(self, title: str, ending: str, kinds: str) -> None:
         path = self._asked_for(title, ending, kinds)
@@ -270,7 +270,7 @@ class ReportController(QObject):
         self._write(path, lambda: write_text(Path(path).absolute(), text, code))
 
     def _asked_for(self, title: str, ending: str, kinds: str) -> str:
-        name = f"{self._context.session.name}-{tr('sheet')}{ending}"
+        name = f"{self._context.session.name}-{tr('report')}{ending}"
         return ask_save(self._context.window, title, name, kinds, ending)
 
     def _write(self, path: str, write: Callable[[], None]) -> None:
@@ -287,7 +287,7 @@ class ReportController(QObject):
             return
         painter = QPainter()
         if not painter.begin(printer):
-            said = Message("The sheet could not be printed."), Message("Choose another printer.")
+            said = Message("The report could not be printed."), Message("Choose another printer.")
             self._context.notifications.error(ProjectError(*said), "print")
             return
         wished = range(pages.count)

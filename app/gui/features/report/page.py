@@ -49,11 +49,11 @@ class ReportPage(QWidget):
         self.zoom = Segment([("page", tr("Whole page")), ("width", tr("Full width"))], wide=True)
         self.zoom.chosen.connect(self.paper.fit)
         self.zoom.set_choice("width")
-        self.back = BackButton(tr("Back to the work"))
+        self.back = BackButton(tr("Close report"))
         self.back.clicked.connect(self.closed)
         self.does = {
             "print": button(tr("Print…")),
-            "csv": button(tr("Figures (CSV)…")),
+            "csv": button(tr("Values (CSV)…")),
             "json": button(tr("Data (JSON)…")),
             "pdf": button(tr("Save as PDF…"), "primary"),
         }
@@ -114,12 +114,12 @@ class ReportPage(QWidget):
         lay.setSpacing(4)
         lay.addWidget(self.back, alignment=Qt.AlignmentFlag.AlignLeft)
         lay.addSpacing(8)
-        lay.addWidget(label(tr("Fitting sheet"), "page"))
+        lay.addWidget(label(tr("Fitting report"), "page"))
         lay.addWidget(self.facts)
         for title, part in (
-            (tr("Customer, may be empty"), self.customer),
-            (tr("Language of the sheet"), self.languages),
-            (tr("On the screen"), self.zoom),
+            (tr("Customer (optional)"), self.customer),
+            (tr("Report language"), self.languages),
+            (tr("Page zoom"), self.zoom),
         ):
             lay.addSpacing(12)
             lay.addWidget(label(title, "caption"))
@@ -146,7 +146,7 @@ class _PageArea(QScrollArea):
         self.setFrameShape(QFrame.Shape.NoFrame)
         self.setWidgetResizable(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setAccessibleName(tr("Pages of the sheet"))
+        self.setAccessibleName(tr("Report pages"))
         self._ground = _Background()
         self.setWidget(self._ground)
         self._lay = QVBoxLayout(self._ground)

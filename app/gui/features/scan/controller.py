@@ -103,7 +103,7 @@ class ScanController(QObject):
         if pose.is_certain:
             return
         if source.up and source.front:
-            unsure = tr("Busk is not sure of the unit, up or front of this scan.")
+            unsure = tr("Unit, up or front of this scan is ambiguous.")
             self._context.notifications.warn(unsure, pose.reason, topic=_QUESTION)
         else:
             self._ask(stages.body, None)
@@ -143,7 +143,7 @@ class ScanController(QObject):
             return
         scan = design.scan
         if not key:
-            text, scan = tr("Unit, up and front as found"), scan.set_up(unit=None, up=None, front=None)
+            text, scan = tr("Unit, up and front reset"), scan.set_up(unit=None, up=None, front=None)
         elif key == "unit":
             text, scan = tr("Scan in {unit}").format(unit=value), scan.set_up(unit=value)
         elif key == "up":
@@ -165,7 +165,7 @@ class ScanController(QObject):
 
     def stand_upright(self, up: str) -> None:
         """Set a leaning body upright, with the direction of the file that is up."""
-        self._rotate(up, tr("Stand upright"))
+        self._rotate(up, tr("Set upright"))
 
     def _rotate(self, up: str, text: str) -> None:
         design = self._session.stuck.design if self._session.stuck else self._session.design
@@ -209,7 +209,7 @@ class ScanController(QObject):
                 self._session.open_design(replace(waiting, scan=waiting.scan.set_up(up=up, front=front)))
         elif design is not None:
             self._session.change(
-                {"scan": design.scan.set_up(up=up, front=front)}, tr("Front chosen by its picture")
+                {"scan": design.scan.set_up(up=up, front=front)}, tr("Front chosen from image")
             )
 
     def leave_question(self) -> None:
@@ -220,7 +220,7 @@ class ScanController(QObject):
         if self._session.stuck:
             self._say_stuck(self._session.stuck)
         elif waiting is None and frame is not None and not frame.stages.body.pose.is_certain:
-            self._say_unsure(tr("Please check it at the Scan step."))
+            self._say_unsure(tr("Check it at the Scan step."))
 
     # -- inside
 
@@ -248,13 +248,13 @@ class ScanController(QObject):
         """Have a picture painted for each way the body may stand."""
         self._asked_for = waiting
         if not body.pose.is_certain:
-            self._say_unsure(tr("Please choose a picture below."))
+            self._say_unsure(tr("Choose an image below."))
         clay = QColor(APPEARANCES[tokens_of(self._context.window).dark].clay)
         colour, scale = (clay.red(), clay.green(), clay.blue()), self._context.view.devicePixelRatioF()
         size = round(PICTURE[0] * scale), round(PICTURE[1] * scale)
         self._context.jobs.cancel(self._painting)
         self._painting = self._context.jobs.run(
-            tr("Painting how the scan may stand"),
+            tr("Rendering orientation options…"),
             lambda progress: option_thumbnails(body, size, colour, progress),
             self._show_question,
             self._show_no_question,
@@ -272,11 +272,11 @@ class ScanController(QObject):
         """Without pictures nothing can be chosen below: the Scan step asks the same."""
         logging.error("the pictures of the question failed", exc_info=error)
         self._painting = None
-        self._say_unsure(tr("Please check it at the Scan step."))
+        self._say_unsure(tr("Check it at the Scan step."))
 
     def _say_unsure(self, ask: str) -> None:
         self._context.notifications.withdraw(_QUESTION)
-        unsure = tr("Busk is not sure how this scan stands.")
+        unsure = tr("The scan orientation is ambiguous.")
         self._context.notifications.warn(unsure, ask, topic=_QUESTION)
 
 

@@ -47,17 +47,15 @@ class ScanEditor(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(3)
-        self.low = LevelField(tr("Lowest level to keep, above the lowest point of the scan"), self._with_low)
-        self.high = LevelField(
-            tr("Highest level to keep, above the lowest point of the scan"), self._with_high
-        )
+        self.low = LevelField(tr("Lower crop height above the lowest point of the scan"), self._with_low)
+        self.high = LevelField(tr("Upper crop height above the lowest point of the scan"), self._with_high)
         self.low.entered.connect(lambda value: self._emit(self._with_low(value), tr("Crop scan")))
         self.high.entered.connect(lambda value: self._emit(self._with_high(value), tr("Crop scan")))
         self._extent = label("", "secondary")
         self.sides = Segment(
             [("", tr("Off")), ("left", tr("Keep left")), ("right", tr("Keep right"))], small=True
         )
-        set_tip(self.sides, tr("Replace the other half of the body with a mirror image of this one"))
+        set_tip(self.sides, tr("Replace the other half of the body with a mirror image of this half"))
         self.sides.chosen.connect(
             lambda side: self._emit(replace(self._view.edits, kept=side), tr("Mirror scan"))
         )
@@ -66,8 +64,8 @@ class ScanEditor(QWidget):
         self.fills: list[QWidget] = []
         self._add(column, tr("Crop by height"), self._crop())
         self._add(column, tr("Mirror half"), self.sides)
-        self._add(column, tr("Holes that stay open"), None)
-        self._none = sentence(tr("None; where neck, arms or hips were cut is no hole."))
+        self._add(column, tr("Open holes"), None)
+        self._none = sentence(tr("None, apart from the cut edges at neck, arms and hips."))
         self._more = sentence()
         column.addWidget(self._none)
         column.addLayout(self._list)
@@ -121,7 +119,7 @@ class ScanEditor(QWidget):
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(8)
         fill = button(tr("Fill"))
-        set_tip(fill, tr("Fill this hole along the curvature of the skin around it"))
+        set_tip(fill, tr("Fill this hole along the curvature of the surrounding skin"))
         fill.setAccessibleDescription(hole.text)
         fill.clicked.connect(lambda: self._emit(self._view.edits.with_filled(hole.centre), tr("Fill hole")))
         row.addWidget(sentence(hole.text), 1)
@@ -134,8 +132,8 @@ class ScanEditor(QWidget):
         row.setContentsMargins(0, 3, 0, 0)
         row.setSpacing(6)
         self.fill_all, self.reopen = button(tr("Fill all")), button(tr("Reopen holes"), "quiet")
-        set_tip(self.fill_all, tr("Fill every hole of the scan"))
-        set_tip(self.reopen, tr("Remove the skin from all holes that were filled by hand"))
+        set_tip(self.fill_all, tr("Fill all holes of the scan"))
+        set_tip(self.reopen, tr("Reopen all holes that were filled manually"))
         self.fill_all.clicked.connect(
             lambda: self._emit(replace(self._view.edits, filled=(), fill_all=True), tr("Fill all holes"))
         )

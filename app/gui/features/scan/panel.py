@@ -44,8 +44,8 @@ class ScanPanel(QWidget):
         self._empty = EmptyState(
             "folder-open",
             tr("No scan yet"),
-            tr("Open a body scan, or drop one on the window: {kinds}.").format(kinds=KINDS),
-            tr("Open a scan…"),
+            tr("Open a body scan, or drop a file on the window: {kinds}.").format(kinds=KINDS),
+            tr("Open scan…"),
         )
         self._empty.requested.connect(self.open_requested)
         head = QVBoxLayout()
@@ -77,7 +77,7 @@ class ScanPanel(QWidget):
         self._notes.setText("\n".join(view.notes))
         self._notes.setVisible(bool(view.notes))
         done = [each for each in view.repairs if not _stays(each)]
-        self._repairs.setText(_listed(done) or tr("Nothing had to be repaired."))
+        self._repairs.setText(_listed(done) or tr("No repairs needed."))
         self.lean.setEnabled(view.lean is not None)
         self.lean.show_lean(view.lean or LeanView(0.0, 0.0))
         self.edits.setVisible(view.edits is not None)
@@ -102,11 +102,11 @@ class ScanPanel(QWidget):
         for each in (self._file, self._triangles, self._notes):
             column.addWidget(each)
         self._group(column, tr("Unit of the file"), self.units)
-        self._group(column, tr("How the body stands in the file"), self._ways())
-        self._group(column, tr("Axis of the file that points up"), self.ups)
-        self._group(column, tr("Axis of the file that the chest faces"), self.fronts)
+        self._group(column, tr("Orientation in the file"), self._ways())
+        self._group(column, tr("Axis that points up"), self.ups)
+        self._group(column, tr("Axis that the chest faces"), self.fronts)
         self._group(column, tr("Lean of the body in the file"), self.lean)
-        self._group(column, tr("Why"), self._reason)
+        self._group(column, tr("Reasons"), self._reason)
         column.addWidget(self.edits)
         self._group(column, tr("Repairs"), self._repairs)
         column.addSpacing(14)
@@ -122,9 +122,9 @@ class ScanPanel(QWidget):
     def _choices(self, key: str, choices: list[tuple[str, str]]) -> Segment:
         result = Segment(choices, small=True)
         tips = {
-            "unit": tr("What a length of 1 in the file is; all measures follow from it"),
-            "up": tr("The axis of the file that points to the head"),
-            "front": tr("The axis of the file that the body faces"),
+            "unit": tr("Choose the length unit of the file; all measurements depend on it"),
+            "up": tr("Choose the axis of the file that points to the head"),
+            "front": tr("Choose the axis of the file that the body faces"),
         }
         set_tip(result, tips[key])
         result.chosen.connect(lambda value: self.value_set.emit(key, value))
@@ -136,10 +136,10 @@ class ScanPanel(QWidget):
         row = QHBoxLayout(result)
         row.setContentsMargins(0, 3, 0, 0)
         row.setSpacing(6)
-        self.pictures = button(tr("Choose by pictures…"))
+        self.pictures = button(tr("Choose from images…"))
         self.pictures.clicked.connect(self.front_requested)
-        self._forget = button(tr("As found"), "quiet")
-        set_tip(self._forget, tr("Forget what was said of unit, up and front: find them again"))
+        self._forget = button(tr("Reset"), "quiet")
+        set_tip(self._forget, tr("Reset unit, up and front to the detected values"))
         self._forget.clicked.connect(lambda: self.value_set.emit("", ""))
         for each in (self.pictures, self._forget):
             row.addWidget(each)

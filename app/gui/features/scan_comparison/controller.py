@@ -51,7 +51,7 @@ class ScanComparisonController(QObject):
         super().__init__(context.session)
         self._context, self._mapped = context, False
         self.page = ScanComparisonPage()
-        self.door = NavigationRow(tr("Compare with a worn scan"))
+        self.door = NavigationRow(tr("Compare with fitting scan"))
         self.worn: FittingScan | None = None
         self._of: Body | None = None  # the body that a scan was chosen for
         self._path, self._unit, self._thickness = "", "", 0.0
@@ -63,8 +63,8 @@ class ScanComparisonController(QObject):
         self._connect()
 
     def _connect(self) -> None:
-        said = tr("Predicted less real, from a scan of the same person with the garment on")
-        begin = tr("Compare with a worn scan…")
+        said = tr("Compare the prediction with a scan of the worn garment")
+        begin = tr("Compare with fitting scan…")
         self._context.actions.add("file", begin, tip=said, do=self.begin, of_document=True)
         self._context.session.design_changed.connect(lambda _: self.follow())
         self._context.session.opened.connect(lambda _: self.close())
@@ -100,7 +100,7 @@ class ScanComparisonController(QObject):
 
     def choose(self) -> None:
         """Ask for the worn scan and read it."""
-        if path := ask_scan(self._context.window, tr("Open a worn scan")):
+        if path := ask_scan(self._context.window, tr("Open fitting scan")):
             self.read(path)
 
     def read(self, path: str) -> None:
@@ -113,7 +113,7 @@ class ScanComparisonController(QObject):
         self._context.notifications.withdraw(_REFUSED)
         source = ScanSource(path, unit=self._unit or None)
         self._reading = self._context.jobs.run(
-            tr("Reading the worn scan"),
+            tr("Reading fitting scan…"),
             lambda progress: read_fitting_scan(frame.stages, source, progress),
             lambda worn: self._take(cast(FittingScan, worn)),
             lambda error: self._context.notifications.error(error, _REFUSED),
@@ -127,7 +127,7 @@ class ScanComparisonController(QObject):
             return
         design = frame.stages.design
         job = self._context.jobs.run(
-            tr("Calibrating"),
+            tr("Calibrating…"),
             lambda progress: calibrate(frame.stages, worn, thickness=thickness, progress=progress),
             lambda found: self._take_found(design, cast(CalibrationResult, found)),
             self._fail_to_fit,
@@ -147,7 +147,7 @@ class ScanComparisonController(QObject):
         if self._found is None or self._found[0] is not self._context.session.design:
             return
         found, self._found = self._found[1], None
-        said = tr("Calibrated on {file}").format(file=found.calibration.worn)
+        said = tr("Calibration with {file}").format(file=found.calibration.worn)
         self._context.session.edit(lambda _: found.design, said)
 
     def _tell_unit(self, unit: str) -> None:
@@ -191,7 +191,7 @@ class ScanComparisonController(QObject):
             self._context.jobs.cancel(self._comparing[0])
         thickness = self._thickness
         job = self._context.jobs.run(
-            tr("Comparing with the worn scan"),
+            tr("Comparing with fitting scan…"),
             lambda progress: compare(frame.stages, frame.control_points, worn, thickness),
             lambda found: self._take_difference(frame, cast(Residuals, found)),
             self._context.notifications.error,

@@ -60,21 +60,21 @@ class ScanComparisonPage(QWidget):
         self.file, self.lies = ElidedLabel(), sentence("", "secondary")
         self.file.setFont(font("name"))
         self.unsure = sentence(
-            tr("± is 95 % of what noise of the scans makes; another posture or breath is not in it."),
+            tr("± covers 95 % of the scan noise; differences in posture or breathing are not included."),
             "caption",
         )
         self.bust, self.kept, self.better = (sentence("", role) for role in ("secondary", "caption", "name"))
         self.record, self.surely = sentence("", "secondary"), sentence("", "secondary")
-        self.choose = button(tr("Choose a worn scan…"))
+        self.choose = button(tr("Choose fitting scan…"))
         self.unit = Segment(
-            (("", tr("Guessed")), ("mm", "mm"), ("cm", "cm"), ("m", "m"), ("inch", tr("inch"))),
+            (("", tr("Automatic")), ("mm", "mm"), ("cm", "cm"), ("m", "m"), ("inch", tr("inch"))),
             True,
             wide=True,
         )
         self.unit.set_choice("")
-        self.thickness = ValueEdit("mm", tr("Thickness of the cloth"), widest="20.0")
+        self.thickness = ValueEdit("mm", tr("Cloth thickness"), widest="20.0")
         self.thickness.show_value(0.0)
-        self.look = button(tr("Show on the body"))
+        self.look = button(tr("Show on body"))
         self.calibrate, self.apply = button(tr("Calibrate")), button(tr("Apply"), "primary")
         self._figures, self._numbers = QGridLayout(), QGridLayout()
         self._cells: list[QLabel] = []
@@ -100,7 +100,7 @@ class ScanComparisonPage(QWidget):
         column = QVBoxLayout(inside)
         column.setContentsMargins(18, 4, 18, 16)
         column.setSpacing(8)
-        said = tr("A scan of the same person with the garment on tells how near the prediction comes.")
+        said = tr("Compare the prediction with a scan of the same person in the garment.")
         column.addWidget(sentence(said))
         column.addWidget(self.record)
         for each in (self.file, self.lies):
@@ -108,7 +108,7 @@ class ScanComparisonPage(QWidget):
         column.addWidget(self.choose, 0, Qt.AlignmentFlag.AlignLeft)
         column.addWidget(label(tr("Unit of the scan"), "secondary"))
         column.addWidget(self.unit)  # under its title: beside it the page is wider than the inspector
-        column.addLayout(_row(tr("Thickness of the cloth"), self.thickness))
+        column.addLayout(_row(tr("Cloth thickness"), self.thickness))
         self._compared, self._found = QWidget(), QWidget()
         self._lay_compared(QVBoxLayout(self._compared))
         self._lay_found(QVBoxLayout(self._found))
@@ -116,7 +116,7 @@ class ScanComparisonPage(QWidget):
         column.addWidget(self._found)
         column.addStretch(1)
         area = QScrollArea()
-        area.setAccessibleName(tr("Worn scan"))
+        area.setAccessibleName(tr("Fitting scan"))
         area.setWidgetResizable(True)
         area.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # not by a click on a button, which takes none itself
         area.setFrameShape(QFrame.Shape.NoFrame)
@@ -125,14 +125,14 @@ class ScanComparisonPage(QWidget):
         outer = QVBoxLayout(self)
         outer.setContentsMargins(0, 0, 0, 0)
         outer.setSpacing(0)
-        outer.addLayout(page_head(tr("Worn scan"), tr("Back to the measures"), self.closed))
+        outer.addLayout(page_head(tr("Fitting scan"), tr("Back to measurements"), self.closed))
         outer.addWidget(area, 1)
 
     def _lay_compared(self, column: QVBoxLayout) -> None:
         column.setContentsMargins(0, 4, 0, 0)
         column.setSpacing(6)
         column.addWidget(hairline())
-        column.addWidget(label(f"{tr('Predicted less real')} [{length_unit()}]", "name"))
+        column.addWidget(label(f"{tr('Residuals (prediction − scan)')} [{length_unit()}]", "name"))
         column.addLayout(self._figures)
         column.addWidget(self.bust)
         row = QHBoxLayout()
@@ -143,7 +143,7 @@ class ScanComparisonPage(QWidget):
         column.addLayout(row)
         set_tip(
             self.calibrate,
-            tr("Find the numbers of tissue and lines at which the prediction comes nearest to the worn scan"),
+            tr("Fit tissue and line stiffness to the fitting scan"),
         )
 
     def _lay_found(self, column: QVBoxLayout) -> None:
@@ -155,7 +155,9 @@ class ScanComparisonPage(QWidget):
         column.addWidget(self.surely)
         column.addWidget(self.kept)
         column.addWidget(self.unsure)
-        column.addWidget(sentence(tr("These numbers hold for this person and this garment."), "caption"))
+        column.addWidget(
+            sentence(tr("These values are valid for this person and this garment only."), "caption")
+        )
         column.addWidget(self.apply, 0, Qt.AlignmentFlag.AlignLeft)
         for grid in (self._figures, self._numbers):
             grid.setHorizontalSpacing(10)
@@ -170,7 +172,7 @@ class ScanComparisonPage(QWidget):
         for part, text in (*texts, *others, (self.surely, view.surely)):
             part.setText(text)
             part.setVisible(bool(text))
-        self.choose.setText(tr("Choose another…") if view.file else tr("Choose a worn scan…"))
+        self.choose.setText(tr("Choose another…") if view.file else tr("Choose fitting scan…"))
         self._compared.setVisible(bool(view.rows))
         self._found.setVisible(bool(view.better))
         self.calibrate.setEnabled(view.ready)
@@ -181,15 +183,15 @@ class ScanComparisonPage(QWidget):
             cell.deleteLater()
         self._cells = []
         rows = [(row.title, row.mean, row.rms, row.most) for row in view.rows]
-        self._fill(self._figures, ("", tr("Mean"), tr("rms"), "95 %"), rows, [view.faint] * len(rows))
+        self._fill(self._figures, ("", tr("Mean"), tr("RMS"), "95 %"), rows, [view.faint] * len(rows))
         rows = [(row.title, row.before, row.after, row.plus_minus) for row in view.numbers]
         weak = [not row.told for row in view.numbers]
-        self._fill(self._numbers, ("", tr("As it is"), tr("Found"), "±"), rows, weak)
+        self._fill(self._numbers, ("", tr("Current"), tr("Calibrated"), "±"), rows, weak)
 
     def show_map(self, on: bool) -> None:
         """Tell by the button whether the map lies on the body."""
         self._mapped = on
-        self.look.setText(tr("Hide the map") if on else tr("Show on the body"))
+        self.look.setText(tr("Hide map") if on else tr("Show on body"))
 
     def _fill(
         self, grid: QGridLayout, heads: Sequence[str], rows: Sequence[Sequence[str]], faint: Sequence[bool]

@@ -136,10 +136,10 @@ class SectionsController(QObject):
     def export(self) -> None:
         """Ask for a place and write the curves there."""
         name = f"{self._context.session.name}-{self.axis}.csv"
-        path = ask_save(self._context.window, tr("Export the curves as CSV…"), name, "CSV (*.csv)", ".csv")
+        path = ask_save(self._context.window, tr("Export curves as CSV…"), name, "CSV (*.csv)", ".csv")
         if not path or self._slicer is None:
             return
-        plane, curves, said = self._slicer.plane, self.curves, tr("Curves written to {name}.")
+        plane, curves, said = self._slicer.plane, self.curves, tr("Curves saved to {name}.")
         write_file(
             self._context.notifications, "curves", path, lambda to: write_profile(to, plane, curves), said
         )

@@ -54,8 +54,8 @@ class SectionPanel(FloatingPanel):
         super().__init__(parent)
         self._axes = {
             "x": Quantity("x", tr("Side profile"), "", 0.0),
-            "z": Quantity("z", tr("Level section"), "", 0.0),
-            "y": Quantity("y", tr("Section from the front"), "", 0.0),
+            "z": Quantity("z", tr("Horizontal section"), "", 0.0),
+            "y": Quantity("y", tr("Frontal section"), "", 0.0),
         }
         column = QVBoxLayout()
         column.setContentsMargins(6, 2, 2, 4)
@@ -63,7 +63,7 @@ class SectionPanel(FloatingPanel):
         column.addLayout(self._head())
         self.plot = SectionPlot()
         self.plot.setAccessibleName(tr("Curves of the section, in {unit}").format(unit=length_unit()))
-        set_tip(self.plot, tr("Wheel: zoom. Drag: move. Double click: all that changed."))
+        set_tip(self.plot, tr("Wheel: zoom. Drag: move. Double-click: fit changed region."))
         column.addWidget(self.plot)
         column.addLayout(self._place_row())
         self.keys = CurveKeys()
@@ -105,8 +105,8 @@ class SectionPanel(FloatingPanel):
             part.setVisible(not folded)
         self.fold.show_icon("caret-up" if folded else "caret-down")
         self.fold.setEnabled(not self._cramped)
-        said = tr("Show the curves") if folded else tr("Fold the curves away")
-        self.fold.setAccessibleName(tr("No room for the curves here") if self._cramped else said)
+        said = tr("Show curves") if folded else tr("Collapse curves")
+        self.fold.setAccessibleName(tr("Not enough space for curves") if self._cramped else said)
         set_tip(self.fold, self.fold.accessibleName())
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
@@ -123,13 +123,13 @@ class SectionPanel(FloatingPanel):
         row = QHBoxLayout()
         row.setSpacing(6)
         self.slider = PlaneSlider()
-        self.slider.setAccessibleName(tr("Place of the section plane"))
-        set_tip(self.slider, tr("Move the section plane; ← → {step}").format(step=length(arrow_step(), 0)))
+        self.slider.setAccessibleName(tr("Position of the section plane"))
+        set_tip(self.slider, tr("Move section plane; ← → {step}").format(step=length(arrow_step(), 0)))
         self.slider.setSingleStep(STEPS)
         self.slider.setPageStep(10 * STEPS)
         self.slider.valueChanged.connect(lambda value: self.moved.emit(value * _place()))
         self._axis = label("", "caption")
-        self.place = ValueEdit("mm", tr("Place of the section plane"), widest="−888.8")
+        self.place = ValueEdit("mm", tr("Position of the section plane"), widest="−888.8")
         self.place.entered.connect(self.moved)
         row.addWidget(self.slider, 1)
         row.addWidget(self._axis)
@@ -140,7 +140,7 @@ class SectionPanel(FloatingPanel):
         head = QHBoxLayout()
         head.setSpacing(2)
         self.title = QuantityTitle(list(self._axes.values()))
-        set_tip(self.title, tr("Choose the plane, or write its curves to a file"))
+        set_tip(self.title, tr("Choose the plane or export its curves"))
         self.title.chosen.connect(self.axis_chosen)
         menu = self.title.menu
         menu.addSeparator()
@@ -152,11 +152,11 @@ class SectionPanel(FloatingPanel):
                 lambda _=False, side=side: self.through_requested.emit(side)
             )
         menu.addSeparator()
-        self.export = menu.addAction(tr("Export the curves as CSV…"))
+        self.export = menu.addAction(tr("Export curves as CSV…"))
         self.export.triggered.connect(self.export_requested)
         self.fold = ToolButton("caret-down", size=14, room=24)
         self.fold.clicked.connect(self._turn_fold)
-        close = ToolButton("x", tr("Close the section  P"), size=14, room=24)
+        close = ToolButton("x", tr("Close section (P)"), size=14, room=24)
         close.clicked.connect(self.closed)
         head.addWidget(self.title)
         head.addStretch(1)
@@ -233,13 +233,11 @@ class CurveKeys(QWidget):
         self._words = {
             "before": tr("Before"),
             "after": tr("After"),
-            "wished": tr("Wished"),
+            "wished": tr("Target"),
             "other": tr("other side, mirrored"),
-            "band": tr("may be off"),
+            "band": tr("uncertainty"),
         }
-        set_tip(
-            self, tr("Each place of the skin lies within the band in 95 % of cases, if errors are normal.")
-        )
+        set_tip(self, tr("Band: 95 % of cases at each point of the skin if errors are normally distributed."))
         self.setFixedHeight(self.sizeHint().height())
 
     def sizeHint(self) -> QSize:

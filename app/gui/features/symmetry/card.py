@@ -122,13 +122,13 @@ class SymmetryCard(QWidget):
         self._faint = self._mapped = False
         self.says = sentence("", "secondary")
         self.hint, self.notes = sentence("", "caption"), sentence("", "caption")
-        self.fold = Disclosure(tr("More figures, and what they rest on"))
+        self.fold = Disclosure(tr("More values and sources"))
         self.fold.toggled.connect(lambda _: self._show())
-        self.look = button(tr("Show on the body"))
-        set_tip(self.look, tr("Lay the map Left and right over the body (C)"))
+        self.look = button(tr("Show on body"))
+        set_tip(self.look, tr("Show the map Symmetry on the body (C)"))
         self.look.clicked.connect(lambda: self.shown.emit(not self._mapped))
-        self.make = button(tr("Make even…"))
-        set_tip(self.make, tr("Find the lengths at which both bust points lie alike, and ask for them"))
+        self.make = button(tr("Balance sides…"))
+        set_tip(self.make, tr("Compute line lengths that balance left and right"))
         self.make.clicked.connect(self.requested)
         self.summary: SymmetryView | None = None
         self._grid = QGridLayout()
@@ -144,7 +144,7 @@ class SymmetryCard(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(4, 4, 4, 8)
         column.setSpacing(4)
-        column.addWidget(label(tr("Left and right"), "heading"))
+        column.addWidget(label(tr("Symmetry"), "heading"))
         column.addWidget(self.says)
         for place, (title, where) in enumerate(self._heads(), start=1):
             title.setAlignment(where | Qt.AlignmentFlag.AlignVCenter)
@@ -182,7 +182,7 @@ class SymmetryCard(QWidget):
     def show_map(self, on: bool) -> None:
         """Tell by the button whether the map lies on the body."""
         self._mapped = on
-        self.look.setText(tr("Hide the map") if on else tr("Show on the body"))
+        self.look.setText(tr("Hide map") if on else tr("Show on body"))
 
     def _show(self) -> None:
         summary, unfolded = self.summary, self.fold.isChecked()

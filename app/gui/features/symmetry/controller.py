@@ -56,7 +56,7 @@ class SymmetryController(QObject):
         self.card = SymmetryCard()
         self._shown: tuple[Frame, BeforeAfter] | None = None
         self._balancing: tuple[Job, Design] | None = None
-        title = tr("Comparing left and right")
+        title = tr("Comparing left and right…")
         self._cache = FrameCache(
             context.session,
             context.jobs,
@@ -120,7 +120,7 @@ class SymmetryController(QObject):
         if frame is None or not self._session.is_converged or self.is_balancing:
             return
         job = self._context.jobs.run(
-            tr("Making left and right even"),
+            tr("Balancing sides…"),
             lambda progress: _balance(frame.stages, progress),
             lambda made: self._propose(frame.stages.design, cast("BalanceResult", made)),
             self._fail,
@@ -147,7 +147,7 @@ class SymmetryController(QObject):
             return
         template = read_template(design.template)
         titles = listed(split_titles(design, made.split))
-        said = tr("Left and right apart: {lines}").format(lines=titles)
+        said = tr("Left and right separated: {lines}").format(lines=titles)
         self.targets_proposed.emit(made.goals, lambda before: split_sides(before, template), said, limit)
 
 

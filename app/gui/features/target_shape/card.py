@@ -49,7 +49,7 @@ class TargetCard(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
-        column.addLayout(page_head(tr("Ask for the result"), tr("Leave without a change (Esc)"), self.closed))
+        column.addLayout(page_head(tr("Target shape"), tr("Cancel without changes (Esc)"), self.closed))
         column.addWidget(self._scroll_area(), 1)
         column.addWidget(hairline())
         column.addLayout(self._foot())
@@ -71,7 +71,7 @@ class TargetCard(QWidget):
         column.addLayout(self._said())
         column.addStretch(1)
         area = QScrollArea()
-        area.setAccessibleName(tr("Ask for the result"))
+        area.setAccessibleName(tr("Target shape"))
         area.setWidgetResizable(True)
         area.setFrameShape(QFrame.Shape.NoFrame)
         area.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click on a button leaves the keyboard where it is
@@ -82,9 +82,9 @@ class TargetCard(QWidget):
     def _hands(self) -> QHBoxLayout:
         row = QHBoxLayout()
         row.setSpacing(4)
-        hands = [("bust", tr("Bust point")), ("apex", tr("Foremost place")), ("profile", tr("Profile"))]
+        hands = [("bust", tr("Bust point")), ("apex", tr("Apex")), ("profile", tr("Profile"))]
         self.hand = Segment(hands, small=True, wide=True)
-        self.hand.setAccessibleName(tr("What is dragged on the body"))
+        self.hand.setAccessibleName(tr("Type of target"))
         self.hand.chosen.connect(self._choose_hand)
         self.link = ToolButton("link", tr("Drag left and right together"), size=16, room=28)
         self.link.setCheckable(True)
@@ -98,7 +98,7 @@ class TargetCard(QWidget):
         """Return the heading of the columns."""
         heading = QWidget()
         row = QHBoxLayout(heading)
-        titles = tr("Now"), tr("Target"), tr("Result (change)")
+        titles = tr("Current"), tr("Target"), tr("Result (change)")
         now, target, result = (label(words, "caption") for words in titles)
         now.setAlignment(Qt.AlignmentFlag.AlignRight)
         columns(row, now, target, result)
@@ -108,7 +108,7 @@ class TargetCard(QWidget):
 
     def _more(self) -> QVBoxLayout:
         more, row = QVBoxLayout(), QHBoxLayout()
-        self.add = button(tr("Add a wish"), "quiet")
+        self.add = button(tr("Add target…"), "quiet")
         self.add.clicked.connect(self._ask_more)
         self.optional = QCheckBox(tr("Use inactive lines"))
         self.optional.clicked.connect(self.optional_chosen)
@@ -187,7 +187,7 @@ class TargetCard(QWidget):
 
     def show_help(self, shown: bool, locked: bool = False) -> None:
         """Take Apply away while lines are missing, or all ``locked``; the button leads out of that."""
-        self.help_.setText(tr("Unlock them") if locked else tr("Choose lines"))
+        self.help_.setText(tr("Unlock lines") if locked else tr("Choose lines"))
         self.help_.setVisible(shown)
         self.apply.setVisible(not shown)
         for part in (self.add, self.link, self.optional, self.hand):
@@ -195,7 +195,7 @@ class TargetCard(QWidget):
 
     def show_optional(self, words: str, chosen: bool) -> None:
         """Show whether lines that are off may be switched on; without ``words`` there are none."""
-        set_tip(self.optional, words or tr("No inactive line can move the body"))
+        set_tip(self.optional, words or tr("No inactive line can reshape the body"))
         self.optional.setEnabled(bool(words))
         self.optional.setChecked(chosen)
 

@@ -74,10 +74,10 @@ class TargetShapeController(QObject):
 
     def _connect(self) -> None:
         context, card, session = self._context, self.card, self._session
-        said = tr("Say where the bust is to be; Busk finds the lengths of the worn lines")
+        said = tr("Set target positions; Busk computes the lengths of the active lines")
         do = context.actions
         do.rule("lines")
-        do.add("lines", tr("Ask for the result…"), "A", said, do=self.begin, of_document=True)
+        do.add("lines", tr("Target shape…"), "A", said, do=self.begin, of_document=True)
         card.entered.connect(self.wish)
         card.removed.connect(self.drop)
         card.add_requested.connect(self.menu.show)

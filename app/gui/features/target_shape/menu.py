@@ -38,20 +38,20 @@ class TargetMenu(QObject):
         """List what can be wished for besides what is."""
         self.menu.clear()
         self._offer(self.menu, _BOTH)
-        for side, title in (("left", tr("Left side alone")), ("right", tr("Right side alone"))):
+        for side, title in (("left", tr("Left side only")), ("right", tr("Right side only"))):
             names = tuple(f"{name} {side}" for name in _BOTH if name != GIRTH)
             self._offer(self.menu.add_submenu(title), names)
-        self._offer(self.menu.add_submenu(tr("Left against right")), EVEN.names)
+        self._offer(self.menu.add_submenu(tr("Left relative to right")), EVEN.names)
         self.menu.addSeparator()
         for side in ("left", "right"):
             if f"profile {side}" not in self._controller.drawn:
                 self.menu.addAction(profile_title(side), partial(self._controller.drawing.begin, side))
-            words = tr("{profile} from a table…").format(profile=profile_title(side))
+            words = tr("{profile} from file…").format(profile=profile_title(side))
             self.menu.addAction(words, partial(self.ask_profile, side))
 
     def ask_profile(self, side: str) -> None:
         """Ask for a table, and wish for the profile in it."""
-        path = ask_table(self._context.window, tr("Profile from a table"))
+        path = ask_table(self._context.window, tr("Profile from file"))
         if path:
             self._controller.drawing.take_table(side, path)
 

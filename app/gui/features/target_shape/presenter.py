@@ -46,7 +46,7 @@ def show_result(
     note = joined([words for words in (apart, locked_lines_text(design, locked)) if words])
     goals = wishes.goals(answer.now if answer is not None else {})
     if busy == "slow":
-        card.show_answer(tr("Working it out…"), note=note, can_apply=True)
+        card.show_answer(tr("Computing…"), note=note, can_apply=True)
     elif answer is None or answer.reply is None or not goals:
         card.show_answer(note=note, can_apply=bool(busy and goals))
     else:
@@ -99,7 +99,7 @@ def _pressure(wishes: Targets, answer: TargetAnswer | None) -> TargetView:
     before, result = pressure_words(presses, then)
     tone = "bad" if result and max(then.values()) >= pressure_limits().red_kpa else ""
     on = not math.isinf(wishes.most_kpa)
-    shown, title = wishes.most_kpa if on else None, tr("Pressure at most")
+    shown, title = wishes.most_kpa if on else None, tr("Contact pressure limit")
     return TargetView(
         PRESSURE, title, shown, before, result, "kPa", signed=False, kept=True, priority="", on=on, tone=tone
     )

@@ -134,9 +134,9 @@ class ProfileTool(QObject):
         if self._controller.goals() and not untouched:
             return ""
         hints = {
-            "bust": tr("Type what it is to be, or drag the handle at the bust point."),
-            "apex": tr("Type what it is to be, or drag the handle at the foremost place."),
-            "profile": tr("Drag the curve on the body by its handles to where the skin is to be."),
+            "bust": tr("Enter a value or drag the handle at the bust point."),
+            "apex": tr("Enter a value or drag the handle at the apex."),
+            "profile": tr("Drag the handles of the curve to the target profile."),
         }
         return hints[kind]
 

@@ -161,7 +161,7 @@ class TargetRow(QWidget):
         self.priority, self._titles = OptionCombo(), priority_titles()
         self.priority.setFont(font("caption"))
         self.priority.setProperty("kind", "choice")
-        set_tip(self.priority, tr("Set the priority of this target where not all can be met"))
+        set_tip(self.priority, tr("Set the priority of this target where not all can be reached"))
         menu = Menu(self)
         for name, title in self._titles.items():
             menu.addAction(title, partial(self.prioritized.emit, name))
@@ -169,7 +169,7 @@ class TargetRow(QWidget):
         self.limit = Segment([("on", tr("On")), ("off", tr("Off"))], small=True)
         self.limit.setAccessibleName(view.title)
         self.limit.chosen.connect(lambda name: self.switched.emit(name == "on"))
-        self.remove = ToolButton("x", tr("Ask for this no longer"), size=12, room=22)
+        self.remove = ToolButton("x", tr("Remove target"), size=12, room=22)
         for part, shown in ((self.priority, bool(view.priority)), (self.limit, view.on is not None)):
             head.addWidget(part)
             part.setVisible(shown)
@@ -186,7 +186,7 @@ class TargetRow(QWidget):
         self.priority.setEnabled(view.value is not None or not view.typed)
         if view.on is not None:
             self.limit.set_choice("on" if view.on else "off")
-        self.field.show_wish(view.value, tr("Off") if view.on is False else tr("free"))
+        self.field.show_wish(view.value, tr("Off") if view.on is False else tr("no target"))
 
 
 def priority_titles() -> dict[str, str]:

@@ -60,7 +60,7 @@ class TargetOptions(QObject):
             traits = (replace(before.line_settings(name), locked=False) for name in lines)
             return reduce(Design.with_line_settings, traits, before)
 
-        self._context.session.edit(unlocked, tr("Worn lines unlocked"))
+        self._context.session.edit(unlocked, tr("Active lines unlocked"))
 
     def is_tried_on(self, names: tuple[str, ...], shown: Design) -> bool:
         """Tell whether the lengths of lines in the ``shown`` design are only those of an answer."""

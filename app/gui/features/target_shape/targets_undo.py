@@ -75,7 +75,9 @@ class TargetUndo(QObject):
         before, self._last = self._last, self._state()
         changed = self._last.changed_from(before)
         if changed:
-            titles = [tr("Pressure at most") if key == PRESSURE else target_title(key) for key in changed]
+            titles = [
+                tr("Contact pressure limit") if key == PRESSURE else target_title(key) for key in changed
+            ]
             self.stack.push(_Step(self, before, self._last, listed(titles)))
             self._group.setActiveStack(self.stack)
 

@@ -124,7 +124,7 @@ class TargetWorker(QObject):
         self._at = question = self._wanted
         if question is not None:
             work, done = partial(self._answer, question), partial(self._end, question)
-            self._job = self._jobs.run(tr("Finding lengths for the result"), work, done, done)
+            self._job = self._jobs.run(tr("Computing target shape…"), work, done, done)
 
     def _end(self, question: TargetQuery, outcome: object) -> None:
         self._at = None

@@ -21,12 +21,12 @@ class UncertaintyCard(QWidget):
         column.setContentsMargins(4, 4, 4, 4)
         column.setSpacing(4)
         column.addWidget(hairline())
-        column.addWidget(label(tr("How sure these figures are"), "heading"))
+        column.addWidget(label(tr("Uncertainties"), "heading"))
         column.addWidget(self.meaning)
         column.addWidget(self.contact)
         self.folds = [
-            folded_list(column, tr("Where the ± comes from"), sources),
-            folded_list(column, tr("What these figures leave out"), left_out),
+            folded_list(column, tr("Sources of uncertainty"), sources),
+            folded_list(column, tr("Not included"), left_out),
         ]
         self.show_view(UncertaintyView(""))
 

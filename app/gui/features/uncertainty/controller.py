@@ -50,7 +50,7 @@ class UncertaintyController(QObject):
         self._cache = FrameCache(
             context.session,
             context.jobs,
-            tr("Working out how sure the figures are"),
+            tr("Computing uncertainties…"),
             self._compute,
             failed=lambda error: logging.error("no uncertainties were computed", exc_info=error),
             by_design=True,
@@ -131,5 +131,5 @@ class UncertaintyController(QObject):
         if self._cache.is_given_up(frame):
             error = self._cache.failure(frame)
             why = render(error.message) if isinstance(error, UserError) else ""
-            return joined((tr("How far they may be off was not worked out."), why))
-        return tr("How far they may be off is worked out once the run rests.")
+            return joined((tr("Uncertainties were not computed."), why))
+        return tr("Uncertainties are computed when the solver has converged.")

@@ -74,7 +74,7 @@ class VariantsController(QObject):
         for name in VARIANTS:
             button = self.segment.button(name)
             text = (
-                tr("Variant {name}") if name in there else tr("Variant {name}: begins as a copy of {shown}")
+                tr("Variant {name}") if name in there else tr("Variant {name}: starts as a copy of {shown}")
             )
             set_tip(button, text.format(name=name, shown=shown))
             button.setAccessibleName(button.toolTip())
@@ -94,8 +94,8 @@ class VariantsController(QObject):
                 self._context.view.compare_by("after")
             else:
                 said = (
-                    tr("There is one variant so far."),
-                    tr("Choose B or C at the top: it begins as a copy."),
+                    tr("Only one variant."),
+                    tr("Choose B or C at the top to start a copy."),
                 )
                 self._context.notifications.info(*said)
             return
@@ -167,7 +167,7 @@ class VariantsController(QObject):
         if near is None or self._job in self._context.jobs.at_work():
             return
         self._job = self._context.jobs.run(
-            tr("Solving variant {name}").format(name=name),
+            tr("Solving variant {name}…").format(name=name),
             partial(converged_frame, design, near.stages),
             partial(self._take, design),
             partial(self._give_up, design),
@@ -215,7 +215,7 @@ class VariantsController(QObject):
             actions.add("variants", text, f"Alt+{place}", do=partial(self.choose, name), of_document=True)
         actions.rule("variants")
         actions.add("variants", tr("Remove this variant"), do=self._remove_shown, of_document=True)
-        said = tr("Show the bodies of all variants through linked cameras")
+        said = tr("Show all variants side by side with linked cameras")
         title, flip = tr("Variants side by side"), self.flip_side_by_side
         self.beside = actions.add(
             "variants", title, "Shift+V", said, do=flip, checkable=True, of_document=True

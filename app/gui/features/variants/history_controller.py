@@ -109,7 +109,7 @@ class HistoryController(QObject):
         """Go back to a result, in the variant that it is of, as one edit."""
         snapshot, document = self._snapshots[len(self._snapshots) - 1 - place], self._session.document
         if document is not None:
-            said = tr("Back to: {edit}").format(edit=_title(snapshot, document))
+            said = tr("Restored: {edit}").format(edit=_title(snapshot, document))
             self._session.go_back(snapshot.within(document), said)
 
     def close(self) -> None:
@@ -164,7 +164,7 @@ def _title(snapshot: _Snapshot, document: Document) -> str:
 def _figures(frame: Frame, headline: str) -> tuple[str, ...]:
     """Return the verdict on a frame, where its bust points are and its volume error in words."""
     if not is_result(frame):
-        return headline, tr("No result to sew for")
+        return headline, tr("Not valid for production")
     percent = number(controlled_volume(frame)[0], 2, signed=True)
     said = tr("{state}, volume {percent} %").format(percent=percent, state=headline)
     return said, bust_sentence(bust_shift(frame))

@@ -25,7 +25,7 @@ class HistoryPanel(QWidget):
         self.edits, self.snapshots = ThumbnailList(_EditRow(self)), ThumbnailList(ThumbnailRowPainter(self))
         self.edits.setAccessibleName(tr("History"))
         self.snapshots.setAccessibleName(tr("Results"))
-        self._hint = sentence(tr("What comes of each edit is kept here until Busk closes."))
+        self._hint = sentence(tr("Results of all edits are kept here until Busk closes."))
         self._hint.setContentsMargins(4, 2, 4, 8)
         self._parts = QSplitter(Qt.Orientation.Vertical)
         self._parts.setHandleWidth(1)

@@ -34,8 +34,8 @@ class VariantsPanel(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(14, 8, 14, 12)
         column.setSpacing(8)
-        hint = tr("Choose B or C at the top: it begins as a copy.")
-        self._empty = EmptyState("columns", tr("There is one variant so far."), hint)
+        hint = tr("Choose B or C at the top to start a copy.")
+        self._empty = EmptyState("columns", tr("Only one variant."), hint)
         self._table, self._note = _Table(), sentence("", "caption")
         self._area = QScrollArea()
         self._area.setAccessibleName(tr("Variants"))
@@ -44,9 +44,9 @@ class VariantsPanel(QWidget):
         self._area.setWidget(self._inside())
         column.addWidget(self._empty)
         column.addWidget(self._area, 1)
-        beside = tr("Show the bodies of all variants through linked cameras")
-        copied = tr("Copy the table, to paste into a spreadsheet or a letter")
-        written = tr("Write the table to a file (CSV)")
+        beside = tr("Show all variants side by side with linked cameras")
+        copied = tr("Copy the table for a spreadsheet or document")
+        written = tr("Save the table as CSV")
         self._buttons = button_row(
             (
                 (tr("Side by side"), beside, self.beside_requested),
@@ -66,9 +66,7 @@ class VariantsPanel(QWidget):
         self._buttons.setVisible(view is not None)
         if view is not None:
             self._table.set_view(view)
-            self._note.setText(
-                tr("Small figures with a sign: the difference to {name}.").format(name=view.names[0])
-            )
+            self._note.setText(tr("Small signed values: difference from {name}.").format(name=view.names[0]))
 
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)

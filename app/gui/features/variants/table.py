@@ -79,5 +79,5 @@ class VariantTableController(QObject):
     def export(self) -> None:
         """Ask for a place and write the table there."""
         if self._panel.view is not None:
-            title = tr("Save the table of variants")
+            title = tr("Save table of variants")
             save_table(self._context, as_table(self._panel.view), title, "variants")

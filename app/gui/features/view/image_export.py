@@ -31,22 +31,22 @@ class ImageExportController(QObject):
         context.view.tools.picture_requested.connect(self.save)
         do = context.actions
         do.rule("file")
-        said = tr("Put what the view shows on the clipboard, finer than the screen")
-        do.add("file", tr("Copy the picture"), "Ctrl+Shift+C", said, do=self.copy, of_document=True)
-        said = tr("Print what the view shows, on one page")
-        do.add("file", tr("Print the picture…"), tip=said, do=self.print_out, of_document=True)
+        said = tr("Copy the view to the clipboard at high resolution")
+        do.add("file", tr("Copy image"), "Ctrl+Shift+C", said, do=self.copy, of_document=True)
+        said = tr("Print the view on one page")
+        do.add("file", tr("Print image…"), tip=said, do=self.print_out, of_document=True)
 
     def save(self) -> None:
         """Ask for a place and write what the view shows."""
         name = f"{self._context.session.name}.png"
-        path = ask_save(self._context.window, tr("Save a picture"), name, "PNG (*.png)", ".png")
+        path = ask_save(self._context.window, tr("Save image"), name, "PNG (*.png)", ".png")
         if path:
             write_file(self._context.notifications, "picture", path, write_whole(png_of(self._picture())))
 
     def copy(self) -> None:
         """Put what the view shows on the clipboard."""
         QGuiApplication.clipboard().setImage(self._picture())
-        self._context.notifications.done(tr("The picture is copied."))
+        self._context.notifications.done(tr("Image copied."))
 
     def print_out(self) -> None:
         """Ask for a printer and print what the view shows."""
@@ -58,7 +58,7 @@ class ImageExportController(QObject):
         picture, page = self._picture(), printer.pageLayout().paintRectPixels(printer.resolution())
         painter = QPainter()
         if not painter.begin(printer):
-            said = Message("The picture could not be printed."), Message("Choose another printer.")
+            said = Message("The image could not be printed."), Message("Choose another printer.")
             self._context.notifications.error(ProjectError(*said), "print")
             return
         painter.drawImage(fitted(picture.size(), page.size()), picture)
