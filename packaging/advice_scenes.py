@@ -54,7 +54,7 @@ def drawing_a_profile(window: MainWindow) -> None:
     wait_for(lambda: desk.answer.reply is not None and not desk.work.at_work)
     wanted = desk.answer.reply.design
     wait_for(lambda: window.session.frame.stages.design == wanted)
-    wait_for(lambda: window.is_at_rest() and not window.jobs.at_work())
+    wait_for(lambda: window.session.is_at_rest and not window.jobs.at_work())
 
 
 def sure(window: MainWindow) -> None:

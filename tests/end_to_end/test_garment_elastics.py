@@ -35,7 +35,7 @@ def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(
         monkeypatch.setattr(elastics_desk, "ask_save", lambda *_: str(empty))
         monkeypatch.setattr(elastics_desk, "ask", lambda *_: "delete")
         window.garment.elastics_requested.emit()
-        sheet = window.elastics_desk.sheet
+        sheet = window.elastics_controller.sheet
         assert sheet is not None
         yield sheet.isVisible
         shipped = sheet.table.topLevelItemCount()
@@ -69,7 +69,7 @@ def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(
         assert "Roll 7" not in sheet.views
         assert user_elastics() == ([], [])
         sheet.reject()
-        yield lambda: window.elastics_desk.sheet is None
+        yield lambda: window.elastics_controller.sheet is None
 
     run_undrawn([], script)
 
@@ -190,7 +190,7 @@ def test_one_that_is_called_as_ours_gets_a_name_of_its_own_and_none_is_called_me
         yield settled(window)
         monkeypatch.setattr(elastics_desk, "ask_table", lambda *_: str(table))
         window.garment.elastics_requested.emit()
-        sheet = window.elastics_desk.sheet
+        sheet = window.elastics_controller.sheet
         assert sheet is not None
         yield sheet.isVisible
         sheet.import_requested.emit()
@@ -200,7 +200,7 @@ def test_one_that_is_called_as_ours_gets_a_name_of_its_own_and_none_is_called_me
         sheet.table.mark("Strap 15 mm")
         assert sheet.mark.text() == "Estimate, not measured"
         sheet.reject()
-        yield lambda: window.elastics_desk.sheet is None
+        yield lambda: window.elastics_controller.sheet is None
         window.navigation.show_panel("garment")
         yield from choose(window, "mid-bust", "Strap 15 mm, custom")
         yield made_of(window, "mid-bust")
