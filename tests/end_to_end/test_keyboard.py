@@ -158,10 +158,10 @@ class _Kept:
 
 
 class _Left:
-    """What was left behind, as far as the desk lets go of it."""
+    """What was left behind, as far as it is left for the next start."""
 
     def __init__(self, told: list[str]) -> None:
         self._told = told
 
-    def let_go(self) -> None:
+    def leave(self) -> None:
         self._told.append("kept for the next start")
