@@ -124,11 +124,11 @@ def _upper_levels(
     if np.median(rise) < rows * LEAST:
         raise FitError(
             Message(
-                "The scan ends {rise} above the bust points, where the upper breast begins.",
+                "The scan ends {rise} above the bust points, within the upper breast.",
                 rise=Length(np.median(rise)),
             ),
             Message(
-                "Open a scan that reaches {need} or more above them, or correct them.",
+                "Open a scan that extends at least {need} above the bust points, or correct the bust points.",
                 need=Length(rows * LEAST + 5.0),
             ),
         )

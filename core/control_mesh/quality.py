@@ -63,8 +63,8 @@ class FitQuality:
         if self.deviation_mean > LOOSE:
             found.append(
                 Message(
-                    "The control mesh is coarse on this body: the skin lies {mean} from it in the mean "
-                    "and {most} at most.",
+                    "The control mesh is coarse for this body: its distance to the skin is "
+                    "{mean} on average and {most} at most.",
                     mean=Length(self.deviation_mean, 1),
                     most=Length(self.deviation_max),
                 )

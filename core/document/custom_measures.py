@@ -82,16 +82,18 @@ class CustomMeasurement:
             )
         if not places:
             return Message(
-                "Yours: a tape, level, {height} above the lowest point of the scan.",
+                "Custom: horizontal tape, {height} above the lowest point of the scan.",
                 height=length_of(self.level),
             )
         if self.level > 0.0:
             return Message(
-                "Yours: a tape, level, {height} above {place}.", height=length_of(self.level), place=places[0]
+                "Custom: horizontal tape, {height} above {place}.",
+                height=length_of(self.level),
+                place=places[0],
             )
         if self.level < 0.0:
             return Message(
-                "Yours: a tape, level, {height} below {place}.",
+                "Custom: horizontal tape, {height} below {place}.",
                 height=length_of(-self.level),
                 place=places[0],
             )

@@ -79,7 +79,7 @@ class Elastic:
                         length=length_of(number),
                         name=self.name,
                     ),
-                    Message("It goes from {range}.", range=LengthRange(low, high)),
+                    Message("Enter a value from {range}.", range=LengthRange(low, high)),
                 )
         self._check_curve()
 

@@ -145,7 +145,7 @@ class LineSettings:
         if self.width is not None and not WIDTHS[0] <= self.width <= WIDTHS[1]:
             raise LineError(
                 Message(
-                    "The line {name} cannot be {width} wide.",
+                    "The width {width} of the line {name} is out of range.",
                     name=LineName(self.name),
                     width=length_of(self.width),
                 ),

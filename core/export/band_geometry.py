@@ -30,10 +30,12 @@ AS_WORN = Message("worn length: an elastic is cut shorter")
 NOT_TO_CUT = Message("DO NOT CUT")
 """What is printed across such a strip."""
 
-_TO_CUT = Message("to cut from {elastic}, {allowance} of it for seams; worn {worn}, stretched by {stretch} %")
+_TO_CUT = Message(
+    "cut from {elastic}, including {allowance} seam allowance; worn length {worn}, elongation {stretch} %"
+)
 _FRONT_TO_CUT = Message(
-    "front part only, to cut from {elastic}, {allowance} of it for seams; "
-    "worn {worn}, stretched by {stretch} %"
+    "front part only, cut from {elastic}, including {allowance} seam allowance; worn length "
+    "{worn}, elongation {stretch} %"
 )
 
 

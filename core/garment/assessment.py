@@ -223,10 +223,13 @@ def _fit(stages: Stages) -> Iterator[Finding]:
         return
     largest, most, fold = FIT_LIMITS
     if quality.deviation_max > largest or quality.deviation_95 > most:
-        message = Message("The control mesh is up to {mm} off the skin.", mm=Length(quality.deviation_max))
+        message = Message(
+            "The control mesh deviates from the skin by up to {mm}.", mm=Length(quality.deviation_max)
+        )
         yield Finding("fit", CAUTION, message, action)
     if quality.fold_off > fold:
         message = Message(
-            "The fold row of the control mesh is {mm} off the fold.", mm=Length(quality.fold_off)
+            "The fold row of the control mesh deviates from the inframammary fold by {mm}.",
+            mm=Length(quality.fold_off),
         )
         yield Finding("fit", CAUTION, message, action)

@@ -141,8 +141,8 @@ def _row(stages: Stages, line: Line, reached: float, tensions: Mapping[str, Line
         row = _noted(
             row,
             Message(
-                "From its lower end over the shoulder to the under-bust band at the back: {mm} of it "
-                "lie where the body is fixed.",
+                "From its lower end over the shoulder to the under-bust band at the back; {mm} "
+                "of it are on the fixed part of the body.",
                 mm=Length(tail.length),
             ),
         )
@@ -260,8 +260,8 @@ def _notes(rows: tuple[CutRow, ...], tissue: float) -> tuple[Message, ...]:
     if len(allowances) == 1:
         notes.append(
             Message(
-                "Each length to cut includes {allowance} for seams; hooks and eyes, rings and slides are "
-                "not taken off.",
+                "Each cut length includes {allowance} seam allowance; hooks and eyes, rings and "
+                "slides are not deducted.",
                 allowance=length_of(allowances.pop() or 0.0),
             )
         )

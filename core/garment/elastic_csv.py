@@ -96,7 +96,8 @@ def _check_units(elastic: Elastic) -> None:
     if elastic.max_force > MOST_PER_CM * elastic.width_mm / 10.0:
         raise LineError(
             Message(
-                "The table {name} ends at {strength} N: no elastic {width} wide pulls so hard.",
+                "The table {name} ends at {strength} N, which is implausibly high for an elastic "
+                "{width} wide.",
                 name=elastic.name,
                 strength=f"{elastic.max_force:g}",
                 width=length_of(elastic.width_mm),

@@ -161,8 +161,7 @@ class LinePressure:
             most = max(bridge.height for bridge in self.bridges)
             said.append(
                 Message(
-                    "It goes straight over hollows for {length}, up to {height} off the skin: it does "
-                    "not press there.",
+                    "Bridges hollows over {length}, up to {height} off the skin: no contact pressure there.",
                     length=Length(self.bridged_length),
                     height=Length(most),
                 )
@@ -210,7 +209,7 @@ def _told(stages: Stages, name: str, tension: LineTension) -> tuple[Message, ...
     if tension.estimate:
         said.append(Message("Its tension is computed from the tissue stiffness alone (estimate)."))
     if not stages.design.line_settings(name).width:
-        said.append(Message("It is taken to be {width} wide: no width was told.", width=Length(USUAL_WIDTH)))
+        said.append(Message("Width not specified: {width} assumed.", width=Length(USUAL_WIDTH)))
     if any(line.name == name and is_strap(stages, line) for line in stages.model.lines):
         said.append(NOT_FOR_STRAPS)
     return tuple(said)

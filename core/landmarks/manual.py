@@ -104,7 +104,7 @@ def reconcile_with_detected(placed: Landmark | None, found: Landmark) -> Landmar
     if found.confidence < DIM or off < (ASTRAY if found.confidence >= CERTAIN else ADRIFT):
         return placed
     return replace(
-        placed, off=off, rule=Message("Placed by hand, {off} from where the rule finds it.", off=Length(off))
+        placed, off=off, rule=Message("Placed manually, {off} from the detected position.", off=Length(off))
     )
 
 
@@ -133,7 +133,7 @@ def _laid(mesh: Mesh, name: str, point: Points) -> Landmark:
     if np.linalg.norm(place - point) > REACH:
         raise LandmarkError(
             Message(
-                "The landmark {name} was placed more than {far} off the skin.",
+                "The landmark {name} is more than {far} off the skin.",
                 name=LandmarkName(name.replace("_", " ")),
                 far=Length(REACH),
             ),

@@ -89,8 +89,8 @@ def flat_hint(mesh: Mesh, landmarks: Landmarks) -> tuple[Hint, ...]:
         return ()
     sentence = Message(
         "The bust girth is only {more} larger than the under-bust girth. The breasts may be "
-        "small, compressed, removed or hidden by loose clothes, or this is a man: check bust "
-        "points and folds.",
+        "small, compressed, removed or covered by loose clothes, or the body may be male: check "
+        "bust points and inframammary folds.",
         more=Length(more),
     )
     return (Hint("flat", sentence),)

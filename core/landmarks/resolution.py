@@ -33,7 +33,7 @@ def coarse_warning(apart: float) -> tuple[Message, ...]:
         return ()
     return (
         Message(
-            "The scan is coarse: its points lie about {apart} apart. Landmarks and girths are less sure.",
+            "The scan is coarse (point spacing about {apart}). Landmarks and girths are less accurate.",
             apart=Length(apart),
         ),
     )

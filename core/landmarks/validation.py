@@ -143,7 +143,7 @@ def _rules(
     )
     yield (
         not SLIMMEST < under.tape < WIDEST,
-        Message("the girth under it would be {girth}", girth=Length(under.tape)),
+        Message("the under-bust girth would be {girth}", girth=Length(under.tape)),
     )
     yield len(missing) > 0 and not clear, Message("only one side of the chest protrudes")
     slight = more <= FLATTEST_BUST and not full
@@ -151,7 +151,7 @@ def _rules(
     yield not ROUNDEST < wide / deep < FLATTEST, Message("the trunk depth is implausible for a body")
     yield (
         not APART[0] < across[0] < APART[1],
-        Message("its points would lie {distance} apart", distance=Length(across[0])),
+        Message("the bust points would be {distance} apart", distance=Length(across[0])),
     )
     yield (
         abs(across[2]) > UNEVEN and not missing,

@@ -223,15 +223,13 @@ def _check(underbust_mm: float, bust_mm: float, allowance_mm: float) -> None:
     for girth in (underbust_mm, bust_mm):
         if not (isfinite(girth) and 0.0 < girth <= _LONGEST):
             raise SizeError(
-                Message("No body has a girth of {girth}.", girth=length_of(girth)),
+                Message("A girth of {girth} is implausible for a body.", girth=length_of(girth)),
                 Message("Check the landmarks and the unit."),
             )
     low, high = ALLOWANCE
     if not low <= allowance_mm <= high:
         raise SizeError(
-            Message(
-                "{value} cannot be taken off for a tape that is worn tight.", value=length_of(allowance_mm)
-            ),
+            Message("The tape tension allowance of {value} is out of range.", value=length_of(allowance_mm)),
             Message("Enter a value from {low} to {high}.", low=f"{low:g}", high=f"{high:g}"),
         )
 

@@ -144,7 +144,7 @@ def length_ratio(text: str, name: str, rest_mm: float, whole_mm: float, unit: st
     if absolute and back > 0.0 and short <= rest <= long:
         raise LineError(
             Message(
-                "The front part of {line} goes from {range}, its whole band from {short} to {long}.",
+                "Front length of {line}: {range}; full length: {short} to {long}.",
                 range=LengthRange(short, long),
                 line=LineName(name),
                 short=f"{short + back:.0f}",
@@ -163,7 +163,7 @@ def length_ratio(text: str, name: str, rest_mm: float, whole_mm: float, unit: st
             percent=f"{100 * ratio:.1f}",
         ),
         Message(
-            "Stay between {low} and {high} %: {range} of the front part.",
+            "Enter {low} to {high} % ({range} front length).",
             range=LengthRange(short, long),
             low=f"{100 * low:.0f}",
             high=f"{100 * high:.0f}",

@@ -45,7 +45,7 @@ class ScanEdits:
         if len(levels) == 2 and levels[1] - levels[0] < LEAST_HEIGHT:
             raise UserError(
                 Message("The crop removes the whole body."),
-                Message("Keep at least {least} of its height.", least=Length(LEAST_HEIGHT)),
+                Message("Keep a height of at least {least}.", least=Length(LEAST_HEIGHT)),
             )
         if self.kept not in ("", *SIDES):
             raise UserError(

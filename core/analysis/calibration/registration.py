@@ -280,8 +280,8 @@ def _refuse_other_body(found: Alignment) -> None:
     if found.met < LEAST_MET:
         raise ScanError(
             Message(
-                "The worn scan does not fit the first: {met} % of the skin that no line moves lies "
-                "within {mm} of it, {least} % are needed.",
+                "The fitting scan does not match the first scan: {met} % of the unaffected skin "
+                "is within {mm}, {least} % is required.",
                 met=f"{100.0 * found.met:.0f}",
                 mm=Length(MET),
                 least=f"{100.0 * LEAST_MET:.0f}",

@@ -80,7 +80,7 @@ def profile_goals(stages: Stages, section: str, curve: Floats) -> tuple[Goal, ..
     if not len(inside):
         raise UserError(
             Message(
-                "No height of the profile lies where the body can be reshaped, {range}.",
+                "All heights of the profile are outside the reshaped area, {range}.",
                 range=LengthRange(low, high),
             ),
             Message("Use the heights of the body in Busk, in millimetres."),

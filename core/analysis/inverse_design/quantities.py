@@ -316,7 +316,7 @@ def profile_reader(stages: Stages, names: Sequence[str]) -> ReadMany:
             height = heights[int(np.flatnonzero(np.isnan(values))[0])]
             raise UserError(
                 Message(
-                    "There is no skin at a height of {height} on the section at x = {at}.",
+                    "The section at x = {at} has no skin at a height of {height}.",
                     height=Length(height),
                     at=Length(at),
                 ),

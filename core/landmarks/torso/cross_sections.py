@@ -212,7 +212,9 @@ class TorsoSections:
             usable &= runs == np.bincount(runs[usable]).argmax()
         if not 400.0 < girth < 2000.0:
             raise LandmarkError(
-                Message("The trunk measures {girth} round, which no adult does.", girth=Length(girth)),
+                Message(
+                    "The trunk girth is {girth}, which is implausible for an adult.", girth=Length(girth)
+                ),
                 Message("Set the unit of the scan."),
             )
         return float(width), usable
@@ -233,7 +235,10 @@ def scan_torso(mesh: Mesh) -> TorsoSections:
     low, high = mesh.vertices[:, 2].min(), mesh.vertices[:, 2].max()
     if not 100.0 < high - low < 2500.0:
         raise LandmarkError(
-            Message("The scan is {height} high, no upper body is.", height=Length(high - low)),
+            Message(
+                "The scan is {height} high, which is implausible for an upper body.",
+                height=Length(high - low),
+            ),
             Message("Set the unit of the scan."),
         )
     guide = torso_axis(mesh)

@@ -36,13 +36,11 @@ def estimate_unit(girth: float, told: str | None = None) -> UnitEstimate:
     if told is not None:
         mm = girth * MILLIMETRES[told]
         if TOLD_GIRTHS[0] < mm < TOLD_GIRTHS[1]:
-            reason = Message(
-                "The unit was told to be {unit}: with it the trunk is {mm} round.", unit=told, mm=Length(mm)
-            )
+            reason = Message("The unit was set to {unit}: the trunk girth is {mm}.", unit=told, mm=Length(mm))
             return UnitEstimate(told, True, reason)
         raise ScanError(
             Message(
-                "In {unit} the trunk would measure {mm} round, which is not the size of a body.",
+                "In {unit}, the trunk girth would be {mm}, which is implausible for a body.",
                 unit=told,
                 mm=_plain_length(mm),
             ),
@@ -62,13 +60,11 @@ def estimate_unit(girth: float, told: str | None = None) -> UnitEstimate:
         )
     unit = (usual or rare)[0]
     mm = girth * MILLIMETRES[unit]
-    reason = Message(
-        "Read in {unit}, the trunk is {mm} round, which is the size of a body.", unit=unit, mm=Length(mm)
-    )
+    reason = Message("In {unit}, the trunk girth is {mm}, a plausible body size.", unit=unit, mm=Length(mm))
     for other in rare:
         if other != unit:
             also = Message(
-                "It might also be {unit} ({mm}): please check it.",
+                "The unit may also be {unit} ({mm}). Please check.",
                 unit=other,
                 mm=Length(girth * MILLIMETRES[other]),
             )

@@ -39,7 +39,7 @@ def fill_holes(mesh: Mesh, progress: Progress = quiet) -> tuple[Mesh, tuple[Mess
         )
     if closed:
         sentences.append(
-            Message("Closed {count} up to {size} across.", count=hole_count(closed), size=Length(CLOSED))
+            Message("Filled {count} up to {size} across.", count=hole_count(closed), size=Length(CLOSED))
         )
     return mesh, (*sentences, *hole_sentences(mesh, find_holes(mesh)))
 

@@ -28,12 +28,12 @@ from core.messages import (
 from core.scan.source import ScanSource
 
 CLOSED = Message(
-    "Closed {count} up to {size} across.",
+    "Filled {count} up to {size} across.",
     count=plural_message("{count} hole", "{count} holes", 7),
     size=Length(12.0),
 )
 LIMITS = Message(
-    "Stay between {low} and {high} %: {range} of the front part.",
+    "Enter {low} to {high} % ({range} front length).",
     low="50",
     high="130",
     range=LengthRange(300.0, 1691.0),
@@ -44,9 +44,9 @@ LIMITS = Message(
     ("language", "unit", "message", "text"),
     [
         ("en", "mm", CLOSED, "Filled 7 holes up to 12 mm across."),
-        ("en", "in", CLOSED, "Closed 7 holes up to 1/2 in across."),
+        ("en", "in", CLOSED, "Filled 7 holes up to 1/2 in across."),
         ("ja", "cm", CLOSED, "1.2 cm までの穴 7 個をふさぎました。"),
-        ("en", "cm", LIMITS, "Stay between 50 and 130 %: 30.0 to 169.1 cm of the front part."),
+        ("en", "cm", LIMITS, "Enter 50 to 130 % (30.0 to 169.1 cm front length)."),
         ("en", "in", Message("In mm, it is 8 mm."), "In mm, it is 8 mm."),
         ("ja", "mm", join((Message("Choose another scan."), CLOSED)), "別のスキャンを選んでください。"),
     ],
