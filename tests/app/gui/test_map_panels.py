@@ -105,11 +105,11 @@ def test_ranges_are_round_and_colours_start_at_the_material() -> None:
 def test_a_section_tells_how_far_the_bust_points_went() -> None:
     move = BustShift(BustStep(4.0, -1.5), BustStep(-3.0, 2.5))
     assert section_words("x", "left", move) == "Bust point left: 4.0 mm up, 1.5 mm back"
-    assert section_words("x", "right", move) == "Bust point right 3.0 mm down, 2.5 mm forward"
+    assert section_words("x", "right", move) == "Bust point right: 3.0 mm down, 2.5 mm forward"
     both = "Bust points: 0.5 mm up, 0.5 mm forward (left 4.0 mm up, right 3.0 mm down)"
     assert section_words("z", "left", move) == both
     alike = BustShift(BustStep(4.0, -1.5), BustStep(4.4, -1.1))
-    assert section_words("y", "left", alike) == "Bust point 4.2 mm up, 1.3 mm back"
+    assert section_words("y", "left", alike) == "Bust points: 4.2 mm up, 1.3 mm back"
 
 
 def test_a_section_tells_how_far_that_may_be_off() -> None:
@@ -120,7 +120,7 @@ def test_a_section_tells_how_far_that_may_be_off() -> None:
     spread = OutputUncertainties(doubts, np.zeros(0), 0.2, 2.0, SOURCES, {}, "sliding")
     said = section_words("x", "left", move, spread).replace("\N{NO-BREAK SPACE}", " ")
     assert said == "Bust point left: 4.0 ± 1.2 mm up, 1.5 ± 0.1 mm back"
-    assert section_words("x", "right", move, spread) == "Bust point right 4.4 mm up, 2.5 mm forward"
+    assert section_words("x", "right", move, spread) == "Bust point right: 4.4 mm up, 2.5 mm forward"
     said = section_words("z", "left", move, spread).replace("\N{NO-BREAK SPACE}", " ")
     assert said.startswith("Bust points: 4.2 ± 12 mm up, 0.5 mm forward")
 

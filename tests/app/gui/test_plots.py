@@ -151,7 +151,7 @@ def test_pointing_reads_every_curve_of_both_plots(strip: ConvergencePanel, qtbot
     assert pointed.args[0] == pytest.approx(20.3, abs=0.5)
     strip.error_plot.pointed.emit(20.3)
     assert [row[:2] for row in error.readout()] == [
-        ("turn", "20"),
+        ("iteration", "20"),
         ("Adaptive", "0.20 %"),
         ("Conventional", "0.10 %"),
         ("Exact", "0.00 %"),
