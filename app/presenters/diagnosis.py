@@ -117,8 +117,8 @@ def _topic(finding: Finding) -> str:
 def change_words(found: Diagnosis, change: Change) -> str:
     """Return what a change does, as an undo step is called."""
     choice = {
-        ("volume", "adaptive"): tr("Use adaptive control"),
-        ("volume", "exact"): tr("Use exact solution"),
+        ("volume", "adaptive"): tr("Use Adaptive"),
+        ("volume", "exact"): tr("Use Exact"),
         ("line_force", "implicit"): tr("Use implicit line force"),
         ("line_hold", "spring"): tr("Use elastic lines"),
     }.get(change.setting, "")

@@ -160,7 +160,7 @@ def _measures(path: str, outcome: ExportSource, manner: ExportOptions) -> Export
     titles = {row["key"]: measure_title(row) for row in rows}
     values = {row["key"]: (float(row[when]), str(row["unit"])) for row in rows}
     unsure = listed(titles[row["key"]] for row in rows if row["estimate"])
-    note = f"Busk {__version__}, {outcome.design.scan.name}, {'at rest' if manner.before else 'reshaped'}."
+    note = f"Busk {__version__}, {outcome.design.scan.name}, {'original' if manner.before else 'reshaped'}."
     note += f" Estimates: {unsure}." if unsure else ""
     sheet = MeasurementTable(values, unit, titles, note)
     told = (

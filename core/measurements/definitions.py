@@ -257,11 +257,11 @@ _TABLE = (
         "ml",
         "",
         Message(
-            "Ours, an estimate: between the skin within the root and a smooth chest that goes on "
-            "from the skin round it: what stands out, less than all of the breast. No skin shows "
-            "the top of the root: it is taken half as high over its ends as it is wide; ± tells "
-            "what {lower} lower would make. Reshaped, what the skin of that side has gained is "
-            "added.",
+            "Defined by Busk, estimate: volume between the skin within the breast root and a "
+            "smooth chest wall extrapolated from the surrounding skin. This is the protruding "
+            "part only, less than the whole breast. The top of the breast root is not visible and "
+            "is assumed at half the root width above its ends; ± is the effect of a top {lower} "
+            "lower. After reshaping, the volume gained by the skin of that side is added.",
             lower=Length(15.0),
         ),
         AREAS,

@@ -49,7 +49,7 @@ def test_a_vibration_is_told_at_once_and_ended_by_one_button() -> None:
         notice = notice_of(window)
         assert notice.sentence.startswith("Mid-bust and the volume conflict: the bust point oscillates")
         assert notice.sentence.endswith("(period 2 iterations).")
-        assert words(window)[0].startswith("Use adaptive control"), "only the conventional control vibrates"
+        assert words(window)[0].startswith("Use Adaptive"), "only the conventional control vibrates"
         assert len(words(window)) == 2
         assert "Reduce gain to " in notice.details
         assert "for this shape" in notice.details
@@ -60,12 +60,12 @@ def test_a_vibration_is_told_at_once_and_ended_by_one_button() -> None:
         assert frame is not None
         assert frame.verdict.display_state == "settled"
         assert window.session.undo_stack.count() == steps + 1
-        assert window.session.undo_stack.undoText() == "Use adaptive control"
+        assert window.session.undo_stack.undoText() == "Use Adaptive"
         assert window.notices.notice() is None
         window.actions_.undo.trigger()
         yield settled(window)
         yield lambda: told(window)
-        assert words(window)[0].startswith("Use adaptive control")
+        assert words(window)[0].startswith("Use Adaptive")
 
     run_main([], script)
 
@@ -170,7 +170,7 @@ def test_asked_before_the_verdict_is_known_he_says_what_presses(monkeypatch: pyt
         known.set()
     ((seen, sentence),) = asked
     assert seen == "bad", "not calm beside a red verdict"
-    assert "Mid-bust presses with" in str(sentence)
+    assert "Mid-bust: contact pressure" in str(sentence)
 
 
 def test_what_is_asked_before_the_first_frame_is_answered_with_it() -> None:
@@ -233,7 +233,7 @@ def test_what_was_edited_meanwhile_is_not_told_of() -> None:
         window.lines_controller.commit_length("mid-bust", 0.6)
         yield lambda: window.diagnosis_controller._job is not None
         job = window.diagnosis_controller._job
-        assert notice_of(window).sentence.startswith("The skin folds over")
+        assert notice_of(window).sentence.startswith("The skin overlaps itself")
         window.lines_controller.commit_length("mid-bust", 0.96)
         yield settled(window)
         assert job is not None
@@ -265,9 +265,9 @@ def test_the_pill_opens_what_the_button_ends_and_what_will_still_be_strained() -
         notice = notice_of(window)
         level = window.assessment_controller.of(window.session.frame).level
         assert (notice.tone, notice.lasting) == (tone(level), True), "who asks is not hurried"
-        assert "pull against each other: skin is pressed" in notice.sentence
-        assert "apart in what they do to the skin" in notice.details.splitlines()[0]
-        assert "each tried" in notice.details.splitlines()[1]
+        assert "conflict: skin is compressed" in notice.sentence
+        assert "forces on the skin" in notice.details.splitlines()[0]
+        assert "Fixes, verified from the original and the current shape" in notice.details.splitlines()[1]
         window.notices.unfold.click()
         yield window.notices.details.isVisible
         text = window.notices.details

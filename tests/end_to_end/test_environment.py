@@ -85,8 +85,8 @@ def test_a_double_click_on_what_cannot_be_opened_is_answered_in_the_window(
     heard: list[str] = []
     for name in ("gone.busk", "gone.ply", "folder.busk"):
         assert run_main([str(tmp_path / name)], script) == 0
-    assert heard[0].startswith("There is no project")
-    assert heard[1].startswith("There is no file")
+    assert heard[0].startswith(f"Project {tmp_path / 'gone.busk'} does not exist.")
+    assert heard[1].startswith(f"{tmp_path / 'gone.ply'} does not exist.")
     assert "folder.busk cannot be read" in heard[2]
 
 

@@ -156,7 +156,7 @@ def test_what_cannot_be_exported_says_why_and_is_not_offered(tmp_path: Path) -> 
         for what in ("lines", "flat"):
             sheet = opened(window, what)
             yield told(sheet)
-            assert sheet._doubt.text() == "No line is worn. Set the length of a line first."
+            assert sheet._doubt.text() == "No active lines. Set a line length first."
             assert not sheet.save.isEnabled()
             sheet.items["body"].click()
             yield told(sheet)
@@ -187,7 +187,7 @@ def test_a_folded_body_is_told_before_it_is_written(tmp_path: Path, monkeypatch:
         said = [each.sentence for each in (window.notices.notice(), *window.notices._waiting)]
         assert len(said) == 2, "that of the fold itself, and of the file"
         assert "Folded: do not use this shape for production." in said
-        yield lambda: window.notices.notice().sentence == "anna.stl written, in mm, z-up."
+        yield lambda: window.notices.notice().sentence == "anna.stl saved, in mm, z-up."
         assert window.notices.more.text() == "2 more"
 
     run_main([], script)

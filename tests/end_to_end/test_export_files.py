@@ -51,7 +51,7 @@ def test_a_turntable_is_drawn_between_events_and_can_be_left(
         yield told(sheet)
         sheet.save.click()
         assert QApplication.activeModalWidget() is None, "the work in hand is seen, and its way out"
-        yield lambda: window.status._job_name.text() == "Drawing anna.gif"
+        yield lambda: window.status._job_name.text() == "Drawing anna.gif…"
         shares: list[float] = []
         for _ in range(4):  # the window answers between the pieces
             job = window.progress_controller._shown_job()
@@ -66,7 +66,7 @@ def test_a_turntable_is_drawn_between_events_and_can_be_left(
         assert window.notices.notice() is None
         opened(window).save.click()
         yield written(window)
-        assert window.notices.notice().sentence == "anna.gif written."
+        assert window.notices.notice().sentence == "anna.gif saved."
         assert made == []
 
     run_main([], script)
@@ -83,7 +83,7 @@ def test_a_window_is_closed_while_a_turntable_is_drawn(
         undrawn(window)
         yield settled(window)
         opened(window, "turntable").save.click()
-        yield lambda: window.status._job_name.text() == "Drawing anna.webp"
+        yield lambda: window.status._job_name.text() == "Drawing anna.webp…"
 
     assert run_main([], script) == 0
     assert list(tmp_path.iterdir()) == []

@@ -85,7 +85,7 @@ def test_one_elastic_is_chosen_for_all_and_taken_off_again_without_moving_the_bo
         assert chooser_of(window).current == -1, "they are of several"
         yield from pick(window, "Bra band, plush back 18 mm")
         yield made_of(window, "mid-bust", "full-bust", "under-bust")
-        assert window.session.undo_stack.undoText() == "All lines made of Bra band, plush back 18 mm"
+        assert window.session.undo_stack.undoText() == "All lines: Bra band, plush back 18 mm"
         window.session.undo_stack.undo()
         yield made_of(window, "full-bust", "under-bust")
         yield from choose(window, "full-bust", "No elastic")
@@ -156,7 +156,7 @@ def test_a_band_on_the_rib_cage_is_cut_as_far_stretched_as_the_designer_says() -
         row = window.garment.rows["under-bust"]
         assert row.set_stretch.isVisible()
         told = window.lines.rows["under-bust"].note.text()
-        assert told.startswith("Made of Bra band, plush back 18 mm. It moves nothing")
+        assert told.startswith("Elastic: Bra band, plush back 18 mm. The line does not move the body")
         frame = window.session.frame
         assert frame is not None
         assert immovable_lines(frame.stages) == [], "an elastic is there to be cut, not measured by mistake"

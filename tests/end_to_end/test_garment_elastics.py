@@ -43,7 +43,7 @@ def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(
         sheet.import_requested.emit()
         refusal = sheet.notices.notice()
         assert refusal is not None
-        assert "Line 5 of the table Roll 8 has no two numbers" in str(refusal.sentence)
+        assert "Row 5 of the table Roll 8 does not contain two numbers" in str(refusal.sentence)
         assert not user_folder().exists()
         chosen[0] = good
         sheet.import_requested.emit()
@@ -63,7 +63,7 @@ def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(
         sheet.import_requested.emit()
         refusal = sheet.notices.notice()
         assert refusal is not None
-        assert "Line 6" in str(refusal.sentence), "a table that is not filled in is none"
+        assert "Row 6" in str(refusal.sentence), "a table that is not filled in is none"
         sheet.table.mark("Roll 7")
         sheet.delete.click()
         assert "Roll 7" not in sheet.views
@@ -194,9 +194,9 @@ def test_one_that_is_called_as_ours_gets_a_name_of_its_own_and_none_is_called_me
         assert sheet is not None
         yield sheet.isVisible
         sheet.import_requested.emit()
-        assert sheet.marked == "Strap 15 mm, own"
+        assert sheet.marked == "Strap 15 mm, custom"
         assert not sheet.views["Strap 15 mm"].own
-        assert "does not say" in sheet.mark.text()
+        assert sheet.mark.text() == "Source of the measurement unknown"
         sheet.table.mark("Strap 15 mm")
         assert sheet.mark.text() == "Estimate, not measured"
         sheet.reject()
@@ -209,7 +209,7 @@ def test_one_that_is_called_as_ours_gets_a_name_of_its_own_and_none_is_called_me
         window.garment.rows["mid-bust"].elastic.click()
         chooser = chooser_of(window)
         assert "Strap 15 mm, custom" in [each.title for each in chooser.views()]
-        assert chooser.views()[chooser.current].title == "Strap 15 mm, own, from this project"
+        assert chooser.views()[chooser.current].title == "Strap 15 mm, custom, from this project"
         chooser.reject()
 
     run_undrawn([], script)

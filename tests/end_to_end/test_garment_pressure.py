@@ -116,7 +116,7 @@ def while_the_body_moves_it_is_that_of_the_former_shape(window: MainWindow, aske
     yield lambda: pressed(window).stale
     assert pressed(window).values["mid-bust"] == pytest.approx(former)
     assert maps.flags.flags == ()
-    assert maps.legend.note.text().startswith("Of the former shape")
+    assert maps.legend.note.text().startswith("For the previous shape")
     assert len(asked) == 2
     slider = window.lines.rows["mid-bust"].slider
     QTest.mouseRelease(slider, Qt.MouseButton.LeftButton)
@@ -175,7 +175,7 @@ def test_beside_the_cut_list_stands_what_each_line_presses_with(asked: list[floa
         assert (mark.kpa, mark.light, mark.word) == (f"{row.max_kpa:.1f}", "green", "gentle")
         assert f"{row.max_kpa:.1f} kPa · {row.max_mmhg:.0f} mmHg" in mark.tip
         assert f"{row.mean_kpa:.1f} kPa · {row.mean_mmhg:.0f} mmHg" in mark.tip
-        assert f"straight over hollows for {row.bridged_mm:.0f} mm" in mark.tip
+        assert f"Bridges hollows over {row.bridged_mm:.0f} mm" in mark.tip
         assert card.largest.text() == f"{row.max_kpa:.1f} kPa · {row.max_mmhg:.0f} mmHg"
         assert (card.light.light, card.light.word) == ("green", "gentle")
         assert card.place.text() == f"Mid-bust, {row.where}"

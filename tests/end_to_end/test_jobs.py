@@ -225,7 +225,7 @@ def test_pictures_that_cannot_be_painted_leave_no_question(
         assert not window.view.question.isVisible()
         monkeypatch.setattr(app.gui.features.scan.controller, "option_thumbnails", endless([]))
         window.scan_controller.ask()
-        assert "picture below" in window.notices.notice().hint
+        assert "image below" in window.notices.notice().hint
         yield lambda: window.progress_controller._shown_job() is window.scan_controller._painting
         window.progress_controller.cancel()
         assert "Scan step" in window.notices.notice().hint, "there is no picture to choose below"

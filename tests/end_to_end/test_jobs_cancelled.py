@@ -124,7 +124,7 @@ def test_what_fails_is_told_and_waits_no_longer(monkeypatch: pytest.MonkeyPatch)
         yield settled(window)
         window.navigation.show_step("result")
         yield lambda: window.result._waiting.text() == "The body could not be measured."
-        assert "inside Busk" in window.notices.notice().sentence
+        assert "internal error" in window.notices.notice().sentence
         yield lambda: "pressure was not computed" in window.strip.hint.text()
         window.report_controller.open()
         yield lambda: window.report_controller.page.state.text() == "The report could not be created."

@@ -62,8 +62,10 @@ def test_a_line_that_is_folded_is_told_so_and_its_slider_says_how_far_it_reaches
         yield settled(window)
         row = window.lines.rows["mid-bust"]
         yield lambda: row.view.leeway is not None and not row.view.stale
-        assert "folds" not in plain(legend_entries(row.view.leeway)["red"]), "its slider does not reach there"
-        assert row.slider.toolTip().startswith("Length of the front part, 80 to 112 % of its rest.")
+        assert "folded" not in plain(legend_entries(row.view.leeway)["red"]), (
+            "its slider does not reach there"
+        )
+        assert row.slider.toolTip().startswith("Set the front length, 80 to 112 % of the original.")
         window.lines_controller.commit_length("mid-bust", 0.55)
         yield settled(window)
         yield lambda: row.view.leeway is not None and not row.view.stale
@@ -79,7 +81,7 @@ def test_a_line_that_is_folded_is_told_so_and_its_slider_says_how_far_it_reaches
             plain(legend_entries(leeway)["red"])
             == "Overstrained below 85.8 % \N{MIDDLE DOT} folded below 67.7 %"
         )
-        assert "Folds below 67.7 %: a triangle" in plain(hint(leeway, 0.55))
+        assert "Folded below 67.7 %: a triangle" in plain(hint(leeway, 0.55))
         assert row.slider.toolTip().startswith("Set the front length, 50 to 112 % of the original.")
 
     run_main([], script)
@@ -91,7 +93,7 @@ def test_where_pressure_is_known_nothing_is_said_of_it_but_where_it_is_too_much(
     assert plain(hint(known, 0.6)).endswith(
         "Contact pressure too high below 78.0 %: contact pressure of the band exceeds 4 kPa in places."
     )
-    assert "not looked at" not in hint(known, 0.9)
+    assert "not checked" not in hint(known, 0.9)
 
 
 def test_what_the_other_lines_do_is_told_as_theirs() -> None:
@@ -113,7 +115,7 @@ def test_an_opened_row_has_a_key_to_its_zones(qtbot: QtBot) -> None:
         "slack": "Slack above 98.1 %",
     }
     free = LengthLimits("waist", (Zone("green", 0.5, 1.3),))
-    assert legend_entries(free) == {"green": "Valid shape (without pressure) at any length"}
+    assert legend_entries(free) == {"green": "Valid shape (contact pressure not checked) at any length"}
     shown = LimitsLegend()
     qtbot.addWidget(shown)
     for leeway, ratio, lit in (

@@ -120,7 +120,7 @@ def test_a_line_is_drawn_from_point_to_point(qtbot: QtBot) -> None:
     assert dialog._said.text() == "A line of that name already exists."
     dialog.points.clear()
     QTest.keyClicks(dialog.points, "r9c9, 3")
-    assert "no place 'r9c9'" in dialog._said.text()
+    assert "no position 'r9c9'" in dialog._said.text()
 
 
 def test_the_accumulating_force_can_be_chosen() -> None:

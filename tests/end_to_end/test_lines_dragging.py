@@ -196,7 +196,7 @@ def the_red_resists_as_in_the_slider(window: MainWindow) -> None:
     window.lines_controller.show_rows()
     pull(window, start, QPoint(0, -10 - round(RESISTANCE) + 2))
     assert window.band_drag_controller._ratio == pytest.approx(ratio - 0.01)
-    assert f"folds below {100 * (ratio - 0.01):.1f} %" in shown_tip(window)
+    assert f"folded below {100 * (ratio - 0.01):.1f} %" in shown_tip(window)
     move(canvas_of(window), start + QPoint(0, -10 - round(RESISTANCE) - 5))
     release(canvas_of(window), start)
     assert ratio_of(window) == pytest.approx(ratio - 0.015)

@@ -117,7 +117,7 @@ def test_a_line_on_the_rib_cage_is_said_to_measure_only_and_can_move_to_where_it
         card.move_.click()
         assert card.snap.isChecked()
         assert drawing._found.is_movable
-        assert "only measured" not in card._what.text()
+        assert "measured only" not in card._what.text()
         assert card.move_.isHidden()
         press(window, Qt.Key.Key_Return)
         yield lambda: "line 1" in window.lines.rows and window.is_settled()

@@ -96,7 +96,7 @@ def test_band_and_cup_follow_the_system_and_the_allowance_that_are_remembered() 
         tight = sizes(*girths, 20.0)["uk"]
         yield lambda: card.main.text() == f"UK {tight.label}"
         assert card.main.text() == f"UK {tight.label}"
-        assert " ".join(tight.rule) == card.rule.text()
+        assert " ".join(str(each) for each in tight.rule) == card.rule.text()
         assert card.near.isVisible(), "what lies near stands there, as the doubt does"
         assert all(each.label in card.near.text() for each in (*tight.neighbours, *tight.sisters))
         assert card.doubt.text() == tight.doubts[0].en

@@ -101,7 +101,7 @@ def as_the_core_measures(window: MainWindow) -> None:
     view = next(view for view in window.result.measured if view.own)
     assert (view.before, view.after) == (before[view.key].value, after[view.key].value)
     assert view.group == "Custom"
-    assert "straight from bust point left" in view.tip
+    assert "straight distance from bust point left" in view.tip
 
 
 def test_a_landmark_that_is_chosen_is_not_moved_and_a_second_click_gives_it_up() -> None:

@@ -100,7 +100,7 @@ def test_what_cannot_be_held_is_said_and_the_last_good_state_stays() -> None:
         yield lambda: window.session.design == design and window.is_settled()
         notice = window.notices.notice()
         assert notice is not None
-        assert "mid-bust cannot be held at 7" in notice.sentence.lower()
+        assert "mid-bust cannot be fixed at 7" in notice.sentence.lower()
         assert not window.notices._waiting
         assert np.abs(points(window) - at_start).max() < 0.2
         assert window.session.undo_stack.index() == 2

@@ -33,7 +33,7 @@ def test_of_a_run_that_ran_away_there_is_no_sheet_and_no_light() -> None:
         assert window.pressure_controller.shown is None, "nor does it leave with the cut list"
         desk = window.report_controller
         desk.open()
-        yield lambda: "ran away" in desk.page.state.text()
+        yield lambda: "The solver diverged" in desk.page.state.text()
         assert desk.handout is None
         assert not any(press.isEnabled() for press in desk.page.does.values())
         window.actions_.undo.trigger()

@@ -77,11 +77,11 @@ def test_the_whole_window_tells_one_lift_that_of_the_bust_points() -> None:
         window.variants_controller.flip_side_by_side()
         assert title_of_b(window) == [
             f"Variant B   {window.strip.chip.accessibleName()}",
-            f"Bust point {said}",
+            f"Bust points: {said}",
             "Mid-bust 90.0 %",
         ]
         window.sections_controller.set_on(True)
-        assert window.sections_controller.panel.readout.text().startswith("Bust point left ")
+        assert window.sections_controller.panel.readout.text().startswith("Bust point left: ")
 
     run_main([], script)
 
@@ -153,19 +153,19 @@ def test_a_run_that_never_rests_is_no_result_and_has_a_way_out() -> None:
         window.variants_controller.flip_side_by_side()
         assert title_of_b(window) == ["Variant B   Do not use", "Mid-bust 60.0 %"]
         window.navigation.show_step("result")
-        assert "not valid" in window.result.doubt
+        assert "do not use these values" in window.result.doubt
         yield lambda: window.history.snapshots.count() >= 1
         assert kept(window).words == ("Do not use", "Not valid for production")
         assert kept(window).mark == ("bad", "warning-octagon")
 
         offered = [button.text() for button in window.notices.buttons]
-        assert "Use adaptive control" not in offered, "it would lead to a fold"
+        assert "Use Adaptive" not in offered, "it would lead to a fold"
         window.session.choose_control("adaptive")
         yield settled(window)
         assert frame_of(window).verdict.motion == "settled"
         notice = window.notices.notice()
         assert notice is not None
-        assert "folds over" in f"{notice.sentence} {notice.hint}", "at 60 % it rests, and is no body"
+        assert "overlaps itself" in f"{notice.sentence} {notice.hint}", "at 60 % it rests, and is no body"
         window.throttled.flush()
         assert window.rail.items["result"].state() == "bad", "its badge is as red as the word"
         assert window.session.undo_stack.undoText() == "Volume control: Adaptive"
@@ -174,7 +174,7 @@ def test_a_run_that_never_rests_is_no_result_and_has_a_way_out() -> None:
         assert frame_of(window).verdict.state == "vibrating"
         notice = window.notices.notice()
         assert notice is not None
-        assert "swings by" in notice.sentence, "it is told again"
+        assert "oscillates by" in notice.sentence, "it is told again"
 
     run_main([], script)
 
@@ -231,7 +231,7 @@ def test_measures_say_from_where_they_count_and_leave_as_a_table(
         heading, *table = csv.reader(path.read_text(encoding="utf-8-sig").splitlines())
         assert heading == ["Measurement", "Reference", "Unit", "Before", "After", "Change", "Notes"]
         assert [row[0] for row in table] == list(rows)
-        cells = table[list(rows).index("Mid-bust, whole band")]
+        cells = table[list(rows).index("Mid-bust, full length")]
         assert cells[2:] == ["mm", *(f"{each:.1f}" for each in (whole.before, whole.after, whole.change)), ""]
         window.result.copy_requested.emit()
         assert "\t".join(cells) + "\n" in QGuiApplication.clipboard().text()

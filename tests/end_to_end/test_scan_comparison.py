@@ -45,7 +45,7 @@ def test_a_worn_scan_is_compared_and_learnt_from(pair: tuple[str, str, str]) -> 
         yield settled(window)
         desk, page = window.scan_comparison_controller, window.scan_comparison_controller.page
         window.maps_controller.choose("worn")
-        assert "worn scan first" in window.maps_controller.legend.note.text()
+        assert "fitting scan first" in window.maps_controller.legend.note.text()
         window.maps_controller.choose("")
         window.navigation.show_step("result")
         assert desk.door.isVisible(), "it is met under the measures"
@@ -60,7 +60,7 @@ def test_a_worn_scan_is_compared_and_learnt_from(pair: tuple[str, str, str]) -> 
         assert page.view.file == "worn.ply"
         heads = [each.text() for each in page.findChildren(QLabel) if each.isVisible()]
         assert "Residuals (prediction − scan) [mm]" in heads, "its figures have no unit of their own"
-        assert page.view.lies.startswith("100 % of the skin that no line moves")
+        assert page.view.lies.startswith("Registration: 100 % of the skin outside the reshaped region")
         frame = window.session.frame
         assert frame is not None
         values = window.scan_comparison_controller.values(frame)
@@ -105,10 +105,10 @@ def test_another_person_is_refused_and_an_edit_makes_the_comparison_old(pair: tu
         desk, page = window.scan_comparison_controller, window.scan_comparison_controller.page
         desk.show_page()
         desk.read(other)
-        yield lambda: "does not fit the first" in said(window)
+        yield lambda: "does not match the first" in said(window)
         assert desk.worn is None
         desk.read(scan)
-        assert "does not fit" not in said(window), "the refusal was of the scan before"
+        assert "does not match" not in said(window), "the refusal was of the scan before"
         yield lambda: bool(page.view.rows) and not page.view.faint
         rms = page.view.rows[0].rms
         window.session.preview_line("mid-bust", 0.95)
@@ -151,7 +151,7 @@ def test_a_shape_that_has_settled_is_compared_while_turns_beside_it_go_on(pair: 
         frame = window.session.frame
         assert frame is not None
         assert frame.is_running, "the conventional force is still on its way"
-        assert "out than real" in window.maps_controller.legend.note.text()
+        assert "out than measured" in window.maps_controller.legend.note.text()
         window.session.set_pace(None)
         window.session.undo_stack.setClean()
 

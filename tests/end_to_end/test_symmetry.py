@@ -137,7 +137,7 @@ def leaves_what_is_not_worth_it(window: MainWindow) -> Script:
     yield window.notices.isVisible
     shown = window.notices._shown
     assert shown is not None
-    assert shown.sentence.startswith("These lines cannot make it more even")
+    assert shown.sentence.startswith("The active lines cannot reduce the asymmetry")
     assert window.session.design is before
     assert window.session.undo_stack.count() == count
     window.session.edit(lambda d: replace(d, line_contact="sliding"), "Sliding")
@@ -246,7 +246,7 @@ def parted_elsewhere(window: MainWindow) -> Script:
     row = window.lines.rows["mid-bust"]
     assert row._open
     assert row.details._figures[0][3].text() == "–", "a line that does not pull has no gap"
-    assert "halves are worn instead" in row.details._part.text()
+    assert "replaced by its left and right halves" in row.details._part.text()
     assert row.view.leeway is None
     window.actions_.undo.trigger()
     yield lambda: "mid-bust left" not in window.lines.rows and window.is_settled()

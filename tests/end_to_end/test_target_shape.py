@@ -108,7 +108,7 @@ def tells_what_keeps_a_wish_from_being_met(window: MainWindow) -> Script:
     desk.wish("girth", 1200.0)
     yield answered(window)
     assert card.answer.text().startswith("Not reachable. Closest result: Bust girth ")
-    assert "because Mid-bust, Full bust may not be longer: a longer line would" in card.answer.text()
+    assert "Reasons: Mid-bust, Full bust: upper length limit" in card.answer.text()
     assert set(ratios(desk.answer.reply.design).values()) == {0.999}, "no line is off"
     desk.drop("girth")
     yield answered(window)
@@ -120,7 +120,7 @@ def tells_what_keeps_a_wish_from_being_met(window: MainWindow) -> Script:
     assert card.note.text() == "Locked, not changed: Mid-bust."
     assert desk.answer.reply.design.ratio("mid-bust") == 0.97
     window.session.edit(lambda d: lock(d, "full-bust"), "Lock it too")
-    assert "All worn lines are locked" in card.hint.text()
+    assert "All active lines are locked" in card.hint.text()
     assert card.help_.text() == "Unlock lines", "other lines are not what is missing"
     card.help_.click()
     yield answered(window)
@@ -141,7 +141,7 @@ def loses_nothing_meanwhile(window: MainWindow, tmp_path: Path) -> Script:
     window.session.save(path, None)
     yield lambda: not window.session.unsaved
     assert ratios(open_project(path).design) == {"mid-bust": 0.97, "full-bust": 0.98}, "what is taken"
-    assert window.status._saved.text().endswith("without what is asked for")
+    assert window.status._saved.text().endswith("(pending targets not included)")
     # Another edit: asked again from there, the wish as it was.
     window.session.edit(lambda d: d.with_line("mid-bust", None), "Off")
     yield answered(window)
@@ -235,7 +235,7 @@ def sends_to_apply_or_cancel(window: MainWindow) -> Script:
     desk.begin([Goal("out", -4.0)])
     yield answered(window)
     window.report_controller.open()
-    assert "apply what is asked for, or cancel it, first" in window.report_controller.page.state.text()
+    assert "Apply or cancel the pending targets" in window.report_controller.page.state.text()
     window.report_controller.leave()
     window.navigation.show_step("result")
     yield lambda: bool(window.result.measured) and not window.result.stale

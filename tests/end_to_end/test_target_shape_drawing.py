@@ -131,11 +131,11 @@ def is_the_skin_as_long_as_it_is_free(window: MainWindow) -> Script:
     yield answered(window)
     desk.drawing.begin("left")
     yield answered(window)
-    assert "Drag the curve" in desk.card.hint.text()
+    assert "Drag the handles of the curve" in desk.card.hint.text()
     was = desk.drawn["profile left"].base
     type_wish(window, "out", "-4")
     yield answered(window)
-    assert "Drag the curve" in desk.card.hint.text(), "it tells what the dots are"
+    assert "Drag the handles of the curve" in desk.card.hint.text(), "it tells what the dots are"
     curve = desk.handles.profile._curves["profile left"]
     assert np.abs(curve._wished - curve._reached).max() < 0.01
     now = desk.drawn["profile left"].base

@@ -45,7 +45,7 @@ def draws_a_profile(window: MainWindow) -> Script:
     assert min(abs(a.y() - b.y()) for a, b in pairwise(spots)) >= 20
     assert desk.goals() == (), "nothing is asked for before it is drawn"
     assert not desk.card.apply.isEnabled()
-    assert "Drag the curve" in desk.card.hint.text()
+    assert "Drag the handles of the curve" in desk.card.hint.text()
 
 
 def wishes_what_is_dragged(window: MainWindow) -> Script:
@@ -66,9 +66,9 @@ def wishes_what_is_dragged(window: MainWindow) -> Script:
     assert not desk.answer.question.hurried
     assert "Also changes: Bust point " in desk.card.price.text(), "what is free may move as well"
     words = desk.card.wishes["profile left"].now.text()
-    assert words.startswith("error ")
+    assert words.startswith("deviation ")
     off = np.array([desk.answer.reply.reached[goal.name] - goal.value for goal in desk.goals()])
-    assert words == f"off by {np.abs(off).mean():.1f} mm, at most {np.abs(off).max():.1f} mm"
+    assert words == f"deviation {np.abs(off).mean():.1f} mm, at most {np.abs(off).max():.1f} mm"
     # Esc gives the curve back while it is in the hand.
     drag(handles[0], 30, 0, drop=False)
     assert desk.drawn["profile left"] is not drawn

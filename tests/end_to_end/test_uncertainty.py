@@ -46,7 +46,7 @@ def test_it_is_told_where_it_is_looked_at_and_fades_while_a_line_moves() -> None
         assert volume.caption == "estimate", "the ± stands beside it, with all sources"
         assert any(view.moves == "lift" and view.off[2] for view in window.result.rows)
         assert "twice the standard deviation" in card.meaning.text()
-        assert "slid over the skin" in card.contact.text()
+        assert "With sliding lines" in card.contact.text()
         card.folds[1].click()
         assert all(
             any(sentence in words.text() for words in card.findChildren(type(card.meaning)))
@@ -119,7 +119,7 @@ def test_where_it_is_given_up_there_is_none_and_the_reason_stands_there(
         yield settled(window)
         desk, card = window.uncertainty_controller, window.uncertainty_controller.card
         window.navigation.show_step("result")
-        yield lambda: "No balance was found" in card.meaning.text()
+        yield lambda: "No equilibrium found" in card.meaning.text()
         assert card.meaning.text().startswith("Uncertainties were not computed.")
         assert desk.shown == (None, True), "without the landmarks it would be too small for good"
         yield lambda: bool(window.result.measured)

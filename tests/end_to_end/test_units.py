@@ -33,10 +33,10 @@ WRITTEN = ("text", "toolTip", "accessibleName", "accessibleDescription", "whatsT
 IN_MM = re.compile(r"(?<![A-Za-z])mm(?![A-Za-z])|millimetre|ミリ", re.IGNORECASE)
 MEANT = re.compile(
     r"^(mm|Millimetres|ミリメートル)$"  # the unit of a file, to be chosen
-    r"|in mm, z-up|mm、z が上|Read in mm|mm で読む"  # as files hold it
+    r"|in mm, z-up|mm、z が上|In mm, the trunk girth|mm では胴まわり"  # as files hold it
     r"|points in mm|制御点の表（mm）|in millimetres\.|プロッター用（mm）"
     r"|−20mm, 440mm|−20mm、440mm"  # what can be typed, whatever unit is shown
-    r"|for every millimetre|1 ミリごとに"  # how cables answer
+    r"|constant per millimetre|1 ミリごとに"  # how cables answer
 )
 
 

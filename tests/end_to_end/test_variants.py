@@ -124,7 +124,7 @@ def test_variants_that_differ_in_elastics_alone_are_told_apart() -> None:
         frame = window.session.frame
         cuts = {row.line: row for row in cut_list(frame.stages, frame.control_points).rows}
         assert "Mid-bust" not in rows, "the length of an elastic unstretched is compared with nothing"
-        assert rows["Mid-bust, on the body"][1].values[1] == pytest.approx(cuts["mid-bust"].reached_front_mm)
+        assert rows["Mid-bust, on body"][1].values[1] == pytest.approx(cuts["mid-bust"].reached_front_mm)
         cut, made_of, kpa = rows["Under-bust: cut length, elastic, contact pressure"]
         assert cut.values == (None, pytest.approx(cuts["under-bust"].cut_mm))
         assert made_of.values == ("", band.name)

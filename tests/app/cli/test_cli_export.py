@@ -52,7 +52,7 @@ def test_all_files_of_a_project_at_once(tmp_path, anna, capsys):
     assert "Mid-bust" in (tmp_path / "w.svg").read_text("utf-8")
     measures = ElementTree.parse(tmp_path / "m.smis").getroot()
     assert measures.findtext("unit") == "cm"
-    assert f"{len(list(measures.iter('m')))} measures" in said.out
+    assert f"{len(list(measures.iter('m')))} measurements" in said.out
 
 
 def test_unit_and_axes_are_those_of_the_options(tmp_path, anna):
@@ -86,15 +86,15 @@ def test_a_scan_is_exported_with_the_given_lines(tmp_path, capsys):
     ("words", "said"),
     [
         ([], "No output specified"),
-        (["--body", "x.step"], "does not write .step files"),
-        (["--lines", "x.svg"], "does not draw lines as .svg"),
-        (["--strips", "x.pdf"], "does not draw lines as .pdf"),
-        (["--measurements", "x.xls"], "does not write measures as .xls"),
-        (["--measurements", "x.vit", "--unit", "m"], "cannot be in m"),
-        (["--turntable", "x.mp4"], "does not make turntables as .mp4"),
-        (["--turntable", "x.gif", "--frames", "1"], "cannot have 1 frames"),
+        (["--body", "x.step"], ".step files are not supported for export"),
+        (["--lines", "x.svg"], "Lines cannot be exported as .svg"),
+        (["--strips", "x.pdf"], "Lines cannot be exported as .pdf"),
+        (["--measurements", "x.xls"], "Measurements cannot be exported as .xls"),
+        (["--measurements", "x.vit", "--unit", "m"], ".vit files do not support the unit m."),
+        (["--turntable", "x.mp4"], "Turntables cannot be saved as .mp4"),
+        (["--turntable", "x.gif", "--frames", "1"], "turntable frames 1 is out of range"),
         (["--body", "x.ply", "--unit", "ell"], "There is no unit 'ell'"),
-        (["--body", "x.ply", "--axes", "x-up"], "There is no set of axes 'x-up'"),
+        (["--body", "x.ply", "--axes", "x-up"], "There is no axis convention 'x-up'"),
         (["--body", "x.ply", "--control-mesh", "x.ply"], "x.ply is specified for two outputs"),
     ],
 )
@@ -106,5 +106,5 @@ def test_invalid_files_are_refused_before_solving(monkeypatch, capsys, anna, wor
 
 def test_lines_of_a_design_without_active_lines_are_refused(tmp_path, capsys):
     assert main(["export", str(SCAN), "--lines", str(tmp_path / "z.dxf")]) == 2
-    assert "No line is worn. Set the length of a line first." in capsys.readouterr().err
+    assert "No active lines. Set a line length first." in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []

@@ -46,8 +46,8 @@ def test_nothing_is_printed_or_written_of_a_diverged_run(
     assert main([words[0], str(runaway), *words[1:]]) == BAD_INPUT
     said = capsys.readouterr()
     assert said.err == (
-        "busk: The calculation ran away: there is no body to measure or to sew for. "
-        "Set the lines longer or softer.\n"
+        "busk: The solver diverged: no shape is available for measurements or cutting. "
+        "Make the lines longer or softer.\n"
     )
     assert said.out == ""
     assert list(tmp_path.iterdir()) == [runaway]

@@ -19,9 +19,9 @@ from app.cli.main import main
             "80%",
             0,
             "overstrained",
-            "rest lengths. It does not tell how a body would look.",
+            "original lengths. The shape does not represent a real body.",
         ),
-        ("60%", 3, "folded", "degrees. It does not tell how a body would look."),
+        ("60%", 3, "folded", "degrees. The shape does not represent a real body."),
     ],
 )
 def test_an_invalid_shape_is_named_with_its_line(
@@ -55,7 +55,7 @@ def test_an_invalid_shape_is_named_with_its_line(
     ("words", "code", "told", "warned"),
     [
         (["--settings", "line_force=explicit"], 3, "diverging after ", "The solver diverged: "),
-        (["--volume", "exact"], 0, " Newton steps, volume error +0.0000 % (+0.00 ml)", ""),
+        (["--volume", "exact"], 0, " Newton iterations, volume error +0.0000 % (+0.00 ml)", ""),
         (
             ["--volume", "exact", "--settings", "dense_volume=yes"],
             0,

@@ -36,7 +36,7 @@ def test_a_scan_is_measured_before_only(person: Path, capsys: pytest.CaptureFixt
     assert 850.0 < found["bust_girth"]["before"] < 950.0
     assert found["bust_girth"]["after"] is None
     assert found["waist_girth"]["before"] is None
-    assert "no waist" in found["waist_girth"]["note"]
+    assert "No waist detected" in found["waist_girth"]["note"]
     assert found["breast_volume_left"]["estimate"] is True
     assert found["bust_girth"]["iso"] == "Bust girth"
 

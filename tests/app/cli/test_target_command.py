@@ -101,8 +101,8 @@ def test_a_target_is_required(capsys: pytest.CaptureFixture[str]) -> None:
     [
         ((), "No active lines"),
         ((*WORN, "--lock", "wing"), "'wing' is not an active line. Active lines: mid-bust, full-bust."),
-        ((*WORN, "--shortest", "mid-bust=soon"), "is not a length for mid-bust"),
-        ((*WORN, "--lock", "mid-bust", "--lock", "full-bust"), "No line that moves the body may change"),
+        ((*WORN, "--shortest", "mid-bust=soon"), "is not a valid length for mid-bust"),
+        ((*WORN, "--lock", "mid-bust", "--lock", "full-bust"), "No unlocked line moves the body"),
         ((*WORN, "--out", "found.ply"), "not a project file name"),
         ((*WORN, "--profile", "missing.csv"), "cannot be read as a table"),
         ((*WORN, "--profile", "bust=missing.csv"), "no section 'bust'"),

@@ -28,7 +28,7 @@ def test_values_are_printed_with_their_uncertainty(
 ) -> None:
     assert main(["uncertainty", str(mannequin), *WORN, *QUICK]) == 0
     said = capsys.readouterr().out
-    assert said.startswith("Verdict: Check before use\n  Mid-bust presses with ")
+    assert said.startswith("Verdict: Check before use\n  Mid-bust: contact pressure ")
     assert re.search(r"^Waist girth \(narrowest\) +69\d\.\d ± +2\.5 ", said, re.M)
     assert "mid-bust: cut length" in said
     assert "skin contact sliding" in said
@@ -66,7 +66,7 @@ def test_without_lines_the_original_body_is_printed(
     said = capsys.readouterr().out
     assert said.startswith("Verdict: No active lines\n\nNo active lines: ")
     assert re.search(r"^Waist girth \(narrowest\) +69\d\.\d ± +2\.5 +mm", said, re.M)
-    assert "anatomical waist may be elsewhere" in said
+    assert "girth of the anatomical waist may" in said
     assert not any(word in said for word in ("sliding", "as set", "Bust point lift", "Elastics:"))
 
 

@@ -39,7 +39,10 @@ def test_lengths_as_they_are_typed(text: str, unit: str, ratio: float) -> None:
     "text", ["", "680mm", "tight", "94 mmm", "--6", "49.9", "130.1", "-60%", "1 200 mm", "94%%"]
 )
 def test_what_is_no_length_is_refused(text: str) -> None:
-    with pytest.raises(ValueError, match=r"is not a valid length|of its original length|Enter a length from|For that full length, enter 380.0mm"):
+    with pytest.raises(
+        ValueError,
+        match=r"is not a valid length|of its original length|Enter a length from|For that full length, enter 380.0mm",
+    ):
         number_field("%")._read(text)
 
 

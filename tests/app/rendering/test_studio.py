@@ -102,7 +102,7 @@ def test_what_is_stopped_or_misnamed_leaves_no_file(tmp_path, studio):
 
     with pytest.raises(Cancelled):
         write_picture(tmp_path / "p.png", shot, False, False, stop)
-    with pytest.raises(UserError, match=r"ends in \.png"):
+    with pytest.raises(UserError, match=r"ending in \.png"):
         write_picture(tmp_path / "p.jpg", shot, False, False)
     with pytest.raises(UserError, match="cannot be written"):
         write_picture(tmp_path / "missing" / "p.png", shot, False, False)

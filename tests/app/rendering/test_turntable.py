@@ -113,7 +113,7 @@ def test_progress_only_goes_on(tmp_path, reshaped):
 
 
 @pytest.mark.parametrize(
-    ("name", "said"), [("t.mp4", "gif, webp, png"), ("missing/t.gif", "There is no folder")]
+    ("name", "said"), [("t.mp4", "gif, webp, png"), ("missing/t.gif", "missing does not exist")]
 )
 def test_other_names_are_refused(tmp_path, shots, name, said):
     with pytest.raises(UserError, match=said):
@@ -121,10 +121,16 @@ def test_other_names_are_refused(tmp_path, shots, name, said):
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"frames": 1}, {"seconds": 0.0}, {"size": (10, 600)}, {"size": (600, 9000)}]
+    ("wrong", "limits"),
+    [
+        ({"frames": 1}, "2 to 360"),
+        ({"seconds": 0.0}, "0.5 to 60"),
+        ({"size": (10, 600)}, "64 to 4096"),
+        ({"size": (600, 9000)}, "64 to 4096"),
+    ],
 )
-def test_what_cannot_be_made_is_refused_with_the_range(wrong):
-    with pytest.raises(UserError, match="It goes from"):
+def test_what_cannot_be_made_is_refused_with_the_range(wrong, limits):
+    with pytest.raises(UserError, match=f"is out of range. Enter a value from {limits}"):
         Turntable(**wrong)
 
 

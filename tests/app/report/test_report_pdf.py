@@ -169,12 +169,12 @@ def test_what_is_missing_is_said(sheet: Report, built: Built, tmp_path: Path) ->
     sizeless = replace(sheet, sizes=(), no_size=Message("The scan shows no bust."), **wrong)
     text = written(handout(sizeless), tmp_path / "none.pdf").text()
     assert "The scan shows no bust." in text
-    assert "Do not use The calculation does not converge: it oscillates." in text
+    assert "Do not use The solver does not converge: it oscillates." in text
     assert "No value: the shape is not valid." in text
 
 
 @pytest.mark.parametrize(
-    ("words", "said"), [("en", "could not be seen clearly"), ("ja", "バージスがはっきり見えません")]
+    ("words", "said"), [("en", "is not clearly visible"), ("ja", "バージスがはっきり見えません")]
 )
 def test_doubts_stand_on_the_first_page(sheet: Report, tmp_path: Path, words: str, said: str) -> None:
     unclear = Message(
@@ -228,7 +228,8 @@ def test_letters_are_large_enough_for_the_bench() -> None:
 def test_a_garment_of_six_lines_is_two_pages_too(sheet: Report, tmp_path: Path) -> None:
     cuts, presses = sheet.cuts.rows * 2, sheet.pressures * 2
     rows = tuple(replace(row, line=f"own {k}", title=f"Own line {k}") for k, row in enumerate(cuts))
-    notes = [(Message("It goes straight over hollows for {length}.", length=Length(k)),) for k in range(6)]
+    bridges = "Bridges hollows over {length}, up to {height} off the skin: no contact pressure there."
+    notes = [(Message(bridges, length=Length(k), height=Length(k)),) for k in range(6)]
     pressed = tuple(replace(row, notes=note) for row, note in zip(presses, notes, strict=True))
     six = replace(sheet, cuts=replace(sheet.cuts, rows=rows), pressures=pressed)
     for words in ("en", "ja"):

@@ -155,7 +155,7 @@ def test_the_run_lists_failures_and_draws_every_body(
     assert "2 refused; 0 crashed" in text
     assert "1 file without a body: 1 " in text
     assert "* broken: broken.ply is not a PLY file" in text
-    assert "* away: There is no file" in text
+    assert "away.ply does not exist" in text.partition("* away: ")[2].splitlines()[0]
     assert (tmp_path / "out/accuracy.md").read_text("utf-8") == text
     values = json.loads((tmp_path / "out/accuracy.json").read_text("utf-8"))
     assert [file["right"] for file in values["files"]] == [True, False, False, False]
@@ -192,9 +192,9 @@ def test_the_command_prints_json(folder: Path, capsys: pytest.CaptureFixture[str
     ("content", "said"),
     [
         ([1, 2], "no table"),
-        ({"bodies": [1]}, "no table of files"),
-        ({}, "names no file"),
-        ({"scans": {"a": 3}}, "'a' cannot be used: what it tells must be a table"),
+        ({"bodies": [1]}, "not a table of files"),
+        ({}, "lists no files"),
+        ({"scans": {"a": 3}}, "The entry 'a' of truth.json cannot be used: what it tells must be a table"),
     ],
 )
 def test_a_broken_truth_is_told_in_a_sentence(tmp_path: Path, content: object, said: str) -> None:
@@ -226,7 +226,7 @@ def test_a_broken_truth_is_told_in_a_sentence(tmp_path: Path, content: object, s
     ],
 )
 def test_a_broken_entry_is_told_by_its_name_and_key(tmp_path: Path, entry: object, said: str) -> None:
-    with pytest.raises(TruthError, match=f"about 'it' cannot be used: .*{said}"):
+    with pytest.raises(TruthError, match=f"The entry 'it' of truth.json cannot be used: .*{said}"):
         one_truth(tmp_path, entry)
 
 
@@ -247,10 +247,10 @@ def test_the_name_of_a_file_is_enough(tmp_path: Path, found: dict[str, Any]) -> 
 
 
 def test_no_truth_or_no_json_is_told_in_a_sentence(tmp_path: Path) -> None:
-    with pytest.raises(TruthError, match=r"There is no truth\.json"):
+    with pytest.raises(TruthError, match=r"does not contain truth\.json"):
         read_truths(tmp_path)
     (tmp_path / "truth.json").write_bytes(b"\xff{")
-    with pytest.raises(TruthError, match="not written as JSON"):
+    with pytest.raises(TruthError, match="is not valid JSON"):
         read_truths(tmp_path)
 
 

@@ -151,7 +151,7 @@ def test_without_a_line_that_moves_the_body_nothing_is_found(
     pair: tuple[Stages, FittingScan, Design],
 ) -> None:
     bare = build(replace(pair[0].design, lines=()), pair[0])
-    with pytest.raises(UserError, match="No line that moves the body is worn"):
+    with pytest.raises(UserError, match="No active line moves the body"):
         calibrate(bare, pair[1])
 
 

@@ -43,12 +43,12 @@ def test_tables_are_read_as_people_write_them(tmp_path: Path, text: str) -> None
     [
         ("", "no columns height_mm and out_mm"),
         ("height_mm,depth\n1,2\n", "no columns height_mm and out_mm"),
-        ("height_mm,out_mm\n", "no heights in it"),
-        ("height_mm,out_mm\n350\n", "'' in .* is no length"),
-        ("height_mm,out_mm\n350,nan\n", "'nan' in .* is no length"),
-        ("height_mm,out_mm\n350,1e9\n", "is no length"),
-        ("height_mm,out_mm\n350,1\n350,2\n", "a height twice"),
-        ("body,curve,x_mm,y_mm,z_mm\nafter,1,0,0,0\n", "no curve in it"),
+        ("height_mm,out_mm\n", "contains no heights"),
+        ("height_mm,out_mm\n350\n", "'' in .* is not a length"),
+        ("height_mm,out_mm\n350,nan\n", "'nan' in .* is not a length"),
+        ("height_mm,out_mm\n350,1e9\n", "is not a length"),
+        ("height_mm,out_mm\n350,1\n350,2\n", "contains a duplicate height"),
+        ("body,curve,x_mm,y_mm,z_mm\nafter,1,0,0,0\n", "contains no curve"),
     ],
 )
 def test_what_is_no_profile_is_refused(tmp_path: Path, text: str, sentence: str) -> None:
@@ -78,5 +78,5 @@ def test_heights_where_nothing_moves_are_left_out(stages: Stages) -> None:
     asked = [float(goal.name.rpartition(" ")[2]) for goal in goals]
     assert 30 < len(goals) <= 60
     assert free.min() <= min(asked) < max(asked) <= free.max()
-    with pytest.raises(UserError, match="No height of the profile"):
+    with pytest.raises(UserError, match="All heights of the profile are outside the reshaped area"):
         profile_goals(stages, "right", np.array([[5000.0, 100.0]]))

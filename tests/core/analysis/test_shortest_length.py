@@ -143,7 +143,7 @@ def test_the_command_prints_a_table_and_the_same_as_json(person, capsys):
     assert main(arguments) == 0
     said = capsys.readouterr().out
     assert "Mid-bust, original length" in said
-    assert "under-bust lies on the rib cage" in said
+    assert "under-bust is on the rib cage" in said
     assert main([*arguments, "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["lines"].keys() == set(WORN)

@@ -79,9 +79,9 @@ def test_a_profile_is_the_foremost_skin_of_the_section(stages: Stages, side: str
 
 def test_what_cannot_be_asked_for_is_refused(stages: Stages) -> None:
     for name in ("lift upwards", "left", "", "girth left"):
-        with pytest.raises(UserError, match="cannot be asked for"):
+        with pytest.raises(UserError, match="is not a target"):
             reading(stages, name)
-    with pytest.raises(UserError, match="names no place of a profile"):
+    with pytest.raises(UserError, match="is not a position on a profile"):
         reading(stages, "profile left high")
-    with pytest.raises(UserError, match="no skin at a height of 9000 mm"):
+    with pytest.raises(UserError, match="has no skin at a height of 9000 mm"):
         reading(stages, "profile left 9000")

@@ -45,7 +45,7 @@ def test_hole_in_a_fold_is_said(template):
     below_fold = whole.mesh.vertices[template.point(1, template.bust_column)] - (0.0, 0.0, 20.0)
     holed = body_of(without(body.mesh, below_fold, 12.0))
     control = fit_control_mesh(template, holed, landmarks_at(places))
-    assert any("The fold under the left breast" in str(warning) for warning in control.warnings)
+    assert any("The inframammary fold of the left breast" in str(warning) for warning in control.warnings)
     assert not any("right breast" in str(warning) for warning in control.warnings)
 
 

@@ -66,17 +66,17 @@ def test_an_empty_file_and_other_archives_are_no_projects(tmp_path):
     path = tmp_path / "anna.busk"
     for content in (b"", b"PK", b"ply\n", os.urandom(1000)):
         path.write_bytes(content)
-        with pytest.raises(ProjectError, match="not a whole Busk project"):
+        with pytest.raises(ProjectError, match="an incomplete Busk project"):
             open_project(path)
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("letter.txt", "dear")
-    with pytest.raises(ProjectError, match="no Busk project"):
+    with pytest.raises(ProjectError, match="not a Busk project"):
         open_project(path)
 
 
 def test_a_project_without_its_scan_is_refused(tmp_path):
     inside = replace(DESIGN, scan=ScanSource("", member="scan/body.ply"))
-    with pytest.raises(ProjectError, match="holds no scan"):
+    with pytest.raises(ProjectError, match="contains no scan"):
         open_project(crafted(tmp_path / "anna.busk", to_json(inside)))
 
 

@@ -70,9 +70,9 @@ def test_own_measures_are_kept_by_name_and_saved() -> None:
     assert design.without_custom_measurement("Gore").own_measures == (RIBS,)
     renamed = CustomMeasurement("Arc", "skin", GORE.marks)
     assert design.with_custom_measurement(renamed, former="Gore").own_measures == (renamed, RIBS)
-    with pytest.raises(UserError, match="two measures"):
+    with pytest.raises(UserError, match="Two measurements"):
         design.with_custom_measurement(CustomMeasurement("Ribs", "skin", GORE.marks), former="Gore")
-    with pytest.raises(UserError, match="two measures"):
+    with pytest.raises(UserError, match="Two measurements"):
         Design(PLAIN.scan, own_measures=(GORE, GORE))
 
 

@@ -190,11 +190,13 @@ def test_a_scan_is_called_by_its_file_name():
     assert ScanSource("/customers/project.busk", member="scan/body.ply").name == "body.ply"
 
 
-@pytest.mark.parametrize(("force", "advice"), [("implicit", "nearer to 100 %"), ("explicit", "act in step")])
+@pytest.mark.parametrize(
+    ("force", "advice"), [("implicit", "closer to 100 %"), ("explicit", "implicit line forces")]
+)
 def test_a_length_that_cannot_be_held_comes_with_the_advice_that_helps(force, advice):
     design = replace(Design(ScanSource("a.ply")), line_hold="held", line_force=force)
     refusal = NoEquilibriumError(design.with_line("mid-bust", 0.7))
-    assert "mid-bust cannot be held at 70.0 %" in str(refusal.message)
+    assert "mid-bust cannot be fixed at 70.0 %" in str(refusal.message)
     assert advice in str(refusal.hint)
 
 

@@ -103,5 +103,5 @@ def test_its_mirror_image_and_its_halves_are_as_long() -> None:
     again = split(Design(ScanSource("a.ply"), own_lines=(backwards,)), TEMPLATE, "across").own_lines
     assert again == (left, right)
     for other in (across.places[2:], (*across.places, (4.0, -2.0))):
-        with pytest.raises(LineError, match="does not go across"):
+        with pytest.raises(LineError, match="does not cross"):
             split(Design(ScanSource("a.ply"), own_lines=(CustomLine("a", places=other),)), TEMPLATE, "a")

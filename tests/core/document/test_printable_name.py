@@ -77,7 +77,7 @@ def test_names_in_projects_and_tables_are_refused_as_typed_ones_are(name: str) -
     for key, part in (("own_lines", 0), ("lines", 0)):
         changed = json.loads(json.dumps(values))
         changed[key][part]["name"] = name
-        with pytest.raises(UserError, match="too long or cannot be printed"):
+        with pytest.raises(UserError, match="too long or contains unprintable"):
             from_json(json.dumps(changed))
     with pytest.raises(UserError):
         elastic_from_csv(f"# name: {name}\n# width_mm: 12\nelongation %,force N\n20,1\n40,2\n", "roll")

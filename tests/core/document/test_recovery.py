@@ -109,7 +109,7 @@ def test_a_full_disk_is_told_and_the_last_state_stays(monkeypatch: pytest.Monkey
     recovery = Recovery.new()
     recovery.save(SHORT, SCAN, "anna", None)
     monkeypatch.setattr(os, "fsync", lambda _: (_ for _ in ()).throw(OSError(28, "No space left on device")))
-    with pytest.raises(ProjectError, match=r"cannot keep your changes in .*: No space"):
+    with pytest.raises(ProjectError, match=r"Changes cannot be autosaved in .*: No space"):
         recovery.save(Document.single(DESIGN), SCAN, "anna", None)
     assert load_unsaved(recovery.folder).document.shown == "B"
 
@@ -127,5 +127,5 @@ def test_what_a_killed_program_left_beside_a_project_goes_with_the_next_save(tmp
 
 def test_where_nothing_can_be_kept_it_is_said_in_words(own_base: Path) -> None:
     (own_base / "recovery").write_text("no folder")
-    with pytest.raises(ProjectError, match="cannot keep your changes in"):
+    with pytest.raises(ProjectError, match="Changes cannot be autosaved in"):
         Recovery.new()

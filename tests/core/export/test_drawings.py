@@ -129,7 +129,7 @@ def test_a_strip_of_elastic_is_as_long_as_it_is_to_be_cut(solution):
     share = (left[0] - 15.0) / (cut.length - 30.0)
     assert share == pytest.approx(row.reached_front_mm / row.reached_whole_mm)
     assert 15.0 < centre[0] < left[0]
-    assert "stretched by" in str(strip_label(cut))
+    assert "elongation" in str(strip_label(cut))
 
 
 def test_the_ends_of_a_strap_are_told_apart(solution):
@@ -159,7 +159,7 @@ def test_the_ends_of_a_strap_are_told_apart(solution):
     assert curve.length == pytest.approx(worn.length, rel=0.05)
     stages = build(stages.design.with_elastic("strap left", find_elastic("strap 15")), stages)
     strap = next(each for each in strips(stages, points, {}, {}) if each.name == "strap left")
-    assert str(strap.note).startswith("to cut from Strap")
+    assert str(strap.note).startswith("cut from Strap")
 
 
 def test_an_svg_is_at_its_size_in_millimetres(tmp_path, flat):

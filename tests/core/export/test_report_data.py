@@ -85,7 +85,7 @@ def test_turns_end_where_the_lift_does_and_a_fold_has_none(built: Built) -> None
     told = make_report(folded, folded.records, HEADING)
     assert told.state not in ("settled", "strained", "settling")
     assert told.lift is None
-    assert any("does not tell how a body would look" in str(each) for each in told.warnings)
+    assert any("does not represent a real body" in str(each) for each in told.warnings)
 
 
 def test_the_sections_go_through_the_bust(worn: Solution, sheet: Report) -> None:

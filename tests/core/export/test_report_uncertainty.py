@@ -142,8 +142,8 @@ def test_pieces_tell_how_far_they_may_be_off(built: Callable[[str], Stages]) -> 
     assert force_range_warning(surer) == ""
     rows = {row["key"]: row for row in csv.DictReader(io.StringIO(report_csv(sheet)))}
     assert sheet.off_sources == ("scan", "tissue", "tape"), "no elastic, no landmark: it holds none of them"
-    (meaning,) = (each for _, notes in note_groups(sheet) for each in notes if "It holds" in each)
-    assert "It holds: scan, tissue, cutting and sewing." in meaning
+    (meaning,) = (each for _, notes in note_groups(sheet) for each in notes if "Included: " in each)
+    assert "Included: scan, tissue, cutting and sewing." in meaning
     assert float(rows["mid-bust: cut"]["off_after"]) == 8.0
     assert float(rows["mid-bust: tension"]["off_factor"]) == pytest.approx(np.e)
     assert rows["mid-bust: width"]["off_after"] == ""

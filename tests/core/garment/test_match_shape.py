@@ -78,9 +78,12 @@ def test_lines_that_cannot_move_or_are_held_keep_their_lengths(built):
     [
         (
             ((0.0, 0.0), (0.3, 0.5)),
-            "weak is too weak for mid-bust: .* mm too long at its limit, 30 %",
+            "weak is too weak for mid-bust: .* mm too long at its maximum elongation, 30 %",
         ),
-        (((0.0, 0.0), (3.0, 6.0)), "weak is too weak for mid-bust: .* mm too long at the shortest cut, 50 %"),
+        (
+            ((0.0, 0.0), (3.0, 6.0)),
+            "weak is too weak for mid-bust: .* mm too long at the shortest cut length, 50 %",
+        ),
     ],
 )
 def test_an_elastic_that_cannot_do_it_is_refused(built, curve, sentence):

@@ -94,8 +94,8 @@ def test_over_a_hollow_the_band_goes_straight_and_does_not_press() -> None:
     assert worn.places[over, 1] == pytest.approx(highest * np.sign(worn.places[over, 1]), abs=0.1)
     assert [each.height for each in worn.bridges] == pytest.approx([highest - 65.0] * 2, abs=0.1)
     assert tuple(map(str, worn.notes)) == (
-        f"It goes straight over hollows for {worn.bridged_length:.0f} mm, "
-        "up to 7 mm off the skin: it does not press there.",
+        f"Bridges hollows over {worn.bridged_length:.0f} mm, "
+        "up to 7 mm off the skin: no contact pressure there.",
     )
     span = np.cos(np.arcsin(np.sqrt(135.0 / 210.0))) * 90.0
     assert worn.bridged_length == pytest.approx(4.0 * span, abs=10.0)

@@ -93,7 +93,7 @@ def test_a_line_whose_tension_is_not_known_says_why_and_has_no_figures(
         None,
         (),
     )
-    assert "once an elastic is chosen" in str(row.notes[0])
+    assert "choose an elastic to compute its tension" in str(row.notes[0])
 
 
 def test_a_slack_line_presses_nowhere(built: Callable[[str], Stages]) -> None:
@@ -142,7 +142,7 @@ def test_the_command_prints_limits_with_their_sources_and_what_is_left_out(
     assert main(["pressure", SCAN, *WORDS]) == 0
     plain, limits = capsys.readouterr().out, pressure_limits()
     assert re.search(r"^Full bust +0\.83 +6\.2 +2\.36 +17\.7 .* 5\.5 +293  front \w+, \d+ mm", plain, re.M)
-    assert "source 2 kPa" in plain
+    assert "from 2 kPa" in plain
     assert all(each.name in plain and each.words.en in plain for each in limits.sources)
     assert all(sentence in plain for sentence in (*map(str, LEFT_OUT), *(each.en for each in limits.doubts)))
 

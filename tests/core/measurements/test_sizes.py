@@ -104,13 +104,17 @@ def test_the_rule_is_told_with_the_numbers_put_in():
         "Bust minus under-bust 11.3 cm: cup B (11.25 to 13.75).",
         "The size chart lists 11.5 to 13.5 for B; intermediate values use the nearest step.",
     )
-    assert "The table itself names 3 for C" in str(made("uk", 32, 35.2).rule[-1])
+    assert "The size chart lists 3 for C" in str(made("uk", 32, 35.2).rule[-1])
 
 
 @pytest.mark.parametrize("key", ["jp", "eu", "fr", "it", "au"])
 def test_the_borders_that_are_told_are_as_far_as_the_neighbours(key):
     answer = made(key, 71.1, 83.57)
-    rules = [re.findall(r"\((.*) to (.*)\)", each)[0] for each in map(str, answer.rule) if " gives " in each]
+    rules = [
+        re.findall(r"\((.*) to (.*)\)", each)[0]
+        for each in map(str, answer.rule)
+        if ": cup " in each or ": band " in each
+    ]
     told = [float(end) for ends in rules for end in ends]
     away = [each.missing_mm * (1 if each.up else -1) / 10 for each in answer.neighbours]
     assert told == pytest.approx([71.1 + away[0], 71.1 + away[1], 12.47 + away[2], 12.47 + away[3]])
@@ -152,20 +156,20 @@ def test_what_a_tight_tape_takes_off_is_told():
     assert str(answer.rule[0]) == "Under-bust 68.2 cm minus tape tension allowance 1 cm: 67.2 cm."
     assert (answer.allowance_mm, answer.underbust_mm) == (10.0, 682.0)
     assert made("eu", 68.2, 84).label == "70B"
-    assert not any("tight" in str(sentence) for sentence in made("eu", 68.2, 84).rule)
+    assert not any("tape tension" in str(sentence) for sentence in made("eu", 68.2, 84).rule)
     for wrong in (-0.1, 20.1, float("nan")):
-        with pytest.raises(SizeError, match="Enter 0 to 20"):
+        with pytest.raises(SizeError, match="Enter a value from 0 to 20"):
             made("eu", 68.2, 84, wrong)
 
 
 @pytest.mark.parametrize(
     ("key", "underbust", "bust", "why", "nearest"),
     [
-        ("jp", 56.5, 70, "below the smallest band, 60, which begins at 57.5", ("band", True, "60", 10.0)),
-        ("eu", 144, 160, "above the largest band, 140, which ends at 142.5", ("band", False, "140", 15.0)),
-        ("eu", 70, 80, "below the smallest cup, AA, which begins at 10", ("cup", True, "AA", 0.0)),
-        ("jp", 70, 102, "above the largest cup, I, which ends at 31.25", ("cup", False, "I", 7.5)),
-        ("uk", 32, 31, "below the smallest cup, AA, which begins at -0.5", ("cup", True, "AA", 12.7)),
+        ("jp", 56.5, 70, "is below the smallest band, 60 (from 57.5)", ("band", True, "60", 10.0)),
+        ("eu", 144, 160, "is above the largest band, 140 (up to 142.5)", ("band", False, "140", 15.0)),
+        ("eu", 70, 80, "is below the smallest cup, AA (from 10)", ("cup", True, "AA", 0.0)),
+        ("jp", 70, 102, "is above the largest cup, I (up to 31.25)", ("cup", False, "I", 7.5)),
+        ("uk", 32, 31, "is below the smallest cup, AA (from -0.5)", ("cup", True, "AA", 12.7)),
     ],
 )
 def test_what_lies_outside_a_table_is_said_with_the_nearest_step(key, underbust, bust, why, nearest):
@@ -179,7 +183,7 @@ def test_what_lies_outside_a_table_is_said_with_the_nearest_step(key, underbust,
 @pytest.mark.parametrize("girth", [0.0, -5.0, float("nan"), float("inf"), 6000.0])
 def test_what_is_no_girth_is_refused(girth):
     for pair in ((girth, 900.0), (700.0, girth)):
-        with pytest.raises(SizeError, match="No body has a girth"):
+        with pytest.raises(SizeError, match="is implausible for a body"):
             sizes(*pair)
 
 

@@ -121,7 +121,7 @@ def test_turns_end_on_the_curve_as_well(built):
 
 
 def test_what_is_stretched_beyond_its_curve_is_refused(built):
-    with pytest.raises(LineError, match=r"straight would be stretched by 38 % as mid-bust.*ends at 30 %"):
+    with pytest.raises(LineError, match=r"straight requires 38 % elongation for mid-bust.*ends at 30 %"):
         made_of(built("mannequin"), {"mid-bust": hooke(6.0, 0.3)})
 
 

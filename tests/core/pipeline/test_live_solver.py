@@ -239,6 +239,6 @@ def test_an_exact_answer_that_is_not_found_is_said_and_the_last_frame_stays(
     with monkeypatch.context() as patch:
         patch.setattr("core.mechanics.solver_comparison.solve_exact", lambda *_, **__: lost)
         solver.submit(design.with_line("mid-bust", 0.8))
-        with pytest.raises(UserError, match="No balance was found"):
+        with pytest.raises(UserError, match="No equilibrium found"):
             answer(solver, lambda frame: frame.stages.design.ratio("mid-bust") == 0.8)
     assert settled(solver, solver.submit(design)).verdict.motion == "settled"

@@ -72,7 +72,7 @@ def test_a_scan_in_metres_with_all_kinds_of_dirt_gives_the_clean_body(tmp_path):
         "Removed 1 vertex outside any face.",
         "Removed 8 faces with zero area or listed twice.",
         "Removed 1 speck separate from the body.",
-        f"Turned {flipped.sum():,} faces to look outward.",
+        f"Reversed {flipped.sum():,} faces to face outward.",
     )
     assert np.abs(body.mesh.vertices - mm).max() < 1e-4  # the file holds single precision
     assert np.array_equal(np.sort(body.mesh.faces, axis=1), np.sort(faces, axis=1))
@@ -85,7 +85,7 @@ def test_triangle_soup_is_sewn_together_again(tmp_path):
     trimesh.Trimesh(vertices, faces, process=False).export(path)
     body = read_scan(path)
     assert tuple(map(str, body.repairs)) == (
-        f"Merged {3 * len(faces) - len(vertices):,} vertices with others at the same place.",
+        f"Merged {3 * len(faces) - len(vertices):,} vertices with others at the same position.",
     )
     assert len(body.mesh.vertices) == len(vertices)
     assert np.array_equal(body.mesh.vertices[body.mesh.faces], vertices[faces])
@@ -106,7 +106,7 @@ def test_turned_faces_look_outward_again_on_a_closed_and_on_an_open_skin():
         for wound in (skin[:, ::-1], np.where(flipped[:, None], skin[:, ::-1], skin)):
             _, mended, sentences = repair(vertices, wound)
             changed = int((wound != skin).any(axis=1).sum())
-            assert f"Turned {changed:,} faces to look outward." in plain(sentences)
+            assert f"Reversed {changed:,} faces to face outward." in plain(sentences)
             normals, centres = Mesh(vertices[np.unique(skin)], mended), vertices[skin].mean(axis=1)
             assert (np.einsum("ij,ij->i", normals.area_vectors, centres) > 0.0).all()
 
@@ -115,7 +115,7 @@ def test_each_of_two_pieces_is_turned_by_itself():
     vertices, faces = ball()
     both = np.concatenate([vertices, vertices + np.array([5.0, 0.0, 0.0])])
     _, mended, sentences = repair(both, np.concatenate([faces, faces[:, ::-1] + len(vertices)]))
-    assert tuple(map(str, sentences)) == (f"Turned {len(faces):,} faces to look outward.",)
+    assert tuple(map(str, sentences)) == (f"Reversed {len(faces):,} faces to face outward.",)
     assert np.array_equal(Mesh(both, mended).face_normals[: len(faces)], Mesh(vertices, faces).face_normals)
 
 
@@ -195,7 +195,11 @@ TRIANGLE = "0 0 0\n1 0 0\n0 1 0\n"
 ASCII_PLY = PLY_HEADER.format(kind="ascii", n=3, m=1)
 BAD_FILES = [
     ("scan.doc", b"1 2 3", "not a scan that can be read"),
-    ("letter.txt", b"Dear Anna,\n\nhere is the scan of 12 May.\n", "is no scan: it is a text without points"),
+    (
+        "letter.txt",
+        b"Dear Anna,\n\nhere is the scan of 12 May.\n",
+        "is not a scan: the text contains no points",
+    ),
     ("scan.ply", b"", "is empty"),
     ("scan.ply", b"hello", "not a PLY file"),
     ("scan.ply", b"ply\nformat ascii 1.0\nelement vertex", "not a PLY file, or its header is cut short"),
@@ -224,6 +228,6 @@ def test_a_bad_file_is_refused_in_words_with_what_to_do(tmp_path, name, content,
 
 def test_a_missing_file_and_a_folder_are_refused(tmp_path):
     (tmp_path / "folder.ply").mkdir()
-    for name, words in (("none.ply", "There is no file"), ("folder.ply", "cannot be read")):
+    for name, words in (("none.ply", "does not exist"), ("folder.ply", "cannot be read")):
         with pytest.raises(ScanError, match=words):
             read_scan(tmp_path / name)

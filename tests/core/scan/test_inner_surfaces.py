@@ -29,7 +29,7 @@ def test_legs_leave_the_landmarks_where_they_are(person: Path, into: float, said
     trunk = alone(person)
     figure = body_of("figure.ply", ply_bytes(with_legs((trunk.mesh.vertices, trunk.mesh.faces), into)))
     assert figure.pose.is_certain
-    assert any("reach into the body" in str(sentence) for sentence in figure.repairs) == said
+    assert any("extend into the body" in str(sentence) for sentence in figure.repairs) == said
     was, now = find_landmarks(trunk), find_landmarks(figure)
     shift = figure.pose.file_to_mm[:3, 3]
     for name in ("bust_point_left", "bust_point_right", "fold_left", "fold_right"):
@@ -102,7 +102,7 @@ def test_a_lining_is_no_clothes(person: Path) -> None:
     lining = mesh.vertices - 6.0 * mesh.vertex_normals, mesh.faces[:, ::-1]
     vertices = np.concatenate([mesh.vertices, lining[0]])
     *_, sentences = repair(vertices, np.concatenate([mesh.faces, lining[1] + len(mesh.vertices)]))
-    assert any("doubling its skin" in str(sentence) for sentence in sentences)
+    assert any("duplicating its surface" in str(sentence) for sentence in sentences)
     assert BURIED not in sentences
 
 

@@ -110,7 +110,7 @@ def test_a_noisy_cloud_of_a_body_gives_that_body(tmp_path):
     body = body_of("cloud.ply.gz", cloud_file(0.1 * noisy, true.vertex_normals))
     assert body.rebuilt
     assert body.name == "cloud"
-    assert str(body.repairs[0]) == f"Laid a surface through {len(vertices):,} points."
+    assert str(body.repairs[0]) == f"Reconstructed a surface from {len(vertices):,} points."
     assert (body.pose.unit, body.pose.up, body.pose.front) == ("cm", "+z", "-y")
     _, near = cKDTree(true.vertices).query(body.mesh.vertices)
     gap = np.einsum("ij,ij->i", body.mesh.vertices - true.vertices[near], true.vertex_normals[near])

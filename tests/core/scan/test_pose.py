@@ -161,7 +161,7 @@ def test_a_body_of_no_human_size_is_refused_unless_the_unit_is_told_so():
     vertices = vertices * 0.25
     with pytest.raises(ScanError, match="in no unit"):
         estimate_pose(vertices, faces)
-    with pytest.raises(ScanError, match="In mm the trunk would measure 198"):
+    with pytest.raises(ScanError, match="In mm, the trunk girth would be 198"):
         estimate_pose(vertices, faces, unit="mm")
     assert estimate_pose(vertices, faces, unit="cm").unit == "cm"
 

@@ -106,8 +106,8 @@ def test_reading_takes_no_more_memory_than_the_file_is_worth(name):
 
 
 REPEATED = {
-    "placed.glb": (a_mesh_placed_often, "describes more than a scan needs"),
-    "packed.vtp": (packed_points, "unpacks to more than 50 times its size"),
+    "placed.glb": (a_mesh_placed_often, "contains too much data that does not belong"),
+    "packed.vtp": (packed_points, "decompresses to more than 50 times its size"),
     "line.obj": (lambda: b"v " + b"0 " * 600_000, "a line of more than 1 MB"),
 }
 
@@ -122,7 +122,7 @@ def test_what_describes_far_more_than_it_holds_is_refused(name):
 def test_more_lists_than_polygons_can_need_are_refused():
     names = "".join(f"property list uchar uchar p{k}\n" for k in range(9))
     odd = f"element odd 2400000\n{names}element face 0\nproperty list uchar int vertex_indices\n"
-    with pytest.raises(ScanError, match="describes more"):
+    with pytest.raises(ScanError, match="contains too much data"):
         read_raw("odd.ply", ply(CORNERS + odd, PLACES + bytes([0] * 8 + [1]) + bytes(2_400_000 * 9)))
 
 

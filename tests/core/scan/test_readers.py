@@ -101,7 +101,7 @@ HOSTILE = [
     ("a.obj", b"v 1 2 3 " * 2_000_000, "damaged"),
     ("a.off", b"4OFF\n1 0 0\n", "rare kind"),
     ("a.off", b"OFF BINARY\n\0\0\0\1", "rare kind"),
-    ("a.xyz", b"some words\nabout nothing\n", "is no scan: it is a text without points"),
+    ("a.xyz", b"some words\nabout nothing\n", "is not a scan: the text contains no points"),
     ("a.csv", b"1,5,2,5,3,5\n" * 3, "a comma may stand"),
     ("a.csv", b"1.200,5;2.500,0;3,5\n", "a comma may stand"),
     ("a.xyz", b"1 2 3\n1 2\n", "damaged"),
@@ -215,10 +215,10 @@ def test_too_much_is_refused_with_a_number(monkeypatch):
 
 
 def test_a_packed_bomb_is_left_alone(monkeypatch):
-    with pytest.raises(ScanError, match="unpacks to more than 50 times its size"):
+    with pytest.raises(ScanError, match="decompresses to more than 50 times its size"):
         read_raw("a.obj.gz", gzip.compress(bytes(100_000_000), 1))
     monkeypatch.setattr("core.scan.readers.registry.LARGEST_FILE", 1_000_000)
-    with pytest.raises(ScanError, match="too large when unpacked"):
+    with pytest.raises(ScanError, match="too large after decompression"):
         read_raw("a.obj.gz", gzip.compress(bytes(2_000_000), 0))
 
 

@@ -110,7 +110,7 @@ def test_a_body_in_patches_stays_whole():
     *mended, sentences = repair(*soup)
     area = Mesh(*mended).face_areas.sum()
     assert area == pytest.approx(Mesh(vertices, faces).face_areas.sum(), rel=2e-3)
-    assert not [each for each in sentences if "Turned" in str(each) or "shaped like" in str(each)]
+    assert not [each for each in sentences if "Reversed" in str(each) or "shaped like" in str(each)]
 
 
 def test_specks_go_and_a_part_near_the_body_stays():

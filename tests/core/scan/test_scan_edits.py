@@ -172,7 +172,7 @@ def test_edits_are_read_again_and_designs_without_them_are_written_as_before():
 def test_a_crop_without_a_bust_is_refused_and_the_last_build_is_reused(person):
     source = ScanSource(str(SAMPLES / "person.ply"))
     stages = build(Design(source))
-    with pytest.raises(IncompleteBuildError, match="The edited scan shows no bust"):
+    with pytest.raises(IncompleteBuildError, match="No bust detected on the edited scan"):
         build(Design(replace(source, edits=ScanEdits(low=300.0))), stages)
     cropped = build(Design(replace(source, edits=ScanEdits(low=40.0))), stages)
     assert cropped.scan is stages.scan
