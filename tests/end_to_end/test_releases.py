@@ -115,7 +115,9 @@ def test_a_project_of_a_later_format_is_refused_in_a_sentence(tmp_path):
         design = json.loads(archive.read("design.json"))
     with zipfile.ZipFile(project, "w") as archive:
         archive.writestr("design.json", json.dumps(design | {"format": FORMAT + 1}))
-    with pytest.raises(ProjectError, match=rf"format {FORMAT + 1}.*reads up to {FORMAT}.*Update Busk"):
+    with pytest.raises(
+        ProjectError, match=rf"format {FORMAT + 1}.*reads formats up to {FORMAT}.*Update Busk"
+    ):
         open_project(project)
 
 
