@@ -41,7 +41,8 @@ def test_lengths_as_they_are_typed(text: str, unit: str, ratio: float) -> None:
 def test_what_is_no_length_is_refused(text: str) -> None:
     with pytest.raises(
         ValueError,
-        match=r"is not a valid length|of its original length|Enter a length from|For that full length, enter 380.0mm",
+        match=r"is not a valid length|of its original length"
+        r"|Enter a length from|For that full length, enter 380.0mm",
     ):
         number_field("%")._read(text)
 
