@@ -103,7 +103,7 @@ def test_a_point_by_hand_far_from_a_sure_rule_says_so_and_a_near_one_does_not() 
     near = find_landmarks(body(sample("person")), {"bust_point_left": place + np.array([-6.0, 0.0, 0.0])})
     mark = far.points["bust_point_left"]
     assert mark.off == pytest.approx(np.linalg.norm(mark.position - place))
-    assert str(mark.rule) == f"Placed by hand, {mark.off:.0f} mm from where the rule finds it."
+    assert str(mark.rule) == f"Placed manually, {mark.off:.0f} mm from the detected position."
     said = landmark_view(mark.name, mark)
     assert (said.tone, said.state, said.weak) == ("warn", f"manual, {mark.off:.0f} mm off", True)
     again = landmark_view(mark.name, mark, {spot_of(mark)})
