@@ -36,7 +36,7 @@ class ElasticAssignmentController(QObject):
         super().__init__(context.session)
         self._context, self._session = context, context.session
         self.offer = ElasticOffer(context, self._use)
-        self.offer.library_requested.connect(panel.elastics_requested)
+        self.offer.elastics_requested.connect(panel.elastics_requested)
         self._job: Job | None = None
         self._asked: Design | None = None
         self._variant, self._index = "", 0

@@ -77,11 +77,11 @@ class _Offer:
 
 
 class ElasticOffer(QObject):
-    """Open the chooser and fill it; ``use`` takes what is chosen in it, ``library_requested`` asks for
+    """Open the chooser and fill it; ``use`` takes what is chosen in it, ``elastics_requested`` asks for
     more.
     """
 
-    library_requested = Signal()
+    elastics_requested = Signal()
 
     def __init__(self, context: AppContext, use: Use) -> None:
         super().__init__(context.session)
@@ -186,7 +186,7 @@ class ElasticOffer(QObject):
 
     def _leave_for_library(self) -> None:
         self.close()
-        self.library_requested.emit()
+        self.elastics_requested.emit()
 
     def _closed(self) -> None:
         self._context.jobs.cancel(self._job)
