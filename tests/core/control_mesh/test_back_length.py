@@ -71,5 +71,5 @@ def test_line_and_back_make_the_girth_of_the_bust(name, girth):
 
 
 def test_back_where_the_scan_has_ended_is_refused():
-    with pytest.raises(FitError, match="no back"):
+    with pytest.raises(FitError, match="no surface on the back"):
         back_of(analytic_body(), tube_ends(80.0, 900.0), "band")

@@ -122,5 +122,5 @@ def test_bad_data_is_refused(spoil, why):
 
 
 def test_text_that_is_no_json_is_refused():
-    with pytest.raises(FitError, match="not usable"):
+    with pytest.raises(FitError, match="cannot be used"):
         parse_template("{")

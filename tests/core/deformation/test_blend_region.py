@@ -142,7 +142,7 @@ def test_a_fence_that_does_not_close_is_noticed():
 
 def test_a_control_mesh_whose_border_triangles_move_is_refused():
     """The points of CONTROL are fixed on the border only."""
-    with pytest.raises(FitError, match=r"border of the control mesh can move: [1-9]"):
+    with pytest.raises(FitError, match=r"at the border of the control mesh: [1-9]"):
         pipeline._bind(SHEET, CONTROL, np.ones(len(SHEET.vertices)), "smooth", False)
     two_rings = (np.abs(CONTROL.column) > 2) | (np.abs(CONTROL.row - 2.5) > 1.0)
     collared = replace(CONTROL, fixed=two_rings)

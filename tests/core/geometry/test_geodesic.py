@@ -115,9 +115,9 @@ def test_there_is_no_way_from_one_part_to_another() -> None:
     apart = np.asarray(BALL.vertices) + np.array([300.0, 0.0, 0.0])
     faces = np.asarray(BALL.faces)
     two = Mesh(np.concatenate([BALL.vertices, apart]), np.concatenate([faces, faces + len(apart)]))
-    with pytest.raises(LineError, match="no way over the skin"):
+    with pytest.raises(LineError, match="No path over the skin"):
         SurfacePaths(two).path(np.array([100.0, 0.0, 0.0]), np.array([400.0, 0.0, 0.0]))
-    with pytest.raises(LineError, match="no way over the skin"):
+    with pytest.raises(LineError, match="No path over the skin"):
         shortest_path(two, np.array([100.0, 0.0, 0.0]), np.array([400.0, 0.0, 0.0]))
 
 

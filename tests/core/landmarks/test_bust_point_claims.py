@@ -22,7 +22,7 @@ from tests.core.landmarks.test_landmarks import SIDES, found, landmarks_of, part
 
 def test_a_body_that_is_too_flat_is_refused_for_that():
     mesh = sample("mannequin")
-    with pytest.raises(LandmarkError, match="not as deep as a body"):
+    with pytest.raises(LandmarkError, match="trunk depth is implausible"):
         landmarks_of(mesh.moved(mesh.vertices * [1.0, 0.5, 1.0]))
 
 
@@ -72,7 +72,7 @@ def test_a_breast_that_was_taken_away_wholly_leaves_the_other_where_it_is():
     flat[inner] = spsolve(weights[inner][:, inner].tocsc(), -(weights[inner][:, ~inner] @ v[~inner]))
     seen = landmarks_of(mesh.moved(flat))  # a membrane over the chest: only ribs are left to stand out
     (said,) = (doubt for doubt in landmark_warnings(seen) if "right" in str(doubt))
-    assert str(said).startswith("On the right side no breast stands out")
+    assert str(said).startswith("No breast protrusion on the right side")
     assert np.linalg.norm(seen.position("bust_point_left") - whole.position("bust_point_left")) < 2.0
     assert seen.points["bust_point_left"].confidence > CERTAIN
     assert seen.points["bust_point_right"].confidence < 0.2

@@ -159,10 +159,10 @@ def test_swapped_sides_are_called_swapped(more: tuple[str, ...]) -> None:
 @pytest.mark.parametrize(
     ("shift", "why"),
     [
-        ((60.0, 60.0, 0.0, 0.0), "beside the middle"),
+        ((60.0, 60.0, 0.0, 0.0), "off the centre of the body"),
         ((0.0, 0.0, 0.0, 70.0), "very different heights"),
         ((-90.0, 90.0, 0.0, 0.0), "mm apart"),
-        ((0.0, 0.0, 200.0, 200.0), "likely depth"),
+        ((0.0, 0.0, 200.0, 200.0), "no inframammary fold at a plausible height"),
     ],
 )
 def test_what_cannot_be_a_bust_is_refused_for_its_reason(shift: tuple[float, ...], why: str) -> None:

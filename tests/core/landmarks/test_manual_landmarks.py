@@ -52,7 +52,7 @@ def test_a_design_keeps_one_place_a_landmark() -> None:
     assert [mark.name for mark in design.placed] == ["bust_point_left", "fold_right"]
     assert from_json(to_json(design)) == design
     assert design.with_placed("fold_right", None).placed == design.placed[:1]
-    with pytest.raises(LandmarkError, match="placed twice"):
+    with pytest.raises(LandmarkError, match="specified twice"):
         replace(design, placed=design.placed * 2)
 
 
@@ -119,4 +119,4 @@ def test_what_is_wrong_with_placed_points_is_said_in_words(
 
 def test_a_landmark_on_no_skin_is_refused(mannequin: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["detect", str(mannequin), "--landmark", "fold_left=900,0,0"]) == 2
-    assert "landmark fold left was placed more than 30 mm off the skin" in capsys.readouterr().err
+    assert "landmark fold left is more than 30 mm off the skin" in capsys.readouterr().err

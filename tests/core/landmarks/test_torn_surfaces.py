@@ -132,7 +132,7 @@ def test_a_breast_of_a_few_points_is_refused():
     corners = np.array([[0.0, -100.0, 0.0], [90.0, -100.0, 0.0], [0.0, -100.0, 90.0]])
     place = np.array([0.0, -100.0, 0.0])
     for vertices in (corners, 1000.0 + corners):
-        with pytest.raises(LandmarkError, match="skin of a breast is missing"):
+        with pytest.raises(LandmarkError, match="surface of a breast is missing"):
             breast_patch(Mesh(vertices, np.array([[0, 1, 2]])), Pole(place, 20.0, True, place, 1.0))
 
 
@@ -174,7 +174,7 @@ def test_triangles_right_through_the_body_are_refused():
     foot = np.random.default_rng(6).uniform(-150.0, 150.0, (count, 3)) * [1.0, 1.0, 0.0]
     rise = np.array([[0.0, 0.0, 0.0], [0.3, 0.2, 0.0], [0.0, 0.0, 600.0]])
     needles = Mesh((foot[:, None] + rise).reshape(-1, 3), np.arange(3 * count).reshape(-1, 3))
-    with pytest.raises(LandmarkError, match="run right through the body"):
+    with pytest.raises(LandmarkError, match="cross the inside of the body"):
         scan_torso(needles)
 
 

@@ -70,7 +70,7 @@ def test_files_beside_a_gltf_file_are_held_once_and_not_read_when_nobody_wants_t
     size = 20_000_000
     text["buffers"][0]["byteLength"] = size
     (tmp_path / "house.gltf").write_text(json.dumps(text))
-    with pytest.raises(ScanError, match=r"0\.bin is cut short"):
+    with pytest.raises(ScanError, match=r"0\.bin is truncated"):
         scan_bytes(tmp_path / "house.gltf")
     os.truncate(tmp_path / "0.bin", size)
     tracemalloc.start()

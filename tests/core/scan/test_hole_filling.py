@@ -65,7 +65,7 @@ def test_hundreds_of_small_holes_in_a_body_are_closed_and_counted(person, noise)
     closed, sentences = fill_holes(Mesh(vertices, faces))
     assert is_sound(closed)
     assert any(
-        str(each).startswith("Closed 1") and str(each).endswith("holes up to 30 mm across.")
+        str(each).startswith("Filled 1") and str(each).endswith("holes up to 30 mm across.")
         for each in sentences
     )
     assert sum(len(hole.border) for hole in find_holes(closed) if not hole.opening) < 150
@@ -104,10 +104,10 @@ def test_a_clean_body_is_not_touched_and_its_cuts_are_no_holes(person):
 @pytest.mark.parametrize(
     ("place", "words"),
     [
-        ((60.0, -200.0, 60.0), "low on the front"),
-        ((0.0, 100.0, 430.0), "high on the back"),
-        ((180.0, -80.0, 240.0), "middle left"),
-        ((-180.0, -80.0, 240.0), "middle right"),
+        ((60.0, -200.0, 60.0), "lower front"),
+        ((0.0, 100.0, 430.0), "upper back"),
+        ((180.0, -80.0, 240.0), "middle left side"),
+        ((-180.0, -80.0, 240.0), "middle right side"),
     ],
 )
 def test_a_large_hole_stays_open_and_is_named(person, place, words):

@@ -42,11 +42,11 @@ def test_things_of_human_size_are_refused_at_any_tilt(name):
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("left half", "Only a half|not alike"),
-        ("right half", "Only a half|not alike"),
-        ("front half", "Only a half|too flat"),
-        ("back half", "Only a half|too flat"),
-        ("belly", "Too little is here|no fold"),
+        ("left half", "only half of an upper body|not alike"),
+        ("right half", "only half of an upper body|not alike"),
+        ("front half", "only half of an upper body|too flat"),
+        ("back half", "only half of an upper body|too flat"),
+        ("belly", "too little|no inframammary folds"),
         ("above the bust", "no bust"),
     ],
 )

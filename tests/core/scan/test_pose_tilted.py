@@ -48,7 +48,7 @@ def test_any_tilt_up_to_45_degrees_is_undone(name):
         assert pose.is_certain
         assert angle_between(pose, turn) < 2.0
         assert pose.tilt == pytest.approx(abs(degrees), abs=2.0)
-        assert "degrees off +z" in str(pose.reason)
+        assert "degrees from +z" in str(pose.reason)
 
 
 def test_one_who_leans_is_left_to_lean_in_an_upright_file():
@@ -122,7 +122,7 @@ def test_a_told_axis_is_the_nearest_one_and_a_told_direction_is_meant_exactly():
     both = estimate_pose(vertices, faces, up="0,0,-2", front="1,0,0")
     expected = [[0.0, -1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]
     assert both.file_to_mm[:3, :3] == pytest.approx(np.array(expected), abs=1e-9)
-    assert "told" in str(both.reason)
+    assert "set manually" in str(both.reason)
 
 
 @pytest.mark.parametrize("words", ["up", "1,2", "0,0,0", "nan,0,1", "+w"])
@@ -133,11 +133,11 @@ def test_a_direction_that_is_none_is_refused(words):
 
 def test_a_girth_that_fits_two_units_is_said_not_to_be_sure():
     vertices, faces = torso()
-    girth = float(str(estimate_pose(vertices, faces).reason).split("trunk is ")[1].split(" ")[0])
+    girth = float(str(estimate_pose(vertices, faces).reason).split("trunk girth is ")[1].split(" ")[0])
     slim = estimate_pose(vertices * 62.0 / girth, faces)
     assert slim.unit == "cm"
     assert not slim.is_certain
-    assert "might also be inch (157" in str(slim.reason)
+    assert "may also be inch (157" in str(slim.reason)
     stout = estimate_pose(vertices * 58.0 / girth, faces)
     assert stout.unit == "inch"
     assert not stout.is_certain
@@ -152,10 +152,10 @@ def test_a_told_up_is_believed_before_the_front_and_neither_is_overruled():
         assert pose.tilt == pytest.approx(0.0 if "z" in up.lower() else np.degrees(np.arctan(0.05)), abs=0.1)
     against = estimate_pose(vertices, faces, up="-z", front="+y")
     assert (against.up, against.front, against.is_certain) == ("-z", "+y", False)
-    assert "told. The shape speaks against it" in str(against.reason)
+    assert "set manually. This contradicts the detected shape" in str(against.reason)
     assert estimate_pose(vertices, faces, up="+z", front="-y").is_certain
     for up in ("+y", "-y"):
-        with pytest.raises(ScanError, match="or say which way is up"):
+        with pytest.raises(ScanError, match="or set the up and front axes"):
             estimate_pose(vertices, faces, up=up)
 
 

@@ -140,7 +140,7 @@ def test_missing_memory_is_called_that(monkeypatch):
 
     monkeypatch.setitem(read_raw.__globals__["_READERS"], "obj", full)
     for read in (read_raw, body_of):
-        with pytest.raises(ScanError, match="not enough memory for"):
+        with pytest.raises(ScanError, match="Not enough memory to open"):
             read("a.obj", b"v 1 2 3\n")
 
 

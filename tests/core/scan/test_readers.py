@@ -85,29 +85,29 @@ HOSTILE = [
     ("a.vtp", LAUGHS, "not a scan|damaged"),
     ("a.vtp", b"<VTKFile>" + b"<a>" * 300_000, "damaged"),
     ("a.vtp", b"<!---->" * 60 + b"x", "not a scan|damaged|no VTP"),
-    ("a.vtp", b"<VTKFile type='PolyData'></VTKFile>", "no VTP file with a surface"),
-    ("a.vtp", vtp().replace(b"<VTKFile ", b'<VTKFile compressor="vtkLZ4DataCompressor" '), "does not read"),
+    ("a.vtp", b"<VTKFile type='PolyData'></VTKFile>", "not a VTP surface file"),
+    ("a.vtp", vtp().replace(b"<VTKFile ", b'<VTKFile compressor="vtkLZ4DataCompressor" '), "unsupported compression"),
     ("a.gltf", b"[" * 400_000, "damaged"),
-    ("a.gltf", b"[" + b"1," * 3_000_000 + b"1]", "describes more than"),
-    ("a.gltf", NODES, "describes more than"),
+    ("a.gltf", b"[" + b"1," * 3_000_000 + b"1]", "too much data that does not belong"),
+    ("a.gltf", NODES, "too much data that does not belong"),
     ("a.gltf", gltf(binary=False, buffer={"uri": "other.bin", "byteLength": 9}), "in another file"),
     ("a.gltf", gltf(binary=False, buffer={"uri": "https://host/a.bin"}), "in another file"),
-    ("a.gltf", gltf(binary=False, extensionsRequired=["KHR_draco_mesh_compression"]), "is compressed"),
+    ("a.gltf", gltf(binary=False, extensionsRequired=["KHR_draco_mesh_compression"]), "unsupported compression"),
     ("a.obj", b"v 1 2 3\nf 1 1 9\n", "do not exist"),
     ("a.obj", b"v 1 2 3\nf -1 -1 -9\n", "do not exist"),
     ("a.obj", b"v 1 2 3\nf 0 1 1\n", "damaged"),
     ("a.obj", b"v 1 2 3\nf 1 1 99999999999999999999\n", "damaged"),
     ("a.obj", b"v 1 2\n", "damaged"),
     ("a.obj", b"v 1 2 3 " * 2_000_000, "damaged"),
-    ("a.off", b"4OFF\n1 0 0\n", "rare kind"),
-    ("a.off", b"OFF BINARY\n\0\0\0\1", "rare kind"),
+    ("a.off", b"4OFF\n1 0 0\n", "unsupported OFF variant"),
+    ("a.off", b"OFF BINARY\n\0\0\0\1", "unsupported OFF variant"),
     ("a.xyz", b"some words\nabout nothing\n", "is not a scan: the text contains no points"),
-    ("a.csv", b"1,5,2,5,3,5\n" * 3, "a comma may stand"),
-    ("a.csv", b"1.200,5;2.500,0;3,5\n", "a comma may stand"),
+    ("a.csv", b"1,5,2,5,3,5\n" * 3, "commas may be separators or decimal marks"),
+    ("a.csv", b"1.200,5;2.500,0;3,5\n", "commas may be separators or decimal marks"),
     ("a.xyz", b"1 2 3\n1 2\n", "damaged"),
-    ("a.xyz", b"1 2 3\n" * 20_000_000, "too fine"),
-    ("a.obj", b"v 1 2 3\n" * 10_000_002, "too fine"),
-    ("a.stl", b"solid\nfacet\n" + b"\n" * 40_000_000 + b"endsolid", "more than a scan needs"),
+    ("a.xyz", b"1 2 3\n" * 20_000_000, "too large"),
+    ("a.obj", b"v 1 2 3\n" * 10_000_002, "too large"),
+    ("a.stl", b"solid\nfacet\n" + b"\n" * 40_000_000 + b"endsolid", "too much data that does not belong"),
     ("a.xyz.gz", PIECES * 10_001, "damaged"),
     ("a.xyz.gz", PIECES + b"rubbish", "damaged"),
     ("a.ply.gz", HOUSES["packed.ply.gz"][:-20], "damaged"),
@@ -209,7 +209,7 @@ def test_places_far_from_the_origin_keep_all_digits_of_the_file():
 def test_too_much_is_refused_with_a_number(monkeypatch):
     monkeypatch.setattr("core.scan.readers.raw_scan.MOST_TRIANGLES", 10)
     for name in ("little.ply", "groups.obj", "binary.stl", "plain.off", "binary.glb"):
-        with pytest.raises(ScanError, match="too fine") as refusal:
+        with pytest.raises(ScanError, match="too large") as refusal:
             read_raw(name, HOUSES[name])
         assert "at most 10,000,000 points and 10 triangles" in str(refusal.value.hint)
 

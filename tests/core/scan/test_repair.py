@@ -119,7 +119,7 @@ def test_specks_go_and_a_part_near_the_body_stays():
     part = shape(trimesh.creation.icosphere(3, 35.0), (0, -140, 590))
     *mended, sentences = repair(*beside(person(), *tiny, far, part))
     assert same_skin(mended, beside(person(), part))
-    assert tuple(map(str, sentences)) == ("Removed 8 specks separate from the body.",)
+    assert tuple(map(str, sentences)) == ("Removed 8 small components separate from the body.",)
 
 
 @pytest.mark.parametrize("whole", [0.0, 0.5])

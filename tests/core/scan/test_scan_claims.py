@@ -20,7 +20,7 @@ def test_a_unit_is_in_doubt_where_another_gives_a_rare_body(girth, unit, other):
     """60 cm is a slim body, 60 inch a very stout one."""
     size = estimate_unit(girth)
     assert (size.unit, size.is_certain) == (unit, other is None)
-    assert (f"might also be {other}" in str(size.reason)) == (other is not None)
+    assert (f"may also be {other}" in str(size.reason)) == (other is not None)
 
 
 def test_a_part_that_its_node_mirrors_still_looks_outward():

@@ -140,7 +140,7 @@ def test_a_scan_that_is_too_fine_is_refused_before_its_texture_is_sampled(tmp_pa
     (tmp_path / "house.obj").write_bytes(textured_obj())
     monkeypatch.setattr("core.scan.readers.raw_scan.MOST_TRIANGLES", 12)
     monkeypatch.setattr("core.scan.readers.obj.blocks", pytest.fail)
-    with pytest.raises(ScanError, match="too fine"):
+    with pytest.raises(ScanError, match="too large"):
         read_raw("house.obj", scan_bytes(tmp_path / "house.obj"))
 
 
