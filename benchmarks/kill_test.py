@@ -19,7 +19,7 @@ from types import SimpleNamespace
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT))
 
-from PySide6.QtCore import QCoreApplication, QObject, QSettings, QTimer  # noqa: E402
+from PySide6.QtCore import QCoreApplication, QSettings, QTimer  # noqa: E402
 
 from app.gui.features.project.autosave import AutosaveController  # noqa: E402
 from app.gui.session.session import Session  # noqa: E402
@@ -106,25 +106,19 @@ class Quiet(Session):
         pass
 
 
-class Window(QObject):
-    """What of a window the desk needs."""
-
-
 def work(folder: Path) -> None:
-    """Edit, undo, redo and save without end, with the session and the desk of the window."""
+    """Edit, undo, redo and save without end, with session and autosave as in the window."""
     application = QCoreApplication([])
     application.setApplicationName("Busk")
     QSettings().setValue("autosave", INTERVAL)
-    window, session = Window(), Quiet()
-    window.session, window.view = session, SimpleNamespace(isVisible=lambda: False)
-    window.notices = SimpleNamespace(show_notice=print)
+    session = Quiet()
+    notifications = SimpleNamespace(warn=print, show=print, withdraw=lambda topic: None)
+    view = SimpleNamespace(isVisible=lambda: False)
+    context = SimpleNamespace(session=session, view=view, notifications=notifications)
     session.frame = SimpleNamespace(stages=SimpleNamespace(scan=ScanFile("body.ply", SCAN)))
     chance, number = random.Random(), _last(folder / "journal")
     session.document = Document.single(Design(ScanSource("/scans/body.ply"), unknown={"n": number}))
-    desk = AutosaveController(window)
-    session.design_changed.connect(desk.note)
-    session.saved.connect(desk.show_saved)
-    session.undo_stack.cleanChanged.connect(desk.note)
+    AutosaveController(context, SimpleNamespace(show_title=lambda: None))
     journal = os.open(folder / "journal", os.O_WRONLY | os.O_APPEND | os.O_CREAT)
 
     def edit() -> None:

@@ -99,7 +99,7 @@ def a_click_tells_the_value_there(window: MainWindow, listed: PressureList) -> N
     assert np.linalg.norm(flag.place - band.places[band.peak]) < 4.5
     hollow = int(band.gap.argmax())
     maps.pin(spine[hollow], "mid-bust")
-    assert maps.flags.flags[1].text == f"bridges, {band.gap[hollow]:.0f} mm off"
+    assert maps.flags.flags[1].text == f"bridges a hollow, {band.gap[hollow]:.0f} mm off the skin"
     maps.choose("pull")
     # Pull is that of the front: only what lies there has one.
     assert len(maps.flags.flags) == int(band.front[band.peak]) + int(band.front[hollow])
@@ -244,7 +244,7 @@ def limits_and_what_is_left_out_are_told(card: PressureCard) -> None:
         (words,) = (
             each.text() for each in card.findChildren(QLabel) if each.isVisible() and each.text() not in shut
         )
-        assert all(sentence in words for sentence in sentences)
+        assert all(str(sentence) in words for sentence in sentences)
 
 
 def a_click_turns_to_the_place(window: MainWindow, listed: PressureList) -> Script:

@@ -71,7 +71,7 @@ def _lines(values: Mapping[str, Any]) -> Iterator[str]:
 
 def _end(values: Mapping[str, Any], solution: Solution, out: Path) -> str:
     design, volume, count = solution.stages.design, values["volume"], solution.last.iteration
-    step = "iteration" if design.volume != "exact" else "Newton step"
+    step = "iteration" if design.volume != "exact" else "Newton iteration"
     kept = "body_change" if design.volume == "exact" and design.dense_volume else "error"
     return (
         f"{solution.verdict.words} after {count} {step}{'s' if count != 1 else ''}, volume error "

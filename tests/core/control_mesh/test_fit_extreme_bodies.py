@@ -101,7 +101,9 @@ def test_both_templates_fit_an_extreme_body(name, sample):
             assert quality.crossings == 0
             assert quality.largest_bend < 125.0
             assert quality.deviation_mean < {"168": 3.3, "120": 4.6}[template.name]
-            assert quality.smallest_angle > 15.0 or any("sharp triangles" in str(told) for told in control.warnings)
+            assert quality.smallest_angle > 15.0 or any(
+                "sharp triangles" in str(told) for told in control.warnings
+            )
             assert quality.smallest_angle > 8.0
             assert quality.bust_off < (0.5 if "misplaced" not in name else 20.0)
             # Control points are on the skin, but for those over holes: the deviation is that of the flats.

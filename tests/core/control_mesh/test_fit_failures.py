@@ -114,7 +114,9 @@ def test_breast_that_hangs_too_low_is_never_folded_over(template, sag):
     assert control.quality.largest_bend < 130.0
     assert corner_angles(control.mesh).min() > 12.0
     bridged = agreement(control.mesh, body.mesh).min() <= 0.3
-    assert bridged == any("bridges part of an inframammary fold" in str(warning) for warning in control.warnings)
+    assert bridged == any(
+        "bridges part of an inframammary fold" in str(warning) for warning in control.warnings
+    )
     assert control.warnings
 
 

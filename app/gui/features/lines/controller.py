@@ -145,7 +145,7 @@ class LinesController(QObject):
 
     def _lead_over_shoulder(self, name: str, design: Design, over: bool) -> None:
         """Let a line and its linked partner run on over the shoulder, or end on the upper chest."""
-        text = tr("{line} extended over shoulder") if over else tr("{line} ends at upper chest")
+        text = tr("{line}: extended over shoulder") if over else tr("{line}: ends at upper chest")
         text = text.format(line=row_title(name, design))
         names = design.linked_pair(name)
 
