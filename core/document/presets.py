@@ -21,12 +21,13 @@ from core.document.storage.project_file import safe_name
 from core.errors import LineError, UserError, reason_of
 from core.files.atomic_write import private_folder, write_text
 from core.files.regular_file import read_text
-from core.messages import LineName, Message
+from core.messages import LineName, Message, join
 
 FORMAT = 1
 """The newest format of a preset that is read."""
 
 _LARGEST = 1_000_000  # bytes of a preset's file
+_REMEDY = Message("Correct the file or remove it.")
 _LONGEST = 1000  # letters of what it leaves out
 
 
@@ -90,11 +91,14 @@ def read_preset(path: Path) -> Preset:
     """Read a preset's file. Raises LineError, which says what is wrong in it."""
     try:
         return preset_of(read_text(path, _LARGEST))
-    except (OSError, ValueError, UserError) as problem:
-        raise LineError(
-            Message("The preset {name} cannot be read: {why}.", name=path.name, why=reason_of(problem)),
-            Message("Correct the file or remove it."),
-        ) from problem
+    except UserError as problem:
+        unreadable = Message("The preset {name} cannot be read.", name=path.name)
+        raise LineError(join((unreadable, problem.message)), _REMEDY) from problem
+    except (OSError, ValueError) as problem:
+        unreadable = Message(
+            "The preset {name} cannot be read: {why}.", name=path.name, why=reason_of(problem)
+        )
+        raise LineError(unreadable, _REMEDY) from problem
 
 
 def preset_of(text: str) -> Preset:

@@ -14,11 +14,16 @@ from app.i18n.catalog import using_language
 from app.presenters.status import ConvergenceView
 
 NUMBERS = {
-    "en": [("Bust point", "0.2 mm up, 1.2 mm back"), ("Bust girth", "895.4 mm"), ("Pressure", "12.8 kPa")],
+    "en": [
+        ("Bust point", "0.2 mm up, 1.2 mm back"),
+        ("Bust girth", "895.4 mm"),
+        ("Peak pressure", "12.8 kPa"),
+    ],
     "ja": [("BP", "上へ 0.2 mm、後ろへ 1.2 mm"), ("バスト囲", "895.4 mm"), ("最大接触圧", "12.8 kPa")],
 }
 HINTS = {
-    "en": "Mid-bust presses with 12.8 kPa (96 mmHg). It cannot be worn: set it much longer, wider or softer.",
+    "en": "Mid-bust: contact pressure 12.8 kPa (96 mmHg). "
+    "Not wearable: make the line much longer, wider or softer.",
     "ja": "バスト下部の接触圧は 12.8 kPa（96 mmHg）です。着用できません。"
     "大幅に長く、広く、または柔らかくしてください。",
 }

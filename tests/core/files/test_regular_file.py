@@ -38,7 +38,7 @@ def test_what_is_no_file_is_refused_at_once(tmp_path: Path, what: str) -> None:
     for make in (os.mkfifo, lambda path: path.symlink_to("/dev/zero"), Path.mkdir):
         place = tmp_path / name
         make(place)
-        with pytest.raises(UserError, match=r"cannot be read|recovery data in .* is damaged"):
+        with pytest.raises(UserError, match="is damaged" if what == "recovery" else "cannot be read"):
             read(place)
         place.rmdir() if place.is_dir() else place.unlink()
 

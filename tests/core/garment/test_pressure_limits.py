@@ -26,9 +26,9 @@ def test_a_pressure_is_not_called_near_to_what_it_is_far_above() -> None:
         limits.description(kpa).en.split(".")[0].split(",")[0]
         for kpa in (0.5, 2.0, 4.0, 4.6, 4.7, 9.0, 9.2, 374.7)
     ]
-    assert said[2:4] == ["Near the pressure that wearers complained of"] * 2
-    assert said[4:6] == ["Beyond the pressure that wearers complained of"] * 2
-    assert said[6:] == ["Far above all that was measured under garments"] * 2
+    assert said[2:4] == ["Near the pressure at which wearers complained"] * 2
+    assert said[4:6] == ["Above the pressure at which wearers complained"] * 2
+    assert said[6:] == ["Far above all pressures measured under garments"] * 2
     assert len(set(said)) == 5
 
 
