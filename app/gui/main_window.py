@@ -107,6 +107,19 @@ class MainWindow(QMainWindow):
         self.resize(1600, 1000)
         self.setAcceptDrops(True)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self._make_parts(session)
+        self._make_controllers()
+        self._state_order()
+        self._connect_window()
+        self._connect_view()
+        self._connect_features()
+        self.actions_.strip.setChecked(True)
+        self.actions_.inspector.setChecked(True)
+        self.navigation.show_step("lines")
+        self.project_controller.show_title()
+
+    def _make_parts(self, session: Session) -> None:
+        """Make the panels, their places, and the context of the controllers."""
         self.jobs = Jobs(self)
         self.view = ViewArea(self.jobs)
         self.undo_group = QUndoGroup(self)  # what is asked for has steps of its own
@@ -136,15 +149,6 @@ class MainWindow(QMainWindow):
         )
         self.layout_ = Layout(self)
         self.pages = self.layout_.pages
-        self._make_controllers()
-        self._dispatch()
-        self._connect_window()
-        self._connect_view()
-        self._connect_features()
-        do.strip.setChecked(True)
-        do.inspector.setChecked(True)
-        self.navigation.show_step("lines")
-        self.project_controller.show_title()
 
     def _make_controllers(self) -> None:
         """Make the controllers; menus hold their actions in this order."""
@@ -306,9 +310,24 @@ class MainWindow(QMainWindow):
         panel.doors.addWidget(self.scan_comparison_controller.door)
         self.inspector.add("worn", self.scan_comparison_controller.page)
 
-    def _dispatch(self) -> None:
-        """State in which order a frame, and a document that was opened, reach their receivers."""
-        self.throttled = ThrottledDispatch(
+    def _state_order(self) -> None:
+        """State in which order frames, opened documents and the Esc key reach their receivers."""
+        self.throttled = self._throttled_receivers()
+        self.frames = self._frame_receivers()
+        self.opened = self._document_receivers()
+        self.session.frame_ready.connect(self.frames.show_frame)
+        self.session.opened.connect(self.opened.show_frame)
+        self.layout_.closers = (
+            self.report_controller.close,
+            self.target_shape_controller.leave,
+            self._close_panel,
+            self.view.close_comparison,
+            self.result.unmark,
+        )
+
+    def _throttled_receivers(self) -> ThrottledDispatch:
+        """Return the receivers of a frame that may wait while the solver iterates."""
+        return ThrottledDispatch(
             [
                 self.model_controller.show_frame,
                 self.lines_controller.show_frame,
@@ -319,7 +338,10 @@ class MainWindow(QMainWindow):
             ],
             self,
         )
-        self.frames = FrameDispatch(
+
+    def _frame_receivers(self) -> FrameDispatch:
+        """Return the receivers of every frame, in order."""
+        return FrameDispatch(
             [
                 self.limits_controller.follow,
                 self.diagnosis_controller.follow,
@@ -345,7 +367,10 @@ class MainWindow(QMainWindow):
             ],
             self,
         )
-        self.opened = FrameDispatch(
+
+    def _document_receivers(self) -> FrameDispatch:
+        """Return the receivers of the first frame of an opened document, in order."""
+        return FrameDispatch(
             [
                 self.project_controller.show_opened,
                 self.scan_controller.show_opened,
@@ -358,15 +383,6 @@ class MainWindow(QMainWindow):
                 lambda _: self.start_controller.show_opened(),
             ],
             self,
-        )
-        self.session.frame_ready.connect(self.frames.show_frame)
-        self.session.opened.connect(self.opened.show_frame)
-        self.layout_.closers = (
-            self.report_controller.close,
-            self.target_shape_controller.leave,
-            self._close_panel,
-            self.view.close_comparison,
-            self.result.unmark,
         )
 
     def _connect_window(self) -> None:

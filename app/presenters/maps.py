@@ -47,7 +47,7 @@ _ROUND = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 
 def map_kinds() -> list[MapKind]:
     """Return the maps that can be chosen, in words."""
-    return [*_skin_maps(), *_line_maps()]
+    return [*_skin_maps(), *_comparison_maps(), *_line_maps()]
 
 
 def _skin_maps() -> list[MapKind]:
@@ -70,6 +70,11 @@ def _skin_maps() -> list[MapKind]:
             ),
             tr("of the control mesh"),
         ),
+    ]
+
+
+def _comparison_maps() -> list[MapKind]:
+    return [
         MapKind(
             "sides",
             tr("Symmetry"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -133,11 +134,7 @@ def figure_8(study: Study) -> Figure:
         said.append(
             f"{body}, exact: {exact.last.iteration} Newton steps, {abs(100 * exact.last.error):.1g} %"
         )
-    axes[0, 0].set_ylabel("maximum distance to the\nexact solution [mm]")
-    axes[1, 0].set_ylabel("volume error [%]")
-    axes[0, 0].legend(loc="upper right", bbox_to_anchor=(1.0, 0.77))
-    axes[0, 0].set_ylim(1e-5, 30.0)
-    axes[1, 0].set_ylim(1e-9, 10.0)
+    _label_distances(axes)
     caption = (
         "Largest distance of a control point to the exact answer with one pressure for both breasts, as "
         "turns have, and size of the volume error; accumulating: half of each error is added. "
@@ -148,6 +145,15 @@ def figure_8(study: Study) -> Figure:
     return Figure(
         "fig-8-exact", "Both controls compared with the exact solution", caption, columns, rows, drawn
     )
+
+
+def _label_distances(axes: Any) -> None:
+    """Label the plots of distance and volume error, (2, 2)."""
+    axes[0, 0].set_ylabel("maximum distance to the\nexact solution [mm]")
+    axes[1, 0].set_ylabel("volume error [%]")
+    axes[0, 0].legend(loc="upper right", bbox_to_anchor=(1.0, 0.77))
+    axes[0, 0].set_ylim(1e-5, 30.0)
+    axes[1, 0].set_ylim(1e-9, 10.0)
 
 
 def _way_rows(body: str, control: str, away: Floats, error: Floats) -> list[tuple[object, ...]]:
@@ -187,18 +193,8 @@ def figure_9(study: Study) -> Figure:
         limit = study.stages(body).gain_limit
         swing = np.array([[_swing(study, body, r, "conventional", g) for r in SWEPT_RATIOS] for g in GAINS])
         calm = [_swing(study, body, r, "adaptive", 1.0) for r in SWEPT_RATIOS]
-        picture = plot.pcolormesh(
-            100.0 * SWEPT_RATIOS,
-            GAINS,
-            swing,
-            cmap=ListedColormap(SHADES),
-            norm=BoundaryNorm(STEPS, len(SHADES)),
-        )
-        plot.axhline(limit, color=LIGHT.text, lw=1.2, label=("limit computed on the original body"))
-        plot.axhline(GAIN_SHARE * limit, color=LIGHT.text, lw=1.2, ls=(0, (3, 2)), label="default gain")
+        picture = _draw_gains(plot, swing, limit)
         plot.set_title(f"({letter}) {body}, {TEMPLATE[body]} triangles")
-        plot.set_xlabel("set length of the line [% of original]")
-        plot.grid(visible=False)
         rows += [
             (body, 100.0 * float(ratio), float(gain), float(swing[j, i]), limit)
             for j, gain in enumerate(GAINS)
@@ -223,6 +219,17 @@ def figure_9(study: Study) -> Figure:
     return Figure(
         "fig-9-gain-map", "Stability region of the conventional force", caption, columns, rows, drawn
     )
+
+
+def _draw_gains(plot: Axes, swing: Floats, limit: float) -> Any:
+    """Draw the swing [%] over length and gain, with the limit of the gain and its default."""
+    shades, norm = ListedColormap(SHADES), BoundaryNorm(STEPS, len(SHADES))
+    picture = plot.pcolormesh(100.0 * SWEPT_RATIOS, GAINS, swing, cmap=shades, norm=norm)
+    plot.axhline(limit, color=LIGHT.text, lw=1.2, label="limit computed on the original body")
+    plot.axhline(GAIN_SHARE * limit, color=LIGHT.text, lw=1.2, ls=(0, (3, 2)), label="default gain")
+    plot.set_xlabel("set length of the line [% of original]")
+    plot.grid(visible=False)
+    return picture
 
 
 def _swing(study: Study, body: str, ratio: float, control: str, gain: float) -> float:

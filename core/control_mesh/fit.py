@@ -75,12 +75,7 @@ def fit_control_mesh(
     ``line_height`` [1] is where the mid-bust line runs on the skin between fold (0) and bust point (1).
     Raises FitError if no sound mesh lies on this body with these landmarks.
     """
-    low, high = LINE_HEIGHTS
-    if not low <= line_height <= high:
-        raise FitError(
-            Message("The line height {height} is out of range.", height=f"{line_height:g}"),
-            Message("Enter a value from {low} to {high}.", low=f"{low:g}", high=f"{high:g}"),
-        )
+    _refuse_line_height(line_height)
     ground = fit_frame(template, body.smoothed, landmarks)
     outline, holes = project_border(ground, landmarks)
     creases, lacking, holed = find_creases(ground, outline, landmarks)
@@ -99,17 +94,27 @@ def fit_control_mesh(
         lost = [*lost, shallowest]
     holes = holes | best.holes
     _refuse_holes(template, holes)
-    if best.faults.folded.any():
-        raise FitError(
-            Message(
-                "Folded triangles in the control mesh on this body: {count}.",
-                count=int(best.faults.folded.sum()),
-            ),
-            Message("Correct the bust points and inframammary folds, or choose the other template."),
-        )
+    _refuse_folded(int(best.faults.folded.sum()))
     quality = measure_fit(best.mesh, ground.skin, *_off_landmarks(template, best.mesh, landmarks))
     warnings = [*_fold_warnings(best.lost), *_arm_warning(ground), *_hole_warning(int(holes.sum()))]
     return _control_mesh(template, best.mesh, [*warnings, *quality.warnings], quality)
+
+
+def _refuse_line_height(line_height: float) -> None:
+    low, high = LINE_HEIGHTS
+    if not low <= line_height <= high:
+        raise FitError(
+            Message("The line height {height} is out of range.", height=f"{line_height:g}"),
+            Message("Enter a value from {low} to {high}.", low=f"{low:g}", high=f"{high:g}"),
+        )
+
+
+def _refuse_folded(count: int) -> None:
+    if count:
+        raise FitError(
+            Message("Folded triangles in the control mesh on this body: {count}.", count=count),
+            Message("Correct the bust points and inframammary folds, or choose the other template."),
+        )
 
 
 @dataclass(frozen=True, eq=False)

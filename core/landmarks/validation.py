@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from core.errors import LandmarkError
-from core.geometry.mesh import Mesh
+from core.geometry.mesh import Floats, Mesh
 from core.landmarks.anchor import KINK, Anchor
 from core.landmarks.bust_point import FLAT, NIPPLE
 from core.landmarks.chest import Pole
@@ -149,22 +149,29 @@ def _rules(
     slight = more <= FLATTEST_BUST and not full
     yield slight or more >= FULLEST_BUST, Message("the bust would not be wider than the trunk below it")
     yield not ROUNDEST < wide / deep < FLATTEST, Message("the trunk depth is implausible for a body")
+    yield from _rules_of_places(across, middle, trunk.middle, len(missing) > 0)
+    yield max(pole.prominence for pole in poles) < FLAT, Message("the chest has no protrusion")
+    yield not 0.0 < depth < DEEPEST, Message("no inframammary fold at a plausible height below")
+    rules = {landmarks.points[f"fold_{side}"].rule for side in SIDES}
+    yield rules == {NO_CREASE} and not (full and clear), Message("no crease below the breast")
+
+
+def _rules_of_places(
+    across: Floats, middle: Floats, trunk_middle: float, is_one_sided: bool
+) -> Iterator[tuple[bool, Message]]:
+    """Give where bust points must not be, from the vector between them and their middle [mm]."""
     yield (
         not APART[0] < across[0] < APART[1],
         Message("the bust points would be {distance} apart", distance=Length(across[0])),
     )
     yield (
-        abs(across[2]) > UNEVEN and not missing,
+        abs(across[2]) > UNEVEN and not is_one_sided,
         Message("the bust points would be at very different heights"),
     )
     yield (
-        abs(middle[0] - trunk.middle) > ASIDE and not missing,
+        abs(middle[0] - trunk_middle) > ASIDE and not is_one_sided,
         Message("the bust would be off the centre of the body"),
     )
-    yield max(pole.prominence for pole in poles) < FLAT, Message("the chest has no protrusion")
-    yield not 0.0 < depth < DEEPEST, Message("no inframammary fold at a plausible height below")
-    rules = {landmarks.points[f"fold_{side}"].rule for side in SIDES}
-    yield rules == {NO_CREASE} and not (full and clear), Message("no crease below the breast")
 
 
 def _warnings(side: str, rule: Message, missing: bool) -> list[Message]:

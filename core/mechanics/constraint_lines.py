@@ -121,6 +121,21 @@ def _typed(text: str, unit: str) -> tuple[str, float, str] | None:
     return typed[0], typed[1], typed[2] or unit
 
 
+def _full_length_error(name: str, front: tuple[float, float], back: float, rest: float) -> LineError:
+    """Return the refusal of a full length that was entered as a front length; all in mm."""
+    short, long = front
+    return LineError(
+        Message(
+            "Front length of {line}: {range}; full length: {short} to {long}.",
+            range=LengthRange(short, long),
+            line=LineName(name),
+            short=f"{short + back:.0f}",
+            long=Length(long + back),
+        ),
+        Message("Enter a front length. For that full length, enter {length}mm.", length=f"{rest:.1f}"),
+    )
+
+
 def length_ratio(text: str, name: str, rest_mm: float, whole_mm: float, unit: str = "%") -> float:
     """Read the length of line ``name`` as ``parse_ratio`` does, within RATIO_LIMITS.
 
@@ -142,19 +157,7 @@ def length_ratio(text: str, name: str, rest_mm: float, whole_mm: float, unit: st
     rest = ratio * rest_mm - back
     absolute = not typed[0] and typed[2] != "%"
     if absolute and back > 0.0 and short <= rest <= long:
-        raise LineError(
-            Message(
-                "Front length of {line}: {range}; full length: {short} to {long}.",
-                range=LengthRange(short, long),
-                line=LineName(name),
-                short=f"{short + back:.0f}",
-                long=Length(long + back),
-            ),
-            Message(
-                "Enter a front length. For that full length, enter {length}mm.",
-                length=f"{rest:.1f}",
-            ),
-        )
+        raise _full_length_error(name, (short, long), back, rest)
     raise LineError(
         Message(
             "{text} sets {line} to {percent} % of its original length.",

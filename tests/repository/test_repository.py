@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import shutil
 import subprocess
@@ -57,6 +58,17 @@ def test_no_file_is_heavy() -> None:
 def test_a_module_can_be_read_in_one_sitting() -> None:
     lines = {path.relative_to(ROOT).as_posix(): TEXTS[path].count("\n") for path in PYTHON}
     assert {name: count for name, count in lines.items() if count > 600} == {}
+
+
+def test_a_function_has_at_most_40_lines() -> None:
+    long = {
+        f"{path.relative_to(ROOT).as_posix()}: {node.name}": node.end_lineno - node.lineno + 1
+        for path in PYTHON
+        if path.relative_to(ROOT).parts[0] in ("core", "app")
+        for node in ast.walk(ast.parse(TEXTS[path]))
+        if isinstance(node, ast.FunctionDef) and node.end_lineno
+    }
+    assert {name: count for name, count in long.items() if count > 40} == {}
 
 
 def test_every_download_is_pinned_by_hash() -> None:

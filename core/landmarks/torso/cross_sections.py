@@ -227,20 +227,22 @@ class TorsoSections:
         return np.asarray(np.maximum(median_filter(width, 5), 1.0))
 
 
+def _refuse_height(height: float) -> None:
+    if not 100.0 < height < 2500.0:
+        raise LandmarkError(
+            Message(
+                "The scan is {height} high, which is implausible for an upper body.", height=Length(height)
+            ),
+            Message("Set the unit of the scan."),
+        )
+
+
 def scan_torso(mesh: Mesh) -> TorsoSections:
     """Measure the trunk of the whole ``mesh`` every 5 mm.
 
     Raises LandmarkError if it has not the height of a body, or no skin.
     """
-    low, high = mesh.vertices[:, 2].min(), mesh.vertices[:, 2].max()
-    if not 100.0 < high - low < 2500.0:
-        raise LandmarkError(
-            Message(
-                "The scan is {height} high, which is implausible for an upper body.",
-                height=Length(high - low),
-            ),
-            Message("Set the unit of the scan."),
-        )
+    _refuse_height(float(np.ptp(mesh.vertices[:, 2])))
     guide = torso_axis(mesh)
     segments, row = guide.cuts.segments[guide.keep], guide.cuts.level[guide.keep]
     seen, bridges = np.bincount(row, minlength=len(guide.z)) > 0, {}

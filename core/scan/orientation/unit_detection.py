@@ -34,18 +34,7 @@ def estimate_unit(girth: float, told: str | None = None) -> UnitEstimate:
     Raises ScanError if no body is that big. Source: ours.
     """
     if told is not None:
-        mm = girth * MILLIMETRES[told]
-        if TOLD_GIRTHS[0] < mm < TOLD_GIRTHS[1]:
-            reason = Message("The unit was set to {unit}: the trunk girth is {mm}.", unit=told, mm=Length(mm))
-            return UnitEstimate(told, True, reason)
-        raise ScanError(
-            Message(
-                "In {unit}, the trunk girth would be {mm}, which is implausible for a body.",
-                unit=told,
-                mm=_plain_length(mm),
-            ),
-            Message("Check the unit, and that the scan contains an upper body."),
-        )
+        return _checked_unit(girth, told)
     usual, rare = (
         [unit for unit, mm in MILLIMETRES.items() if low < girth * mm < high]
         for low, high in (GIRTHS, RARE_GIRTHS)
@@ -70,6 +59,22 @@ def estimate_unit(girth: float, told: str | None = None) -> UnitEstimate:
             )
             reason = join((reason, also))
     return UnitEstimate(unit, len(rare) == 1, reason)
+
+
+def _checked_unit(girth: float, unit: str) -> UnitEstimate:
+    """Return a unit that was set, if the trunk girth is that of a body in it."""
+    mm = girth * MILLIMETRES[unit]
+    if TOLD_GIRTHS[0] < mm < TOLD_GIRTHS[1]:
+        reason = Message("The unit was set to {unit}: the trunk girth is {mm}.", unit=unit, mm=Length(mm))
+        return UnitEstimate(unit, True, reason)
+    raise ScanError(
+        Message(
+            "In {unit}, the trunk girth would be {mm}, which is implausible for a body.",
+            unit=unit,
+            mm=_plain_length(mm),
+        ),
+        Message("Check the unit, and that the scan contains an upper body."),
+    )
 
 
 def _plain(number: float) -> str | Message:
