@@ -47,7 +47,7 @@ def drag(stages: Stages) -> dict[str, float]:
     """Medians of the parts of a slider's move."""
     model, tensegric = stages.model, stages.model.tensegric
     lines = {line.name: line for line in model.lines}
-    heights = [float(tensegric.rest[lines[name].path, 2].mean()) for name in GIRTHS]
+    heights = [float((lines[name].weights @ tensegric.rest)[:, 2].mean()) for name in GIRTHS]
     tapes = Tapes(stages.moving, heights)
     parts: dict[str, list[float]] = {name: [] for name in HEADS}
     balance = solve_exact(model, (1.0, 1.0, 1.0))

@@ -32,7 +32,7 @@ from app.gui.frame_dispatch import FrameDispatch, ThrottledDispatch
 from app.gui.main_window import MainWindow
 from app.gui.plots.canvas import PlotCanvas
 from app.gui.startup import open_window
-from app.gui.viewport.canvas import PaintedCanvas
+from app.gui.viewport.canvas import Canvas
 from app.gui.viewport.overlay import Overlay
 from app.gui.viewport.view_area import ViewArea
 from app.gui.viewport.viewport import Viewport
@@ -55,7 +55,7 @@ WATCHED: tuple[tuple[str, Any, str], ...] = (
     ("  plots, figures", ThrottledDispatch, "flush"),
     ("paint window", MainWindow, "event"),
     ("  3D", QtInteractor, "paintGL"),
-    ("  3D image", PaintedCanvas, "_render"),
+    ("  3D image", Canvas, "_render"),
     ("  overlay", Overlay, "paintEvent"),
     ("  curves", PlotCanvas, "paintEvent"),
 )

@@ -25,8 +25,8 @@ from core.document.design import Design
 from core.document.line_notation import ready_made_lines
 from core.document.lines import ActiveLine
 from core.mechanics.exact_solution import solve_exact
+from core.mechanics.iteration import Observables
 from core.pipeline.build import Stages, build
-from core.pipeline.observables import Observables
 from core.pipeline.solve import Solution, solve
 
 BELOW = 0.001

@@ -94,7 +94,7 @@ ONCE = (
     Shot("map", _mannequin, scenes.mapped, {"size": LARGE}),
     Shot("vibrating", vibrating, scenes.with_control_mesh, {"dark": True, "size": SMALL}),
     Shot("spread", bra, advice_scenes.sure, {"size": LARGE}),
-    Shot("even", bra, advice_scenes.is_balanced, {"size": SMALL}),
+    Shot("even", bra, advice_scenes.even, {"size": SMALL}),
     Shot("worn", bra, advice_scenes.compared, {"size": SMALL}),
     Shot("lines-dark-ja", _person, step("lines"), DARK, small=True),
 )
