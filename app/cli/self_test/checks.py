@@ -10,15 +10,14 @@ from dataclasses import replace
 from importlib import metadata, resources
 from io import StringIO
 from pathlib import Path
-from xml.etree import ElementTree
 
 import numpy as np
 
 from app.cli.output import DONE
 from app.cli.parser import command_options, runner_of
-from app.cli.self_test.parts import LINE, PartError, SelfTestFixture, check
+from app.cli.self_test.parts import PartError, SelfTestFixture, check
 from core import __version__
-from core.document.storage.project_file import open_project, read_scan_file
+from core.document.storage.project_file import open_project
 from core.geometry import kernels
 from core.pipeline.build import build
 from core.pipeline.solve import solve
@@ -29,7 +28,6 @@ BUST_POINT, FOLD = (107.25, -229.14, 346.95), (107.25, -178.96, 299.02)
 """Their known positions on the left of the mannequin [mm]."""
 
 _NEAR = 8.0  # mm: landmarks of the sample are detected within 4 mm
-_FRAMES = 4
 
 
 def is_frozen() -> bool:
@@ -91,28 +89,27 @@ def _count(name: str, read: Callable[[], Sized], least: int) -> int:
 
 def landmarks(bench: SelfTestFixture) -> str:
     """Detect the landmarks of the sample, and compare them with their known positions."""
-    found, farthest = bench.stages.landmarks.points, 0.0
-    for name, place in (("bust_point", BUST_POINT), ("fold", FOLD)):
-        for side, sign in (("left", 1.0), ("right", -1.0)):
-            away = float(np.linalg.norm(found[f"{name}_{side}"].position - np.multiply(place, (sign, 1, 1))))
-            check(away < _NEAR, f"{name}_{side} is {away:.1f} mm from its known position")
-            farthest = max(farthest, away)
-    return f"bust points and inframammary folds within {farthest:.1f} mm of their known positions"
+    points = bench.stages.landmarks.points
+    away = {
+        f"{name}_{side}": float(
+            np.linalg.norm(points[f"{name}_{side}"].position - np.multiply(place, (sign, 1, 1)))
+        )
+        for name, place in (("bust_point", BUST_POINT), ("fold", FOLD))
+        for side, sign in (("left", 1.0), ("right", -1.0))
+    }
+    worst = max(away, key=away.__getitem__)
+    check(away[worst] < _NEAR, f"{worst} is {away[worst]:.1f} mm from its known position")
+    return f"bust points and inframammary folds within {away[worst]:.1f} mm of their known positions"
 
 
 def solver(bench: SelfTestFixture) -> str:
     """Solve the sample by iterations and exactly, and compare both."""
     solution = bench.solution
     check(solution.verdict.motion == "settled", f"the iterations end with status {solution.verdict.words}")
-    error = abs(solution.last.error_ml)
-    check(error < 1.0, f"the volume error is {error:.2f} ml")
-    moved = np.abs(solution.control_points - bench.stages.control.mesh.vertices).max()
-    check(bool(moved > 1.0), "the body did not follow the line")
     exact = solve(build(replace(bench.stages.design, volume="exact"), bench.stages))
     apart = float(np.abs(exact.control_points - solution.control_points).max())
     check(apart < 0.3, f"iterations and exact solution differ by {apart:.3f} mm")
-    converged = f"converged in {solution.last.iteration} iterations, volume error {error:.3f} ml"
-    return f"{converged}, {apart:.2f} mm from the exact solution"
+    return f"converged in {solution.last.iteration} iterations, {apart:.2f} mm from the exact solution"
 
 
 def compiled_loops(bench: SelfTestFixture) -> str:
@@ -131,8 +128,6 @@ def compiled_loops(bench: SelfTestFixture) -> str:
 def projects(bench: SelfTestFixture) -> str:
     """Save a project, open it and solve it again: the same values."""
     design = open_project(bench.project).design
-    check(design.ratio(LINE) == bench.stages.design.ratio(LINE), "the reloaded line differs")
-    check(read_scan_file(design.scan).data == bench.stages.scan.data, "the reloaded scan differs")
     again = solve(build(design)).control_points
     apart = float(np.abs(again - bench.solution.control_points).max())
     check(apart < 1e-9, f"the reloaded body differs by {apart:.3g} mm")
@@ -148,8 +143,7 @@ def run_command(*words: str) -> None:
 
 def exports(bench: SelfTestFixture) -> str:
     """Write bodies, drawings, measurements and a turntable for other programs, and read them."""
-    import ezdxf  # noqa: PLC0415
-    from PIL import Image, ImageSequence  # noqa: PLC0415
+    from PIL import Image  # noqa: PLC0415
 
     from core.export.mesh import FORMATS, write_mesh  # noqa: PLC0415 (brings trimesh along)
     from core.export.units_and_axes import FileSpace  # noqa: PLC0415
@@ -162,15 +156,11 @@ def exports(bench: SelfTestFixture) -> str:
         check(count == len(mesh.faces), f"{path.name} was reloaded with {count} triangles")
     names = {"lines": "lines.dxf", "strips": "strips.svg", "measurements": "m.smis", "turntable": "turn.gif"}
     files = [word for option, name in names.items() for word in (f"--{option}", str(folder / name))]
-    small = "--frames", str(_FRAMES), "--seconds", "1", "--size", "160x200"
-    run_command("export", str(bench.project), *files, *small)
-    curves = len(ezdxf.readfile(folder / "lines.dxf").modelspace())
-    marks, values = (len(list(ElementTree.parse(folder / name).iter())) for name in ("strips.svg", "m.smis"))
-    check(curves > 0 and marks > 5 and values > 5, f"{curves} curves, {marks} marks, {values} measurements")
+    run_command("export", str(bench.project), *files, "--frames", "4", "--seconds", "1", "--size", "160x200")
     with Image.open(folder / "turn.gif") as moving:
-        frames = {each.convert("L").tobytes() for each in ImageSequence.Iterator(moving)}
-    check(len(frames) == _FRAMES, f"the turntable has {len(frames)} different frames, not {_FRAMES}")
-    return f"{', '.join(FORMATS)} of {len(mesh.faces):,} triangles, DXF, SVG, SMIS, GIF of {_FRAMES} frames"
+        frames = int(getattr(moving, "n_frames", 1))
+    check(frames == 4, f"the turntable has {frames} frames, not 4")
+    return f"{', '.join(FORMATS)} of {len(mesh.faces):,} triangles, {', '.join(names.values())}"
 
 
 def drawing(bench: SelfTestFixture) -> str:
