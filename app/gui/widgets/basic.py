@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QAction, QColor, QFont, QKeySequence, QPainter, QPaintEvent, QPen
+from PySide6.QtGui import QAction, QColor, QFont, QKeyEvent, QKeySequence, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import (
     QAbstractButton,
     QButtonGroup,
@@ -14,6 +14,7 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QPushButton,
+    QScrollArea,
     QSizePolicy,
     QToolButton,
     QVBoxLayout,
@@ -42,6 +43,41 @@ def sentence(text: str = "", role: str = "secondary") -> QLabel:
     result.setWordWrap(True)
     result.setAlignment(Qt.AlignmentFlag.AlignTop | Qt.AlignmentFlag.AlignLeft)
     return result
+
+
+class ScrollColumn(QScrollArea):
+    """A column of widgets that scrolls; ``keys=False`` leaves arrows and focus to what is in it."""
+
+    def __init__(
+        self,
+        name: str,
+        margins: tuple[int, int, int, int],
+        spacing: int = -1,
+        *,
+        keys: bool = True,
+        sideways: bool = False,
+    ) -> None:
+        super().__init__()
+        inside = QWidget()
+        inside.setProperty("scrolled", "true")
+        self.column = QVBoxLayout(inside)
+        self.column.setContentsMargins(*margins)
+        self.column.setSpacing(spacing)  # -1: as the style has it
+        self._keys = keys
+        if not keys:
+            self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        if not sideways:
+            self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setAccessibleName(name)
+        self.setWidgetResizable(True)
+        self.setFrameShape(QFrame.Shape.NoFrame)
+        self.setWidget(inside)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if self._keys:
+            super().keyPressEvent(event)
+        else:
+            event.ignore()
 
 
 class ElidedLabel(QLabel):

@@ -14,14 +14,13 @@ from PySide6.QtWidgets import (
     QGridLayout,
     QHBoxLayout,
     QPushButton,
-    QScrollArea,
     QSizePolicy,
     QVBoxLayout,
     QWidget,
 )
 
 from app.gui.theme.stylesheet import font, label, set_tag, tokens_of
-from app.gui.widgets.basic import ElidedLabel, EmptyState, button, hairline, sentence
+from app.gui.widgets.basic import ElidedLabel, EmptyState, ScrollColumn, button, hairline, sentence
 from app.gui.widgets.button_row import button_row
 from app.gui.widgets.line_widgets import ElasticButton, LineChip
 from app.gui.widgets.tooltip import set_tip
@@ -407,12 +406,9 @@ class GarmentPanel(QWidget):
             row.addWidget(each)
         return head
 
-    def _make_area(self) -> QScrollArea:
-        inside = QWidget()
-        inside.setProperty("scrolled", "true")
-        column = QVBoxLayout(inside)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(8)
+    def _make_area(self) -> ScrollColumn:
+        area = ScrollColumn(tr("Cut list"), (0, 0, 0, 0), 8)
+        column = area.column
         self._list = QVBoxLayout()
         self._list.setSpacing(2)
         column.addWidget(self._make_head())  # with the rows, or a scroll bar shifts them under it
@@ -421,12 +417,6 @@ class GarmentPanel(QWidget):
         column.addLayout(self.cards)
         column.addWidget(self.tissue)
         column.addStretch(1)
-        area = QScrollArea()
-        area.setAccessibleName(tr("Cut list"))
-        area.setWidgetResizable(True)
-        area.setFrameShape(QFrame.Shape.NoFrame)
-        area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        area.setWidget(inside)
         return area
 
     def _make_buttons(self) -> QWidget:

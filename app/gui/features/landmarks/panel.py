@@ -7,11 +7,11 @@ from collections.abc import Sequence
 
 from PySide6.QtCore import QElapsedTimer, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPaintEvent
-from PySide6.QtWidgets import QApplication, QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QApplication, QFrame, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.gui.features.landmarks.row import LandmarkRow
 from app.gui.theme.stylesheet import label, tokens_of
-from app.gui.widgets.basic import Disclosure, EmptyState, ToolButton, button, hairline, sentence
+from app.gui.widgets.basic import Disclosure, EmptyState, ScrollColumn, ToolButton, button, hairline, sentence
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import joined, tr
 from app.i18n.lengths import arrow_step, length
@@ -31,13 +31,6 @@ def keys_in_words() -> list[tuple[str, str]]:
 def _steps() -> dict[str, str]:
     """Return what arrow keys move a pin by, alone and with Shift."""
     return {"step": length(arrow_step(), 0), "far": length(arrow_step(far=True), 0)}
-
-
-class _Area(QScrollArea):
-    """An area that leaves the keys to the list: arrows go from landmark to landmark."""
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        event.ignore()
 
 
 class LandmarksPanel(QWidget):
@@ -91,12 +84,9 @@ class LandmarksPanel(QWidget):
         head.addWidget(self.link)
         return head
 
-    def _list(self) -> QScrollArea:
-        inside = QWidget()
-        inside.setProperty("scrolled", "true")
-        column = QVBoxLayout(inside)
-        column.setContentsMargins(0, 0, 6, 0)
-        column.setSpacing(0)
+    def _list(self) -> ScrollColumn:
+        self._area = ScrollColumn(tr("Landmarks"), (0, 0, 6, 0), 0, keys=False)  # its rows take the keyboard
+        column = self._area.column
         self._groups: dict[str, QVBoxLayout] = {}
         self._heads: dict[str, QWidget] = {
             "bust": label(tr("Bust"), "caption"),
@@ -117,13 +107,6 @@ class LandmarksPanel(QWidget):
         disclosure.toggled.connect(self.further.setVisible)
         self.further.hide()
         column.addStretch(1)
-        self._area = _Area()
-        self._area.setAccessibleName(tr("Landmarks"))
-        self._area.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # its rows take the keyboard
-        self._area.setWidgetResizable(True)
-        self._area.setFrameShape(QFrame.Shape.NoFrame)
-        self._area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self._area.setWidget(inside)
         return self._area
 
     def _foot(self) -> QWidget:

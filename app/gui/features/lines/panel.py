@@ -11,10 +11,8 @@ from PySide6.QtCore import QRectF, Qt, Signal
 from PySide6.QtGui import QKeyEvent, QPainter, QPaintEvent, QShowEvent
 from PySide6.QtWidgets import (
     QApplication,
-    QFrame,
     QHBoxLayout,
     QPushButton,
-    QScrollArea,
     QVBoxLayout,
     QWidget,
 )
@@ -22,7 +20,7 @@ from PySide6.QtWidgets import (
 from app.gui.features.lines.row import LineRow, LineView
 from app.gui.theme.icons import paint_icon
 from app.gui.theme.stylesheet import font, tokens_of
-from app.gui.widgets.basic import EmptyState, ToolButton, button, sentence
+from app.gui.widgets.basic import EmptyState, ScrollColumn, ToolButton, button, sentence
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 from app.i18n.lengths import length_unit
@@ -131,13 +129,6 @@ def keys_in_words() -> list[tuple[str, str]]:
 
 def _no_lines() -> tuple[str, str]:
     return tr("No lines yet"), tr("Landmarks appear when the control mesh has been fitted.")
-
-
-class _Area(QScrollArea):
-    """An area that leaves the keys to the list: arrows go from line to line."""
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        event.ignore()
 
 
 class LinesPanel(QWidget):
@@ -257,12 +248,9 @@ class LinesPanel(QWidget):
         elif what == "remove" and view.own:
             self.removed.emit(view.name)
 
-    def _scroll_area(self) -> QScrollArea:
-        inside = QWidget()
-        inside.setProperty("scrolled", "true")
-        self._list = QVBoxLayout(inside)
-        self._list.setContentsMargins(8, 0, 8, 12)
-        self._list.setSpacing(2)
+    def _scroll_area(self) -> ScrollColumn:
+        self._scroll = ScrollColumn("", (8, 0, 8, 12), 2, keys=False)
+        self._list = self._scroll.column
         # Lasting, and before anybody looks for a waist to lock.
         said = tr(
             "Lines run on the control mesh, from under-bust to armpits. Waist, hip and shoulders are outside."
@@ -271,12 +259,6 @@ class LinesPanel(QWidget):
         self._reach.setContentsMargins(10, 10, 10, 0)
         self._list.addWidget(self._reach)
         self._list.addStretch(1)
-        self._scroll = _Area()
-        self._scroll.setWidgetResizable(True)
-        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
-        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._scroll.setWidget(inside)
         return self._scroll
 
     def _rebuild(self, lines: Sequence[LineView]) -> None:

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 
 from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QHideEvent, QShowEvent
-from PySide6.QtWidgets import QFrame, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QStackedWidget, QVBoxLayout, QWidget
 
 from app.gui.features.measurements.custom_measure_editor import MeasurementEditor
 from app.gui.features.measurements.size_card import SizeCard
 from app.gui.features.measurements.table import MeasurementsTable
 from app.gui.theme.stylesheet import font, set_tag
-from app.gui.widgets.basic import EmptyState, button, sentence
+from app.gui.widgets.basic import EmptyState, ScrollColumn, button, sentence
 from app.gui.widgets.button_row import button_row
 from app.i18n.catalog import tr
 from app.presenters.measurements import MeasureView
@@ -73,16 +73,15 @@ class MeasurementsPanel(QStackedWidget):
             self.addWidget(each)
         self.set_rows([])
 
-    def _make_area(self) -> QScrollArea:
+    def _make_area(self) -> ScrollColumn:
         self._note = sentence(tr("Bars show the change: blue decrease, orange increase."), "caption")
         self._note.setContentsMargins(4, 8, 4, 8)
         self._waiting = sentence("", "caption")
         self._waiting.setContentsMargins(4, 6, 4, 6)
         self._waiting.hide()
-        inside = QWidget()
-        inside.setProperty("scrolled", "true")
-        self._column = QVBoxLayout(inside)
-        self._column.setContentsMargins(0, 0, 0, 0)
+        self._area = ScrollColumn(tr("Measurements"), (0, 0, 0, 0), sideways=True)
+        self._area.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click beside its figures is no wish for keys
+        self._column = self._area.column
         self.summary = button("", "word")
         self.summary.setFont(font("caption"))
         self.summary.hide()
@@ -96,12 +95,6 @@ class MeasurementsPanel(QStackedWidget):
             self._column.addWidget(each)
         self._column.addLayout(self.feet)
         self._column.addStretch(1)
-        self._area = QScrollArea()
-        self._area.setAccessibleName(tr("Measurements"))
-        self._area.setWidgetResizable(True)
-        self._area.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click beside its figures is no wish for keys
-        self._area.setFrameShape(QFrame.Shape.NoFrame)
-        self._area.setWidget(inside)
         return self._area
 
     def set_rows(self, rows: Sequence[MeasureView], doubt: str = "") -> None:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.gui.theme.stylesheet import label, set_tag
-from app.gui.widgets.basic import button, hairline, sentence
+from app.gui.widgets.basic import ScrollColumn, button, hairline, sentence
 from app.gui.widgets.navigation_row import DOOR_HEIGHT, NavigationRow, page_head
 from app.gui.widgets.option_field import AmountField, Field, field_of
 from app.gui.widgets.tooltip import set_tip
@@ -77,12 +77,9 @@ class ModelPanel(QWidget):
         column.addLayout(row, 1)
         return foot
 
-    def _scroll_area(self) -> QScrollArea:
-        inside = QWidget()
-        inside.setProperty("scrolled", "true")
-        column = QVBoxLayout(inside)
-        column.setContentsMargins(18, 2, 18, 16)
-        column.setSpacing(9)
+    def _scroll_area(self) -> ScrollColumn:
+        area = ScrollColumn(tr("Model options"), (18, 2, 18, 16), 9)
+        column = area.column
         for place, (title, settings) in enumerate(groups()):
             if place:
                 column.addSpacing(5)
@@ -94,12 +91,6 @@ class ModelPanel(QWidget):
                 column.addWidget(self._rows[setting.key])
         column.addWidget(self._limit)
         column.addStretch(1)
-        area = QScrollArea()
-        area.setAccessibleName(tr("Model options"))
-        area.setWidgetResizable(True)
-        area.setFrameShape(QFrame.Shape.NoFrame)
-        area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        area.setWidget(inside)
         return area
 
     def _row(self, setting: Setting) -> QWidget:

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from html import escape
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from app.gui.features.scan.edits import ScanEditor
 from app.gui.features.scan.lean_editor import LeanEditor
 from app.gui.theme.stylesheet import label, set_tag
-from app.gui.widgets.basic import EmptyState, Segment, button, hairline, sentence
+from app.gui.widgets.basic import EmptyState, ScrollColumn, Segment, button, hairline, sentence
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr, tr_context
 from app.presenters.messages import render
@@ -84,12 +84,9 @@ class ScanPanel(QWidget):
         if view.edits is not None:
             self.edits.show_edits(view.edits)
 
-    def _facts(self) -> QScrollArea:
-        inside = QWidget()
-        inside.setProperty("scrolled", "true")
-        column = QVBoxLayout(inside)
-        column.setContentsMargins(18, 0, 18, 14)
-        column.setSpacing(3)
+    def _facts(self) -> ScrollColumn:
+        self._area = ScrollColumn(tr("Scan"), (18, 0, 18, 14), 3, sideways=True)
+        column = self._area.column
         self._file, self._triangles = sentence("", "name"), label("", "secondary")
         self._notes, self._reason = sentence(), sentence()
         self._repairs, self.edits, self.lean = sentence(), ScanEditor(), LeanEditor()
@@ -112,11 +109,6 @@ class ScanPanel(QWidget):
         column.addSpacing(14)
         column.addWidget(another, alignment=Qt.AlignmentFlag.AlignLeft)
         column.addStretch(1)
-        self._area = QScrollArea()
-        self._area.setAccessibleName(tr("Scan"))
-        self._area.setWidgetResizable(True)
-        self._area.setFrameShape(QFrame.Shape.NoFrame)
-        self._area.setWidget(inside)
         return self._area
 
     def _choices(self, key: str, choices: list[tuple[str, str]]) -> Segment:

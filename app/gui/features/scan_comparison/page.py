@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from app.gui.theme.stylesheet import font, label, set_tag
-from app.gui.widgets.basic import ElidedLabel, Segment, button, hairline, sentence
+from app.gui.widgets.basic import ElidedLabel, ScrollColumn, Segment, button, hairline, sentence
 from app.gui.widgets.navigation_row import page_head
 from app.gui.widgets.tooltip import set_tip
 from app.gui.widgets.value_edit import ValueEdit
@@ -95,11 +95,8 @@ class ScanComparisonPage(QWidget):
         self.told.emit(unit)
 
     def _lay(self) -> None:
-        inside = QWidget()
-        inside.setProperty("scrolled", "true")
-        column = QVBoxLayout(inside)
-        column.setContentsMargins(18, 4, 18, 16)
-        column.setSpacing(8)
+        area = ScrollColumn(tr("Fitting scan"), (18, 4, 18, 16), 8)
+        column = area.column
         said = tr("Compare the prediction with a scan of the same person in the garment.")
         column.addWidget(sentence(said))
         column.addWidget(self.record)
@@ -115,13 +112,7 @@ class ScanComparisonPage(QWidget):
         column.addWidget(self._compared)
         column.addWidget(self._found)
         column.addStretch(1)
-        area = QScrollArea()
-        area.setAccessibleName(tr("Fitting scan"))
-        area.setWidgetResizable(True)
         area.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # not by a click on a button, which takes none itself
-        area.setFrameShape(QFrame.Shape.NoFrame)
-        area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        area.setWidget(inside)
         outer = QVBoxLayout(self)
         outer.setContentsMargins(0, 0, 0, 0)
         outer.setSpacing(0)

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from functools import partial
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QCheckBox, QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.gui.features.target_shape.row import TargetRow, TargetView, columns
 from app.gui.theme.stylesheet import label, set_tag
-from app.gui.widgets.basic import Segment, ToolButton, button, hairline, sentence
+from app.gui.widgets.basic import ScrollColumn, Segment, ToolButton, button, hairline, sentence
 from app.gui.widgets.navigation_row import page_head
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
@@ -54,12 +54,9 @@ class TargetCard(QWidget):
         column.addWidget(hairline())
         column.addLayout(self._foot())
 
-    def _scroll_area(self) -> QScrollArea:
-        inside = QWidget()
-        inside.setProperty("scrolled", "true")
-        column = QVBoxLayout(inside)
-        column.setContentsMargins(_SIDES, 2, _SIDES, 12)
-        column.setSpacing(0)
+    def _scroll_area(self) -> ScrollColumn:
+        area = ScrollColumn(tr("Target shape"), (_SIDES, 2, _SIDES, 12), 0)
+        column = area.column
         column.addLayout(self._hands())
         self._heading = self._headed()
         column.addWidget(self._heading)
@@ -70,13 +67,7 @@ class TargetCard(QWidget):
         column.addSpacing(8)
         column.addLayout(self._said())
         column.addStretch(1)
-        area = QScrollArea()
-        area.setAccessibleName(tr("Target shape"))
-        area.setWidgetResizable(True)
-        area.setFrameShape(QFrame.Shape.NoFrame)
         area.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click on a button leaves the keyboard where it is
-        area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        area.setWidget(inside)
         return area
 
     def _hands(self) -> QHBoxLayout:
