@@ -13,7 +13,7 @@ from app.i18n.catalog import tr
 class Inspector(QWidget):
     """Holds the panels by name; ``tabs`` are offered at the head while one of them is shown."""
 
-    LEAST, MOST = 330, 480
+    LEAST, MOST = 350, 480
 
     def __init__(self) -> None:
         super().__init__()
@@ -22,7 +22,7 @@ class Inspector(QWidget):
         self._panels: dict[str, QWidget] = {}
         self._titled: set[str] = set()
         self.tabs = Segment((), wide=True)
-        set_tip(self.tabs, tr("Choose the contents of this step: lengths, measurements or history"))
+        set_tip(self.tabs, tr("Lengths, measurements, elastics and cut list, variants, history"))
         self._head = QWidget()
         row = QHBoxLayout(self._head)
         row.setContentsMargins(8, 10, 8, 0)

@@ -54,7 +54,7 @@ class Tour(QObject):
     def begin(self) -> None:
         """Begin with the first stop."""
         self._place = 0
-        for part in (self._window, self._window.notices):
+        for part in self._watched():
             part.installEventFilter(self)
         self._show()
 
@@ -65,7 +65,7 @@ class Tour(QObject):
     def end(self) -> None:
         """Go, and do not come again by itself."""
         self._place = -1
-        for part in (self._window, self._window.notices):
+        for part in self._watched():
             part.removeEventFilter(self)
         self.mark.leave()
         self._window.navigation.focus_panel()
@@ -102,8 +102,17 @@ class Tour(QObject):
         # What was folded away a moment ago has its place only then.
         QTimer.singleShot(0, self, self._point)
 
+    def _watched(self) -> tuple[QWidget, ...]:
+        return self._window, self._window.notices, self._window.report_controller.page
+
     def _point(self) -> None:
         if self._place >= 0:
+            reports = [stop.report for stop in self._stops()]
+            if self._window.report_controller.is_open and not reports[self._place]:
+                # Opened meanwhile, it covers what the other stops are about.
+                self._place = reports.index(True)
+                self._show()
+                return
             # Not over the menus: they can be opened meanwhile, as all else can.
             room = self._window.rect().adjusted(0, self._window.top.geometry().bottom() + 1, 0, 0)
             self.mark.point_at(self._stops()[self._place].place(), room, self._clear())

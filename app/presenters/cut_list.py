@@ -64,7 +64,7 @@ def as_table(stages: Stages, cuts: CutList, pressed: PressureList | None) -> lis
 
 def _off(name: str, design: Design, color: str) -> CutView:
     """Return the row of a band that can be cut although its line does not constrain the model."""
-    notes = (tr("On the rib cage: no effect on the body, but can be cut."),)
+    notes = (tr("On the rib cage: no effect on the body. Choose an elastic for cut length and pressure."),)
     elastic = elastic_title(design.line_settings(name).elastic)
     return CutView(name, line_title(name, design), color, band_width(name, design), elastic, notes=notes)
 

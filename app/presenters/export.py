@@ -81,7 +81,7 @@ def _drawings() -> tuple[Export, ...]:
             "strips",
             tr(
                 "Flat strip of each active line at full scale with marks; cut length where an "
-                "elastic is chosen."
+                "elastic is chosen. The cut list as CSV is in tab Garment."
             ),
             {
                 "svg": tr("Prints at full scale: Inkscape, Illustrator, cutters, browsers."),

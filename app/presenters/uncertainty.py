@@ -100,9 +100,9 @@ def uncertainty_view(spread: OutputUncertainties | None, waiting: str, faint: bo
         return UncertaintyView(waiting, short=tr("No ± yet: details") if waiting else "")
     meaning = tr("± is twice the standard deviation: 95 % of cases if errors are normally distributed.")
     told = tr("± of the previous shape: details") if faint else tr("± covers 95 % of cases: details")
-    return UncertaintyView(
-        joined([meaning, _without_off(), *map(render, spread.cautions)]), _contact(spread), faint, told
-    )
+    shares = tr("Point at a measurement for the share of each source.")
+    said = joined([meaning, shares, _without_off(), *map(render, spread.cautions)])
+    return UncertaintyView(said, _contact(spread), faint, told)
 
 
 def _contact(spread: OutputUncertainties) -> str:

@@ -61,6 +61,21 @@ def test_the_tour_leads_from_the_lifted_bust_to_the_sheet() -> None:
     run_main([], script)
 
 
+@pytest.mark.usefixtures("opened_as_in_the_program")
+def test_a_report_opened_meanwhile_is_what_the_tour_tells_of() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        tour = window.start_controller.tour
+        yield lambda: tour.place == 0
+        window.report_controller.action.trigger()
+        yield lambda: tour.place == 4
+        yield from covers_nothing_that_must_be_seen(window)
+        tour.end()
+        yield settled(window)
+
+    run_main([], script)
+
+
 def before_and_after(window: MainWindow) -> Script:
     """The number that is told is that of the body; Space shows the original one, and the reshaped again."""
     mark = window.start_controller.tour.mark

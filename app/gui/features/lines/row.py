@@ -275,7 +275,7 @@ def _still_words(view: LineView) -> str:
         return words.format(elastic=view.elastic)
     if view.own:
         return tr("On fixed points: measured only.")
-    return tr("On the rib cage: measured only.")
+    return tr("On the rib cage: measured only. To cut a band, choose an elastic in tab Garment.")
 
 
 def _tip(view: LineView) -> str:

@@ -36,7 +36,7 @@ class SizeCard(QWidget):
         self._grid.setSpacing(2)
         self.within, self.rule, self.doubt, self.near = (sentence("", "secondary") for _ in range(4))
         set_tag(self.doubt, "tone", "warn")
-        self.fold, self.doubts = Disclosure(tr("Uncertainties")), sentence("", "caption")
+        self.fold, self.doubts = Disclosure(tr("Notes on the size charts")), sentence("", "caption")
         self.fold.toggled.connect(self.doubts.setVisible)
         self.allowance = _AllowanceField("mm", tr("Tape tension allowance"), widest="20.0")
         self.allowance.entered.connect(self.allowed)
