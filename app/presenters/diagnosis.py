@@ -108,7 +108,7 @@ def _topic(finding: Finding) -> str:
     """Return what a finding is about in a word or two."""
     return {
         "convergence": tr("no convergence"),
-        "shape": tr("strained skin"),
+        "shape": tr("high skin strain"),
         "band": tr("a slack or overstretched band"),
         "pressure": tr("high contact pressure") if finding.level == BAD else tr("snug contact pressure"),
     }[finding.topic]
@@ -263,7 +263,7 @@ def _trouble(complaint: str) -> str:
         "vibrating": tr("the oscillation"),
         "diverging": tr("the divergence"),
         "settling": tr("the slow convergence"),
-        "folded": tr("the fold"),
+        "folded": tr("the folding"),
         "unreachable": tr("the missing equilibrium"),
     }
     return words.get(complaint, tr("the strain"))

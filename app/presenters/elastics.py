@@ -82,7 +82,7 @@ Options = Mapping[int, ElasticOption]
 
 def mode_titles() -> list[tuple[str, str]]:
     """Return both modes with their titles."""
-    return [(KEEP_FIT, tr("Keep fitted length")), (KEEP_CUT, tr("Keep cut length"))]
+    return [(KEEP_FIT, tr("Keep length on body")), (KEEP_CUT, tr("Keep cut length"))]
 
 
 def mode_words(mode: str, design: Design) -> str:
@@ -100,9 +100,9 @@ def effect_words(outcome: Outcome, rigid: Outcome) -> str:
     """Return the lift with an elastic against that of a band that does not stretch."""
     with_it, without = (length(each.lift, signed=True) for each in (outcome, rigid))
     if kept := kept_words(outcome, rigid):
-        words = tr("Lift {lift}, {kept} of {rigid} with an inextensible band.")
+        words = tr("Lift {lift}, {kept} of the lift of {rigid} with an inextensible band.")
         return words.format(lift=with_it, kept=kept, rigid=without)
-    return tr("Lift {lift}; {rigid} with an inextensible band.").format(lift=with_it, rigid=without)
+    return tr("Lift {lift}; with an inextensible band {rigid}.").format(lift=with_it, rigid=without)
 
 
 def kept_words(outcome: Outcome, rigid: Outcome) -> str:

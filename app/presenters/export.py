@@ -44,7 +44,7 @@ def exports() -> tuple[Export, ...]:
 def _meshes() -> tuple[Export, ...]:
     meshes = {
         "glb": tr("glTF, always in metres with y up: Blender, viewers, web pages."),
-        "obj": tr("Opens in most 3D programs, also CLO. Choose the unit on import."),
+        "obj": tr("For most 3D programs, also CLO. Choose the unit on import."),
         "ply": tr("Scanner format: MeshLab, CloudCompare, Blender. Choose the unit on import."),
         "stl": tr("For 3D printing and CAD. Choose the unit on import."),
     }
@@ -84,7 +84,7 @@ def _drawings() -> tuple[Export, ...]:
                 "elastic is chosen. The cut list as CSV is in tab Garment."
             ),
             {
-                "svg": tr("Prints at full scale: Inkscape, Illustrator, cutters, browsers."),
+                "svg": tr("For printing at full scale: Inkscape, Illustrator, cutters, browsers."),
                 "dxf": tr("For CAD, pattern programs and plotters, in millimetres."),
             },
         ),
@@ -104,7 +104,7 @@ def _pictures() -> tuple[Export, ...]:
             tr("Image"),
             "camera",
             tr("Image of the body with its bands at any size."),
-            {"png": tr("Opens in all programs.")},
+            {"png": tr("For all programs.")},
         ),
         Export(
             "turntable",
@@ -113,7 +113,7 @@ def _pictures() -> tuple[Export, ...]:
             tr("Animation of one full rotation of the body."),
             {
                 "webp": tr("Full colour, small files: browsers and most viewers."),
-                "gif": tr("Plays everywhere, also in e-mails and slides; 256 colours, large files."),
+                "gif": tr("For all programs, also e-mails and slides; 256 colours, large files."),
                 "png": tr("Image sequence for video editors."),
             },
         ),

@@ -106,7 +106,7 @@ def write_turntable(
     if not targets[0].parent.is_dir():
         raise UserError(
             Message("Folder {folder} does not exist.", folder=str(targets[0].parent)),
-            Message("Create it, or choose another folder."),
+            Message("Create the folder, or choose another one."),
         )
     pictures = _composed(shots, turntable, progress)
     with ExitStack() as stack:

@@ -162,7 +162,7 @@ def _remark(cut: CutRow) -> str:
     """Return in a few words why no piece can be cut, or what to mind of it."""
     said = [tr("Slack (no tension).")] if cut.slack else []
     if not cut.elastic:
-        said.append(tr("No elastic chosen. The length is that on the body."))
+        said.append(tr("No elastic chosen: the value is the length on the body."))
     elif cut.refused:
         said.append(tr("The elongation exceeds the curve of the elastic."))
     elif cut.cut_mm is None and not cut.slack:

@@ -22,7 +22,7 @@ def write_pdf(path: str | Path, pages: Pages, title: str) -> None:
     data.open(QIODevice.OpenModeFlag.WriteOnly)
     if not _paint(_writer(data, title), pages):
         raise ProjectError(
-            Message("{target} cannot be written: its pages could not be painted.", target=str(target)),
+            Message("{target} cannot be written: the pages could not be drawn.", target=str(target)),
             Message("Choose another folder."),
         )
     # Painted in memory first: of a disk that gets full Qt says nothing, half a sheet would count as written.

@@ -76,7 +76,8 @@ def resampled(curve: Points) -> Points:
     along = arc_length(curve)
     if len(curve) < 2 or along[-1] < STEP:
         raise LineError(
-            Message("The line has no length."), Message("Draw it between two different points of the body.")
+            Message("The line has no length."),
+            Message("Draw the line between two different points of the body."),
         )
     at = np.linspace(0.0, along[-1], int(np.clip(along[-1] / STEP, 2, _MOST)) + 1)
     return interpolate(at, along, curve)

@@ -79,6 +79,6 @@ def _outline(skin: Mesh, end: Points) -> tuple[Points, bool]:
     curves = join_segments(cut(skin, end, (1.0, 0.0, 0.0)))
     if not curves:
         raise LineError(
-            Message("The scan has no surface at the upper end of the strap."), Message("Draw it again.")
+            Message("The scan has no surface at the upper end of the strap."), Message("Draw the line again.")
         )
     return min(curves, key=lambda curve: float(np.linalg.norm(curve[0] - end, axis=1).min()))

@@ -107,11 +107,12 @@ class Design:
         if twice := repeated(line.name for line in self.traits):
             raise LineError(
                 Message("The line {name} has contradictory settings.", name=LineName(twice)),
-                Message("Specify one of them."),
+                Message("Specify the settings of each line only once."),
             )
         if twice := repeated(mark.name for mark in self.placed):
             raise LandmarkError(
-                Message("The landmark {name} is specified twice.", name=twice), Message("Specify it once.")
+                Message("The landmark {name} is specified twice.", name=twice),
+                Message("Specify each name only once."),
             )
         if twice := repeated(measure.name for measure in self.own_measures):
             raise UserError(
@@ -154,7 +155,7 @@ class Design:
                 *((getattr(self, key), *limits, SettingName(key)) for key, limits in RANGES.items()),
                 (1.0 if self.gain is None else self.gain, 0.0, 10.0, SettingName("gain")),
                 (self.tissue_stiffness, *TISSUE_LIMITS, SettingName("tissue stiffness")),
-                (self.worn_tight_mm, *WORN_TIGHT, SettingName("allowance of a tape worn tight")),
+                (self.worn_tight_mm, *WORN_TIGHT, SettingName("tape tension allowance")),
             )
         )
 
@@ -302,5 +303,5 @@ class Design:
     def _check_unlocked(self, name: str) -> None:
         if self.line_settings(name).locked:
             raise LineError(
-                Message("The line {name} is locked.", name=LineName(name)), Message("Unlock it first.")
+                Message("The line {name} is locked.", name=LineName(name)), Message("Unlock the line first.")
             )

@@ -50,7 +50,8 @@ def free_curve(skin: Mesh, control: ControlMesh, pieces: Sequence[Points], close
     """
     if sum(float(np.linalg.norm(np.diff(piece, axis=0), axis=1).sum()) for piece in pieces) < STEP:
         raise LineError(
-            Message("The line has no length."), Message("Draw it between two different points of the body.")
+            Message("The line has no length."),
+            Message("Draw the line between two different points of the body."),
         )
     for step in _STEPS:
         found = _curve(skin, control, pieces, closed, step)
@@ -68,7 +69,7 @@ def _curve(
     if len(kept) < 2 or (closed and len(kept) < len(curve)):
         raise LineError(
             Message("The line leaves the area of the control mesh."),
-            Message("Draw it on or near the breasts, in the reshaped area."),
+            Message("Draw the line on or near the breasts, in the reshaped area."),
         )
     inner = slice(int(kept[0]), int(kept[-1]) + 1)
     cells = _distinct(on_mesh.cells[inner])
@@ -76,7 +77,8 @@ def _curve(
         cells = cells[:-1]
     if len(cells) < (3 if closed else 2):
         raise LineError(
-            Message("The line has no length."), Message("Draw it between two different points of the body.")
+            Message("The line has no length."),
+            Message("Draw the line between two different points of the body."),
         )
     places: tuple[Cell, ...] = tuple((float(row), float(column)) for row, column in cells)
     embedded = embed(control.grid, places + places[:1] * closed)

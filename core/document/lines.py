@@ -67,14 +67,14 @@ class CustomLine:
         if not all(isfinite(number) for place in self.places for number in place):
             raise LineError(
                 Message("The line {line} has a point without a position.", line=LineName(self.name)),
-                Message("Draw it again."),
+                Message("Draw the line again."),
             )
         if self.closed and self.over_shoulder:
             raise LineError(
                 Message(
                     "The line {line} is closed and cannot run over the shoulder.", line=LineName(self.name)
                 ),
-                Message("Leave its ends open."),
+                Message("Leave the ends of the line open."),
             )
 
     @property

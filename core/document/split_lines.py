@@ -69,7 +69,7 @@ def _crosses_not(name: str) -> LineError:
             "The line {name} does not cross the front centre.",
             name=LineName(name),
         ),
-        Message("Choose a line that crosses it, such as the mid-bust line."),
+        Message("Choose a line that crosses the front centre, such as the mid-bust line."),
     )
 
 

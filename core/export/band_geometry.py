@@ -24,17 +24,17 @@ UPPER, LOWER = Message("upper end"), Message("lower end")
 EDGE, SHOULDER, SEWN = Message("upper edge"), Message("shoulder"), Message("back, at the under-bust band")
 """What the marks of a strip are called: a band that goes round begins and ends at the right side."""
 
-AS_WORN = Message("worn length: an elastic is cut shorter")
+AS_WORN = Message("length on body: an elastic is cut shorter")
 """What is said of a strip of which no elastic is chosen."""
 
 NOT_TO_CUT = Message("DO NOT CUT")
 """What is printed across such a strip."""
 
 _TO_CUT = Message(
-    "cut from {elastic}, including {allowance} seam allowance; worn length {worn}, elongation {stretch} %"
+    "cut from {elastic}, including {allowance} seam allowance; length on body {worn}, elongation {stretch} %"
 )
 _FRONT_TO_CUT = Message(
-    "front part only, cut from {elastic}, including {allowance} seam allowance; worn length "
+    "front part only, cut from {elastic}, including {allowance} seam allowance; length on body "
     "{worn}, elongation {stretch} %"
 )
 

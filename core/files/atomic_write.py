@@ -73,7 +73,7 @@ def still_writing_error(target: Path) -> ProjectError:
     """Return what to say when a file is to be written that is on its way already."""
     return ProjectError(
         Message("{file} is still being written.", file=target.name),
-        Message("Wait a moment, or choose another name."),
+        Message("Try again later, or choose another name."),
     )
 
 

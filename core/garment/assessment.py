@@ -160,7 +160,7 @@ def _bands(cuts: CutList | None) -> Iterator[Finding]:
             yield _slack(row)
         elif row.far and row.elongation is not None:
             message = Message(
-                "The elongation of the elastic of {line} is high ({percent} %).",
+                "The elongation of {line} is high ({percent} %).",
                 line=LineName(row.line, row.title),
                 percent=f"{100.0 * row.elongation:.0f}",
             )

@@ -30,9 +30,9 @@ _TOLD = re.compile(
 _QUOTED = re.compile(r'^"(.*)"$')
 
 HELP = Message(
-    "It requires one row of headings with units, such as 'elongation %' and 'force N' (also "
-    "N/cm, cN, gf, kgf), then one row for each point; before them lines such as '# width_mm: "
-    "12', '# name: ...', '# allowance_mm: 20'."
+    "The table requires one row of headings with units, such as 'elongation %' and 'force N' "
+    "(also N/cm, cN, gf, kgf), and one row for each point. Lines such as '# width_mm: 12', '# "
+    "name: ...', '# allowance_mm: 20' precede the headings."
 )
 """What a user has to know to write a table."""
 
@@ -152,7 +152,7 @@ def _number(text: str, what: Message, name: str) -> float:
             Message(
                 "The {what} '{text}' of {name} is not a number.", what=what, text=text.strip(), name=name
             ),
-            Message("Enter it in mm."),
+            Message("Enter the width in mm."),
         ) from None
 
 

@@ -133,7 +133,7 @@ def _text_of(path: Path) -> str:
             Message(
                 "The table {name} cannot be read: {problem}.", name=path.name, problem=reason_of(problem)
             ),
-            Message("Check its name and folder."),
+            Message("Check the name and folder of the table."),
         ) from problem
     if b"\0" in data:
         raise LineError(
@@ -167,7 +167,7 @@ def remove_elastic(name: str) -> None:
                     Message(
                         "The table {name} cannot be removed: {why}.", name=path.name, why=reason_of(problem)
                     ),
-                    Message("Delete it from the folder manually."),
+                    Message("Delete the file from its folder manually."),
                 ) from problem
 
 

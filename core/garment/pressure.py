@@ -207,7 +207,7 @@ def _told(stages: Stages, name: str, tension: LineTension) -> tuple[Message, ...
     """Return in sentences what was taken for granted."""
     said = []
     if tension.estimate:
-        said.append(Message("Its tension is computed from the tissue stiffness alone (estimate)."))
+        said.append(Message("The tension is computed from the tissue stiffness alone (estimate)."))
     if not stages.design.line_settings(name).width:
         said.append(Message("Width not specified: {width} assumed.", width=Length(USUAL_WIDTH)))
     if any(line.name == name and is_strap(stages, line) for line in stages.model.lines):

@@ -137,6 +137,6 @@ def _laid(mesh: Mesh, name: str, point: Points) -> Landmark:
                 name=LandmarkName(name.replace("_", " ")),
                 far=Length(REACH),
             ),
-            Message("Place it on the skin."),
+            Message("Place the landmark on the skin."),
         )
     return Landmark(name, place, 1.0, PLACED, by_hand=True)

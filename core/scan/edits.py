@@ -55,7 +55,7 @@ class ScanEdits:
         if len(self.filled) > MOST_FILLED:
             raise UserError(
                 Message("Too many holes selected one by one: {count}.", count=len(self.filled)),
-                Message("Fill all of them at once."),
+                Message("Fill all holes at once."),
             )
         if not all(
             np.shape(place) == (3,) and (np.abs(place) < MAX_COORDINATE).all() for place in self.filled

@@ -156,7 +156,7 @@ def _check_name(out: Path) -> None:
     if not out.parent.is_dir():
         raise UserError(
             Message("Folder {parent} does not exist.", parent=out.parent),
-            Message("Create it, or choose another folder."),
+            Message("Create the folder, or choose another one."),
         )
 
 

@@ -123,7 +123,7 @@ def _check(how: ReportOptions) -> None:
         if name and not Path(name).parent.is_dir():
             raise UserError(
                 Message("Folder {parent} does not exist.", parent=Path(name).parent),
-                Message("Create it, or choose another folder."),
+                Message("Create the folder, or choose another one."),
             )
     if not how.out:
         raise UserError(

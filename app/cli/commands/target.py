@@ -164,7 +164,9 @@ def goals_of(texts: Sequence[str]) -> tuple[Goal, ...]:
                 Message("Enter millimetres, or append cm or in."),
             )
         if name in goals:
-            raise UserError(Message("{name} is specified twice.", name=name), Message("Specify it once."))
+            raise UserError(
+                Message("{name} is specified twice.", name=name), Message("Specify each name only once.")
+            )
         goals[name] = Goal(name, value, match[4] or "normal")
     return tuple(goals.values())
 

@@ -97,7 +97,7 @@ class Notifications(QObject):
     def stopped(self, work: str) -> None:
         """Inform that work in the background was stopped, and when it starts again."""
         sentence = tr("Stopped: {work}").format(work=work)
-        self.info(sentence, tr("It will restart when you open this panel."))
+        self.info(sentence, tr("The computation will restart when you open this panel."))
 
     def file_written(self, topic: str, sentence: str, path: str) -> None:
         """Confirm that a file was written, and offer its folder."""

@@ -256,7 +256,7 @@ def _refuse_other_size(body: Body, worn: Body) -> None:
             times=f"{times:.2g}",
             unit=worn.pose.unit,
         ),
-        Message("Set its unit."),
+        Message("Set the unit of the fitting scan."),
     )
 
 

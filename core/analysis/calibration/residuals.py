@@ -103,7 +103,7 @@ def require_not_mirrored(stages: Stages, worn: FittingScan) -> None:
             Message(
                 "The fitting scan appears to be a mirror image of the first scan: left and right are swapped."
             ),
-            Message("Export it again without mirroring."),
+            Message("Export the fitting scan again without mirroring."),
         )
 
 

@@ -60,8 +60,8 @@ def read_profile(path: str) -> Floats:
         raise UserError(
             Message("{path} has no columns height_mm and out_mm.", path=path),
             Message(
-                "Use them as headings of two columns: the height on the body and the target "
-                "depth of the skin there."
+                "Use these headings for two columns: the height on the body and the target depth "
+                "of the skin there."
             ),
         )
     found = np.array([[_number(path, row, column) for column in columns] for row in rows[1:]])

@@ -95,7 +95,7 @@ def balance_sides(
     UserError if a breast is missing, no worn line can move one side alone, or nothing balances; Cancelled.
     """
     if not all(shows_breast(stages.landmarks, side) for side in SIDES):
-        raise UserError(NO_BREAST, Message("Place its bust point, or edit the lines manually."))
+        raise UserError(NO_BREAST, Message("Place the missing bust point, or edit the lines manually."))
     exact = build(replace(stages.design, volume="exact"), stages, progress)
     names: tuple[str, ...] = ()
     if not moves_one_side(exact):

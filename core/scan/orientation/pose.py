@@ -31,7 +31,7 @@ READINGS = 4
 RIVAL = 2.0
 """Ways to stand that score less than the best by this [1] stay rough: they cannot win."""
 
-NOTHING_ELSE = Message("The scan must contain an upper body and little else.")
+NOTHING_ELSE = Message("The scan must contain an upper body and no other large objects.")
 
 DIFFERENT = 30.0
 """Ways to stand whose up and front lie nearer than this [degrees] are one."""

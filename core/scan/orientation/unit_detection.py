@@ -81,7 +81,7 @@ def _plain(number: float) -> str | Message:
     """Return a number in words without powers of ten."""
     if 0.01 < number < 1e6:
         return f"{number:,.0f}" if number > 100.0 else f"{number:.3g}"
-    return Message("more than a million") if number > 1.0 else Message("almost nothing")
+    return Message("more than a million") if number > 1.0 else Message("almost zero")
 
 
 def _plain_length(mm: float) -> Length | Message:

@@ -64,7 +64,7 @@ def read_gltf(name: str, data: bytes, progress: Progress) -> RawScan:
 def _packed(name: str) -> ScanError:
     return ScanError(
         Message("{file} uses an unsupported compression.", file=name),
-        Message("Export it without mesh compression."),
+        Message("Export the scan without mesh compression."),
     )
 
 
@@ -72,7 +72,8 @@ def _glb(name: str, data: bytes) -> tuple[bytes, memoryview]:
     """Return the two chunks of a GLB file: the description, and what it describes."""
     if int.from_bytes(data[4:8], "little") != 2:
         raise ScanError(
-            Message("{file} uses an outdated glTF version.", file=name), Message("Export it as glTF 2.0.")
+            Message("{file} uses an outdated glTF version.", file=name),
+            Message("Export the scan as glTF 2.0."),
         )
     whole, chunks, at = memoryview(data), dict[bytes, memoryview](), 12
     while at + 8 <= len(data):
@@ -91,7 +92,8 @@ class _Reader:
         self.name, self.json = name, document
         if document["asset"]["version"].split(".")[0] != "2":
             raise ScanError(
-                Message("{file} uses an outdated glTF version.", file=name), Message("Export it as glTF 2.0.")
+                Message("{file} uses an outdated glTF version.", file=name),
+                Message("Export the scan as glTF 2.0."),
             )
         needed = document.get("extensionsRequired", [])
         if any("draco" in each or "meshopt" in each for each in needed):
@@ -203,7 +205,7 @@ class _Reader:
         if "sparse" in accessor or "bufferView" not in accessor:
             raise ScanError(
                 Message("{file} uses an unsupported encoding.", file=self.name),
-                Message("Export it as PLY."),
+                Message("Export the scan as PLY."),
             )
         view = self.json["bufferViews"][accessor["bufferView"]]
         buffer = self._buffers[view["buffer"]]

@@ -29,7 +29,7 @@ def read_off(name: str, data: bytes, progress: Progress) -> RawScan:
     if head[4] or head[5] or b"BINARY" in head[0]:
         raise ScanError(
             Message("{file} uses an unsupported OFF variant.", file=name),
-            Message("Export it as standard OFF or as PLY."),
+            Message("Export the scan as standard OFF or as PLY."),
         )
     found = whole_table(name, data[head.end() :], progress)
     if len(found.counts) == 0 or found.counts[0] < 2:

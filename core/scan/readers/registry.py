@@ -80,7 +80,7 @@ def scan_bytes(path: Path, progress: Progress = quiet) -> bytes:
             Message("Check the name, or choose another scan."),
         ) from None
     except (OSError, ValueError) as problem:
-        reason = getattr(problem, "strerror", None) or Message("its name is no name of a file")
+        reason = getattr(problem, "strerror", None) or Message("the file name is not valid")
         raise ScanError(
             Message("{file} cannot be read: {problem}.", file=path.name or str(path), problem=reason),
             Message("Choose another scan."),
@@ -144,7 +144,7 @@ def _reader(name: str, data: bytes) -> Reader:
     if told is None and ending not in _READERS:
         raise ScanError(
             Message("{file} is not a supported scan file.", file=name),
-            Message("Export it as one of: PLY, OBJ, STL, OFF, glTF, VTP, XYZ."),
+            Message("Export the scan as PLY, OBJ, STL, OFF, glTF, VTP or XYZ."),
         )
     return _READERS[told or ending]
 

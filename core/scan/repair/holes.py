@@ -157,7 +157,7 @@ def hole_sentences(mesh: Mesh, holes: tuple[Hole, ...]) -> tuple[Message, ...]:
 def hole_sentence(mesh: Mesh, hole: Hole) -> Message:
     """Return the size of a hole of an upright skin, and where it is."""
     return Message(
-        "Unfilled hole of {long} x {wide} cm: {place}.",
+        "Unfilled hole of {long} × {wide} cm: {place}.",
         long=f"{hole.length / 10.0:.0f}",
         wide=f"{hole.width / 10.0:.0f}",
         place=hole.place(mesh),

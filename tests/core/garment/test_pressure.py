@@ -273,7 +273,7 @@ def test_worn_lines_press_with_their_tensions_on_the_reshaped_body() -> None:
     assert (~worn.front).any()
     assert worn.tension[~worn.front] == pytest.approx(tension.mean)
     assert set(worn.tension[worn.front].round(9)) <= set(np.maximum(tension.segments, 0.0).round(9))
-    assert str(worn.notes[0]) == "Its tension is computed from the tissue stiffness alone (estimate)."
+    assert str(worn.notes[0]) == "The tension is computed from the tissue stiffness alone (estimate)."
     touching = worn.places[worn.gap == 0.0]
     far = np.linalg.norm(solution().body.vertices[:, None] - touching[None, ::9], axis=2).min(axis=0)
     assert far.max() < 6.0

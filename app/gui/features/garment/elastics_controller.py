@@ -114,7 +114,10 @@ class ElasticsController(QObject):
         """Ask, and take one of the designer's own away."""
         sheet = self.sheet
         question = tr("Delete elastic {name}?").format(name=name)
-        said = tr("Its table is deleted from your folder. Projects that use it keep its curve.")
+        said = tr(
+            "The table of the elastic is deleted from your folder. Projects that use the elastic "
+            "keep the curve."
+        )
         if sheet is None or ask(sheet, question, said, [("delete", tr("Delete"))]) != "delete":
             return
         try:

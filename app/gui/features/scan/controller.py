@@ -220,7 +220,7 @@ class ScanController(QObject):
         if self._session.stuck:
             self._say_stuck(self._session.stuck)
         elif waiting is None and frame is not None and not frame.stages.body.pose.is_certain:
-            self._say_unsure(tr("Check it at the Scan step."))
+            self._say_unsure(tr("Check the orientation at the Scan step."))
 
     # -- inside
 
@@ -272,7 +272,7 @@ class ScanController(QObject):
         """Without pictures nothing can be chosen below: the Scan step asks the same."""
         logging.error("the pictures of the question failed", exc_info=error)
         self._painting = None
-        self._say_unsure(tr("Check it at the Scan step."))
+        self._say_unsure(tr("Check the orientation at the Scan step."))
 
     def _say_unsure(self, ask: str) -> None:
         self._context.notifications.withdraw(_QUESTION)

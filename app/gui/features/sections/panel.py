@@ -237,7 +237,10 @@ class CurveKeys(QWidget):
             "other": tr("other side, mirrored"),
             "band": tr("uncertainty"),
         }
-        set_tip(self, tr("Band: 95 % of cases at each point of the skin if errors are normally distributed."))
+        set_tip(
+            self,
+            tr("Shaded range: 95 % of cases at each point of the skin if errors are normally distributed."),
+        )
         self.setFixedHeight(self.sizeHint().height())
 
     def sizeHint(self) -> QSize:
