@@ -43,9 +43,18 @@ class SettingName(Name):
     """The name of a setting of the design."""
 
     context = "setting"
+    titles: ClassVar[dict[str, str]] = {
+        "line_contact": "skin contact",
+        "line_hold": "line length",
+        "member_law": "cable force",
+        "firm_chest": "chest support",
+        "scaled_normals": "scaling of the distance to the mesh",
+        "dense_volume": "volume of the body",
+    }
+    """English names of keys in project files that are no plain term."""
 
     def __str__(self) -> str:
-        return self.text.replace("_", " ")
+        return self.titles.get(self.text, self.text.replace("_", " "))
 
 
 class SideName(Name):

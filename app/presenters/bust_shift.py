@@ -124,8 +124,8 @@ def sides_words(move: BustShift) -> tuple[str, str]:
 
 def bust_sentence(move: BustShift, offs: Offs = UNKNOWN) -> str:
     """Return a move in one line, with both sides where they differ; ``offs`` are those of the mean."""
-    said = tr("Bust points: {way}").format(way=step_words(move.mean, offs))
+    said = tr("Bust points: {shift}").format(shift=step_words(move.mean, offs))
     if not move.differs:
         return said
     left, right = sides_words(move)
-    return tr("{said} (left {left}, right {right})").format(said=said, left=left, right=right)
+    return tr("{shift} (left {left}, right {right})").format(shift=said, left=left, right=right)

@@ -181,8 +181,8 @@ def section_words(axis: str, side: str, move: BustShift, spread: OutputUncertain
         return bust_sentence(move, uncertainties_of(spread))
     offs = uncertainties_of(spread, side)
     if side == "left":
-        return tr("Bust point left: {way}").format(way=step_words(move.left, offs))
-    return tr("Bust point right: {way}").format(way=step_words(move.right, offs))
+        return tr("Bust point left: {shift}").format(shift=step_words(move.left, offs))
+    return tr("Bust point right: {shift}").format(shift=step_words(move.right, offs))
 
 
 def sides_words(axis: str, pairs: Sequence[tuple[Floats, Floats]]) -> str:
@@ -190,10 +190,10 @@ def sides_words(axis: str, pairs: Sequence[tuple[Floats, Floats]]) -> str:
     steps = [this - other for other, this in pairs]
     if axis == "x" and len(steps) == 1:
         way = step_words(BustStep(float(steps[0][1]), float(steps[0][0])))
-        return tr("Apex, relative to the other side: {way}").format(way=way)
+        return tr("Apex, relative to the other side: {shift}").format(shift=way)
     if axis == "z" and len(steps) == 2:
         way = forward_words(-float(steps[0][1]))
-        return tr("Apex left, relative to right: {way}").format(way=way)
+        return tr("Apex left, relative to right: {shift}").format(shift=way)
     return ""
 
 

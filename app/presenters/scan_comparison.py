@@ -31,8 +31,8 @@ def aligned_words(worn: FittingScan) -> str:
     met = tr(
         "Registration: {share} % of the skin outside the reshaped region matches within {near}, RMS {length}."
     ).format(near=length(MET, 0), share=number(100.0 * laid.met, 0), length=length(laid.rms))
-    sure = tr("Registration accuracy ±{turn}° and ±{length}.").format(
-        turn=number(2.0 * float(laid.rotation_deviations.max()), 2),
+    sure = tr("Registration accuracy ±{angle}° and ±{length}.").format(
+        angle=number(2.0 * float(laid.rotation_deviations.max()), 2),
         length=length(2.0 * float(laid.translation_deviations.max())),
     )
     return joined([met, sure])
@@ -65,18 +65,18 @@ def bust_words(difference: Residuals) -> str:
     if not difference.bust_points:
         return tr("The bust points are unclear on the fitting scan.")
     named = {
-        "left": tr("Bust point left: predicted {way}, {out}."),
-        "right": tr("Bust point right: predicted {way}, {out}."),
+        "left": tr("Bust point left: predicted {shift}, {forward}."),
+        "right": tr("Bust point right: predicted {shift}, {forward}."),
     }
     said = [
         named[side].format(
-            way=_way(
+            shift=_way(
                 float(way[2]),
-                tr("{length} higher (±{sure})"),
-                tr("{length} lower (±{sure})"),
+                tr("{length} higher (±{uncertainty})"),
+                tr("{length} lower (±{uncertainty})"),
                 difference.bust_unsure[side],
             ),
-            out=_way(-float(way[1]), tr("{length} further forward"), tr("{length} further back")),
+            forward=_way(-float(way[1]), tr("{length} further forward"), tr("{length} further back")),
         )
         for side, way in difference.bust_points.items()
     ]
@@ -84,7 +84,7 @@ def bust_words(difference: Residuals) -> str:
 
 
 def _way(mm: float, more: str, less: str, sure: float = 0.0) -> str:
-    return (less if round(mm, 1) < 0.0 else more).format(length=length(abs(mm)), sure=length(sure))
+    return (less if round(mm, 1) < 0.0 else more).format(length=length(abs(mm)), uncertainty=length(sure))
 
 
 def summary_text(difference: Residuals) -> str:

@@ -152,8 +152,8 @@ def _effort(frame: Frame) -> str:
     exact, turns = frame.stages.design.volume == "exact", frame.verdict.iterations
     if exact and turns == 1:
         return tr("Solved in one Newton iteration")
-    text = tr("Solved in {turns} Newton iterations") if exact else tr("Converged in {turns} iterations")
-    return text.format(turns=number(turns, 0))
+    text = tr("Solved in {count} Newton iterations") if exact else tr("Converged in {count} iterations")
+    return text.format(count=number(turns, 0))
 
 
 def _figures(

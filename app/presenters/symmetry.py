@@ -45,7 +45,7 @@ def symmetry_view(
     rows = {row.key: row for row in symmetry_rows(told.before, told.after)}
     hint, possible = _hint(stages, now) if not doubt else (doubt, False)
     offs = _offs(spread)
-    said = _sentence(now, {}, tr("Bust points before: {how}.")) if doubt else _sentence(now, offs)
+    said = _sentence(now, {}, tr("Bust points before: {position}.")) if doubt else _sentence(now, offs)
     return SymmetryView(
         joined((*map(render, edit_warnings(stages.body)), said)),
         tuple(_view(rows[key], bool(doubt), offs.get(key)) for key in _titles()),
@@ -91,7 +91,7 @@ def _sentence(now: SideDifference, offs: Mapping[str, float], words: str = "") -
             )
             parts.append((left if value > 0.0 else right).format(length=size))
             within &= off is not None and abs(value) <= off
-    said = (words or tr("Bust points: {how}.")).format(how=listed(parts))
+    said = (words or tr("Bust points: {position}.")).format(position=listed(parts))
     return joined((said, tr("No significant difference in position."))) if within else said
 
 
@@ -207,11 +207,11 @@ def balance_result_texts(
     wanted = {goal.name: goal.value for goal in goals}
     wanted |= {name: now[name] for name in (LIFT, OUT) if name in now and name not in wanted}
     nearer = {name: abs(come[name] - mm) - abs(now[name] - mm) for name, mm in wanted.items() if name in now}
-    line = tr("{figure}: {before} → {after}")
+    line = tr("{quantity}: {before} → {after}")
     lines = [_way(name, now[name], come[name], line) for name, by in nearer.items() if by < -_SEEN]
-    beside = tr("{figure} {before} → {after}")
+    beside = tr("{quantity} {before} → {after}")
     price = listed(_way(name, now[name], come[name], beside) for name, by in nearer.items() if by > _SEEN)
-    costs = tr("Trade-off: {figures}").format(figures=price) if price else ""
+    costs = tr("Trade-off: {values}").format(values=price) if price else ""
     why = "\n".join(filter(None, ("" if met else _why(reply), _by_turns(reply.design))))
     return "\n".join((_outcome(reply, met), *lines)), costs, why
 
@@ -248,15 +248,15 @@ def _way(name: str, before: float, after: float, said: str) -> str:
     if name not in titles:
         signed = is_signed(name)
         values = {"before": length_number(before, 1, signed), "after": length(after, 1, signed)}
-        return said.format(figure=target_title(name), **values)
+        return said.format(quantity=target_title(name), **values)
     one, other = (titles[name][each < 0.0] for each in (before, after))
     values = {"before": length_number(abs(before)), "after": length(abs(after))}
     if min(abs(before), abs(after)) < _SEEN:  # even has no side
         one = other = one if abs(before) >= abs(after) else other
     if one != other:
-        said = tr("{figure} {before} → {other} {after}")
+        said = tr("{quantity} {before} → {other} {after}")
         values["before"] = length(abs(before))
-    return said.format(figure=one, other=other, **values)
+    return said.format(quantity=one, other=other, **values)
 
 
 @dataclass(frozen=True)

@@ -73,8 +73,8 @@ def is_signed(name: str) -> bool:
 
 def target_text(name: str, value: float) -> str:
     """Return a figure with its value: "Bust point up +12.0 mm"."""
-    return tr("{figure} {value}").format(
-        figure=target_title(name), value=length(value, 1, signed=is_signed(name))
+    return tr("{quantity} {value}").format(
+        quantity=target_title(name), value=length(value, 1, signed=is_signed(name))
     )
 
 
@@ -97,8 +97,8 @@ def result_text(
     """
     most = max(reply.pressure.values(), default=0.0)
     if limit is not None and reply.agreed and most < _ABOUT * limit:
-        said = tr("Contact pressure at most {kpa} kPa; result: {figures}.")
-        return said.format(kpa=number(most), figures=listed(_come(reply, goals)))
+        said = tr("Contact pressure at most {kpa} kPa; result: {values}.")
+        return said.format(kpa=number(most), values=listed(_come(reply, goals)))
     if reply.reachable:
         return tr("All targets reached.")
     if is_met(reply, goals):
@@ -177,14 +177,14 @@ def bust_movement_text(goals: Sequence[Goal], now: Mapping[str, float], then: Ma
     asked = {goal.name.removesuffix(" left").removesuffix(" right") for goal in goals}
     free = [name for name in (LIFT, OUT) if name not in asked and name in now and name in then]
     moved = [_from_to(name, now[name], then[name]) for name in free if abs(then[name] - now[name]) > _MET]
-    return tr("Also changes: {figures}").format(figures=listed(moved)) if moved else ""
+    return tr("Also changes: {values}").format(values=listed(moved)) if moved else ""
 
 
 def _from_to(name: str, before: float, after: float) -> str:
     """Return a figure with what it was and what it comes to: "Bust point up +0.2 → +0.4 mm"."""
-    said, signed = tr("{figure} {before} → {after}"), is_signed(name)
+    said, signed = tr("{quantity} {before} → {after}"), is_signed(name)
     values = {"before": length_number(before, 1, signed=signed), "after": length(after, 1, signed=signed)}
-    return said.format(figure=target_title(name), **values)
+    return said.format(quantity=target_title(name), **values)
 
 
 def deviation_text(goals: Sequence[Goal], reached: Mapping[str, float], section: str) -> str:
@@ -357,8 +357,8 @@ def unlimited_words(free: InverseResult, goals: Sequence[Goal], now: Mapping[str
         return tr("All targets are reached without the contact pressure limit, at {kpa} kPa.").format(
             kpa=most
         )
-    words = tr("Closest result without the contact pressure limit: {figures}, at {kpa} kPa.")
-    return words.format(figures=closest_result_text(free, goals, now), kpa=most)
+    words = tr("Closest result without the contact pressure limit: {values}, at {kpa} kPa.")
+    return words.format(values=closest_result_text(free, goals, now), kpa=most)
 
 
 def activated_text(before: Design, after: Design) -> str:

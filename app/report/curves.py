@@ -179,7 +179,10 @@ def _sentence(said: str, width: float) -> Block:
 
 def _plot(turns: IterationCurve, values: Sequence[float], title: str, width: float, height: float) -> Block:
     """Return a figure over the turns of the run."""
-    said, last = elide(title, "caption", width), tr("iteration {turn}").format(turn=number(turns.turn[-1], 0))
+    said, last = (
+        elide(title, "caption", width),
+        tr("iteration {iteration}").format(iteration=number(turns.turn[-1], 0)),
+    )
     x_of, seen = np.array(turns.turn, dtype=np.float64), np.array(values, dtype=np.float64)
     low, high = float(seen.min()), float(seen.max())
     if high - low < 1e-3:

@@ -96,7 +96,7 @@ def _within_words(cut: CutRow, press: PressureRow, sheet: Report) -> Iterator[st
             low, high = (number(each, 1) for each in ends)
             parts.append(said.format(low=low, high=high))
     if parts:
-        yield tr("In 95 % of cases: {figures}.").format(figures=listed(parts))
+        yield tr("In 95 % of cases: {values}.").format(values=listed(parts))
 
 
 def _forces(sheet: Report) -> Iterator[tuple[float, float]]:

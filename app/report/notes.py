@@ -59,7 +59,7 @@ def size_cautions(sheet: Report) -> str:
             told.setdefault(_caution(each), []).append(system_word(each))
     between = "；" if language() == "ja" else "; "
     words = between.join(f"{listed(systems)}{colon()}{caution}" for caution, systems in told.items())
-    return tr("* Other size charts give another size. {words}").format(words=words) if words else ""
+    return tr("* Other size charts give another size. {details}").format(details=words) if words else ""
 
 
 def _meaning(sheet: Report) -> list[str]:

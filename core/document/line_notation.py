@@ -198,7 +198,7 @@ def _point(word: str, template: Template) -> int:
                     template=template.name,
                 ),
                 Message(
-                    "Points are 0 to {last}, or positions such as r2c-3. {how}", last=count - 1, how=_ASK
+                    "Points are 0 to {last}, or positions such as r2c-3. {hint}", last=count - 1, hint=_ASK
                 ),
             )
         return int(word)

@@ -44,9 +44,9 @@ def allowance_sentence(table: SizeTable, underbust: float, allowance: float) -> 
         f"{short(each)} {table.unit}" for each in (underbust, allowance, underbust - allowance)
     )
     return Message(
-        "Under-bust {value} minus tape tension allowance {taken}: {left}.",
+        "Under-bust {value} minus tape tension allowance {allowance}: {left}.",
         value=value,
-        taken=taken,
+        allowance=taken,
         left=left,
     )
 

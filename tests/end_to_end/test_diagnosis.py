@@ -251,7 +251,7 @@ def test_the_pill_opens_what_the_button_ends_and_what_will_still_be_strained() -
         window.lines_controller.commit_length("mid-bust", 0.848)
         yield lambda: told(window)
         said = words(window)[1]
-        assert "high contact pressure, strained skin" in str(notice_of(window).hint), "it is told before"
+        assert "high contact pressure, high skin strain" in str(notice_of(window).hint), "it is told before"
         assert said.startswith("Lengthen Mid-bust by ")
         window.notices.buttons[1].click()
         yield settled(window)

@@ -199,7 +199,7 @@ def test_a_locked_line_stays_what_it_is() -> None:
         before = window.session.design
         window.garment.rows["mid-bust"].elastic.click()
         yield from mark(window, "Strap 15 mm")
-        assert chooser_of(window).advice.text() == "The line mid-bust is locked. Unlock it first."
+        assert chooser_of(window).advice.text() == "The line mid-bust is locked. Unlock the line first."
         assert not chooser_of(window).use.isEnabled()
         chooser_of(window).reject()
         assert window.session.design is before

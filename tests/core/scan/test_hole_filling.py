@@ -113,7 +113,7 @@ def test_a_clean_body_is_not_touched_and_its_cuts_are_no_holes(person):
 def test_a_large_hole_stays_open_and_is_named(person, place, words):
     closed, sentences = fill_holes(pierced(person, (np.array(place), 35.0)))
     assert len(closed.boundary_loops) == 5
-    assert tuple(map(str, sentences)) == (f"Unfilled hole of 7 x 7 cm: {words}.",)
+    assert tuple(map(str, sentences)) == (f"Unfilled hole of 7 × 7 cm: {words}.",)
     hole = next(hole for hole in find_holes(closed) if not hole.opening)
     assert np.linalg.norm(hole.centre - person.vertices, axis=1).min() < 15.0
     assert 60.0 < hole.width <= hole.length < 85.0

@@ -71,7 +71,7 @@ class ExportWorker:
     def _done(self, ready: ExportPreview, files: list[Path]) -> None:
         first, last = files[0].name, files[-1].name
         name = first if len(files) == 1 else tr("{first} to {last}").format(first=first, last=last)
-        said = tr("{name} saved, {how}.") if ready.how else tr("{name} saved.")
+        said = tr("{name} saved, {details}.") if ready.how else tr("{name} saved.")
         self._context.notifications.file_written(
-            self._about, said.format(name=name, how=ready.how), str(files[0])
+            self._about, said.format(name=name, details=ready.how), str(files[0])
         )
