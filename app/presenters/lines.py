@@ -158,7 +158,8 @@ def _strap_words(tail: Tail) -> str:
     if tail.problem:
         return tr("{why} The line ends at the upper chest.").format(why=render(tail.problem))
     words = tr(
-        "Over the shoulder to the under-bust band at the back; {length} of the path is on the fixed body"
+        "Over the shoulder to the under-bust band at the back; {length} of the path is on the "
+        "fixed part of the body"
     )
     return words.format(length=length(tail.length, 0))
 

@@ -152,7 +152,7 @@ def _titles() -> dict[str, tuple[str, str]]:
 
 def _rests_on() -> tuple[str, ...]:
     return (
-        tr("L, R: side with the larger value. Tick in the bar: before."),
+        tr("L, R: side with the larger value. Tick in the bar: value of the original body."),
         tr("The mirror plane best matches the trunk without the breasts."),
         tr("Lines move tissue at constant volume: they do not reduce the volume difference of the breasts."),
     )

@@ -166,7 +166,7 @@ class Elastic:
         needed, end = _beyond(force, self.max_force, 1), f"{self.max_force:g}"
         return ElasticError(
             Message(
-                "{name} requires {force} N for {line}; its table ends at {strength} N.",
+                "{name} requires {force} N for {line}; the table of the elastic ends at {strength} N.",
                 name=ElasticName(self.name),
                 force=needed,
                 line=line,
@@ -174,7 +174,7 @@ class Elastic:
             ),
             Message("Make the line longer, or choose a stronger or wider elastic."),
             Message(
-                "Too weak: {force} N at this length; its table ends at {strength} N.",
+                "Too weak: {force} N at this length; the table of the elastic ends at {strength} N.",
                 force=needed,
                 strength=end,
             ),
@@ -211,7 +211,8 @@ class OverstretchedError(ElasticError):
             )
         super().__init__(
             Message(
-                "{name} requires {elongation} % elongation for {line}; its table ends at {reach} %.",
+                "{name} requires {elongation} % elongation for {line}; the table of the elastic "
+                "ends at {reach} %.",
                 name=ElasticName(elastic.name),
                 elongation=needed,
                 line=line,
@@ -219,7 +220,8 @@ class OverstretchedError(ElasticError):
             ),
             hint,
             Message(
-                "Cut length too short: {elongation} % elongation; its table ends at {reach} %.",
+                "Cut length too short: {elongation} % elongation; the table of the elastic ends "
+                "at {reach} %.",
                 elongation=needed,
                 reach=end,
             ),

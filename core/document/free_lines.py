@@ -68,8 +68,8 @@ def _curve(
     kept = np.flatnonzero(on_mesh.inside)
     if len(kept) < 2 or (closed and len(kept) < len(curve)):
         raise LineError(
-            Message("The line leaves the area of the control mesh."),
-            Message("Draw the line on or near the breasts, in the reshaped area."),
+            Message("The line leaves the control mesh."),
+            Message("Draw the line on or near the breasts, in the reshaped region."),
         )
     inner = slice(int(kept[0]), int(kept[-1]) + 1)
     cells = _distinct(on_mesh.cells[inner])

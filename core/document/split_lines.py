@@ -136,7 +136,7 @@ def _halves_of(design: Design, template: Template, name: str) -> tuple[CustomLin
         )
     if not template.free[touched].any():
         raise LineError(
-            Message("The line {name} is in the fixed area of the body.", name=LineName(name)),
+            Message("The line {name} is on the fixed part of the body.", name=LineName(name)),
             Message("Choose a line that moves the body."),
         )
     return free_halves(own[name]) if name in own and own[name].free else halves(name, touched, template)

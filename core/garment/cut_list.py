@@ -141,8 +141,8 @@ def _row(stages: Stages, line: Line, reached: float, tensions: Mapping[str, Line
         row = _noted(
             row,
             Message(
-                "From its lower end over the shoulder to the under-bust band at the back; {mm} "
-                "of it are on the fixed part of the body.",
+                "From the lower end of the line over the shoulder to the under-bust band at the "
+                "back; {mm} of the length is on the fixed part of the body.",
                 mm=Length(tail.length),
             ),
         )

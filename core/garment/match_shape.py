@@ -69,7 +69,7 @@ def too_weak_error(elastic: Elastic, ratio: float, excess: float, line: str) -> 
 
     ``ratio`` [1] is the shortest to which it can be cut.
     """
-    limit = Message("at its maximum elongation, {reach} %", reach=f"{100.0 * elastic.max_elongation:g}")
+    limit = Message("at the maximum elongation, {reach} %", reach=f"{100.0 * elastic.max_elongation:g}")
     if ratio <= RATIO_LIMITS[0] + PRECISION:
         limit = Message("at the shortest cut length, {ratio} %", ratio=f"{100.0 * RATIO_LIMITS[0]:g}")
     return ElasticError(

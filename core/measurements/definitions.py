@@ -55,7 +55,7 @@ AREAS, BOTH = Message("Sections and volumes"), Message("Symmetry")
 TAPE = Message("Horizontal tape around the trunk, bridging hollows, without arms.")
 """How a tape lies, said of every girth."""
 
-_SKIN = Message("Same level, along the skin into every hollow.")
+_SKIN = Message("Girth along the skin at the same level, including hollows.")
 
 _TABLE = (
     Definition(

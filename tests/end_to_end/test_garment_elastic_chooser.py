@@ -37,7 +37,7 @@ def test_an_elastic_that_cannot_be_used_is_grey_and_the_nearest_that_can_is_one_
         yield from mark(window, "weak")
         view = chooser.views()[chooser.current]
         assert not view.usable
-        assert re.fullmatch(r"Too weak: [\d.]+ mm too long at its maximum elongation, 30 %\.", view.note)
+        assert re.fullmatch(r"Too weak: [\d.]+ mm too long at the maximum elongation, 30 %\.", view.note)
         assert view.note in chooser.advice.text()
         assert not chooser.use.isEnabled()
         assert window.session.design is before

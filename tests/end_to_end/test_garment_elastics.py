@@ -151,7 +151,7 @@ def test_an_elastic_beyond_its_table_is_told_in_a_drag_and_anew_at_the_next_edit
         yield lambda: window.notices.notice() is not None
         notice = window.notices.notice()
         assert notice is not None
-        assert "its table ends at 70 %" in notice.sentence
+        assert "the table of the elastic ends at 70 %" in notice.sentence
         yield at_rest(window)
         assert window.session.design == made
 

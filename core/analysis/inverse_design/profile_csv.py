@@ -80,7 +80,7 @@ def profile_goals(stages: Stages, section: str, curve: Floats) -> tuple[Goal, ..
     if not len(inside):
         raise UserError(
             Message(
-                "All heights of the profile are outside the reshaped area, {range}.",
+                "All heights of the profile are outside the reshaped region, {range}.",
                 range=LengthRange(low, high),
             ),
             Message("Use the heights of the body in Busk, in millimetres."),

@@ -78,5 +78,5 @@ def test_heights_where_nothing_moves_are_left_out(stages: Stages) -> None:
     asked = [float(goal.name.rpartition(" ")[2]) for goal in goals]
     assert 30 < len(goals) <= 60
     assert free.min() <= min(asked) < max(asked) <= free.max()
-    with pytest.raises(UserError, match="All heights of the profile are outside the reshaped area"):
+    with pytest.raises(UserError, match="All heights of the profile are outside the reshaped region"):
         profile_goals(stages, "right", np.array([[5000.0, 100.0]]))

@@ -194,7 +194,7 @@ def test_a_line_of_elastic_ends_where_a_shorter_one_is_refused(built, contact):
     rest = next(line.rest_length for line in stages.model.lines if line.name == "mid-bust")
     assert end.reached / (end.ratio * rest) - 1.0 == pytest.approx(strap.max_elongation, abs=PRECISION)
     assert build(stages.design.with_line("mid-bust", end.ratio + PRECISION), stages)
-    with pytest.raises(LineError, match="its table ends at 70 %"):
+    with pytest.raises(LineError, match="the table of the elastic ends at 70 %"):
         build(stages.design.with_line("mid-bust", end.ratio - PRECISION), stages)
     told = length_limits_of(stages, "mid-bust")
     assert told.zones[0].reasons[0].why == "stretched"

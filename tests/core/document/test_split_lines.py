@@ -43,7 +43,7 @@ def test_what_has_no_two_halves_is_refused() -> None:
     twice = [TEMPLATE.point(3, column) for column in (-2, 0, 2)] + [TEMPLATE.point(4, 0)]
     with pytest.raises(LineError, match="does not cross"):
         halves("a", twice, TEMPLATE)
-    with pytest.raises(LineError, match="in the fixed area"):
+    with pytest.raises(LineError, match="on the fixed part"):
         split(PLAIN, TEMPLATE, "under-bust")
     with pytest.raises(LineError, match="There is no line"):
         split(PLAIN, TEMPLATE, "waist")

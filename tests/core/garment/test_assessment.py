@@ -173,7 +173,7 @@ def test_an_elastic_beyond_its_table_is_in_it(built: Built) -> None:
     design = replace(stages.design.with_line("mid-bust", 0.97), line_hold="held", volume="exact")
     solution = solve(build(design.with_elastic("mid-bust", weak), stages))
     (listed,) = cut_list(solution.stages, solution.control_points).rows
-    assert "its table ends at 2 N" in str(listed.refused)
+    assert "the table of the elastic ends at 2 N" in str(listed.refused)
     band = [each for each in assess(solution).findings if each.topic == "band"]
     assert [(each.level, each.message) for each in band] == [(BAD, listed.refused)]
 

@@ -135,7 +135,7 @@ def test_a_held_line_is_cut_for_its_tension(built):
 
 @pytest.mark.parametrize(
     ("ratio", "note"),
-    [(0.9, "requires .* N for mid-bust; its table ends at 4 N"), (1.03, "^Slack: ")],
+    [(0.9, "requires .* N for mid-bust; the table of the elastic ends at 4 N"), (1.03, "^Slack: ")],
 )
 def test_a_held_line_that_no_elastic_can_hold_says_so(built, ratio, note):
     stages = stages_of(built("mannequin"), [("mid-bust", ratio)], [("mid-bust", EDGE)], line_hold="held")

@@ -57,7 +57,7 @@ def test_the_effect_is_what_its_design_gives(built: Callable[[str], Stages], con
 
 
 @pytest.mark.parametrize(
-    ("elastic", "limit"), [(WEAK, "at its maximum elongation, 30 %"), (SOFT, "at the shortest cut length")]
+    ("elastic", "limit"), [(WEAK, "at the maximum elongation, 30 %"), (SOFT, "at the shortest cut length")]
 )
 @pytest.mark.parametrize("contact", ["glued", "sliding"])
 def test_one_that_is_too_weak_is_cut_as_short_as_it_can_be(
@@ -95,8 +95,8 @@ def test_the_length_that_a_refusal_names_works(built: Callable[[str], Stages]) -
 
 def test_numbers_that_round_alike_are_told_apart() -> None:
     message = STRAP.overstretch_error(0.7004, LineName("mid-bust")).message
-    assert "requires 70.04 % elongation for mid-bust; its table ends at 70 %" in str(message)
-    assert "requires 9.95 N for mid-bust; its table ends at 9.9 N" in str(
+    assert "requires 70.04 % elongation for mid-bust; the table of the elastic ends at 70 %" in str(message)
+    assert "requires 9.95 N for mid-bust; the table of the elastic ends at 9.9 N" in str(
         STRAP.overload_error(9.949, LineName("mid-bust")).message
     )
 

@@ -78,7 +78,7 @@ def test_lines_that_cannot_move_or_are_held_keep_their_lengths(built):
     [
         (
             ((0.0, 0.0), (0.3, 0.5)),
-            "weak is too weak for mid-bust: .* mm too long at its maximum elongation, 30 %",
+            "weak is too weak for mid-bust: .* mm too long at the maximum elongation, 30 %",
         ),
         (
             ((0.0, 0.0), (3.0, 6.0)),
