@@ -69,7 +69,7 @@ def test_what_leaves_the_control_mesh_is_cut_off_or_refused(built: Built) -> Non
     high = stages.body.mesh.vertices[stages.body.mesh.vertices[:, 2].argmax()]
     found = free_curve(stages.body.mesh, stages.control, [inner, np.stack([inner[-1], high])])
     assert found.cut
-    with pytest.raises(LineError, match="leaves the area"):
+    with pytest.raises(LineError, match="leaves the control mesh"):
         free_curve(stages.body.mesh, stages.control, [high + np.array([[0.0, 0.0, 0.0], [5.0, 0.0, 0.0]])])
     with pytest.raises(LineError, match="no length"):
         free_curve(stages.body.mesh, stages.control, [inner[:1].repeat(2, axis=0)])
