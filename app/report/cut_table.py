@@ -45,7 +45,7 @@ def _cut_head() -> Block:
         tr("cut {unit}").format(unit=length_unit()),
         tr("seams"),
         tr("elong. %"),
-        tr("on body {unit}").format(unit=length_unit()),
+        tr("worn {unit}").format(unit=length_unit()),
         tr("height {unit}").format(unit=length_unit()),
         tr("tension N"),
         tr("kPa"),
