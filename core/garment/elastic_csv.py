@@ -152,7 +152,7 @@ def _number(text: str, what: Message, name: str) -> float:
             Message(
                 "The {what} '{text}' of {name} is not a number.", what=what, text=text.strip(), name=name
             ),
-            Message("Enter the width in mm."),
+            Message("Enter the value in mm."),
         ) from None
 
 

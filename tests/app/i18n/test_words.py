@@ -88,7 +88,13 @@ def test_no_text_is_put_together_before_it_is_looked_up() -> None:
                 assert (node.lineno, node.col_offset) in found or not node.args, f"{name}:{node.lineno}"
 
 
-TYPED = ("Enter 94, −6%", "Enter a length such as", "Enter the width in mm", "Enter millimetres", "Enter x, y and z")
+TYPED = (
+    "Enter 94, −6%",
+    "Enter a length such as",
+    "Enter the value in mm",
+    "Enter millimetres",
+    "Enter x, y and z",
+)
 
 
 def test_words_of_the_window_name_millimetres_only_where_they_are_meant() -> None:
