@@ -13,7 +13,7 @@ class UserError(Exception):
 
     @property
     def text(self) -> Message:
-        """The message and the hint as one message."""
+        """Return the message and the hint as one message."""
         return join((self.message, self.hint))
 
     def __str__(self) -> str:

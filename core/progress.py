@@ -19,11 +19,11 @@ class Cancelled(Exception):  # noqa: N818 - no error: it was wished
 
 
 def quiet(what: str, share: float) -> None:
-    """Hear progress and do nothing about it."""
+    """Ignore progress."""
 
 
 def in_one_go(pieces: Pieces[Result], progress: Progress = quiet, what: str = "") -> Result:
-    """Do all the pieces of some work, called ``what``, and return its result. Raises Cancelled."""
+    """Run all pieces of a task called ``what``, and return its result. Raises Cancelled."""
     try:
         while True:
             progress(what, next(pieces))

@@ -37,17 +37,17 @@ class SolvedDesign:
 
     @property
     def converged(self) -> bool:
-        """Whether the solver has converged to a shape that is not folded."""
+        """Return whether the solver has converged to a shape that is not folded."""
         return is_converged(self.solution)
 
     @cached_property
     def assessment(self) -> Assessment:
-        """The overall verdict."""
+        """Return the overall verdict."""
         return assess(self.solution)
 
     @property
     def verdict(self) -> list[str]:
-        """The overall verdict with its reasons, as lines of text."""
+        """Return the overall verdict with its reasons, as lines of text."""
         return assessment_lines(self.assessment, self.solution.stages.design)
 
 

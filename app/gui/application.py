@@ -52,7 +52,7 @@ class Application(QApplication):
         self._asked = ""
 
     def event(self, event: QEvent) -> bool:
-        """Hear of a file."""
+        """Handle events that open a file."""
         if not isinstance(event, QFileOpenEvent):
             return super().event(event)
         self._asked = event.file() or self._asked
@@ -61,7 +61,7 @@ class Application(QApplication):
         return True
 
     def hand_files_to(self, open_file: Callable[[str], object] | None) -> None:
-        """Have files opened by ``open_file``, also the one that was asked for before."""
+        """Open files with ``open_file``, including one requested earlier."""
         self._open = open_file
         self._hand_on()
 
@@ -76,7 +76,7 @@ class Application(QApplication):
 
 
 def hand_files_to(open_file: Callable[[str], object] | None) -> None:
-    """Have files that the desktop wants opened at any time opened by ``open_file``, or kept if by nobody."""
+    """Open files from the desktop with ``open_file`` at any time; keep them without one."""
     app = QApplication.instance()
     if isinstance(app, Application):
         app.hand_files_to(open_file)
@@ -179,7 +179,7 @@ def _log_thread_fault(args: threading.ExceptHookArgs) -> None:
 
 
 def chosen_dark(theme: str) -> bool:
-    """Tell whether a chosen theme (system, light, dark) means dark colours."""
+    """Return whether a theme (system, light, dark) has dark colours."""
     if theme == "system":
         return QGuiApplication.styleHints().colorScheme() == Qt.ColorScheme.Dark
     return theme == "dark"

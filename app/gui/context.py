@@ -112,5 +112,5 @@ class AppContext:
 
     @property
     def window(self) -> QWidget:
-        """The widget that dialogs belong to."""
+        """Return the widget that dialogs belong to."""
         return self.view.window()

@@ -54,7 +54,7 @@ def copy_table(context: AppContext, table: Table) -> None:
 
 
 def save_table(context: AppContext, table: Table, title: str, ending: str) -> None:
-    """Ask for a place under a ``title``, and write a table there; its name ends as told."""
+    """Prompt for a file under a ``title``, and write a table there, with the given suffix."""
     name = f"{context.session.name}-{ending}.csv"
     path = ask_save(context.window, title, name, "CSV (*.csv)", ".csv")
     if path:

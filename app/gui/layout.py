@@ -136,7 +136,7 @@ class Layout(QObject):
         self._window.setWindowState(state | flag if full else state & ~flag)
 
     def reset(self) -> None:
-        """Give everything its first size and place again."""
+        """Restore default sizes and positions."""
         self._width = self._height = None
         self.show_alone(False)
         self.show_inspector(True)
@@ -170,7 +170,7 @@ class Layout(QObject):
             panel.setFocus(Qt.FocusReason.OtherFocusReason)
 
     def go_on_in(self, step: str) -> None:
-        """Go to a step by key: the keyboard goes on there, and a ring shows where."""
+        """Select a step by key: the keyboard focus moves there, and a ring marks it."""
         self._window.navigation.show_step(step)
         self.enter()
         if self._window.inspector.isVisible():
@@ -247,7 +247,7 @@ class Layout(QObject):
             self._height = self._window.strip.height()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Follow the size of the window; a low one opens with its plots folded away."""
+        """Handle the size of the window; a low one opens with collapsed plots."""
         if watched is self._window and event.type() in (QEvent.Type.Resize, QEvent.Type.Move):
             # Not at the end alone: a window that does not close in order has a place too.
             self._keeps.start()

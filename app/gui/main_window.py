@@ -519,7 +519,7 @@ class MainWindow(QMainWindow):
         return self.session.is_converged
 
     def tell_graphics(self, why: str) -> None:
-        """Say once why the view is drawn safely, if it is, and notice when it has been drawn."""
+        """Show once why safe mode is on, if it is, and record when the view has been drawn."""
         self.safe_mode = SafeMode(self.context, why)
 
     def rescue(self) -> str:
@@ -532,11 +532,11 @@ class MainWindow(QMainWindow):
         self.close()
 
     def focusNextPrevChild(self, next: bool) -> bool:  # noqa: N802
-        """Lead the keyboard in the order that eyes read, whenever the parts were made."""
+        """Move the keyboard focus in reading order."""
         return self.layout_.next_stop(next)
 
     def event(self, event: QEvent) -> bool:
-        """Lay out what is to be painted; keep keys that are typed in a card from acting on the view."""
+        """Lay out what is to be painted; keep keys typed in a card from acting on the view."""
         if event.type() == QEvent.Type.UpdateRequest:
             lay_out()
         if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.ShortcutOverride:
@@ -551,7 +551,7 @@ class MainWindow(QMainWindow):
         return any(card.isVisible() and not isinstance(card, CoachMark) for card in cards)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
-        """Press a button by Enter too; Esc takes away what lies over the work."""
+        """Press a button by Enter too; Esc closes overlays."""
         has, key = QApplication.focusWidget(), event.key()
         if key in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and isinstance(has, QAbstractButton):
             has.click()
@@ -572,7 +572,7 @@ class MainWindow(QMainWindow):
             self.project_controller.open_file(files[0])
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
-        """Ask about changes; then solver, background work and 3D view end before the window does."""
+        """Confirm changes; then end solver, background work and 3D view before the window."""
         if not self.autosave_controller.leaves and not self.project_controller.may_leave():
             event.ignore()
             return

@@ -110,7 +110,7 @@ class Menus:
         self.bar.setActiveAction(self.bar.actions()[0])
 
     def all(self) -> Iterator[tuple[str, QAction]]:
-        """Give each action of the menus with the titles of the menus it stands in, as ``View, Theme``."""
+        """Yield each action of the menus with the titles of its menus, as ``View, Theme``."""
         for action in self.bar.actions():
             yield from _within(action, "")
 

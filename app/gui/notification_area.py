@@ -46,7 +46,7 @@ class NotificationArea(QObject):
         notices.setVisible(shown)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Follow the size of the view, and the tools beside the notices."""
+        """Handle the size of the view and of the tools beside the notices."""
         if event.type() in (QEvent.Type.Resize, QEvent.Type.Show, QEvent.Type.Hide):
             self._fit()
         return False

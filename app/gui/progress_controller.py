@@ -25,11 +25,11 @@ class Carrier(Protocol):
 
     @property
     def carries(self) -> bool:
-        """Whether something is in the hand."""
+        """Return whether something is in the hand."""
         ...
 
     def let_go(self) -> bool:
-        """Bring it back to where it was; returns whether there was anything."""
+        """Cancel the drag; returns whether there was one."""
         ...
 
 

@@ -19,7 +19,7 @@ from app.i18n.catalog import in_all_languages, tr
 
 
 def keys_of_parts() -> Iterator[Command]:
-    """Give each key with what it does and where, and what a hand does in the view."""
+    """Return each key with its action and place, and the mouse actions of the view."""
     parts = (
         (tr("3D view"), gestures_in_words(chosen_gestures())),
         (tr("List of lines"), lines.keys_in_words()),

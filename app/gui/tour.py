@@ -48,22 +48,22 @@ class Tour(QObject):
 
     @property
     def place(self) -> int:
-        """Which stop is shown, from 0; -1 while there is no tour."""
+        """Return the index of the shown step, from 0; -1 without a tour."""
         return self._place
 
     def begin(self) -> None:
-        """Begin with the first stop."""
+        """Start with the first step."""
         self._place = 0
         for part in self._watched():
             part.installEventFilter(self)
         self._show()
 
     def begin_when_settled(self) -> None:
-        """Begin once the body that is being opened is in its finished state."""
+        """Start once the opened body has converged."""
         self._window.session.frame_ready.connect(self._begin_if_settled)
 
     def end(self) -> None:
-        """Go, and do not come again by itself."""
+        """End the tour for good."""
         self._place = -1
         for part in self._watched():
             part.removeEventFilter(self)
@@ -72,7 +72,7 @@ class Tour(QObject):
         end_first_start()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Stay beside what is spoken of when the window changes its size, and off the notices."""
+        """Keep the card beside its target when the size of the window changes, and off the notices."""
         if event.type() in (QEvent.Type.Resize, QEvent.Type.Move, QEvent.Type.Show, QEvent.Type.Hide):
             QTimer.singleShot(0, self, self._point)
         return False

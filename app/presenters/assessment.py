@@ -28,7 +28,7 @@ class AssessmentView:
 
     @property
     def first(self) -> str:
-        """What is being computed, else the first reason with what to do."""
+        """Return the current computation, else the first reason with its fix."""
         return self.waiting or (joined(self.reasons[0]) if self.reasons else "")
 
 

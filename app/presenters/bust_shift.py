@@ -34,12 +34,12 @@ class BustShift:
 
     @property
     def mean(self) -> BustStep:
-        """The mean of both, which is shown and plotted."""
+        """Return the mean of both, which is shown and plotted."""
         return BustStep(0.5 * (self.left.up + self.right.up), 0.5 * (self.left.forward + self.right.forward))
 
     @property
     def differs(self) -> bool:
-        """Whether left and right are so far apart that the mean alone would hide it."""
+        """Return whether left and right are so far apart that the mean alone would hide it."""
         up, forward = self.left.up - self.right.up, self.left.forward - self.right.forward
         return max(abs(up), abs(forward)) > APART
 

@@ -282,13 +282,13 @@ class ExportSource:
 
     @property
     def whose(self) -> str:
-        """The names of project and customer, as a drawing is headed."""
+        """Return the names of project and customer, as a drawing is headed."""
         named = self.named or (Path(self.design.scan.path).name, self.design.customer)
         return " · ".join(filter(None, named))
 
     @property
     def design(self) -> Design:
-        """The design that this came out of."""
+        """Return the design that this came out of."""
         return self.stages.design
 
     def points(self, before: bool) -> Points:
@@ -302,19 +302,19 @@ class ExportSource:
 
     @cached_property
     def measures(self) -> list[dict[str, Any]]:
-        """The measures before and after, a row each."""
+        """Return the measures before and after, a row each."""
         return measure_rows(*before_after(self.stages, self.control_points))
 
     @cached_property
     def occlusion(self) -> Floats:
-        """How open to light the body is at each vertex, (n,) [1]."""
+        """Return how open to light the body is at each vertex, (n,) [1]."""
         from app.rendering.ambient_occlusion import bake_occlusion  # noqa: PLC0415 (brings VTK along)
 
         return bake_occlusion(self.stages.body.mesh)
 
     @cached_property
     def looks(self) -> tuple[Mapping[str, str], Mapping[str, float]]:
-        """Titles and widths [mm] of the lines as the window shows them."""
+        """Return titles and widths [mm] of the lines as the window shows them."""
         names = [line.name for line in self.stages.model.lines]
         titles = {name: line_title(name, self.design) for name in names}
         return titles, {name: band_width(name, self.design) for name in names}
@@ -336,12 +336,12 @@ class ExportSettings:
 
     @property
     def text(self) -> str:
-        """All choices, to be remembered."""
+        """Return all choices as text for the settings."""
         return json.dumps(self._kept)
 
     @property
     def export(self) -> Export:
-        """What was exported last, at first the body."""
+        """Return the last export, at first the body."""
         return self.find(str(self._kept.get("what")))
 
     def find(self, what: str) -> Export:

@@ -59,7 +59,7 @@ class ExportPreview:
 def prepare_export(
     what: str, path: str | Path, outcome: ExportSource, manner: ExportOptions
 ) -> ExportPreview:
-    """Work out what will be in a file of that name. Raises UserError if it cannot be written so.
+    """Compute the content of a file of that name. Raises UserError if it cannot be written so.
 
     ``what`` is a word of ``WAYS``.
     """

@@ -130,7 +130,7 @@ class LandmarkView:
 
     @property
     def tone(self) -> str:
-        """The token of its colour: amber and red are for what wants a look, and for nothing else."""
+        """Return the token of its colour: amber and red are for what wants a look, and for nothing else."""
         if self.by_hand:
             return "warn" if self.weak else "accent"
         tone = tone_of(self.confidence)
@@ -145,7 +145,7 @@ class LandmarkView:
 
     @property
     def state(self) -> str:
-        """How it came to be there, or how sure it is, in a word or two."""
+        """Return how it came to be there, or how sure it is, in a word or two."""
         if self.absent:
             return tr("not detected")
         if self.by_hand:

@@ -232,12 +232,12 @@ class LineView:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The lines that this row stands for."""
+        """Return the lines that this row stands for."""
         return (self.name, self.partner) if self.sides else (self.name,)
 
     @property
     def settable(self) -> bool:
-        """Whether its length can be set."""
+        """Return whether its length can be set."""
         return self.constrained and not self.locked
 
 

@@ -230,24 +230,24 @@ class BodyState:
         self.follow(frame)
 
     def belongs_to(self, frame: Frame) -> bool:
-        """Tell whether a frame is of the body and the fit that all this was worked out for."""
+        """Return whether a frame is of the same body and fit."""
         old, new = self.stages, frame.stages
         return old.moving is new.moving and old.control is new.control and old.patch is new.patch
 
     def follow(self, frame: Frame) -> None:
-        """Be as this frame shows it; ``belongs_to`` must hold."""
+        """Set the frame; ``belongs_to`` must hold."""
         self.frame, self.stages = frame, frame.stages
         rows = frame.stages.moving.vertices
         self.places[rows], self.normals[rows] = frame.points, frame.normals
 
     @cached_property
     def box(self) -> tuple[Points, Points]:
-        """The lowest and the highest coordinates of the body at rest, (3,) [mm]."""
+        """Return the lowest and the highest coordinates of the body at rest, (3,) [mm]."""
         return self.rest.vertices.min(axis=0), self.rest.vertices.max(axis=0)
 
     @cached_property
     def sides(self) -> SideComparison:
-        """Its left laid over its right."""
+        """Return the left side over the mirrored right one."""
         stages = self.stages
         middle = mirror_plane(self.rest, stages.patch.fade == 0.0, stages.moving.middle)
         return SideComparison(self.rest, stages.moving.vertices, middle)

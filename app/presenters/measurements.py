@@ -170,7 +170,7 @@ class MeasureView:
 
     @property
     def change(self) -> float | None:
-        """By how much it grew, if that is known: as it is written, so that the columns of a table agree."""
+        """Return the change, if known, rounded as shown so that the columns of a table agree."""
         if self.after is None or self.before is None or self.exact:
             return self.change_at(digits_of(self.unit))
         shown = [round(shown_value(each, self.unit), self._digits) for each in (self.after, self.before)]
@@ -186,12 +186,12 @@ class MeasureView:
 
     @property
     def known(self) -> bool:
-        """Whether it was measured at all."""
+        """Return whether it was measured at all."""
         return self.before is not None or self.after is not None
 
     @property
     def caption(self) -> str:
-        """What stands under it: from where it is counted, how sure it is, or why it is missing."""
+        """Return the caption: reference level, confidence, or why the value is missing."""
         if not self.known:
             return self.note
         if not self.estimate:
@@ -203,7 +203,7 @@ class MeasureView:
 
     @property
     def details(self) -> tuple[str, ...]:
-        """The details: its definition, its name in the standard, its confidence."""
+        """Return the details: its definition, its name in the standard, its confidence."""
         if not self.key:
             return self.off_told
         named = tr("ISO 8559-1: {name}").format(name=self.iso) if self.iso else tr("Not in ISO 8559-1")
@@ -226,7 +226,7 @@ class MeasureView:
 
     @property
     def unit_shown(self) -> str:
-        """The unit in which values are written."""
+        """Return the unit in which values are written."""
         return shown_unit(self.unit)
 
     @property
@@ -361,5 +361,5 @@ class Draft:
 
     @property
     def marks(self) -> tuple[str, ...]:
-        """The landmarks it is taken at so far."""
+        """Return the landmarks it is taken at so far."""
         return tuple(mark for mark in ((self.at,) if self.kind == "girth" else self.ends) if mark)

@@ -116,10 +116,10 @@ class SizeView:
 
     @property
     def title(self) -> str:
-        """The name of the system with the size."""
+        """Return the name of the system with the size."""
         return f"{self.short} {self.size}"
 
     @property
     def tip(self) -> str:
-        """The tooltip, as rich text."""
+        """Return the tooltip, as rich text."""
         return "".join(f"<p>{escape(each)}</p>" for each in (self.system, *self.doubts))

@@ -190,7 +190,7 @@ def not_balanced_reason(gained: float, lost: float) -> tuple[str, str]:
 
 
 def has_balance_targets(goals: Sequence[Goal]) -> bool:
-    """Tell whether left and right are asked to be alike, and no profile besides."""
+    """Return whether the targets are equal sides, and no profile."""
     names = [goal.name for goal in goals]
     return bool({HIGHER, FURTHER_OUT} & set(names)) and not any(map(section_of, names))
 

@@ -67,7 +67,7 @@ def profile_title(section: str) -> str:
 
 
 def is_signed(name: str) -> bool:
-    """Tell whether a figure counts from rest, so that its plus is written."""
+    """Return whether a quantity is relative to the original, so that its plus is written."""
     return name != GIRTH and not section_of(name)
 
 
@@ -196,14 +196,14 @@ def deviation_text(goals: Sequence[Goal], reached: Mapping[str, float], section:
 
 
 def is_met(reply: InverseResult, goals: Sequence[Goal]) -> bool:
-    """Tell whether an answer is what was asked for, a profile within what a tailor can tell."""
+    """Return whether a result meets the targets, a profile within the accuracy of tailoring."""
     near = {goal.name: abs(reply.reached[goal.name] - goal.value) for goal in goals}
     within = all(off <= (_LIKE if section_of(name) else _MET) for name, off in near.items())
     return reply.reachable or (reply.agreed and not reply.at_pressure_limit and within)
 
 
 def is_near(reply: InverseResult, goals: Sequence[Goal]) -> bool:
-    """Tell whether all but profiles is met, and these as nearly as a hand draws them."""
+    """Return whether all but profiles is met, and these within the accuracy of drawing."""
     offs = [np.abs(off) for off in profile_deviations(goals, reply.reached).values()]
     single = [goal for goal in goals if not section_of(goal.name)]
     met = all(abs(reply.reached[goal.name] - goal.value) <= _MET for goal in single)

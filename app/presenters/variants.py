@@ -246,7 +246,7 @@ class VariantTexts:
         return self.values[place] or "–"
 
     def apart(self, place: int) -> None:
-        """Words differ by nothing."""
+        """Raise an error: texts have no difference."""
 
     def cells(self) -> list[str]:
         """Return the words, for a table."""

@@ -49,7 +49,7 @@ class RayPicker:
         self._locator: vtkStaticCellLocator | None = None
 
     def clear(self) -> None:
-        """Say that the triangles have moved."""
+        """Drop the cached triangles after a change."""
         self._locator = None
 
     def hit(self, start: Floats, end: Floats) -> Floats | None:

@@ -46,5 +46,5 @@ class Band:
 
     @property
     def route(self) -> LineRoute:
-        """Where it runs."""
+        """Return the path of the band."""
         return LineRoute(self.path, self.back, self.drawn)

@@ -53,20 +53,20 @@ class RibbonActor:
         self.actor.mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(0.0, -10.0 * rank)
 
     def paint(self, colour: str) -> None:
-        """Give the ribbon its colour, with darker edges; paler on the back, with seams where that begins."""
+        """Set the colour of the ribbon, with darker edges; paler on the back, with seams at its ends."""
         back = self.ribbon.part < 0
         seam = back & ~(np.roll(back, 1) & np.roll(back, -1))
         rows = rgb(colour) + _QUIET * back[:, None] * (rgb(_CLOTH) - rgb(colour))
         self.paint_rows(np.where(seam[:, None], _SEAM * rgb(colour), rows))
 
     def paint_rows(self, rows: Floats) -> None:
-        """Give each row a colour of its own, shape (rows, 3) 0..255."""
+        """Set the colour of each row, shape (rows, 3) 0..255."""
         colours = rimmed(_SHADE, self.ribbon.columns)[:, None] * rows[:, None]
         self.data.point_data["Colour"][:] = np.round(colours.reshape(-1, 3))
         self.data.GetPointData().GetArray("Colour").Modified()
 
     def move(self, displacement: Points) -> None:
-        """Follow the body: displacement of each body vertex, shape (n, 3) [mm]."""
+        """Move with the body: displacement of each body vertex, shape (n, 3) [mm]."""
         shift = self.ribbon.follow @ displacement + self._raised
         known = self._moving.vertices[: self._moving.count]
         moved: Flags = np.asarray(shift.any(axis=1))
@@ -82,7 +82,7 @@ class RibbonActor:
         self.sight.clear()
 
     def raise_to(self, off: Rise | None) -> bool:
-        """Hold the ribbon off the skin from its next move on; returns whether that is another way than now.
+        """Raise the ribbon off the skin from its next move on; returns whether that changes it.
 
         ``off`` gives that for places along the line, 0 to 1; None lets it lie as it was laid.
         """
@@ -153,7 +153,7 @@ class Bands:
                 ribbon.paint_rows(colours.get(name, np.tile(rgb(blank), (ribbon.ribbon.rows, 1))))
 
     def raise_to(self, off: Mapping[str, Rise]) -> None:
-        """Hold bands off the skin, by line: (rows,) places along it, 0 to 1, give (rows, 3) [mm].
+        """Raise bands off the skin, by line: (rows,) places along it, 0 to 1, give (rows, 3) [mm].
 
         A line that is not named lies as it was laid.
         """
@@ -166,7 +166,7 @@ class Bands:
                 casing.move(self._displacement)
 
     def move(self, displacement: Points) -> None:
-        """Follow the body: displacement of each body vertex, shape (n, 3) [mm]."""
+        """Move with the body: displacement of each body vertex, shape (n, 3) [mm]."""
         self._displacement = displacement
         for ribbon in self._ribbons.values():
             ribbon.move(displacement)
@@ -198,7 +198,7 @@ class Bands:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the lines."""
+        """Return names of the lines."""
         return tuple(self._bands)
 
     def colour(self, name: str) -> str:

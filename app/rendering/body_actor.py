@@ -49,7 +49,7 @@ class BodyPartActor:
         self.sight = RayPicker(self._data)
 
     def has(self, rows: Indices | slice) -> bool:
-        """Tell whether one of some vertices of the skin, shape (k,), belongs to it."""
+        """Return whether one of some vertices of the skin, shape (k,), belongs to it."""
         return bool(self._held[rows].any())
 
     def move(self, points: Points, normals: Singles) -> None:
@@ -66,7 +66,7 @@ class BodyPartActor:
         self._data.GetPointData().GetArray("Colour").Modified()
 
     def light(self, ambient: float, diffuse: float) -> None:
-        """Say how much light it throws back: what comes from all sides, and what from the lamps."""
+        """Set the reflection of ambient light and of lamps."""
         self.actor.prop.ambient, self.actor.prop.diffuse = ambient, diffuse
 
     def remove(self) -> None:
@@ -152,21 +152,21 @@ class BodyActor:
 
     @property
     def box(self) -> Floats:
-        """Its least and largest coordinates at rest, shape (3, 2) [mm]."""
+        """Return least and largest coordinates of the original, shape (3, 2) [mm]."""
         return self._skin.box
 
     @property
     def still(self) -> tuple[pv.Actor, ...]:
-        """What of it stands still while the body moves."""
+        """Return the parts that are static while the body moves."""
         return tuple(part.actor for part in (self._still, self._rough) if part is not None)
 
     @property
     def colours(self) -> Colours:
-        """The colour of each vertex as drawn, shape (n, 3)."""
+        """Return the colour of each vertex as drawn, shape (n, 3)."""
         return self._colours[: len(self.rest.vertices)]
 
     def show_map(self, colours: Floats | None) -> None:
-        """Lay a map over the clay: the colour of each body vertex, shape (n, 3) 0..255; None takes it off."""
+        """Show a map over the clay: the colour of each body vertex, shape (n, 3) 0..255; None removes it."""
         self._map = None if colours is None else np.array(colours)
         self._light()
         self._paint(slice(None))
@@ -205,12 +205,12 @@ class BodyActor:
 
     @property
     def displacement(self) -> Points:
-        """How far each vertex is on the screen from where it rests, shape (n, 3) [mm]."""
+        """Return how far each vertex is on the screen from where it rests, shape (n, 3) [mm]."""
         return self._nowhere if self._before else self._shift
 
     @property
     def shown_points(self) -> Points:
-        """The positions on the screen, shape (n, 3) [mm]."""
+        """Return the positions on the screen, shape (n, 3) [mm]."""
         return self.rest.vertices if self._before else self.points
 
     def hit(self, start: Floats, end: Floats) -> Floats | None:

@@ -55,7 +55,7 @@ class View:
 
     @property
     def name(self) -> str | None:
-        """Which of ``VIEWS`` this is, or None from any other side."""
+        """Return which of ``VIEWS`` this is, or None for any other one."""
         for name, (azimuth, elevation) in VIEWS.items():
             turned = (self.azimuth - azimuth + 180.0) % 360.0 - 180.0
             if abs(turned) < 0.5 and abs(self.elevation - elevation) < 0.5:
@@ -64,7 +64,7 @@ class View:
 
     @cached_property
     def axes(self) -> Points:
-        """Unit vectors right, up and towards the eye, shape (3, 3)."""
+        """Return the unit vectors right, up and towards the eye, shape (3, 3)."""
         a, e = np.radians([self.azimuth, self.elevation])
         back = np.array([np.sin(a) * np.cos(e), -np.cos(a) * np.cos(e), np.sin(e)])
         right = np.array([np.cos(a), np.sin(a), 0.0])
@@ -72,12 +72,12 @@ class View:
 
     @cached_property
     def eye(self) -> Floats:
-        """Position of the eye, shape (3,) [mm]."""
+        """Return the position of the eye, shape (3,) [mm]."""
         return frozen(np.asarray(self.focus) + self.distance * self.axes[2])
 
     @property
     def half_height(self) -> float:
-        """Half of the height that is seen at the focus [mm]."""
+        """Return half of the height that is seen at the focus [mm]."""
         return float(self.distance * np.tan(np.radians(LENS / 2.0)))
 
     def orbit(self, azimuth: float, elevation: float) -> View:
@@ -162,7 +162,7 @@ class View:
 
 
 def aim(camera: pv.Camera, view: View) -> None:
-    """Point a camera as ``view`` says; what range of depth it sees is not looked at.
+    """Set a camera to ``view``; the clipping range is unchanged.
 
     Pyvista's own way looks through all places on the stage for that, at each of position, focus and up.
     """

@@ -55,7 +55,7 @@ class ControlActor:
             actor.prop.color = look.wire if kind else "#FFFFFF"
 
     def move(self, points: Points) -> None:
-        """Follow the control points, shape (n, 3) [mm]; while hidden, only remember them."""
+        """Set the control points, shape (n, 3) [mm]; while hidden, only record them."""
         self._points = points
         if self._wire.GetVisibility():
             self._write(points)

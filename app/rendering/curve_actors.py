@@ -35,7 +35,7 @@ class Trace:
 
     @property
     def shown(self) -> bool:
-        """Whether there is a curve."""
+        """Return whether there is a curve."""
         return bool(self._actors)
 
     def show(self, *curves: Points) -> None:
@@ -88,7 +88,7 @@ class MeasureTrace(Trace):
 
     @property
     def points(self) -> Points:
-        """All places of the drawn curves, shape (k, 3) [mm]."""
+        """Return all points of the drawn curves, shape (k, 3) [mm]."""
         return np.concatenate([np.empty((0, 3)), *self._both[0 if self._before else 1]])
 
 

@@ -45,7 +45,7 @@ class StaticLayerCache:
         self._eye = self._eye_now()
 
     def clear(self) -> None:
-        """Give back what is kept."""
+        """Release cached images."""
         self._kept = self._state = self._eye = None
 
     def _eye_now(self) -> object:

@@ -60,7 +60,7 @@ class LightsAndFloor:
         self.floor.SetTexture(_shadow(look))
 
     def place_floor(self, x: float, y: float, z: float) -> None:
-        """Lay the floor under a body whose lowest point is at height ``z``, centred at (x, y) [mm]."""
+        """Place the floor under a body whose lowest point is at height ``z``, centred at (x, y) [mm]."""
         self.floor.SetPosition(x, y, z - FLOOR_DROP)
         self.floor.SetVisibility(True)
 

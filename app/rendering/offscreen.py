@@ -72,7 +72,7 @@ class OffscreenRenderer:
         self._shows = stages, control_points, bands, occlusion
 
     def set_up(self) -> Pieces[None]:
-        """Bring body and bands before the camera, part by part; it comes before the first picture."""
+        """Add body and bands to the scene, part by part, before the first image."""
         scene, (stages, control_points, bands, occlusion) = self.scene, self._shows
         yield 0.0  # the window was opened
         scene.show_body(stages.body.mesh)
@@ -95,7 +95,7 @@ class OffscreenRenderer:
         self._plotter.close()
 
     def frame_bust(self, size: tuple[int, int], side: str) -> None:
-        """Look from the side called ``side`` in ``app.rendering.camera.VIEWS`` at shoulders to waist."""
+        """Frame shoulders to waist from the side called ``side`` in ``app.rendering.camera.VIEWS``."""
         self.scene.set_view(side)
         self.scene.set_camera(self.scene.framing_bust(size[0] / size[1]))
 

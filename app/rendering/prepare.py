@@ -10,7 +10,7 @@ from core.progress import Progress, quiet
 
 
 def prepare_scene(built: Stages | IncompleteBuildError, progress: Progress = quiet) -> None:
-    """Work out all that takes long before a body can be shown, with the bands on it. Raises Cancelled."""
+    """Prepare all slow parts of a body with its bands before it is shown. Raises Cancelled."""
     mesh, stages = built.body.mesh, built if isinstance(built, Stages) else None
     skin = render_mesh(mesh, lambda what, share: progress(what, 0.7 * share))
     progress(PREPARING, 0.7)

@@ -38,17 +38,17 @@ class RenderMesh:
 
     @cached_property
     def normals(self) -> npt.NDArray[np.float32]:
-        """The unit normals of its vertices, shape (n + d, 3), in the precision of the graphics."""
+        """Return the unit normals of its vertices, shape (n + d, 3), in the precision of the graphics."""
         return self.mesh.vertex_normals.astype(np.float32)
 
     @cached_property
     def tree(self) -> cKDTree:
-        """The body's own vertices, to find those nearest to a place."""
+        """Return the body's own vertices, to find those nearest to a place."""
         return cKDTree(self.mesh.vertices[: int(self.source.max(initial=-1)) + 1])
 
     @cached_property
     def box(self) -> Floats:
-        """The body's least and largest coordinates, shape (3, 2) [mm]."""
+        """Return the body's least and largest coordinates, shape (3, 2) [mm]."""
         return box_of(self.mesh.vertices)
 
 

@@ -55,22 +55,22 @@ class Ribbon:
 
     @property
     def rows(self) -> int:
-        """Number of cross-sections."""
+        """Return the number of cross-sections."""
         return len(self.part)
 
     @property
     def columns(self) -> int:
-        """Number of points of a cross-section, which is even."""
+        """Return the number of points of a cross-section, which is even."""
         return len(self.mesh.vertices) // self.rows
 
     @property
     def top(self) -> Points:
-        """The points between its rims, shape (rows, columns - 4, 3) [mm]."""
+        """Return the points between its rims, shape (rows, columns - 4, 3) [mm]."""
         return self.mesh.vertices.reshape(self.rows, -1, 3)[:, _RIM:-_RIM]
 
     @property
     def dashes(self) -> Faces:
-        """The triangles that are left of it where it is dashed, shape (k, 3)."""
+        """Return the triangles that are left of it where it is dashed, shape (k, 3)."""
         row = self.mesh.faces[:, 0] // self.columns
         return self.mesh.faces[row % sum(_DASH) < _DASH[0]]
 
@@ -113,7 +113,7 @@ class RibbonSurface(SkinSurface):
         return laid or (build_casing if cased else build_ribbon)(route, self, width)
 
     def lay_ready(self, route: LineRoute, width: float) -> None:
-        """Lay ribbon and casing and keep them for all surfaces of the mesh; runs in any thread."""
+        """Compute ribbon and casing and keep them for all surfaces of the mesh; runs in any thread."""
         for cased in (False, True):
             self._laid[_key(route, width, cased)] = self.ribbon(route, width, cased)
 

@@ -136,14 +136,14 @@ class Scene:
         return [self._stage.floor, *ghost, *(() if self.body is None else self.body.still)]
 
     def is_visible(self, what: str) -> bool:
-        """Tell whether one of ``PARTS`` is shown."""
+        """Return whether one of ``PARTS`` is shown."""
         return self._visible[what]
 
     # -- how it is seen
 
     @property
     def dark(self) -> bool:
-        """Whether the dark theme is on."""
+        """Return whether the dark theme is on."""
         return self._dark
 
     def set_dark(self, dark: bool) -> None:
@@ -162,7 +162,7 @@ class Scene:
 
     @property
     def material(self) -> str:
-        """What the body looks as if it were made of."""
+        """Return the material of the body."""
         return self._material
 
     def set_material(self, material: str) -> None:
@@ -176,11 +176,11 @@ class Scene:
 
     @property
     def view(self) -> View:
-        """Where the scene is seen from."""
+        """Return the view of the scene."""
         return self._view
 
     def set_camera(self, view: View) -> None:
-        """See the scene from ``view``."""
+        """Set the camera to ``view``."""
         self._view = view
         aim(self.plotter.camera, view)
         self.plotter.camera.SetClippingRange(depth_range(view, self._box()))
@@ -188,7 +188,7 @@ class Scene:
             self._ghost.look_from(view)
 
     def set_view(self, name: str) -> None:
-        """See the scene from the side called ``name`` in ``app.rendering.camera.VIEWS``."""
+        """Set the view called ``name`` in ``app.rendering.camera.VIEWS``."""
         self.set_camera(self._view.named(name))
 
     def set_parallel(self, parallel: bool) -> None:
@@ -220,7 +220,7 @@ class Scene:
         return None if self.body is None else self.body.hit(start, end)
 
     def hidden(self, point: Floats, clearance: float = 4.0) -> bool:
-        """Tell whether the body stands between the eye and ``point``, shape (3,) [mm]."""
+        """Return whether the body hides ``point``, shape (3,) [mm]."""
         sight = np.asarray(point) - self._view.eye
         nearer = point - clearance * sight / np.linalg.norm(sight)
         return self.hit_body(self._view.eye, nearer) is not None

@@ -63,7 +63,7 @@ class SectionSheet:
 
     @property
     def curve(self) -> Points:
-        """The places of the curve that is drawn, shape (k, 3) [mm]."""
+        """Return the places of the curve that is drawn, shape (k, 3) [mm]."""
         return np.asarray(self._curve.points[:-1], dtype=np.float64)
 
     def set_dark(self, dark: bool) -> None:

@@ -132,7 +132,7 @@ def option_thumbnails(
 
 
 def _alike(turn: Floats, old: Floats) -> bool:
-    """Whether two ways look the same, or would be told by the same axes."""
+    """Return whether two ways look the same, or would be told by the same axes."""
     near = bool(turn[2] @ old[2] > SAME and turn[1] @ old[1] > SAME)
     return near or all(nearest_axis(turn[k]) == nearest_axis(old[k]) for k in (1, 2))
 

@@ -43,7 +43,7 @@ class VertexLighting:
         self._used: tuple[bool, int] | None = None
 
     def use(self, quickly: bool) -> None:
-        """Light at the vertices, or again at each pixel, as VTK does by itself."""
+        """Light at the vertices, or again at each pixel, as VTK does by default."""
         using = quickly, self._plotter.renderer.GetViewProps().GetMTime()
         if using == self._used:
             return

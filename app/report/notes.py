@@ -21,7 +21,7 @@ def cut_notes(sheet: Report) -> list[str]:
 
 
 def note_groups(sheet: Report) -> Iterator[tuple[str, list[str]]]:
-    """Give what is to be known of the figures beside the cut list: what to look at, what is left out."""
+    """Return the notes beside the cut list: what to check, what is omitted."""
     if beyond := _beyond_the_head(sheet):
         yield tr("To review"), beyond
     told = tr("Before: measured on the scan. After: measured on the reshaped body of the model.")

@@ -36,7 +36,7 @@ def heading(title: str, width: float, *, gap: float = 5.0) -> Block:
 
 
 def key_blocks(sheet: Report) -> Iterator[Block]:
-    """Give the few measures that a garment is made to."""
+    """Return the few measurements that a garment is made to."""
     groups = measure_rows(replace(sheet, measures=key_measures(sheet)))
     edges = _edges(groups)
     yield heading(tr("Key measurements"), HALF)
@@ -50,7 +50,7 @@ def _edges(groups: list[tuple[str, list[MeasureRow]]]) -> Edges:
 
 
 def measure_blocks(sheet: Report) -> Iterator[Block]:
-    """Give the table of all other measures before and after, group by group."""
+    """Return the table of all other measurements before and after, group by group."""
     key = {row["key"] for row in key_measures(sheet)}
     others = tuple(row for row in sheet.measures if row["key"] not in key)
     groups = measure_rows(replace(sheet, measures=others))
@@ -65,7 +65,7 @@ def measure_blocks(sheet: Report) -> Iterator[Block]:
 
 
 def note_blocks(sheet: Report) -> Iterator[Block]:
-    """Give what is to be known of the figures."""
+    """Return the notes on the values."""
     yield heading(tr("Assumptions and sources"), HALF)
     for title, sentences in note_groups(sheet):
         yield _title(title)
@@ -74,7 +74,7 @@ def note_blocks(sheet: Report) -> Iterator[Block]:
 
 
 def line_note_blocks(handout: ReportDocument) -> Iterator[Block]:
-    """Give what is to be known of each line."""
+    """Return the notes on each line."""
     notes = line_notes(handout.report, list(handout.colours))
     if notes:
         yield heading(tr("Line notes"), HALF)

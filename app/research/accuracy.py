@@ -70,12 +70,12 @@ class Case:
 
     @property
     def right(self) -> bool:
-        """Whether the file was read in the right unit, upright, facing front."""
+        """Return whether the file was read in the right unit, upright, facing front."""
         return not self.failed and self.turned <= UPRIGHT and self.unit_right and self.sides_right
 
     @property
     def lacking(self) -> tuple[str, ...]:
-        """Known landmarks that were not found though the body was."""
+        """Return known landmarks that were not detected though the body was."""
         names = () if self.failed else self.true
         return tuple(name for name in names if name not in self.found and name not in APEXES)
 
@@ -112,7 +112,7 @@ def judged(folder: Path, truths: Sequence[Truth]) -> Iterator[Case]:
 
 
 def compared(truth: Truth, found: Mapping[str, Any], seconds: float = 0.0) -> Case:
-    """Hold what ``detection`` found in a file against what is known of it."""
+    """Compare what ``detection`` found in a file with the known values."""
     ours = np.asarray(found["file_to_mm"], dtype=np.float64)
     to_mm = truth.to_mm
     if not truth.sized:
@@ -252,7 +252,7 @@ def _from_segment(at: Points, a: Points, b: Points) -> float:
 
 
 def _sides_right(points: Mapping[str, Points], known: Mapping[str, Points]) -> bool:
-    """Tell whether no bust point of one side lies nearer to the true one of the other."""
+    """Return whether no bust point of one side lies nearer to the true one of the other."""
     left, right = (known.get(f"bust_point_{side}") for side in SIDES)
     if left is None or right is None:
         return True

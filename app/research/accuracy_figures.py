@@ -124,7 +124,7 @@ def _samples(vertices: Points, faces: Faces) -> Points:
 
 
 def _about(samples: Points, case: Case) -> npt.NDArray[np.bool_]:
-    """Tell which samples lie about the landmarks: not the far ends of what the body stands on."""
+    """Return which samples lie about the landmarks: not the far ends of what the body stands on."""
     if not case.true:
         return np.ones(len(samples), dtype=bool)
     away = np.abs(samples - np.mean(list(case.true.values()), axis=0))

@@ -204,23 +204,23 @@ class Pair:
 
     @property
     def higher(self) -> bool:
-        """Whether the bust points end higher under the adaptive force on both bodies."""
+        """Return whether the bust points end higher under the adaptive force on both bodies."""
         return self.a.higher_mm > 0.0 and self.b.higher_mm > 0.0
 
     @property
     def larger(self) -> bool:
-        """Whether the person has the larger first error."""
+        """Return whether the person has the larger first error."""
         return self.b.first_error_percent > self.a.first_error_percent
 
     @property
     def shakes(self) -> bool:
-        """Whether the conventional force vibrates on both bodies, and the adaptive one on none."""
+        """Return whether the conventional force vibrates on both bodies, and the adaptive one on none."""
         both = (self.a, self.b)
         return all(x.conventional == "vibrating" and x.adaptive != "vibrating" for x in both)
 
     @property
     def words(self) -> str:
-        """The case without its length."""
+        """Return the case without its length."""
         firm = ", firm chest" if self.a.firm_chest else ""
         return f"{self.a.route}, {self.a.law}, {self.a.contact}{firm}"
 
@@ -281,7 +281,7 @@ def _slides(pair: Pair) -> bool:
 
 
 def _draws_up(pair: Pair) -> bool:
-    """Tell whether the line ends at the upper edge of the control mesh."""
+    """Return whether the line ends at the upper edge of the control mesh."""
     return any(word in pair.a.route for word in ("straps", "slings", "oblique"))
 
 

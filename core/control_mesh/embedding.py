@@ -33,17 +33,17 @@ class Grid:
 
     @property
     def top(self) -> int:
-        """The highest row."""
+        """Return the highest row."""
         return int(self.row.max())
 
     @property
     def half(self) -> int:
-        """The outermost column of the left side; that of the right side is its negative."""
+        """Return the outermost column of the left side; that of the right side is its negative."""
         return int(self.column.max())
 
     @cached_property
     def _cells(self) -> Indices:
-        """The two triangles of each cell between four points, (rows - 1, columns - 1, 2)."""
+        """Return the two triangles of each cell between four points, (rows - 1, columns - 1, 2)."""
         row, column = self.row[self.faces].min(axis=1), self.column[self.faces].min(axis=1)
         order = np.lexsort((column, row))
         return order.reshape(self.top, 2 * self.half, 2)
@@ -58,7 +58,7 @@ class Grid:
         return np.asarray(self.faces[self._cells[cells[:, 0], cells[:, 1] + self.half]])
 
     def has_rising_diagonal(self, cell: Indices) -> bool:
-        """Tell whether the diagonal of a cell goes from its lowest row and column to its highest."""
+        """Return whether the diagonal of a cell runs from its lowest row and column to its highest."""
         points = np.concatenate(self.triangles(cell[None])[0])
         at = self.row[points] - cell[0] + self.column[points] - cell[1]
         return bool((at == 0).sum() == 2)  # both triangles have that corner
@@ -69,7 +69,7 @@ class Grid:
         return np.asarray(np.einsum("kc,kcx->kx", weights, at))
 
     def has(self, place: Cell) -> bool:
-        """Tell whether there is a control mesh at a place."""
+        """Return whether the control mesh covers a position."""
         return 0.0 <= place[0] <= self.top and abs(place[1]) <= self.half
 
 

@@ -52,7 +52,7 @@ class ControlMesh:
 
     @property
     def grid(self) -> Grid:
-        """Rows, columns and triangles of its points."""
+        """Return rows, columns and triangles of the points."""
         return Grid(self.row, self.column, self.mesh.faces)
 
     def upper_end(self, name: str) -> Floats:
@@ -63,14 +63,14 @@ class ControlMesh:
 
     @property
     def line_names(self) -> tuple[str, ...]:
-        """The names of all lines, those through control points first."""
+        """Return the names of all lines, those through control points first."""
         return *self.paths, *self.embedded
 
 
 def fit_control_mesh(
     template: Template, body: Body, landmarks: Landmarks, line_height: float = 0.5
 ) -> ControlMesh:
-    """Lay ``template`` on ``body`` so that its rows follow the breasts (paper section 2; the recipe is ours).
+    """Fit ``template`` to ``body`` so that its rows follow the breasts (paper section 2; the recipe is ours).
 
     ``line_height`` [1] is where the mid-bust line runs on the skin between fold (0) and bust point (1).
     Raises FitError if no sound mesh lies on this body with these landmarks.
@@ -133,12 +133,12 @@ class _Candidate:
 
     @property
     def weight(self) -> tuple[int, ...]:
-        """How bad it is: to be compared."""
+        """Return how bad it is: to be compared."""
         return int(self.faults.folded.sum()), *self.half_way.weight, *self.faults.weight
 
     @property
     def sound(self) -> bool:
-        """Whether nothing else needs to be tried."""
+        """Return whether nothing else needs to be tried."""
         return not (self.faults.folded.any() or self.half_way.any.any())
 
 
@@ -192,7 +192,7 @@ def _evaluate(ground: FittingFrame, points: Points) -> tuple[Mesh, Faults]:
 
 
 def _free_ways(template: Template, creases: Mapping[int, Crease]) -> tuple[Flags, Flags]:
-    """Tell which points may slide along their row, and which along their column, shape (rows, columns).
+    """Return which points may slide along their row, and which along their column, shape (rows, columns).
 
     The bust points and the centre column stay, the bust row stays level, folds stay folds, and the line keeps
     its height under the bust points.

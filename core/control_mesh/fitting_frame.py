@@ -47,12 +47,12 @@ class FittingFrame:
 
     @property
     def axis(self) -> Points:
-        """A point on the axis of the torso, shape (3,) [mm]."""
+        """Return a point on the axis of the torso, shape (3,) [mm]."""
         return self.torso.axis
 
     @property
     def front(self) -> Mesh:
-        """The front of the body."""
+        """Return the front of the body."""
         return self.skin.mesh
 
 

@@ -79,7 +79,7 @@ def _crease(ground: FittingFrame, place: int, down: Profile) -> Crease | None:
 
 
 def _symmetric(axis: Points, landmarks: Landmarks) -> bool:
-    """Tell whether the bust points and folds of both sides mirror each other about the axis."""
+    """Return whether the bust points and folds of both sides mirror each other about the axis."""
     for what in ("bust_point", "fold"):
         left = landmarks.position(f"{what}_left") - axis
         right = (landmarks.position(f"{what}_right") - axis) * (-1.0, 1.0, 1.0)

@@ -32,7 +32,7 @@ PROBES = (8.0, -8.0, 16.0, -16.0, 24.0, -24.0, 32.0, -32.0, 40.0, -40.0)
 
 
 def project_border(ground: FittingFrame, landmarks: Landmarks) -> tuple[Points, Flags]:
-    """Lay the collar below, the bust row, the upper edge and the collar above; holes are bridged.
+    """Project lower collar, bust row, upper edge and upper collar; holes are bridged.
 
     Returns all points, shape (rows, columns, 3) [mm], NaN in the other rows, and which had no skin.
     """

@@ -58,7 +58,7 @@ class FitQuality:
 
     @property
     def warnings(self) -> tuple[Message, ...]:
-        """What is poor, a sentence each."""
+        """Return a sentence for each deficiency."""
         found = []
         if self.deviation_mean > LOOSE:
             found.append(

@@ -86,7 +86,7 @@ class Profile:
 
 
 def profile(front: Mesh, axis: Points, start: Points, bottom: float) -> Profile | None:
-    """Follow the body from ``start`` [mm] down to the height ``bottom`` [mm]; None if a hole ends it before.
+    """Trace the body from ``start`` [mm] down to the height ``bottom`` [mm]; None if a hole interrupts it.
 
     ``axis``, shape (3,) [mm], is a point on the axis of the torso.
     """

@@ -33,7 +33,7 @@ class SurfaceProjector:
 
     @cached_property
     def vertex_areas(self) -> Floats:
-        """The area of the triangles round each vertex, shape (n,) [mm^2]."""
+        """Return the area of the triangles round each vertex, shape (n,) [mm^2]."""
         return np.asarray(incidence(self.mesh.faces, len(self.mesh.vertices)) @ self.mesh.face_areas)
 
     def normals_at(self, places: Points) -> Points:
@@ -65,7 +65,7 @@ class MeshPositions:
 
     @property
     def inside(self) -> Flags:
-        """Which places the mesh lies under, shape (k,)."""
+        """Return which positions are within the mesh, shape (k,)."""
         return np.asarray(self.far < 1e-3)
 
 

@@ -77,22 +77,22 @@ class Template:
 
     @property
     def half(self) -> int:
-        """The number of the outermost column of the left side."""
+        """Return the number of the outermost column of the left side."""
         return len(self.columns) - 1
 
     @cached_property
     def column(self) -> Indices:
-        """The column of each point, shape (n,): 0 is the centre, positive the subject's left."""
+        """Return the column of each point, shape (n,): 0 is the centre, positive the subject's left."""
         return _index(np.tile(np.arange(-self.half, self.half + 1), len(self.rows)))
 
     @cached_property
     def row(self) -> Indices:
-        """The row of each point, shape (n,)."""
+        """Return the row of each point, shape (n,)."""
         return _index(np.repeat(np.arange(len(self.rows)), 2 * self.half + 1))
 
     @cached_property
     def free(self) -> Flags:
-        """Which points may move, shape (n,)."""
+        """Return which points may move, shape (n,)."""
         column = np.array([column.free for column in self.columns])
         row = np.array([row.free for row in self.rows])
         free: Flags = column[np.abs(self.column)] & row[self.row]
@@ -101,7 +101,7 @@ class Template:
 
     @cached_property
     def fixed(self) -> Flags:
-        """Which points do not move, shape (n,)."""
+        """Return which points are fixed, shape (n,)."""
         fixed: Flags = ~self.free
         fixed.setflags(write=False)
         return fixed
@@ -122,7 +122,7 @@ class Template:
 
     @cached_property
     def paths(self) -> Mapping[str, tuple[int, ...]]:
-        """The points of each named line, from right to left, without the collar columns."""
+        """Return the points of each named line, from right to left, without the collar columns."""
         inner = range(1 - self.half, self.half)
         return MappingProxyType(
             {name: tuple(self.point(row, column) for column in inner) for name, row in self.lines.items()}
@@ -130,7 +130,7 @@ class Template:
 
     @property
     def grid(self) -> Grid:
-        """Rows, columns and triangles of its points."""
+        """Return rows, columns and triangles of the points."""
         return Grid(self.row, self.column, self.faces)
 
     def point(self, row: int, column: int) -> int:

@@ -46,7 +46,7 @@ def edge_lengths(mesh: Mesh) -> Floats:
 
 
 def crossing_faces(mesh: Mesh) -> Flags:
-    """Tell which triangles cut another one of the mesh, shape (m,).
+    """Return which triangles intersect another one of the mesh, shape (m,).
 
     Two triangles cross where an edge of one passes through the other; those that share a corner too. Which
     side of a line another line passes on is told by their Pluecker coordinates; touching is no crossing.
@@ -107,17 +107,17 @@ class Faults:
 
     @property
     def any(self) -> Flags:
-        """Which triangles are at fault in any way."""
+        """Return which triangles have any fault."""
         return np.asarray(self.folded | self.doubtful)
 
     @property
     def weight(self) -> tuple[int, int]:
-        """How bad it is: to be compared."""
+        """Return how bad it is: to be compared."""
         return int(self.folded.sum()), int(self.any.sum())
 
 
 def find_mesh_faults(mesh: Mesh, skin: SurfaceProjector, fold: Flags) -> Faults:
-    """Judge the triangles of a fit; only at the points ``fold`` (n,) of the fold row two may meet sharply."""
+    """Find faulty triangles of a fit; only at ``fold`` points (n,) two may meet at a sharp angle."""
     same_way = agreement(mesh, skin)
     folded = crossing_faces(mesh) | (same_way <= BACKWARD)
     edge, faces, bend = bends(mesh)

@@ -134,7 +134,7 @@ def _fence(graph: sparse.csr_array, tree: cKDTree, stops: Indices, corners: Poin
 
 
 def _flood(graph: sparse.csr_array, fence: Indices, seeds: Indices) -> Flags:
-    """Tell which vertices the seeds reach without crossing the fence, shape (k,)."""
+    """Return which vertices the seeds reach without crossing the fence, shape (k,)."""
     open_ground = np.ones(graph.shape[0], dtype=bool)
     open_ground[fence] = False
     ground = np.flatnonzero(open_ground)
@@ -148,7 +148,7 @@ def _flood(graph: sparse.csr_array, fence: Indices, seeds: Indices) -> Flags:
 
 
 def _touches_rest(body: Mesh, around: Indices, region: Flags) -> bool:
-    """Tell whether the flood came to the rest of the body, beyond its part ``around`` the patch."""
+    """Return whether the flood came to the rest of the body, beyond its part ``around`` the patch."""
     beyond = np.ones(len(body.vertices), dtype=bool)
     beyond[around] = False
     flooded = np.zeros(len(body.vertices), dtype=bool)

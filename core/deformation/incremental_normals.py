@@ -31,7 +31,7 @@ class MovingFaces:
 
     @cached_property
     def rest(self) -> Points:
-        """The places at rest, shape (r, 3) [mm]."""
+        """Return the places at rest, shape (r, 3) [mm]."""
         return frozen(self.body.vertices[self.vertices])
 
     def normals(self, places: Points) -> Points:

@@ -86,7 +86,7 @@ class Binding:
 
     @cached_property
     def rest_moving(self) -> Points:
-        """The moving vertices at rest, shape (k, 3) [mm]."""
+        """Return the moving vertices at rest, shape (k, 3) [mm]."""
         return frozen(self.body.vertices[self.moving])
 
     def change(self, control_points: Points) -> Floats:

@@ -34,7 +34,7 @@ class FittedParameter:
 
     @property
     def is_well_determined(self) -> bool:
-        """Whether the scans tell it well: its ± is ``WELL`` of it or less."""
+        """Return whether the scans tell it well: its ± is ``WELL`` of it or less."""
         return not self.kept and self.plus_minus <= WELL * abs(self.after)
 
 

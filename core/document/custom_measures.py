@@ -72,7 +72,7 @@ class CustomMeasurement:
 
     @property
     def text(self) -> Message:
-        """How it is taken, in a sentence."""
+        """Return how it is taken, in a sentence."""
         places = [LandmarkName(mark) for mark in self.marks]
         if self.kind == "straight":
             return Message("Custom: straight distance from {start} to {end}.", start=places[0], end=places[1])

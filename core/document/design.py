@@ -161,7 +161,7 @@ class Design:
 
     @property
     def model_options(self) -> ModelOptions:
-        """The choices of the model among the settings."""
+        """Return the choices of the model among the settings."""
         return ModelOptions(**{field.name: getattr(self, field.name) for field in fields(ModelOptions)})
 
     def ratio(self, name: str) -> float:

@@ -40,17 +40,17 @@ class Document:
 
     @property
     def design(self) -> Design:
-        """The design that is shown."""
+        """Return the design that is shown."""
         return self.variants[self.shown]
 
     @property
     def customer(self) -> str:
-        """Whom it is for, in whatever words; empty where nobody is named."""
+        """Return the customer, empty if none is named."""
         return self.design.customer
 
     @property
     def variants(self) -> dict[str, Design]:
-        """The designs by the names of their variants."""
+        """Return the designs by the names of their variants."""
         return dict(self.designs)
 
     def with_design(self, design: Design) -> Document:

@@ -121,12 +121,12 @@ class Elastic:
 
     @property
     def max_elongation(self) -> float:
-        """The elongation at which the curve ends [1]."""
+        """Return the elongation at which the curve ends [1]."""
         return self.curve[-1][0]
 
     @property
     def max_force(self) -> float:
-        """The force at which the curve ends [N]."""
+        """Return the force at which the curve ends [N]."""
         return self.curve[-1][1]
 
     def force(self, elongation: float) -> float:

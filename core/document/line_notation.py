@@ -146,7 +146,7 @@ def _held_from(fixed: Flags) -> int:
 
 
 def _between(word: str) -> bool:
-    """Tell whether a word names a place between control points."""
+    """Return whether a word names a place between control points."""
     match = _PLACE.fullmatch(word)
     return match is not None and any(not float(number).is_integer() for number in match.groups())
 

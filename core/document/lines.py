@@ -79,7 +79,7 @@ class CustomLine:
 
     @property
     def free(self) -> bool:
-        """Whether it runs between control points."""
+        """Return whether it runs between control points."""
         return bool(self.places)
 
     def count(self) -> int:
@@ -88,12 +88,12 @@ class CustomLine:
 
     @property
     def path(self) -> tuple[int, ...]:
-        """The control points in order; a closed line ends with the one that it begins with."""
+        """Return the control points in order; a closed line ends with the one that it begins with."""
         return self.points + self.points[:1] if self.closed else self.points
 
     @property
     def grid_path(self) -> tuple[Cell, ...]:
-        """The places of a free line in order; a closed line ends with the one that it begins with."""
+        """Return the places of a free line in order; a closed line ends with the one that it begins with."""
         return self.places + self.places[:1] if self.closed else self.places
 
 

@@ -78,7 +78,7 @@ def _beside(columns: list[int], side: int) -> bool:
 
 
 def can_split(design: Design, template: Template, name: str) -> bool:
-    """Tell whether a line can be split as it stands."""
+    """Return whether a line can be split at present."""
     try:
         split(design, template, name)
     except LineError:
@@ -87,7 +87,7 @@ def can_split(design: Design, template: Template, name: str) -> bool:
 
 
 def is_split(design: Design, name: str) -> bool:
-    """Tell whether a line is off while its halves, of which one at least is worn, lie in its place."""
+    """Return whether a line is inactive and replaced by its halves, at least one of them active."""
     pair, worn = {half.format(name=name) for half in _HALVES}, design.active_lines()
     return name not in worn and pair <= {line.name for line in design.own_lines} and bool(pair & worn)
 

@@ -53,12 +53,12 @@ class LineCurve:
 
     @property
     def parts(self) -> dict[str, Points]:
-        """The front by "front", the back by "back" if there is one."""
+        """Return the front by "front", the back by "back" if there is one."""
         return {"front": self.front} | ({"back": self.back} if len(self.back) else {})
 
     @property
     def length(self) -> float:
-        """How long the whole curve is [mm]."""
+        """Return how long the whole curve is [mm]."""
         return sum(float(arc_length(part)[-1]) for part in self.parts.values())
 
 

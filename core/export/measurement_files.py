@@ -49,7 +49,7 @@ class MeasurementTable:
 
     @property
     def lengths(self) -> dict[str, float]:
-        """The lengths alone, in the unit of the file."""
+        """Return the lengths alone, in the unit of the file."""
         return {key: self.in_unit(key)[0] for key, (_, unit) in self.values.items() if unit == "mm"}
 
 

@@ -162,7 +162,7 @@ class Report:
 
     @property
     def is_valid(self) -> bool:
-        """Whether its figures can be worked with."""
+        """Return whether its figures can be worked with."""
         return self.state in SOUND
 
     def as_data(self) -> dict[str, Any]:

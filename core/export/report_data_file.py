@@ -43,7 +43,7 @@ def report_csv(sheet: Report) -> str:
 
 
 def report_rows(sheet: Report) -> Iterator[Row]:
-    """Give the rows of the table by their columns; a column without anything may be left out."""
+    """Return the rows of the table by column; an empty column may be omitted."""
     heading = sheet.heading
     told = {"customer": heading.customer, "project": heading.project, "variant": heading.variant}
     told |= {"date": heading.date, "scan": sheet.scan, "verdict": sheet.assessment.level}

@@ -43,7 +43,7 @@ _AT_WORK: set[str] = set()
 
 @contextmanager
 def atomic_path(target: Path, private: bool = False) -> Iterator[Path]:
-    """Give a name beside ``target`` to write to; it takes the target's place only when all went well.
+    """Yield a path beside ``target`` to write to; it replaces the target only on success.
 
     Of a symbolic link the file that it names is written. A file that is there keeps its access rights; a new
     one that is ``private`` is its owner's alone. Raises ProjectError if the place cannot be written to, told

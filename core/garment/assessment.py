@@ -72,7 +72,7 @@ class Assessment:
 
     @property
     def level(self) -> str:
-        """The worst level: one of LEVELS."""
+        """Return the worst level: one of LEVELS."""
         worst = self.findings[0].level if self.findings else GOOD
         return PENDING if self.pending and worst != BAD else worst
 

@@ -27,12 +27,12 @@ class Bridge:
 
     @property
     def length(self) -> float:
-        """How far the band does not lie on the skin [mm]."""
+        """Return how far the band does not lie on the skin [mm]."""
         return self.end - self.begin
 
 
 def pull_taut(points: Points, normals: Points, closed: bool) -> tuple[Floats, Flags]:
-    """Pull a band taut over places of a skin and its outward normals, both (k, 3).
+    """Compute the taut path of a band over points of a skin and its outward normals, both (k, 3).
 
     Returns by how much it turns towards the skin at each place [rad], the force on it over the tension, and
     which places it touches; between them it goes straight. It comes off along the normals alone: what it

@@ -38,7 +38,7 @@ class BandPath:
 
     @property
     def step(self) -> float:
-        """The distance between two places [mm]."""
+        """Return the distance between two places [mm]."""
         following = np.roll(self.points, -1, axis=0) if self.closed else self.points[1:]
         return float(np.linalg.norm(following - self.points[: len(following)], axis=1).mean())
 

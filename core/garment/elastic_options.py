@@ -59,7 +59,7 @@ class ElasticOption:
 
     @property
     def reason(self) -> Message:
-        """Why it cannot be used, as one short sentence, or nothing."""
+        """Return why the elastic cannot be used, in one short sentence, or nothing."""
         problem = self.problem
         return problem.reason if isinstance(problem, ElasticError) else problem.text if problem else EMPTY
 

@@ -77,7 +77,7 @@ class LinePressure:
 
     @cached_property
     def along(self) -> Floats:
-        """The distance of each place from the first [mm]."""
+        """Return the distance of each place from the first [mm]."""
         return np.asarray(self.step * np.arange(len(self.places)))
 
     @cached_property
@@ -88,12 +88,12 @@ class LinePressure:
 
     @cached_property
     def kpa(self) -> Floats:
-        """The pressure at each place [kPa], 0 where the band bridges."""
+        """Return the pressure at each place [kPa], 0 where the band bridges."""
         return np.asarray(1000.0 * self.tension / (self.width * self.radius))
 
     @cached_property
     def contact_share(self) -> Floats:
-        """How much of the band lies on the skin at each place, 0 to 1.
+        """Return how much of the band lies on the skin at each place, 0 to 1.
 
         It fades while the band comes off, so that a hollow that hardly shows does not decide about the mean.
         """
@@ -101,12 +101,12 @@ class LinePressure:
 
     @cached_property
     def bridges(self) -> tuple[Bridge, ...]:
-        """Where it goes straight over a hollow so that it shows; a slack band does not."""
+        """Return where the band visibly bridges a hollow; a slack band does not."""
         return bridges(self.gap, self.step, self.closed) if self.tension.any() else ()
 
     @cached_property
     def bridged(self) -> Flags:
-        """Whether each place belongs to a hollow that the band goes straight over, shape (k,)."""
+        """Return whether each place belongs to a hollow that the band goes straight over, shape (k,)."""
         flags = np.zeros(len(self.places), dtype=np.bool_)
         for bridge in self.bridges:
             inside = np.arange(np.ceil(bridge.begin / self.step), bridge.end / self.step).astype(np.int64)
@@ -115,27 +115,27 @@ class LinePressure:
 
     @property
     def bridged_length(self) -> float:
-        """How much of the band does not lie on the skin [mm]."""
+        """Return how much of the band does not lie on the skin [mm]."""
         return sum(bridge.length for bridge in self.bridges)
 
     @property
     def mean(self) -> float:
-        """The mean pressure where the band lies on the skin [kPa]."""
+        """Return the mean pressure where the band lies on the skin [kPa]."""
         return float(self.kpa.sum() / max(self.contact_share.sum(), 1.0))
 
     @property
     def peak(self) -> int:
-        """The place that is pressed most."""
+        """Return the place that is pressed most."""
         return int(self.kpa.argmax())
 
     @property
     def largest(self) -> float:
-        """The largest pressure [kPa]."""
+        """Return the largest pressure [kPa]."""
         return float(self.kpa[self.peak])
 
     @property
     def force(self) -> float:
-        """All that the band presses with, whichever way [N]."""
+        """Return the sum of the magnitudes of all contact forces of the band [N]."""
         return float((self.tension * self.bends).sum())
 
     @property
@@ -151,7 +151,7 @@ class LinePressure:
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """What is to be said of this band: what was taken for granted, and where it does not press."""
+        """Return notes on assumptions, and on parts without contact."""
         said = list(self.input_notes)
         if not self.tension.any():
             said.append(SLACK_NOTE)

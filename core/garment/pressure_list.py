@@ -53,18 +53,18 @@ class PressureList:
 
     @property
     def force_n(self) -> float | None:
-        """All that the bands of known tension press with together, whichever way [N]; None without any."""
+        """Return the sum of all contact forces of bands of known tension [N]; None without any."""
         known = [row.force_n for row in self.rows if row.force_n is not None]
         return sum(known) if known else None
 
     @property
     def complete(self) -> bool:
-        """Whether the tension of every line is known."""
+        """Return whether the tension of every line is known."""
         return all(row.force_n is not None for row in self.rows)
 
     @property
     def highest(self) -> PressureRow | None:
-        """The line with the largest pressure, if any presses."""
+        """Return the line with the largest pressure, if any presses."""
         pressing = [row for row in self.rows if row.max_kpa]
         return max(pressing, key=lambda row: row.max_kpa or 0.0, default=None)
 

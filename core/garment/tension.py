@@ -35,12 +35,12 @@ class LineTension:
 
     @property
     def tension(self) -> float:
-        """The mean tension of a band in place of the line [N]: none where it would have to push."""
+        """Return the mean tension of a band in place of the line [N]: none where it would have to push."""
         return max(self.mean, 0.0)
 
     @property
     def compression(self) -> float:
-        """How far the model pushes where a band would be slack [N]; 0 for a line that pulls."""
+        """Return how far the model pushes where a band would be slack [N]; 0 for a line that pulls."""
         return -self.mean if self.mean < -SLACK else 0.0
 
 

@@ -28,7 +28,7 @@ Table = tuple[Floats, Floats, Floats]
 
 
 def is_usable(mesh: Mesh) -> Flags:
-    """Tell which triangles span a plane, shape (m,)."""
+    """Return which triangles span a plane, shape (m,)."""
     sides = mesh.vertices[np.roll(mesh.faces, -1, axis=1)] - mesh.vertices[mesh.faces]
     return np.asarray(mesh.face_areas > _FLAT * np.einsum("ijk,ijk->ij", sides, sides).max(axis=1))
 

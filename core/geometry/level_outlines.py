@@ -42,12 +42,12 @@ class Pieces:
 
     @property
     def centre(self) -> Points:
-        """Middle of each box, shape (p, 2) [mm]."""
+        """Return the middle of each box, shape (p, 2) [mm]."""
         return 0.5 * (self.low + self.high)
 
     @property
     def size(self) -> Floats:
-        """Area of each box, shape (p,) [mm^2]."""
+        """Return the area of each box, shape (p,) [mm^2]."""
         return np.asarray(np.prod(self.high - self.low, axis=1))
 
 

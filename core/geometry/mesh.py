@@ -53,32 +53,32 @@ class Mesh:
 
     @cached_property
     def area_vectors(self) -> Points:
-        """Face normals times face areas, shape (m, 3) [mm^2]."""
+        """Return face normals times face areas, shape (m, 3) [mm^2]."""
         return area_vectors(self.vertices, self.faces)
 
     @cached_property
     def face_areas(self) -> Floats:
-        """Triangle areas, shape (m,) [mm^2]."""
+        """Return triangle areas, shape (m,) [mm^2]."""
         return np.asarray(np.linalg.norm(self.area_vectors, axis=1))
 
     @cached_property
     def face_normals(self) -> Points:
-        """Outward unit normals of the faces, shape (m, 3) [1]; zero for a degenerate face."""
+        """Return outward unit normals of the faces, shape (m, 3) [1]; zero for a degenerate face."""
         return unit(self.area_vectors)
 
     @cached_property
     def vertex_normals(self) -> Points:
-        """Area-weighted unit normals of the vertices, shape (n, 3) [1]."""
+        """Return area-weighted unit normals of the vertices, shape (n, 3) [1]."""
         return unit(incidence(self.faces, len(self.vertices)) @ self.area_vectors)
 
     @cached_property
     def edges(self) -> Indices:
-        """Every edge once, lower index first, shape (e, 2)."""
+        """Return every edge once, lower index first, shape (e, 2)."""
         return edges(self.faces)
 
     @cached_property
     def boundary_loops(self) -> tuple[Indices, ...]:
-        """Closed loops of border vertices in face order, longest first; empty for a closed mesh."""
+        """Return closed loops of border vertices in face order, longest first; empty for a closed mesh."""
         return boundary_loops(self.faces)
 
     def enclosed_volume(self, apex: npt.ArrayLike = (0.0, 0.0, 0.0)) -> float:

@@ -31,12 +31,12 @@ class Plane:
 
     @property
     def number(self) -> int:
-        """Which of x, y, z it is: 0, 1 or 2."""
+        """Return the index of the axis: 0, 1 or 2."""
         return AXES.index(self.axis)
 
     @property
     def normal(self) -> Floats:
-        """The direction of the axis, shape (3,)."""
+        """Return the direction of the axis, shape (3,)."""
         return np.asarray(np.eye(3)[self.number])
 
     def flat(self, ways: Points) -> Floats:

@@ -27,7 +27,7 @@ class Section:
 
     @property
     def points(self) -> Points:
-        """All end points, shape (2 s, 3) [mm]."""
+        """Return all end points, shape (2 s, 3) [mm]."""
         return self.segments.reshape(-1, 3)
 
 

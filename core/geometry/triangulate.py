@@ -66,7 +66,7 @@ def _densely(ring: Floats) -> Floats:
 
 
 def _follows(faces: Faces, count: int) -> bool:
-    """Tell whether the free sides of ``faces`` are the sides 0-1, 1-2 .. of a ring of ``count`` corners."""
+    """Return whether the free sides of ``faces`` are the sides 0-1, 1-2 .. of a ring of ``count`` corners."""
     start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
     keys, back = start << 31 | end, end << 31 | start
     ring = np.arange(count)
@@ -76,7 +76,7 @@ def _follows(faces: Faces, count: int) -> bool:
 
 
 def _inside(ring: Floats, places: Floats) -> Flags:
-    """Tell which places lie in the polygon, shape (k,)."""
+    """Return which places lie in the polygon, shape (k,)."""
     a, b = ring, np.roll(ring, -1, axis=0)
     x, y = places[:, :1], places[:, 1:]
     spans = (a[:, 1] > y) != (b[:, 1] > y)
@@ -105,7 +105,7 @@ def _clipped(outline: Floats, rest: Indices, sharpest: float) -> tuple[Faces, In
 
 
 def _is_empty(ring: Floats, ear: int) -> bool:
-    """Tell whether no other corner lies in the triangle at corner ``ear``."""
+    """Return whether no other corner lies in the triangle at corner ``ear``."""
     keep = np.ones(len(ring), dtype=bool)
     corners = [ear - 1, ear, (ear + 1) % len(ring)]
     keep[corners] = False

@@ -130,7 +130,7 @@ def _ridge(front: Floats, middle: Floats, high: Floats) -> float:
 
 
 def _under_summit(front: Floats, z: Floats, usable: Flags) -> Flags:
-    """Tell which levels lie under the bust: from its summit down to where the body comes forward again.
+    """Return which levels lie under the bust: from its summit down to where the body comes forward again.
 
     ``front`` is how far the chest reaches forward beside its middle, shape (levels,) [mm]. The first summit
     from above is the bust, however much a belly stands out below it. Without a summit there is no such level.

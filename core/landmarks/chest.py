@@ -60,7 +60,7 @@ class Pole:
 
     @property
     def outward(self) -> Points:
-        """The direction in which the breast reaches furthest, shape (3,) [1]."""
+        """Return the direction in which the breast reaches furthest, shape (3,) [1]."""
         turn = np.radians(OUTWARD)
         return np.array([self.side * np.sin(turn), -np.cos(turn), 0.0])
 

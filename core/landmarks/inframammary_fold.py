@@ -84,7 +84,7 @@ def trace(bundle: list[Profile], height: float) -> Trace | None:
 
 
 def _allowed(profile: Profile, height: float) -> Flags:
-    """Tell which points of ``profile`` may be the fold: below the bust point and near ``height`` [mm]."""
+    """Return which points of ``profile`` may be the fold: below the bust point and near ``height`` [mm]."""
     arc, n = np.arange(len(profile.points)), len(profile.points)
     return np.asarray((arc > TOP) & (arc < n - END) & (np.abs(profile.points[:, 2] - height) < REACH))
 

@@ -182,7 +182,7 @@ def _estimated(
 
 
 def _doubtful(own: LowerBreast, other: LowerBreast, busts: tuple[Points, Points]) -> bool:
-    """Tell whether a hole makes one side unlike the other, so that the whole one is to be trusted."""
+    """Return whether a hole makes one side unlike the other, so that the whole one is to be trusted."""
     if own.fold is None or own.trace is None or own.bundle[OWN].whole or not other.bundle[OWN].whole:
         return False
     mirrored = _mirrored(other, busts)

@@ -57,7 +57,7 @@ class BreastPatch:
 
     @property
     def centre(self) -> Points:
-        """The surface point at the pole, shape (3,) [mm]."""
+        """Return the surface point at the pole, shape (3,) [mm]."""
         return np.asarray(self.points[len(self.points) // 2, len(self.points) // 2])
 
     def nearest(self, point: Points) -> Points:
@@ -118,7 +118,7 @@ class BreastPatch:
 
 
 def breast_patch(mesh: Mesh, pole: Pole) -> BreastPatch:
-    """Lay a grid over the surface round the ``pole`` of a breast, and measure the relief on it.
+    """Sample the surface around the ``pole`` of a breast on a grid, and measure the relief on it.
 
     Raises LandmarkError if there is no surface.
     """
@@ -155,7 +155,7 @@ def in_front(surface: Points) -> Points:
 
 
 def _hanging_together(height: Floats) -> Flags:
-    """Tell which cells of a height map belong to the breast in its middle: no steep step lies between."""
+    """Return which cells of a height map belong to the breast in its middle: no steep step lies between."""
     slope = np.hypot(*np.gradient(np.nan_to_num(height, nan=0.0), GRID))
     pieces, _ = label(slope < STEEP)
     middle = len(height) // 2

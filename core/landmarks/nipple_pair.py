@@ -58,7 +58,7 @@ class Nipple:
 
     @property
     def log_odds(self) -> float:
-        """The logarithm of the odds that this is a nipple, by its looks and its place alone.
+        """Return the logarithm of the odds that this is a nipple, by its looks and its place alone.
 
         Each trait counts within bounds beyond which more of it tells nothing.
         """

@@ -77,7 +77,7 @@ class Landmarks:
 
     @property
     def size_doubted(self) -> bool:
-        """Whether the body seems to have another size than the scan gives it."""
+        """Return whether the body seems to have another size than the scan gives it."""
         return any(hint.kind == "size" for hint in self.hints)
 
     @property

@@ -46,12 +46,12 @@ class Root:
 
     @property
     def under(self) -> Points:
-        """The part below the ends, along which a wire would lie, shape (lower, 3) [mm]."""
+        """Return the part below the ends, along which a wire would lie, shape (lower, 3) [mm]."""
         return self.loop[: self.lower]
 
     @property
     def closed(self) -> Points:
-        """The whole curve, ending where it begins, shape (k + 1, 3) [mm]."""
+        """Return the whole curve, ending where it begins, shape (k + 1, 3) [mm]."""
         return np.concatenate([self.loop, self.loop[:1]])
 
 
@@ -85,12 +85,12 @@ class Side:
 
     @property
     def half(self) -> float:
-        """Half the width of the root, round the trunk [mm]."""
+        """Return half the width of the root, round the trunk [mm]."""
         return 0.5 * abs(float(self.ends[1, 0] - self.ends[0, 0]))
 
     @property
     def bust_point(self) -> Points:
-        """Where the bust point is, shape (3,) [mm]."""
+        """Return the position of the bust point, shape (3,) [mm]."""
         return self.marks[3].position
 
 

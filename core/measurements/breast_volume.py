@@ -40,7 +40,7 @@ class Breast:
 
     @cached_property
     def vertices(self) -> Indices:
-        """The vertices of its skin, shape (k,)."""
+        """Return the vertices of its skin, shape (k,)."""
         return np.unique(self.faces)
 
 
@@ -96,7 +96,7 @@ def _volume(chart: UnrolledTorso, wall: ChestWall, places: Points, faces: Faces)
 
 
 def _band(piece: Mesh, root: Root) -> Flags:
-    """Tell which vertices lie on the root, wide enough for no edge to leap over it."""
+    """Return which vertices lie on the root, wide enough for no edge to leap over it."""
     away = np.asarray(cKDTree(resample(root.closed, 1.5)).query(piece.vertices)[0])
     close = piece.vertices[piece.edges[(away[piece.edges] < 4.0 * BAND).any(axis=1)]]
     length = np.linalg.norm(close[:, 0] - close[:, 1], axis=1)

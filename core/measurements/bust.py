@@ -72,7 +72,7 @@ def over_skin(key: str, subject: Subject, marks: list[Landmark | None]) -> Measu
 
 
 def _along_border(mesh: Mesh, way: Points) -> bool:
-    """Tell whether a way had to go round a hole: then it passes vertices of a border."""
+    """Return whether a way had to go round a hole: then it passes vertices of a border."""
     if not mesh.boundary_loops:
         return False
     border = mesh.vertices[np.concatenate(mesh.boundary_loops)]

@@ -58,7 +58,7 @@ def innermost(uvw: Points, faces: Faces, uv: Points) -> Floats:
 
 
 def _over(corners: Points, place: Points) -> tuple[Flags, Floats]:
-    """Tell which triangles, shape (m, 3, 3), lie over a place of the chart, and how far out there."""
+    """Return which triangles, shape (m, 3, 3), lie over a place of the chart, and how far out there."""
     a, b, way = (corners[:, 1] - corners[:, 0]), (corners[:, 2] - corners[:, 0]), place - corners[:, 0, :2]
     area = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
     safe = np.where(np.abs(area) > 1e-12, area, np.inf)
@@ -103,7 +103,7 @@ class ChestWall:
 
 
 def fit_chest_wall(chart: UnrolledTorso, chest: Points, loop: Points) -> ChestWall | None:
-    """Lay the wall through the skin just outside a root; None if there is too little of it.
+    """Fit the wall to the skin just outside a root; None if there is too little of it.
 
     ``chest`` (n, 3) [mm] are the vertices outside the breast and ``loop`` (k, 3) [mm] the root, in the chart.
     What an oval trunk does not fit a thin plate does, which bends least: with the slope of the chest all

@@ -56,6 +56,6 @@ def girth_measures(subject: Subject) -> Iterator[Measure]:
 
 
 def over_gaps(level: Level) -> tuple[bool, Message]:
-    """Tell whether much of an outline is no skin, and say so."""
+    """Return whether much of an outline crosses gaps, with a warning."""
     bridged = level.bridged_mm > MUCH
     return bridged, OVER_GAPS if bridged else EMPTY

@@ -39,7 +39,7 @@ def short(value: float) -> str:
 
 
 def allowance_sentence(table: SizeTable, underbust: float, allowance: float) -> Message:
-    """Say what is taken off the under-bust girth for a tape that is worn tight; both [unit of the table]."""
+    """Return the sentence on the tape tension allowance of the under-bust girth; both [unit of the table]."""
     value, taken, left = (
         f"{short(each)} {table.unit}" for each in (underbust, allowance, underbust - allowance)
     )
@@ -52,12 +52,12 @@ def allowance_sentence(table: SizeTable, underbust: float, allowance: float) -> 
 
 
 def band_sentences(table: SizeTable, value: float) -> tuple[Message, ...]:
-    """Say which band an under-bust girth [unit of the table] gives, and why."""
+    """Return which band an under-bust girth [unit of the table] gives, and why."""
     return _sentences(_BAND_WORDS, table.bands, value, table.unit)
 
 
 def cup_sentences(table: SizeTable, value: float) -> tuple[Message, ...]:
-    """Say which cup a difference of girths [unit of the table] gives, and why."""
+    """Return which cup a difference of girths [unit of the table] gives, and why."""
     return _sentences(_CUP_WORDS[table.cup_from], table.cups, value, table.unit)
 
 

@@ -62,11 +62,11 @@ class Step:
 
     @property
     def middle(self) -> float:
-        """The nominal value of the step [unit]."""
+        """Return the nominal value of the step [unit]."""
         return (self.least + self.most) / 2
 
     def is_listed(self, value: float) -> bool:
-        """Tell whether the source itself names this value, so that it lies in no gap of the table."""
+        """Return whether the source lists this value, so that it is in no gap of the table."""
         return self.least <= value <= self.most
 
 
@@ -82,7 +82,7 @@ class Scale:
 
     @cached_property
     def borders(self) -> tuple[float, ...]:
-        """Where one step ends and the next begins [unit], one more than there are steps.
+        """Return the limits between steps [unit], one more than there are steps.
 
         The outer ends reach out as far as the step there does into its inner gap.
         """
@@ -129,7 +129,7 @@ class SizeTable:
 
     @property
     def unit_mm(self) -> float:
-        """The unit of the table [mm]."""
+        """Return the unit of the table [mm]."""
         return UNIT_MM[self.unit]
 
     def in_unit(self, mm: float) -> float:

@@ -80,12 +80,12 @@ class SizeAnswer:
 
     @property
     def inside(self) -> bool:
-        """Tell whether the table has a size for this body."""
+        """Return whether the table has a size for this body."""
         return bool(self.label)
 
     @property
     def doubts(self) -> tuple[LocalizedText, ...]:
-        """What is uncertain in the table."""
+        """Return what is uncertain in the table."""
         return self.table.doubts
 
 

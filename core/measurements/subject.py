@@ -42,16 +42,16 @@ class Subject:
 
     @cached_property
     def levels(self) -> Mapping[str, Level]:
-        """The levels of the trunk at which girths are measured, by name."""
+        """Return the levels of the trunk at which girths are measured, by name."""
         return MappingProxyType(trunk_sections(self.mesh, self.landmarks, self.down))
 
     def fold_seen(self, side: str) -> bool:
-        """Tell whether the fold on a side was seen or placed, and not only estimated."""
+        """Return whether the fold on a side was detected or placed, not only estimated."""
         fold = self.mark(f"fold_{side}")
         return fold is not None and fold.rule not in (*HIDDEN, UNSEEN)
 
     def fold_sure(self, side: str) -> bool:
-        """Tell whether the fold on a side needs no second look."""
+        """Return whether the fold on a side needs no review."""
         fold = self.mark(f"fold_{side}")
         return fold is not None and fold.confidence >= CERTAIN
 
@@ -81,19 +81,19 @@ class Subject:
 
     @cached_property
     def _riders(self) -> TrackedPoints:
-        """All that rides on the skin: the landmarks, then the roots."""
+        """Return all that rides on the skin: the landmarks, then the roots."""
         marks = [mark.position for mark in self.landmarks.points.values()]
         return track_points(self.mesh, np.concatenate([marks, *(root.loop for root in self.roots.values())]))
 
     @property
     def _parts(self) -> Indices:
-        """Where each root begins among the riders."""
+        """Return where each root begins among the riders."""
         counts = [len(self.landmarks.points), *(len(root.loop) for root in self.roots.values())]
         return np.cumsum(counts)[:-1]
 
 
 def shows_breast(landmarks: Landmarks, side: str) -> bool:
-    """Tell whether a breast stands out on a side: else its bust point only mirrors the other one."""
+    """Return whether a breast protrudes on a side: else its bust point is mirrored."""
     bust = landmarks.points.get(f"bust_point_{side}")
     return bust is not None and bust.rule != ACROSS
 

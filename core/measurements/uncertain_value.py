@@ -38,19 +38,19 @@ class Uncertainty:
 
     @property
     def sd(self) -> float:
-        """The standard deviation from all sources, which are taken as independent."""
+        """Return the standard deviation from all sources, which are taken as independent."""
         return hypot(*self.by_source.values())
 
     @property
     def shares(self) -> dict[str, float]:
-        """What part of the variance each source makes [1], the largest first; none where nothing is off."""
+        """Return the share of the variance of each source [1], largest first; none without uncertainty."""
         whole = self.sd**2
         parts = {name: sd**2 / whole for name, sd in self.by_source.items()} if whole else {}
         return dict(sorted(parts.items(), key=lambda part: -part[1]))
 
     @property
     def is_factor(self) -> bool:
-        """Whether sources that are known to a factor make most of it."""
+        """Return whether sources that are known to a factor make most of it."""
         return sum(self.shares.get(name, 0.0) for name in FACTORS) > 0.5
 
 
@@ -82,7 +82,7 @@ class OutputUncertainties:
 
     @property
     def whole(self) -> bool:
-        """Whether all sources are in."""
+        """Return whether all sources are in."""
         return LANDMARKS in self.sources and (self.bare or bool(self.contact))
 
     def plus_minus(self, key: str) -> float | None:

@@ -95,7 +95,7 @@ class Band:
 
     @property
     def size(self) -> int:
-        """The number of coordinates."""
+        """Return the number of coordinates."""
         return len(self.place)
 
     @cached_property
@@ -160,7 +160,7 @@ class Band:
 
     @cached_property
     def _whole(self) -> tuple[Indices, Indices, Indices, Indices]:
-        """Where the lower band's entries lie in a general band, and in its upper half mirrored."""
+        """Return where the lower band's entries lie in a general band, and in its upper half mirrored."""
         column, off = (at.ravel() for at in np.indices((self.size, self.reach + 1)))
         inside = column + off < self.size
         source = np.flatnonzero(inside)

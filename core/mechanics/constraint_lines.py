@@ -51,17 +51,17 @@ class Line:
 
     @property
     def whole_length(self) -> float:
-        """Length of the whole closed band at rest [mm]."""
+        """Return the length of the whole closed band at rest [mm]."""
         return self.rest_length + self.back_length
 
     @cached_property
     def across(self) -> sparse.csr_array:
-        """What makes the vectors of its segments of the control points, shape (k - 1, n)."""
+        """Return the matrix from control points to segment vectors, shape (k - 1, n)."""
         return sparse.csr_array(self.weights[:-1] - self.weights[1:])
 
     @cached_property
     def closed(self) -> bool:
-        """Whether it ends where it begins."""
+        """Return whether it ends where it begins."""
         return bool(abs(self.weights[[0]] - self.weights[[-1]]).sum() < 1e-9)
 
     def places(self, points: Points) -> Points:
@@ -90,7 +90,7 @@ def free_line(
     back_length: float = 0.0,
     tail_length: float = 0.0,
 ) -> Line:
-    """Lay a line at rest whose vertices have ``weights`` (k, n) and that is so many ``steps`` long (ours)."""
+    """Define a line whose vertices have ``weights`` (k, n), with natural lengths ``steps`` (ours)."""
     lengths = np.linalg.norm(np.diff(weights @ points, axis=0), axis=1)
     constrains = bool((abs(weights[:, free]).sum(axis=1) > 1e-9).any())
     spacing = float(lengths.sum()) / steps

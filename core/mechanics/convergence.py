@@ -58,7 +58,7 @@ class Convergence:
 
     @property
     def state(self) -> str:
-        """The one word of STATES to say.
+        """Return the state to show, one of STATES.
 
         A run that vibrates or diverges has no shape to speak of; else a fold weighs more than strain, and
         both more than whether it has come to rest.
@@ -71,13 +71,13 @@ class Convergence:
 
     @property
     def display_state(self) -> str:
-        """The state as designers are told it: "strained" where skin strains though all has settled."""
+        """Return the state as designers are told it: "strained" where skin strains though all has settled."""
         strained = self.condition is not None and self.condition.strained
         return "strained" if self.state == "settled" and strained else self.state
 
     @property
     def strain(self) -> tuple[float, float] | None:
-        """How far a "strained" skin is pressed together and stretched at most [%], else None."""
+        """Return how far a "strained" skin is pressed together and stretched at most [%], else None."""
         condition = self.condition
         if condition is None or self.display_state != "strained":
             return None
@@ -85,17 +85,17 @@ class Convergence:
 
     @property
     def is_valid(self) -> bool:
-        """Whether figures can be worked with, or will be once all has settled."""
+        """Return whether figures can be worked with, or will be once all has settled."""
         return self.display_state in SOUND
 
     @property
     def words(self) -> str:
-        """The state, after the motion if that is another: "settled but folded"."""
+        """Return the state, after the motion if that is another: "settled but folded"."""
         return self.motion if self.state == self.motion else f"{self.motion} but {self.state}"
 
 
 def assess_convergence(records: Sequence[Record], condition: MeshQuality | None = None) -> Convergence:
-    """Judge a run by its records so far, and by the condition of its control mesh if that is known."""
+    """Assess a run by its records so far, and by its mesh quality if known."""
     if not records:
         return Convergence("settling", 0, 0.0, condition=condition)
     last, recent = records[-1], records[-_LOOK_BACK:]

@@ -47,18 +47,18 @@ class HessianLayout:
 
     @cached_property
     def acting_pairs(self) -> tuple[Indices, Indices]:
-        """The worn segments and the free points that they act on, pair by pair, both shape (e,)."""
+        """Return the worn segments and the free points that they act on, pair by pair, both shape (e,)."""
         segment, point, _ = nonzero_entries(self.segments.signs)
         return segment, point
 
     @property
     def nodes(self) -> Indices:
-        """The free points that the worn lines act on, ascending, shape (l,)."""
+        """Return the free points that the worn lines act on, ascending, shape (l,)."""
         return self.segments.nodes
 
     @cached_property
     def corners_of_lines(self) -> Entries:
-        """Those of ``corners`` whose row belongs to a point of a worn line."""
+        """Return those of ``corners`` whose row belongs to a point of an active line."""
         corners = self.corners
         here = np.isin(corners.row // 3, self.nodes)
         row, column, source = (at[here] for at in (corners.row, corners.column, corners.source))
@@ -76,7 +76,7 @@ class HessianLayout:
 
 
 def layout_of(tensegric: TensegrityModel, segments: Springs, volume: VolumeMeasure) -> HessianLayout:
-    """Work out the layout of a model with the ``segments`` of its worn lines."""
+    """Compute the layout of a model with the ``segments`` of its active lines."""
     fixed, *parts = tensegric.hessian_entries
     corners = volume.curvature(tensegric.place)
     parts = [*parts, segments.entries, corners]

@@ -38,27 +38,27 @@ class MeshQuality:
 
     @property
     def largest_rotation(self) -> float:
-        """The angle by which the worst triangle has turned [degrees]."""
+        """Return the angle by which the worst triangle has turned [degrees]."""
         return math.degrees(math.acos(min(max(self.least_cosine, -1.0), 1.0)))
 
     @property
     def folded(self) -> bool:
-        """Whether a triangle has turned to its side: the shape is no body any more."""
+        """Return whether a triangle has turned to its side: the shape is no body any more."""
         return not self.least_cosine > FOLD_LIMIT  # so that nan counts
 
     @property
     def inverted(self) -> bool:
-        """Whether a triangle shows its back."""
+        """Return whether a triangle shows its back."""
         return not self.least_cosine > 0.0
 
     @property
     def overstrained(self) -> bool:
-        """Whether an edge is outside STRAIN_RANGE."""
+        """Return whether an edge is outside STRAIN_RANGE."""
         return not self._within(STRAIN_RANGE)
 
     @property
     def strained(self) -> bool:
-        """Whether an edge is outside CALM_RANGE."""
+        """Return whether an edge is outside CALM_RANGE."""
         return not self._within(STRAINED_RANGE)
 
     def _within(self, bounds: tuple[float, float]) -> bool:

@@ -40,7 +40,7 @@ class ConstrainedModel:
 
     @property
     def options(self) -> ModelOptions:
-        """The choices that this model was built with."""
+        """Return the choices that this model was built with."""
         return self.tensegric.mechanics
 
     @cached_property
@@ -50,7 +50,7 @@ class ConstrainedModel:
 
     @cached_property
     def line_laplacian(self) -> sparse.csr_array:
-        """What the segments of the lines add to the stiffness of a turn, shape (f, f) [1]."""
+        """Return what the segments of the lines add to the stiffness of an iteration, shape (f, f) [1]."""
         if self.options.line_force != "implicit":
             return self.segments.weighted(np.zeros(len(self.owner)))
         # A long tail makes a segment soft along it, but not across: the upper bound is that without a tail.
@@ -59,19 +59,19 @@ class ConstrainedModel:
 
     @cached_property
     def sweep(self) -> GaussSeidelSweep:
-        """How one turn answers the forces that it finds unbalanced."""
+        """Return how one turn answers the forces that it finds unbalanced."""
         if self.options.line_contact == "glued" or not len(self.owner):
             return bonded_sweep(self.stiffness)
         return sliding_sweep(self.tensegric.stiffness, self.line_laplacian, self.segments.nodes)
 
     @cached_property
     def rest_gradient(self) -> Points:
-        """The direction of the volume force at rest, shape (f, 3) [mm^2]."""
+        """Return the direction of the volume force at rest, shape (f, 3) [mm^2]."""
         return self.volume.gradient(self.tensegric.rest)
 
     @cached_property
     def rest_sides(self) -> Floats:
-        """The left and the right volume at rest, shape (2,) [mm^3]."""
+        """Return the left and the right volume at rest, shape (2,) [mm^3]."""
         return self.volume.side_volumes(self.tensegric.rest)
 
     @cached_property
@@ -82,7 +82,7 @@ class ConstrainedModel:
 
     @cached_property
     def layout(self) -> HessianLayout:
-        """Where the second derivatives lie that the exact answer needs."""
+        """Return the layout of the second derivatives for the exact solution."""
         return layout_of(self.tensegric, self.segments, self.volume)
 
     def with_layout_of(self, other: ConstrainedModel) -> ConstrainedModel:
@@ -95,7 +95,7 @@ class ConstrainedModel:
 
     @property
     def pressure_unit(self) -> float:
-        """The pressure that would change the whole volume by 100 % in one turn, linearised."""
+        """Return the pressure that would change the whole volume by 100 % in one turn, linearised."""
         return self.volume.rest_volume / self.probe
 
     def natural_lengths(self, ratios: tuple[float, ...]) -> Floats:
@@ -108,7 +108,7 @@ class ConstrainedModel:
 
     @cached_property
     def tapes_at_rest(self) -> Floats:
-        """The rest lengths of the worn segments with what goes on beyond them, shape (s,) [mm]."""
+        """Return the rest lengths of the worn segments with what goes on beyond them, shape (s,) [mm]."""
         return self.segments.rest_lengths + self.beyond
 
     def sums(self, values: Floats) -> Floats:
@@ -136,7 +136,7 @@ class ConstrainedModel:
 
     @cached_property
     def acting_lines(self) -> Indices:
-        """The lines that act on a point which can move, ascending."""
+        """Return the lines that act on a point which can move, ascending."""
         return np.unique(self.owner)
 
 

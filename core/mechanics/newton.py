@@ -47,7 +47,7 @@ class Equilibrium:
 
     @property
     def is_converged(self) -> bool:
-        """Whether the residual came down to the limit, with some grace for round-off."""
+        """Return whether the residual came down to the limit, with some grace for round-off."""
         return self.residual < 100.0 * RESIDUAL_LIMIT
 
 

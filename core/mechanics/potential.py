@@ -31,7 +31,7 @@ class Evaluation:
 
     @property
     def gradient(self) -> Floats:
-        """The derivative of the whole energy, shape (3 f,)."""
+        """Return the derivative of the whole energy, shape (3 f,)."""
         return (self.inner + self.line).ravel()
 
 

@@ -63,7 +63,7 @@ class Sensitivities:
 
     @cached_property
     def by_excess(self) -> Rates:
-        """The rates by what the left and the right volume have beyond rest [mm / mm^3]."""
+        """Return the rates by what the left and the right volume have beyond rest [mm / mm^3]."""
         held = np.zeros((len(self.potential.wanted), 2))
         held[: len(self.potential.sides)] = -self.potential.sides / self.potential.area
         return self._rates(np.zeros((self.place.gradient.size, 2)), held)

@@ -42,12 +42,12 @@ class ControlRun:
         self.reset_history()
 
     def reset_history(self) -> None:
-        """Judge only what comes from now on."""
+        """Assess only iterations from now on."""
         self.changed_at = self.state.iteration
         self.verdict = assess_convergence([])
 
     def restart(self, model: ConstrainedModel) -> None:
-        """Go back to rest, turns counted on."""
+        """Restart from the original; the iteration count continues."""
         self.state = self._calm = replace(initial_state(model), iteration=self.state.iteration)
 
     def take(self, state: SolverState, measured: Record) -> None:
@@ -60,7 +60,7 @@ class ControlRun:
 
     @property
     def is_finished(self) -> bool:
-        """Whether there is nothing more to see: settled, diverging, or long enough watched."""
+        """Return whether there is nothing more to see: settled, diverging, or long enough watched."""
         turns = self.state.iteration - self.changed_at
         return turns > 0 and (turns >= MOST_TURNS or self.verdict.motion in ("settled", "diverging"))
 
@@ -74,12 +74,12 @@ class ControlRun:
 
     @property
     def sane(self) -> bool:
-        """Whether the run can be gone on from: a diverging one starts again at rest."""
+        """Return whether the run can be gone on from: a diverging one starts again at rest."""
         return self.verdict.motion != "diverging"
 
     @property
     def shown(self) -> SolverState:
-        """The state to show: of a diverging run the last calm one, not a body torn apart."""
+        """Return the state to show: of a diverging run the last calm one, not a body torn apart."""
         return self.state if self.sane else self._calm
 
 
@@ -129,24 +129,24 @@ class SolverComparison:
 
     @property
     def main(self) -> ControlRun | None:
-        """The run of the chosen control; None when the exact answer is shown."""
+        """Return the run of the chosen control; None when the exact answer is shown."""
         return self.runs.get(self.targets.control)
 
     @property
     def shown(self) -> SolverState:
-        """The state to show: that of the chosen control's run, or the exact answer."""
+        """Return the state to show: that of the chosen control's run, or the exact answer."""
         return self.main.shown if self.main else self.exact.state
 
     @property
     def verdict(self) -> Convergence:
-        """How the chosen control stands, and in what condition the mesh is that is shown."""
+        """Return how the chosen control stands, and in what condition the mesh is that is shown."""
         verdict = self.main.verdict if self.main else assess_equilibrium(self.model, self.exact)
         points = self.model.tensegric.expand(self.shown.moved)
         return replace(verdict, condition=self._shape.quality(points))
 
     @property
     def is_finished(self) -> bool:
-        """Whether every run rests, and the exact answer is that which is found from rest."""
+        """Return whether every run rests, and the exact answer is that which is found from rest."""
         return not self._exact_is_near and self._runs_rest
 
     @property

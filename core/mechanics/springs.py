@@ -33,7 +33,7 @@ class Springs:
 
     @cached_property
     def gather(self) -> Operator:
-        """The map that sums what the members do at the free points, shape (f, s)."""
+        """Return the map that sums what the members do at the free points, shape (f, s)."""
         return (
             np.ascontiguousarray(self.signs.T) if isinstance(self.signs, np.ndarray) else self.signs.T.tocsr()
         )
@@ -45,12 +45,12 @@ class Springs:
 
     @cached_property
     def entries(self) -> Entries:
-        """Where the blocks of the members lie in a matrix over the free coordinates."""
+        """Return where the blocks of the members are in a matrix over the free coordinates."""
         return member_entries(self.signs)
 
     @cached_property
     def nodes(self) -> Indices:
-        """The free points that the members act on, ascending, shape (l,)."""
+        """Return the free points that the members act on, ascending, shape (l,)."""
         return np.unique(nonzero_entries(self.signs)[1])
 
     def weighted(self, weight: Floats) -> sparse.csr_array:

@@ -44,7 +44,7 @@ class TensegrityModel:
 
     @cached_property
     def place(self) -> Indices:
-        """Row of each control point among the free ones, shape (n,); -1 for a fixed point."""
+        """Return row of each control point among the free ones, shape (n,); -1 for a fixed point."""
         place = np.full(len(self.rest), -1, dtype=np.int64)
         place[self.free] = np.arange(len(self.free))
         return place
@@ -64,12 +64,12 @@ class TensegrityModel:
 
     @cached_property
     def mean_stiffness(self) -> float:
-        """The mean over the free points of the sum of their force densities [1]."""
+        """Return the mean over the free points of the sum of their force densities [1]."""
         return float(self._cable_laplacian.diagonal().mean())
 
     @cached_property
     def _linear(self) -> Operator:
-        """What is linear in the displacements: cables under the force density law, and the ground."""
+        """Return what is linear in the displacements: cables under the force density law, and the ground."""
         if self.mechanics.member_law == "force-density":
             return self.stiffness
         ground = np.zeros(len(self.free)) if self.ground is None else self.ground
@@ -77,7 +77,7 @@ class TensegrityModel:
 
     @property
     def cable_springs(self) -> Springs | None:
-        """The cables as springs under the prestressed law, None under the others."""
+        """Return the cables as springs under the prestressed law, None under the others."""
         return self._springs
 
     @cached_property
@@ -132,7 +132,7 @@ class TensegrityModel:
 
     @cached_property
     def hessian_entries(self) -> tuple[Entries, ...]:
-        """Where the figures of ``hessian_figures`` lie: the part that never changes first."""
+        """Return the positions of the values of ``hessian_figures``: the constant part first."""
         constant = self.stiffness if self._springs is None else self._linear
         parts = [_isotropic(sparse.coo_array(constant))]
         if self._springs is not None:

@@ -75,12 +75,12 @@ class Stages:
 
     @property
     def gain(self) -> float:
-        """The conventional gain in force [probe units]."""
+        """Return the conventional gain in force [probe units]."""
         return GAIN_SHARE * self.gain_limit if self.design.gain is None else self.design.gain
 
     @cached_property
     def rest_marks(self) -> Observables:
-        """What is watched, at rest."""
+        """Return the observables of the original body."""
         return self.watch(self.control.mesh.vertices)
 
     def shape(self, control_points: Points) -> tuple[Points, Points]:

@@ -55,7 +55,7 @@ class Failure:
 
 
 def make_frame(revision: int, stages: Stages, comparison: SolverComparison, seconds: float = 0.0) -> Frame:
-    """Shape the body after the comparison's shown state and read everything off it."""
+    """Reshape the body to the comparison's shown state and read everything off it."""
     control_points = stages.model.tensegric.expand(comparison.shown.moved)
     change = stages.model.volume.volume(control_points) - stages.model.volume.rest_volume
     shown = comparison.main or max(comparison.runs.values(), key=lambda run: run.changed_at)

@@ -91,7 +91,7 @@ class LiveSolver:
         self._thread.start()
 
     def submit(self, design: Design, fresh: bool = False) -> int:
-        """Ask for a design, dropping what was asked before, and return the revision of the request.
+        """Request a design, replacing earlier requests, and return the revision of the request.
 
         ``fresh`` begins new records.
         """
@@ -134,7 +134,7 @@ class LiveSolver:
         self._hear(what, 0.98 + 0.02 * share)
 
     def resume(self) -> None:
-        """Go on: the frame that was fetched is shown."""
+        """Continue: the fetched frame is shown."""
         with self._wake:
             self._held, self._shown_at = False, time.perf_counter()
             self._wake.notify()
@@ -146,7 +146,7 @@ class LiveSolver:
             self._wake.notify()
 
     def stop(self) -> None:
-        """Ask the thread to end and wait until it has."""
+        """Stop the thread and wait for its end."""
         with self._wake:
             self._stopping = True
             self._wake.notify()

@@ -37,22 +37,22 @@ class Solution:
 
     @property
     def last(self) -> Record:
-        """The last record."""
+        """Return the last record."""
         return self.records[-1] if self.records else self.rest
 
     @property
     def control_points(self) -> Points:
-        """The control points at the end, shape (n, 3) [mm]."""
+        """Return the control points at the end, shape (n, 3) [mm]."""
         return self.stages.model.tensegric.expand(self.state.moved)
 
     @cached_property
     def body(self) -> Mesh:
-        """The reshaped body."""
+        """Return the reshaped body."""
         return self.stages.body.mesh.moved(deform(self.stages.binding, self.control_points))
 
     @property
     def body_change(self) -> float:
-        """The volume that the body has gained [ml]."""
+        """Return the volume that the body has gained [ml]."""
         return float(self.stages.body_change(self.control_points).sum()) / 1000.0
 
 

@@ -15,15 +15,15 @@ class ShownState(Protocol):
 
     @property
     def stages(self) -> Stages:
-        """What it was made of."""
+        """Return the built stages of the design."""
 
     @property
     def control_points(self) -> Points:
-        """Where the control points are [mm]."""
+        """Return the control points [mm]."""
 
     @property
     def verdict(self) -> Convergence:
-        """How the run stands."""
+        """Return how the run stands."""
 
 
 def controlled_volume(shown: ShownState) -> tuple[float, float]:

@@ -52,7 +52,7 @@ class Body:
 
     @property
     def heights(self) -> tuple[float, float]:
-        """The lowest and the highest level of the whole scan, before a crop [mm]."""
+        """Return the lowest and the highest level of the whole scan, before a crop [mm]."""
         if self.uncropped_range is not None:
             return self.uncropped_range
         z = self.mesh.vertices[:, 2]
@@ -60,17 +60,17 @@ class Body:
 
     @cached_property
     def smoothed(self) -> Mesh:
-        """The skin without the noise of the scanner: what is measured [mm]."""
+        """Return the skin without the noise of the scanner: what is measured [mm]."""
         return denoise(self.mesh)
 
     def denoise(self, progress: Progress) -> None:
-        """Work out ``smoothed`` now, telling how far it is: a large skin takes seconds. Raises Cancelled."""
+        """Compute ``smoothed`` now with progress: a large skin takes seconds. Raises Cancelled."""
         if "smoothed" not in vars(self):
             vars(self)["smoothed"] = denoise(self.mesh, progress)
 
     @cached_property
     def noise(self) -> float:
-        """The noise of the scanner, its standard deviation along each axis [mm]."""
+        """Return the noise of the scanner, its standard deviation along each axis [mm]."""
         return estimate_noise(self.mesh)
 
     @cached_property

@@ -107,7 +107,7 @@ def _chosen(holes: Sequence[Hole], edits: ScanEdits) -> list[Hole]:
 
 
 def is_estimated(body: Body, places: Points) -> Flags:
-    """Tell which places, shape (k, 3) [mm], are on skin that fills a hole, shape (k,)."""
+    """Return which places, shape (k, 3) [mm], are on skin that fills a hole, shape (k,)."""
     inside = np.zeros(len(body.mesh.vertices), dtype=bool)
     inside[body.estimated] = True
     return np.asarray(inside[cKDTree(body.mesh.vertices).query(places)[1]])

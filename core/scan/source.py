@@ -44,5 +44,5 @@ class ScanSource:
 
     @property
     def name(self) -> str:
-        """The scan's file name."""
+        """Return the scan's file name."""
         return Path(self.member or self.path).name

@@ -102,7 +102,7 @@ def draw_window(
 def settled_window(
     what: str | Design, *, dark: bool = False, language: str = "en", size: tuple[int, int] = (1600, 1000)
 ) -> Iterator[MainWindow]:
-    """Give a window on a file or a design, solved to the end and fully drawn; it is closed afterwards.
+    """Yield a window on a file or design, converged and fully drawn; it is closed afterwards.
 
     A scan that cannot go on is shown as far as it came, and stays in ``window.session.stuck``.
     """

@@ -63,13 +63,13 @@ class Symmetry:
 
     @property
     def balanced(self) -> bool:
-        """Whether left and right are equal enough."""
+        """Return whether left and right are equal enough."""
         after = self.compared.after if self.made is None else self.made.after
         return after.largest_difference < ENOUGH
 
     @property
     def design(self) -> Design:
-        """The balanced design, or the given one if no balance is worth its changes."""
+        """Return the balanced design, or the given one if no balance is worth its changes."""
         return self.made.result.design if self.made and self.made.is_worthwhile else self.stages.design
 
 

@@ -99,21 +99,21 @@ class SelfTestFixture:
 
     @cached_property
     def stages(self) -> Stages:
-        """The sample with one active line, before solving."""
+        """Return the sample with one active line, before solving."""
         from core.pipeline.build import build  # noqa: PLC0415 (a part reports what cannot be imported)
 
         return build(sample_design().with_line(LINE, 0.93))
 
     @cached_property
     def solution(self) -> Solution:
-        """The sample, solved with adaptive volume control."""
+        """Return the sample, solved with adaptive volume control."""
         from core.pipeline.solve import solve  # noqa: PLC0415
 
         return solve(self.stages)
 
     @cached_property
     def project(self) -> Path:
-        """The sample as a project file."""
+        """Return the sample as a project file."""
         from core.document.document import Document  # noqa: PLC0415
         from core.document.storage.project_file import save_project  # noqa: PLC0415
 
@@ -129,7 +129,7 @@ class SelfTestFixture:
 
 @contextmanager
 def captured_faults() -> Iterator[list[str]]:
-    """Give the list of faults in other threads and of Qt messages, which are otherwise only printed."""
+    """Yield the list of faults in other threads and of Qt messages, which are otherwise only printed."""
     from PySide6.QtCore import QtMsgType, qInstallMessageHandler  # noqa: PLC0415 (brings Qt along)
 
     faults: list[str] = []

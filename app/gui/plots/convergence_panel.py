@@ -141,12 +141,12 @@ class ConvergencePanel(QWidget):
 
     @property
     def plots(self) -> tuple[LivePlot, LivePlot]:
-        """Volume error and height."""
+        """Return the volume error and height."""
         return self.error_plot, self.height_plot
 
     @property
     def legend(self) -> list[Entry]:
-        """The names of the curves as they are drawn."""
+        """Return the names of the curves as they are drawn."""
         return self._entries
 
     def _draw_anew(self) -> None:
@@ -208,7 +208,7 @@ class ConvergencePanel(QWidget):
         return self._body.isHidden()
 
     def set_folded(self, folded: bool) -> None:
-        """Fold the strip to the verdict line, or unfold it."""
+        """Collapse the plots to the verdict line, or expand them."""
         self._body.setHidden(folded)
         self._line.setHidden(not folded)
         self.setMinimumHeight(_FOLDED if folded else _LOW)

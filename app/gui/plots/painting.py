@@ -68,7 +68,7 @@ class Scale:
 
     @property
     def turn_width(self) -> float:
-        """Width of one turn [px]."""
+        """Return the width of one turn [px]."""
         return self.area.width() / ((1.0 + _END) * max(self.last - self.first, 1e-9))
 
     def path(self, turns: Numbers, values: Numbers) -> QPainterPath:
@@ -115,7 +115,7 @@ def plot_area(room: QRectF) -> QRectF:
 
 
 def is_dense(curve: Curve, scale: Scale) -> bool:
-    """Tell whether a curve flips so densely that its envelope is drawn."""
+    """Return whether a curve oscillates so densely that its envelope is drawn."""
     return flips_every_turn(curve.values) and scale.turn_width < DENSE
 
 

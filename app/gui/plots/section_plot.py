@@ -102,7 +102,7 @@ class SectionPlot(QWidget):
 
     @property
     def gap(self) -> str:
-        """What is written of how far the curves are apart, if anything."""
+        """Return the text of the distance between the curves, if any."""
         return "" if self._mark is None else self._mark[2]
 
     def to_pixels(self, places: Floats) -> Floats:

@@ -27,11 +27,11 @@ class BackgroundSave(QObject):
 
     @property
     def at_work(self) -> bool:
-        """Whether something is being written."""
+        """Return whether something is being written."""
         return self._thread is not None
 
     def run(self, write: Callable[[], object], done: Done) -> None:
-        """Begin to write; ``done`` is called when that is over."""
+        """Start writing; ``done`` is called afterwards."""
         self.wait()
         self._done = done
         self._thread = threading.Thread(target=self._work, args=(write,), name="busk-writing", daemon=True)

@@ -71,7 +71,7 @@ class EditCommand(QUndoCommand):
         return True
 
     def split(self) -> EditCommand | None:
-        """End this edit at its last solved step; returns what follows as an edit of its own, if both exist.
+        """End this edit at its last solved step; returns the rest as an edit of its own, if both exist.
 
         The edit that is returned is in place: its first redo changes nothing.
         """
@@ -119,7 +119,7 @@ class DocumentEditor(QObject):
 
     @property
     def design(self) -> Design | None:
-        """The variant that is shown, if a document is open."""
+        """Return the variant that is shown, if a document is open."""
         return self.document.design if self.document is not None else None
 
     def preview_line(self, name: str, ratio: float) -> None:
@@ -139,7 +139,7 @@ class DocumentEditor(QObject):
             self._preview = design
 
     def cancel_preview(self) -> None:
-        """Go back to the committed lengths."""
+        """Restore the committed lengths."""
         if self.design is not None and self._preview is not None:
             self._preview = None
             self._submit(self.design)
@@ -225,7 +225,7 @@ class DocumentEditor(QObject):
             self._push(self.document.with_shown(name), tr("Variant {name}").format(name=name))
 
     def go_back(self, document: Document, text: str) -> None:
-        """Go back to a document that was worked out from this one, as one undo step."""
+        """Restore a document derived from this one, as one undo step."""
         self._push(document, text)
 
     def remove_variant(self, name: str) -> None:
@@ -290,5 +290,5 @@ class DocumentEditor(QObject):
 
 
 def is_original_length(ratio: float) -> bool:
-    """Tell whether a ratio is 100 % as it is shown: a line there is off."""
+    """Return whether a ratio is shown as 100 %: a line there is inactive."""
     return abs(ratio - 1.0) < 5e-6

@@ -96,7 +96,7 @@ class FrameCache(QObject, Generic[T]):
         return known
 
     def hold(self) -> None:
-        """Begin with nothing that was requested and has not begun."""
+        """Start with nothing requested."""
         self._waiting = None
         self._clock.stop()
 

@@ -30,12 +30,12 @@ class GarbageCollection(QObject):
         self._clock.start()
 
     def spare(self) -> None:
-        """Look no more at what is there now, but for garbage: libraries and parts of the window stay."""
+        """Exclude present objects from collection: libraries and parts of the window stay."""
         gc.collect()
         gc.freeze()
 
     def close(self) -> None:
-        """Give the search back to Python, once the solver's thread has ended."""
+        """Restore the collection of Python, once the solver's thread has ended."""
         self._clock.stop()
         gc.unfreeze()
         gc.enable()

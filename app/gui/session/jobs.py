@@ -46,7 +46,7 @@ class Job:
         self.began = time.monotonic()
 
     def hear(self, what: str, share: float) -> None:
-        """Hear how far the work is, in its thread; raises Cancelled once nobody wants it any more."""
+        """Report the progress of the work, in its thread; raises Cancelled once it is cancelled."""
         if not self.wanted:
             raise Cancelled
         self.share = share
@@ -82,7 +82,7 @@ class Jobs(QObject):
         waited: bool = False,
         left: Callable[[], None] = _forget,
     ) -> Job:
-        """Begin ``work``; then ``done`` takes its result, or ``failed`` what it raised: the log, if not said.
+        """Start ``work``; then ``done`` takes its result, or ``failed`` what it raised: by default the log.
 
         Neither is called once the job is cancelled. ``waited``: the user asked for it and waits. ``left``
         hears that the user has let go of it, see ``leave``.
@@ -112,7 +112,7 @@ class Jobs(QObject):
         waited: bool = False,
         left: Callable[[], None] = _forget,
     ) -> Job:
-        """Begin work that belongs to the window's thread: a small piece of it whenever events are done.
+        """Start work of the window's thread: a small piece of it whenever events are done.
 
         Several such jobs take turns. All else is as in ``run``. What it holds is given back as soon as it
         ends or is cancelled.

@@ -40,7 +40,7 @@ class LimitedLog(RotatingFileHandler):
         super().emit(record)
 
     def doRollover(self) -> None:  # noqa: N802 - the name in logging
-        """Begin a new file, or empty this one where another window holds it open (Windows)."""
+        """Start a new file, or empty this one where another window holds it open (Windows)."""
         try:
             super().doRollover()
         except OSError:

@@ -61,7 +61,7 @@ class Notifications(QObject):
     def info(
         self, sentence: Text, hint: Text = "", actions: Sequence[Action] = (), *, lasting: bool = False
     ) -> None:
-        """Inform about something."""
+        """Show an information."""
         self.show("info", sentence, hint, actions, lasting)
 
     def warn(
@@ -95,7 +95,7 @@ class Notifications(QObject):
         self.show("bad", *text, again, lasting=True, details=trace, topic=topic)
 
     def stopped(self, work: str) -> None:
-        """Inform that work in the background was stopped, and when it starts again."""
+        """Show that background work was stopped, and when it restarts."""
         sentence = tr("Stopped: {work}").format(work=work)
         self.info(sentence, tr("The computation will restart when you open this panel."))
 

@@ -79,14 +79,14 @@ class Session(DocumentEditor):
 
     @property
     def name(self) -> str:
-        """What the document is called: the project's or the scan's name."""
+        """Return the name of the project or of the scan."""
         if self.path is not None:
             return self.path.stem
         return Path(self.design.scan.name).stem if self.design else ""
 
     @property
     def opening(self) -> str:
-        """The file of the document that is on its way in, or an empty text."""
+        """Return the file of the document that is on its way in, or an empty text."""
         opening = self._opening
         return "" if opening is None else str(opening.path or opening.document.design.scan.path)
 
@@ -124,12 +124,12 @@ class Session(DocumentEditor):
 
     @property
     def is_answered(self) -> bool:
-        """Whether the frame answers what was asked last; after an undo it may be an older one."""
+        """Return whether the frame answers what was asked last; after an undo it may be an older one."""
         return self.frame is not None and self.frame.revision >= self._revision
 
     @property
     def is_converged(self) -> bool:
-        """Whether the present design is solved to the end and shown."""
+        """Return whether the present design is solved to the end and shown."""
         frame = self.frame
         return (
             frame is not None
@@ -140,23 +140,23 @@ class Session(DocumentEditor):
 
     @property
     def is_at_rest(self) -> bool:
-        """Whether what is shown is solved to the end: the present design, or the proposal."""
+        """Return whether what is shown is solved to the end: the present design, or the proposal."""
         frame, trial = self.frame, self.trial
         on_trial = frame is not None and trial is not None and frame.stages.design is trial
         return self.is_converged or (on_trial and frame is not None and not frame.is_running)
 
     @property
     def unsaved(self) -> bool:
-        """Whether there is something to lose."""
+        """Return whether there is something to lose."""
         return not self.undo_stack.isClean() or self._saving.at_work
 
     @property
     def changed_elsewhere(self) -> bool:
-        """Whether the project's file is no longer what was opened or saved here last."""
+        """Return whether the project's file is no longer what was opened or saved here last."""
         return self.path is not None and file_stamp(self.path) not in (None, self.stamp)
 
     def save(self, path: str, picture: bytes | None) -> bool:
-        """Begin to save the project; returns whether it begins. ``saved`` or ``not_saved`` follows."""
+        """Start saving the project; returns whether it started. ``saved`` or ``not_saved`` follows."""
         if self.document is None or self.frame is None:
             return False
         target, document, scan = Path(path).absolute(), self.document, self.frame.stages.scan
@@ -176,7 +176,7 @@ class Session(DocumentEditor):
         return not self.unsaved
 
     def detach(self) -> None:
-        """Go on with a copy that has no file yet; the project stays as it is."""
+        """Continue with a copy without a file; the project is unchanged."""
         self._saving.wait()
         self.path = self.stamp = None
         self.undo_stack.resetClean()

@@ -31,5 +31,5 @@ def set_setting(key: str, value: str) -> None:
 
 
 def wants_motion() -> bool:
-    """Tell whether things may glide where they could jump."""
+    """Return whether animations are enabled."""
     return get_setting("motion") == "full"

@@ -40,11 +40,11 @@ class SolverBridge(QObject):
 
     @property
     def at_work(self) -> bool:
-        """Whether a body is being read or built."""
+        """Return whether a body is being read or built."""
         return bool(self._work[0])
 
     def submit(self, design: Design, fresh: bool = False) -> int:
-        """Ask for a design and return the revision of the request; ``fresh`` begins new records."""
+        """Request a design and return the revision of the request; ``fresh`` begins new records."""
         return self._solver.submit(design, fresh)
 
     def cancel(self) -> None:

@@ -57,7 +57,7 @@ class Termination(QObject):
             self._rescue()
 
     def close(self) -> None:
-        """Give the signals back."""
+        """Restore the signal handlers."""
         self._clock.stop()
         for number, former in self._former.items():
             signal.signal(number, former)

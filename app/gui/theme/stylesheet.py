@@ -101,7 +101,7 @@ def tokens_of(widget: QWidget) -> Tokens:
 
 
 def apply_theme(app: QApplication, dark: bool) -> None:
-    """Dress the whole program in the light or the dark theme; it may be changed while windows are open."""
+    """Apply the light or the dark theme to the whole program, also while windows are open."""
     load_fonts()
     tokens = DARK if dark else LIGHT
     app.setStyle("Fusion")

@@ -34,7 +34,7 @@ class Antialiasing:
 
     @property
     def _pixel(self) -> float:
-        """The size of a pixel where the eye looks [mm]."""
+        """Return the size of a pixel where the eye looks [mm]."""
         return 2.0 * self._scene.view.half_height / max(self._canvas.height(), 1)
 
     def _draw_down_to(self, finest: float) -> None:

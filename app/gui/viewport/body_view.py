@@ -30,7 +30,7 @@ class BodyView:
         self._layers: dict[str, bool] = {}
 
     def show_frame(self, frame: Frame) -> None:
-        """Bring the view up to date; of a body that is seen at rest only what is new is drawn again."""
+        """Update the view; of an unchanged body only new items are redrawn."""
         stages, scene = frame.stages, self.viewport.scene
         fresh = stages.body is not self.body
         laid = stages.control is not self._control
@@ -93,7 +93,7 @@ class BodyView:
         self.show_bands()
 
     def show_bands(self) -> None:
-        """Lay the lines that are not hidden on the body."""
+        """Show all visible lines on the body."""
         if self._laid is not None:
             self.viewport.scene.show_bands(bands(self._laid, self.hidden_lines))
         self.select_line(self.selected_line)

@@ -25,16 +25,16 @@ class CameraAnimation(QVariantAnimation):
         self.valueChanged.connect(lambda part: self.passed.emit(self._ends[0].towards(self._ends[1], part)))
 
     def go(self, start: View, end: View) -> None:
-        """Begin a way."""
+        """Start an animation."""
         self._ends = start, end
         self.start()
 
     @property
     def end(self) -> View:
-        """The view that the last way leads to."""
+        """Return the view that the last way leads to."""
         return self._ends[1]
 
     @property
     def running(self) -> bool:
-        """Whether the camera is on its way."""
+        """Return whether the camera is on its way."""
         return self.state() == QVariantAnimation.State.Running

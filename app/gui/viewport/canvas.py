@@ -41,7 +41,7 @@ _loading = threading.Lock()
 
 @cache
 def has_graphics_card() -> bool:
-    """Tell whether OpenGL in Qt's windows is there and quick; Qt composes all of such a window with it.
+    """Return whether OpenGL in Qt's windows is available and fast; Qt composes such a window with it.
 
     On software OpenGL that took longer than the picture itself. Only on Linux VTK has a software OpenGL of
     its own to draw with where Qt has no other.
@@ -60,7 +60,7 @@ def has_graphics_card() -> bool:
 
 
 def is_painted() -> bool:
-    """Tell whether the 3D view is to show pictures, with no OpenGL in the window."""
+    """Return whether the 3D view shows images, with no OpenGL in the window."""
     return is_safe_mode() or not has_graphics_card()
 
 
@@ -155,7 +155,7 @@ class Canvas(QWidget):
         (self._interactor or self).update()
 
     def let_go(self) -> None:
-        """Give back what is kept of the graphics, before the plotter is closed."""
+        """Release graphics resources, before the plotter is closed."""
         if self._pictures is not None:
             self._pictures.let_go()
 

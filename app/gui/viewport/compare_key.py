@@ -34,7 +34,7 @@ class CompareKey(QObject):
         window.installEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """See the key go down and up; leave it to a button that was reached by keyboard."""
+        """Handle the key going down and up; leave it to a button with keyboard focus."""
         if event.type() == QEvent.Type.ShortcutOverride and _is_space(event):
             if _button_by_keyboard():
                 event.accept()
@@ -83,5 +83,5 @@ def _is_space(event: QEvent) -> bool:
 
 
 def _button_by_keyboard() -> bool:
-    """Whether a button has the focus: none of them takes it from the mouse."""
+    """Return whether a button has the focus: none of them takes it from the mouse."""
     return isinstance(QApplication.focusWidget(), QAbstractButton)

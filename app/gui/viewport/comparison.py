@@ -31,7 +31,7 @@ class ViewComparison:
         self.live: tuple[BodyView, ...] = (main,)
 
     def show(self, way: str) -> None:
-        """Look at before and after in one of ``WAYS``; nothing is beside a body without a frame."""
+        """Compare before and after in one of ``WAYS``; without a frame nothing is shown beside the body."""
         frame = self._main.frame
         if frame is None and way not in ("before", "after"):
             way = "after"

@@ -52,7 +52,7 @@ class DrawingTool(QObject):
         self._holds = self._passing = False
 
     def begin(self) -> None:
-        """Listen, and take the keyboard."""
+        """Start handling events, and take the keyboard focus."""
         if not self.at_work:
             self.at_work = True
             for each in (self._canvas, self._view):
@@ -61,7 +61,7 @@ class DrawingTool(QObject):
         self._canvas.setCursor(Qt.CursorShape.CrossCursor)
 
     def end(self) -> None:
-        """Listen no longer."""
+        """Stop handling events."""
         self.at_work, self._pressed, self._holds = False, None, False
         for each in (self._canvas, self._view):
             each.removeEventFilter(self)

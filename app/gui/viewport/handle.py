@@ -76,7 +76,7 @@ class Handle(QWidget):
         self.dropped.emit()
 
     def open_hand(self) -> None:
-        """Hold it no longer, without a word."""
+        """Release the handle without a signal."""
         self._last = None
         self._show_cursor()
         self.update()

@@ -40,7 +40,7 @@ class BandHandle(QObject):
         self._name = ""
 
     def reach(self, name: str) -> bool:
-        """Be ready to pull at a band, if it can be pulled; tells whether it can."""
+        """Prepare to drag a band; returns whether it can be dragged."""
         self._name = name if name and self.cursor_of(name) is not None else ""
         return bool(self._name)
 
@@ -52,7 +52,7 @@ class BandHandle(QObject):
         return held
 
     def pull(self, step: QPointF, held: Qt.KeyboardModifier) -> None:
-        """Pull on by so many pixels, y downwards."""
+        """Drag by some pixels, y downwards."""
         fine = bool(held & Qt.KeyboardModifier.ShiftModifier)
         self.dragged.emit(-step.y() * (FINE if fine else 1.0), fine)
 
@@ -183,7 +183,7 @@ class PointerInteraction(QObject):
         self._grip = self._pin = ""
 
     def _is_other(self, event: QMouseEvent) -> bool:
-        """Tell whether this is not the button of the hand that holds a pin or a band: it would lose it."""
+        """Return whether this is not the button of the hand that holds a pin or a band: it would lose it."""
         return self._grip in ("pin", "band") and event.button() != Qt.MouseButton.LeftButton
 
     def _centre(self, event: QMouseEvent) -> None:

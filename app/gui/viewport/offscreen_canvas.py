@@ -29,7 +29,7 @@ class OffscreenCanvas:
         self._picture = StaticLayerCache(self.plotter)
 
     def let_go(self) -> None:
-        """Give back what is kept of the graphics, before the plotter is closed."""
+        """Release graphics resources, before the plotter is closed."""
         self._picture.clear()
         del self.still
 

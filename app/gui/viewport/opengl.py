@@ -17,7 +17,7 @@ _trying: list[StartMarker] = []
 
 
 def is_safe_mode() -> bool:
-    """Tell whether the 3D view is to be painted from pictures, without OpenGL in the window."""
+    """Return whether the 3D view is painted from images, without OpenGL in the window."""
     app = QCoreApplication.instance()
     return app is not None and bool(app.property(_SAFE))
 

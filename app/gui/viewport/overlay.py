@@ -97,7 +97,7 @@ class Overlay(QWidget):
 
     @property
     def pins(self) -> tuple[Pin, ...]:
-        """The pins that are shown."""
+        """Return the pins that are shown."""
         return self._pins
 
     def set_pins(self, pins: Iterable[Pin], selected: str = "") -> None:
@@ -111,7 +111,7 @@ class Overlay(QWidget):
         self.update()
 
     def follow(self, view: View, hidden: Iterable[str]) -> None:
-        """Look from ``view``; the pins called ``hidden`` lie behind the body and are drawn hollow."""
+        """Set the camera to ``view``; ``hidden`` pins are behind the body and drawn hollow."""
         self._view, self._hidden = view, frozenset(hidden)
         self.update()
 

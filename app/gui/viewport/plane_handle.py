@@ -46,7 +46,7 @@ class PlaneHandle(Handle):
         self.at_eye = False  # whether the normal points at it
 
     def show_plane(self, plane: Plane, low: Floats, high: Floats) -> None:
-        """Stand on a plane through the box from ``low`` to ``high``, each (3,) [mm]."""
+        """Place the handle on a plane through the box from ``low`` to ``high``, each (3,) [mm]."""
         if plane.axis != self._plane.axis:
             self._flat = None
         self._plane, self._ends = plane, sheet_ends(plane, low, high)
@@ -109,7 +109,7 @@ class PlaneHandle(Handle):
         return self._viewport.scene.view.to_picture(places, self._viewport.width(), self._viewport.height())
 
     def _inside(self, spots: Points) -> Floats:
-        """Tell which places are seen well within the view, shape (k,)."""
+        """Return which places are seen well within the view, shape (k,)."""
         room = np.array([self._viewport.width(), self._viewport.height()]) - _MARGIN
         within = (spots[:, :2] >= _MARGIN) & (spots[:, :2] <= room)
         return np.asarray(within.all(axis=1) & (spots[:, 2] > 0.0))

@@ -161,16 +161,16 @@ class SplitView(QWidget):
 
     @property
     def is_wiped(self) -> bool:
-        """Whether a wipe is shown."""
+        """Return whether a wipe is shown."""
         return not self._wiped.isHidden()
 
     def close_views(self) -> None:
-        """Give all 3D objects back."""
+        """Release all 3D objects."""
         self.show_alone()
         self.main.close_view()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
-        """Share the room anew."""
+        """Divide the space again."""
         super().resizeEvent(event)
         self._lay_out()
 
@@ -264,7 +264,7 @@ class PaneTitle(QWidget):
         self.write(text)
 
     def write(self, text: str) -> None:
-        """Say something else."""
+        """Set the text."""
         self.text = text
         self.setAccessibleName(text.replace("\n", ", "))
         self.update()

@@ -48,7 +48,7 @@ class TargetHandle(Handle):
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
 
     def show_at(self, place: Floats, foot: Floats) -> None:
-        """Stand at ``place`` (3,) [mm], with what it moves at ``foot`` (3,) [mm] now."""
+        """Place the handle at ``place`` (3,) [mm], its object now at ``foot`` (3,) [mm]."""
         self._place, self._foot, self._wanted = place, foot, True
         self._stand_anew()
 
@@ -148,7 +148,7 @@ class TargetHandle(Handle):
 
 
 def faces(view: View, side: str) -> bool:
-    """Tell whether the breast of a side is seen from somewhere, and not only what lies behind it."""
+    """Return whether the breast of a side is visible from a view."""
     return bool(view.axes[2] @ _FACING[side] > 0.0)
 
 

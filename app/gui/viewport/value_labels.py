@@ -54,7 +54,7 @@ class ValueFlags(QWidget):
 
     @property
     def flags(self) -> tuple[ValueFlag, ...]:
-        """The flags that are shown."""
+        """Return the flags that are shown."""
         return self._flags
 
     def show_flags(self, flags: Iterable[ValueFlag]) -> None:

@@ -129,7 +129,7 @@ class ViewArea(QWidget):
 
     @property
     def tool_actions(self) -> dict[str, QAction]:
-        """The actions of all tools, for the menus."""
+        """Return the actions of all tools, for the menus."""
         return self.compare.actions_by_name | self.tools.actions_by_name
 
     def prepare(self, done: Callable[[], None], failed: Callable[[Exception], None]) -> None:
@@ -153,7 +153,7 @@ class ViewArea(QWidget):
     # -- what is shown
 
     def show_frame(self, frame: Frame) -> None:
-        """Bring all that is seen of the document up to date."""
+        """Update all visible parts of the document."""
         first = frame.stages.body is not self._main.body
         if first:
             self.viewport.paint_later()
@@ -176,17 +176,17 @@ class ViewArea(QWidget):
 
     @property
     def is_shaded(self) -> bool:
-        """Whether the soft shadows of the body have been worked out."""
+        """Return whether the soft shadows of the body have been worked out."""
         return self._shades is not None
 
     @property
     def hidden_lines(self) -> frozenset[str]:
-        """The lines whose bands are not shown."""
+        """Return the lines whose bands are not shown."""
         return self._main.hidden_lines
 
     @property
     def selected_line(self) -> str:
-        """The line with a casing round it."""
+        """Return the line with a casing round it."""
         return self._main.selected_line
 
     def select_line(self, name: str) -> None:
@@ -217,7 +217,7 @@ class ViewArea(QWidget):
             body.viewport.set_material(material)
 
     def frame_selection(self) -> None:
-        """Come close to the selected landmark, if it is shown, else to the selected line."""
+        """Zoom to the selected landmark, if it is shown, else to the selected line."""
         _, place = self.pins.chosen()
         bands = self.viewport.scene.bands
         if place is not None:
@@ -229,7 +229,7 @@ class ViewArea(QWidget):
 
     @property
     def after(self) -> bool:
-        """Whether the reshaped body is seen."""
+        """Return whether the reshaped body is seen."""
         return self.beside.way != "before"
 
     def set_after(self, after: bool) -> None:
@@ -237,7 +237,7 @@ class ViewArea(QWidget):
         self.compare_by("after" if after else "before")
 
     def compare_by(self, way: str) -> None:
-        """Look at before and after in one of ``app.gui.viewport.comparison.WAYS``."""
+        """Compare before and after in one of ``app.gui.viewport.comparison.WAYS``."""
         self.beside.show(way)
         self._beside_changed()
 
@@ -294,7 +294,7 @@ class ViewArea(QWidget):
         return picture
 
     def close_view(self) -> None:
-        """Give everything back, before the window goes."""
+        """Release all resources, before the window closes."""
         self.panes.close_views()
 
     # -- inside

@@ -81,12 +81,12 @@ class Viewport(QWidget):
 
     @property
     def scene(self) -> Scene:
-        """All that is drawn in 3D."""
+        """Return all that is drawn in 3D."""
         return self._scene or self._make_scene()
 
     @property
     def shows_body(self) -> bool:
-        """Whether there is a scene with a body."""
+        """Return whether there is a scene with a body."""
         return self._scene is not None and self._scene.body is not None
 
     def make(self) -> None:
@@ -152,7 +152,7 @@ class Viewport(QWidget):
         self._canvas.draw()
 
     def close_view(self) -> None:
-        """Give back all 3D objects; call it before the window goes. A second call does nothing."""
+        """Release all 3D objects before the window closes. A second call does nothing."""
         if self._open:
             self._open = False
             self._glide.stop()
@@ -209,12 +209,12 @@ class Viewport(QWidget):
 
     @property
     def view(self) -> View:
-        """Where the scene is seen from."""
+        """Return the view of the scene."""
         return self._view if self._scene is None else self._scene.view
 
     @property
     def heading(self) -> View:
-        """Where the camera is on its way to, or where it is."""
+        """Return the target view of the camera, or the present one."""
         return self._glide.end if self._glide.running else self.view
 
     def set_view(self, name: str) -> None:
@@ -226,7 +226,7 @@ class Viewport(QWidget):
         self._look_from(replace(self.view, parallel=parallel))
 
     def look_from(self, view: View) -> None:
-        """See from where another viewport sees."""
+        """Copy the camera of another viewport."""
         here = self.view
         if view != here:
             if (view.focus, view.distance) != (here.focus, here.distance):
@@ -293,7 +293,7 @@ class Viewport(QWidget):
         self.request_draw()
 
     def changeEvent(self, event: QEvent) -> None:  # noqa: N802
-        """Follow the theme of the window."""
+        """Handle changes of the theme of the window."""
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange and self._open:
             self.set_dark(tokens_of(self).dark)

@@ -7,7 +7,7 @@ from PySide6.QtWidgets import QWidget
 
 
 def announce(widget: QWidget, words: str) -> None:
-    """Have words spoken that nobody asked for: an answer to what was just done at ``widget``."""
+    """Announce a text to screen readers: the response to an action at ``widget``."""
     if QAccessible.isActive():
         QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(widget, words))
 

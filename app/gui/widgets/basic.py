@@ -327,6 +327,6 @@ class EmptyState(QFrame):
             column.addWidget(press, alignment=Qt.AlignmentFlag.AlignLeft)
 
     def show_words(self, missing: str, hint: str) -> None:
-        """Say something else is missing."""
+        """Set the text."""
         self._missing.setText(missing)
         self._hint.setText(hint)

@@ -57,7 +57,7 @@ class CoachMark(OverlayCard):
         self.hide()
 
     def show_step(self, place: int, count: int, title: str, words: str) -> None:
-        """Say step ``place`` of ``count``, counted from 0."""
+        """Show step ``place`` of ``count``, counted from 0."""
         self._count.setText(tr("{place} of {count}").format(place=place + 1, count=count))
         self._title.setText(title)
         self._words.setText(words)
@@ -85,7 +85,7 @@ class CoachMark(OverlayCard):
             each.raise_()
 
     def leave(self) -> None:
-        """Go away."""
+        """Close the mark."""
         self.ring.hide()
         self.hide()
 
@@ -120,7 +120,7 @@ class Ring(QWidget):
         self.hide()
 
     def surround(self, target: QRect) -> None:
-        """Lie round ``target``; only the line itself is drawn anew, not what is inside it."""
+        """Surround ``target``; only the outline is redrawn, not its content."""
         self.setGeometry(target.adjusted(-3, -3, 3, 3).intersected(self._window.rect()))
         self.setMask(QRegion(self.rect()).subtracted(QRegion(self.rect().adjusted(5, 5, -5, -5))))
 

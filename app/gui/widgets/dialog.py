@@ -70,7 +70,7 @@ class Dialog(QDialog):
         self.resize(self.width(), column.totalHeightForWidth(self.width()))
 
     def showEvent(self, event: QShowEvent) -> None:  # noqa: N802
-        """Be as high as needed, where no height was wished for."""
+        """Set the needed height, where none was set."""
         if self._size is not None and not self._size[1]:
             self.fit()
         if self._before is None and not event.spontaneous():
@@ -80,7 +80,7 @@ class Dialog(QDialog):
         super().showEvent(event)
 
     def done(self, result: int) -> None:
-        """Go, and give the keyboard back to what had it before."""
+        """Close, and restore the keyboard focus."""
         super().done(result)
         before = self._before
         if before is not None and before.isVisible():
@@ -91,7 +91,7 @@ class Dialog(QDialog):
         self._before = None
 
     def focusNextPrevChild(self, next: bool) -> bool:  # noqa: N802
-        """Lead the keyboard in the order that eyes read, as in the window."""
+        """Move the keyboard focus in reading order, as in the window."""
         return next_stop(stops(self), next)
 
     def add_close(self) -> QPushButton:

@@ -121,7 +121,7 @@ def ask_overwrite(parent: QWidget, name: str, protected: bool = False) -> str:
 
 
 def may_discard(parent: QWidget, name: str) -> bool:
-    """Ask whether what was kept of a document after a crash may go for good."""
+    """Confirm that recovery data may be deleted."""
     question = tr("Discard the recovered changes to {name}?").format(name=name)
     said = tr("This cannot be undone.")
     return ask(parent, question, said, [("discard", tr("Discard"))]) == "discard"

@@ -14,7 +14,7 @@ _NESTED = 5  # layouts in layouts, of which each hears of a change from the one 
 
 
 def lay_out() -> None:
-    """Lay out at once what was shown or changed its size.
+    """Lay out at once what was shown or resized.
 
     Qt paints a card that has just been shown before it hears of the heights of wrapped texts; a body that
     moves and is drawn without a graphics card then leaves the card half laid out for a second and more.

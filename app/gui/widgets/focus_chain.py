@@ -104,7 +104,7 @@ def _is_stop(widget: QWidget) -> bool:
 
 
 def _is_folded_away(widget: QWidget) -> bool:
-    """Tell whether a widget lies outside of what it stands in, which has been made small."""
+    """Return whether a widget lies outside of what it stands in, which has been made small."""
     parent = widget.parentWidget()
     while parent is not None and not isinstance(parent.parentWidget(), QAbstractScrollArea):
         if not parent.rect().intersects(QRect(widget.mapTo(parent, QPoint()), widget.size())):
@@ -126,7 +126,7 @@ class FocusRing(QWidget):
         app.focusChanged.connect(self._follow)
 
     def show_round(self, widget: QWidget) -> None:
-        """Lie round a widget that has the focus, until it goes elsewhere."""
+        """Surround a widget while it has the focus."""
         window = self.parentWidget()
         assert window is not None
         self.setGeometry(QRect(widget.mapTo(window, QPoint()), widget.size()))

@@ -46,7 +46,7 @@ class LengthEdit(InlineEdit):
         return QSize(self.fontMetrics().horizontalAdvance(widest) + self._unit_width() + 15, 24)
 
     def name_line(self, title: str) -> None:
-        """Tell ears, and in a refusal, whose length this is."""
+        """Set the line name for screen readers and errors."""
         self._line = title
         named = _named_in(self._unit)
         self.setAccessibleName(named.format(line=title or tr("Line")))

@@ -184,7 +184,7 @@ class StiffnessField(InlineEdit):
         self.name_line("")
 
     def name_line(self, title: str) -> None:
-        """Tell ears whose stiffness this is."""
+        """Set the line name for screen readers."""
         self.setAccessibleName(tr("{line}: stiffness").format(line=title or tr("Line")))
 
     def show_stiffness(self, own: float | None, usual: float) -> None:
@@ -271,12 +271,12 @@ class ElasticButton(QPushButton):
         self.update()
 
     def sizeHint(self) -> QSize:
-        """Ask for as much as the words take."""
+        """Return the size of the text."""
         return QSize(self.fontMetrics().horizontalAdvance(self._elastic) + 26, 24)
 
     @property
     def words(self) -> str:
-        """What stands on it."""
+        """Return the text of the button."""
         return self._elastic
 
     def paintEvent(self, event: QPaintEvent) -> None:

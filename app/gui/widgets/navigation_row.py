@@ -30,7 +30,7 @@ class NavigationRow(QAbstractButton):
         self.show_words(words)
 
     def show_words(self, words: str) -> None:
-        """Say what is behind it."""
+        """Set the description."""
         self._said = words
         self.setAccessibleDescription(self._said)
         set_tip(self, self._said)

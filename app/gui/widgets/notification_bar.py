@@ -80,7 +80,7 @@ class NotificationBar(FloatingPanel):
         details: str = "",
         about: str = "",
     ) -> None:
-        """Say ``sentence`` in the tone ok, info, warn or bad; the first action is the main one.
+        """Show ``sentence`` in the tone ok, info, warn or bad; the first action is the main one.
 
         ``details`` unfold when they are asked for; by what it is ``about`` it can be withdrawn.
         A sentence that already stands or waits there is not said twice.

@@ -31,7 +31,7 @@ class Field(QWidget):
         raise NotImplementedError
 
     def describe(self, title: str, tip: str) -> None:
-        """Tell those who do not see the title what this is."""
+        """Set the description for screen readers."""
         set_tip(self, tip)
         self._inside.setAccessibleName(title)
         self._inside.setAccessibleDescription(tip)
@@ -213,7 +213,7 @@ class LandmarkCombo(OptionCombo):
         self.clicked.connect(lambda: pull_down(self._menu, self))
 
     def set_marks(self, titles: Mapping[str, str]) -> None:
-        """Offer these landmarks, by name with their titles."""
+        """Set the landmarks, by name with their titles."""
         self._titles = titles
         self._menu.clear()
         group = QActionGroup(self._menu)

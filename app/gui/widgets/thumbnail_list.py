@@ -122,7 +122,7 @@ class RowPainter(QStyledItemDelegate):
 
     @property
     def widget(self) -> QWidget:
-        """The widget that the rows are dressed after."""
+        """Return the widget that the rows are dressed after."""
         widget = self.parent()
         assert isinstance(widget, QWidget)
         return widget

@@ -45,7 +45,7 @@ class Tipped(Protocol):
 
 
 def set_tip(target: QWidget | QAction, tip: str) -> None:
-    """Give a widget or an action a tooltip of plain text; an unchanged text makes no event."""
+    """Set a tooltip of plain text of a widget or action; an unchanged text makes no event."""
     if target.toolTip() != tip:
         target.setToolTip(tip)
     if isinstance(target, QWidget):

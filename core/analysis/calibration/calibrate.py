@@ -65,7 +65,7 @@ class CalibrationResult:
 
     @property
     def calibration(self) -> Calibration:
-        """The record of it."""
+        """Return the record of it."""
         assert self.design.calibration is not None
         return self.design.calibration
 
@@ -81,12 +81,12 @@ class CalibrationResult:
 
     @property
     def is_poorly_determined(self) -> bool:
-        """Whether none of the numbers is told well."""
+        """Return whether none of the numbers is told well."""
         return not any(number.is_well_determined for number in self.calibration.numbers)
 
     @property
     def has_large_residual(self) -> bool:
-        """Whether more than ``MUCH_LEFT`` of predicted less real remains, beyond the scan's noise."""
+        """Return whether more than ``MUCH_LEFT`` of predicted less real remains, beyond the scan's noise."""
         before, after = (each.total.rms**2 - self.noise**2 for each in (self.before, self.after))
         return after > (MUCH_LEFT**2) * max(before, 0.0)
 

@@ -61,7 +61,7 @@ class FitState:
 
     @property
     def points(self) -> Points:
-        """The control points of the answer, (n, 3) [mm]."""
+        """Return the control points of the answer, (n, 3) [mm]."""
         return self.answer.place.points
 
 

@@ -32,7 +32,7 @@ def standard_deviations(equations: NormalEquations) -> Floats:
 
 
 def unidentifiable(equations: NormalEquations, numbers: tuple[Parameter, ...]) -> Flags:
-    """Tell of which of ``numbers`` (p,) the scans say next to nothing."""
+    """Return which of ``numbers`` (p,) the scans do not determine."""
     return standard_deviations(equations) > MOOT * np.array([number.prior_deviation for number in numbers])
 
 

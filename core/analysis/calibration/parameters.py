@@ -59,22 +59,22 @@ class Parameter:
 
     @property
     def name(self) -> str:
-        """What it is called: its kind, and the first of its lines if it is a line's."""
+        """Return the kind, and the first line for a parameter of a line."""
         return f"{self.kind} of {self.lines[0]}" if self.kind in (STIFFNESS, LENGTH) else self.kind
 
     @property
     def logarithmic(self) -> bool:
-        """Whether it is sought by its logarithm, which is what matters of a stiffness."""
+        """Return whether it is sought by its logarithm, which is what matters of a stiffness."""
         return self.kind in (LINE_STIFFNESS, STIFFNESS, TISSUE)
 
     @property
     def prior_deviation(self) -> float:
-        """How far off it may be before any scan tells it: a standard deviation, as it is sought."""
+        """Return how far off it may be before any scan tells it: a standard deviation, as it is sought."""
         return _BEFORE[self.kind]
 
     @property
     def range(self) -> tuple[float, float]:
-        """The least and the largest that a design allows."""
+        """Return the least and the largest that a design allows."""
         if self.kind == LENGTH:
             return RATIO_LIMITS
         if self.kind == TISSUE:
@@ -91,7 +91,7 @@ class Parameter:
         return float(getattr(design, self.kind))
 
     def is_at_limit(self, design: Design) -> bool:
-        """Tell whether it is as small or large as a design allows; a chest that is not firm may be true."""
+        """Return whether the value is at its lower or upper limit; a chest without support may be correct."""
         low, high = self.range
         value = self.value_in(design)
         return value > _END * high or (value < low / _END and self.kind != FIRM_CHEST)

@@ -65,12 +65,12 @@ class Alignment:
 
     @property
     def rotation_deviations(self) -> Floats:
-        """How unsure the rotation about x, y and z is, standard deviations (3,) [degrees]."""
+        """Return how unsure the rotation about x, y and z is, standard deviations (3,) [degrees]."""
         return np.asarray(np.degrees(np.sqrt(np.maximum(np.diag(self.covariance)[:3], 0.0))))
 
     @property
     def translation_deviations(self) -> Floats:
-        """How unsure the place along x, y and z is, standard deviations (3,) [mm]."""
+        """Return how unsure the place along x, y and z is, standard deviations (3,) [mm]."""
         return np.asarray(np.sqrt(np.maximum(np.diag(self.covariance)[3:], 0.0)))
 
     def transform(self, mesh: Mesh) -> Mesh:
@@ -191,7 +191,7 @@ def _fine(skin: ScanSurface, places: Points, normals: Points, matrix: Floats) ->
 
 
 def _is_still(step: Floats, turn: float) -> bool:
-    """Tell whether a step (6,) turns by less than ``turn`` [rad], and shifts by as little."""
+    """Return whether a step (6,) turns by less than ``turn`` [rad], and shifts by as little."""
     return bool(np.abs(step[:3]).max() < turn and np.abs(step[3:]).max() < 100.0 * turn)
 
 

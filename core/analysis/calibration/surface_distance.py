@@ -34,7 +34,7 @@ class ScanSurface:
 
     @cached_property
     def vertex_directions(self) -> Points:
-        """Where it looks at its vertices, as roughly as matters to tell front from back, (n, 3) [1].
+        """Return approximate outward directions at the vertices, (n, 3) [1].
 
         A fine skin with noise has normals of all sorts: those of neighbours are taken together.
         """
@@ -119,7 +119,7 @@ def grid_cells(places: Points, size: float) -> Indices:
 
 
 def is_valid(gaps: Floats) -> Flags:
-    """Tell where there is a skin, shape (k,)."""
+    """Return where the distance is to a surface and not to a hole, shape (k,)."""
     return np.asarray(~np.isnan(gaps))
 
 

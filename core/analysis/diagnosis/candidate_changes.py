@@ -192,7 +192,7 @@ class Fix:
 
     @property
     def level(self) -> str:
-        """The level of what remains."""
+        """Return the level of what remains."""
         return self.remains[0].level if self.remains else GOOD
 
     @property

@@ -68,22 +68,22 @@ class Diagnosis:
 
     @property
     def stages(self) -> Stages:
-        """What was looked at."""
+        """Return the built stages of the diagnosed design."""
         return self.trial.stages
 
     @property
     def best_fix(self) -> Fix | None:
-        """The best of the fixes, if there is any."""
+        """Return the best of the fixes, if there is any."""
         return self.fixes[0] if self.fixes else None
 
     @property
     def problem(self) -> str:
-        """What is wrong, or nothing."""
+        """Return the problem of the design, or nothing."""
         return self.trial.problem
 
     @property
     def verdict(self) -> Convergence:
-        """How its run ended, with period and growth if it swings."""
+        """Return how its run ended, with period and growth if it swings."""
         return self.trial.verdict
 
     def with_convergence(self, verdict: Convergence) -> Diagnosis:

@@ -83,7 +83,7 @@ class ConstraintForces:
 
     @property
     def worst(self) -> Opposition | None:
-        """The two that fight, or None if no pair stands out."""
+        """Return the two that fight, or None if no pair stands out."""
         first, *others = self.oppositions or (None,)
         if first is None or first.angle < OPPOSED:
             return None

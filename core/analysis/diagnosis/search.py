@@ -52,7 +52,7 @@ class _Hope:
 
     @property
     def change(self) -> Change:
-        """What is hoped to do."""
+        """Return what is hoped to do."""
         return self.way.at(self.steps)
 
 
@@ -73,7 +73,7 @@ class Search:
 
     @property
     def stages(self) -> Stages:
-        """The design that is looked at."""
+        """Return the design that is looked at."""
         return self._sick.stages
 
     def _learn(self, stages: Stages, ran: RunResult) -> None:

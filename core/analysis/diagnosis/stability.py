@@ -47,14 +47,14 @@ class StabilityForecast:
 
     @cached_property
     def growth(self) -> float:
-        """By how much a small swing about it grows in a turn [1]; 0 where nothing swings."""
+        """Return the growth of small oscillations per iteration [1]; 0 without oscillation."""
         if self.targets.control == "exact":
             return 0.0
         return oscillation_growth(self.model, self.targets, self.balance)
 
     @cached_property
     def is_stable(self) -> bool:
-        """Whether the run comes to rest there: a few turns tell, unless it is close."""
+        """Return whether the run comes to rest there: a few turns tell, unless it is close."""
         if self.targets.control == "exact":
             return True
         growth = oscillation_growth(self.model, self.targets, self.balance, _SHORT_SPAN)

@@ -49,17 +49,17 @@ class TrialResult:
 
     @property
     def verdict(self) -> Convergence:
-        """How the run ended."""
+        """Return how the run ended."""
         return self.run.verdict
 
     @property
     def control_points(self) -> Points:
-        """Where the run ended, shape (n, 3) [mm]."""
+        """Return the control points at the end of the run, shape (n, 3) [mm]."""
         return self.stages.model.tensegric.expand(self.run.state.moved)
 
     @property
     def rank(self) -> int:
-        """How bad it is: 0 if it is well."""
+        """Return how bad it is: 0 if it is well."""
         return severity_rank(self.problem)
 
     def run_with_control(self, control: str, progress: Progress = quiet) -> RunResult:

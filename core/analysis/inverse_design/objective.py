@@ -63,7 +63,7 @@ class Objective:
         return room, np.concatenate([-look.by_tensions[hard] / most[:, None], look.by_tensions[loose] / firm])
 
     def is_met(self, look: LinearizedSolution) -> bool:
-        """Tell whether a look is what is wanted, with no limit broken."""
+        """Return whether a candidate meets all targets within all limits."""
         near = np.abs(look.values - self.values)[self.weights > 0.0].max() < NEAR
         return bool(near and self.margins(look)[0].min() > _BROKEN)
 
@@ -101,7 +101,7 @@ class Objective:
 
     @property
     def smallest_weight_ratio(self) -> float:
-        """What the figure counts for that counts least, over what the one counts for that counts most [1]."""
+        """Return the smallest weight of a target divided by the largest [1]."""
         wanted = self.weights[self.weights > 0.0]
         return float(wanted.min() / wanted.max())
 

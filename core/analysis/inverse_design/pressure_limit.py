@@ -46,7 +46,7 @@ class PressureLimit:
 
     @property
     def applies(self) -> bool:
-        """Whether any line has to keep to the limit."""
+        """Return whether any line has to keep to the limit."""
         return self._every or bool(self._elastics)
 
     def is_satisfied(

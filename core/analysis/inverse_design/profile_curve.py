@@ -44,7 +44,7 @@ class ProfileCurve:
 
     @property
     def is_unchanged(self) -> bool:
-        """Whether nothing is asked for: it is the skin as it stood."""
+        """Return whether nothing is asked for: it is the skin as it stood."""
         return not self.given and not self.steps.any()
 
     @property
@@ -60,7 +60,7 @@ class ProfileCurve:
 
     @property
     def handle_positions(self) -> Floats:
-        """Where the handles stand, heights and how far out, (h, 2) [mm]."""
+        """Return heights and depths of the handles, (h, 2) [mm]."""
         return self.base[self.handles] + self.steps
 
     def with_moved_handle(self, handle: int, up: float, out: float) -> ProfileCurve:

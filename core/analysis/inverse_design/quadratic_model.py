@@ -84,7 +84,7 @@ class QuadraticModel:
         return best, left
 
     def _within_reach(self, rows: Floats, slopes: Floats, low: Floats, high: Floats) -> Floats:
-        """Tell which limits a straight way may come to, of those with the least room."""
+        """Return which limits a straight way may come to, of those with the least room."""
         room, by_room = rows[self.figures :], slopes[self.figures :]
         least = room + np.minimum(by_room * low, by_room * high).sum(axis=1)
         first = np.argsort(room)[:_TIGHT]

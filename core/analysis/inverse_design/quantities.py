@@ -63,7 +63,7 @@ class QuantityFamily:
     tolerance: float = 1.0
 
     def has(self, name: str) -> bool:
-        """Tell whether a figure of that name is of this family."""
+        """Return whether a quantity of that name belongs to this family."""
         return name in self.names or (bool(self.numbered) and name.startswith(f"{self.numbered} "))
 
 
@@ -260,7 +260,7 @@ def _near(mesh: Mesh, at: float) -> tuple[Indices, Indices]:
 
 
 def _crossing(x: Floats, low: float, faces: Indices, high: float | None = None) -> Flags:
-    """Tell which faces come between ``low`` and ``high`` (or to ``low``), by the x of their vertices."""
+    """Return which faces come between ``low`` and ``high`` (or to ``low``), by the x of their vertices."""
     a, b, c = faces.T
     left, right = x <= (low if high is None else high), x >= low
     return np.asarray((left[a] | left[b] | left[c]) & (right[a] | right[b] | right[c]))

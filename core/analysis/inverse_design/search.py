@@ -100,16 +100,16 @@ class Search:
         self._bar_pushing()
 
     def __len__(self) -> int:
-        """The number of answers that were worked out."""
+        """Return the number of answers that were worked out."""
         return len(self._answers)
 
     @property
     def free(self) -> frozenset[str]:
-        """The names of the lines that may change."""
+        """Return the names of the lines that may change."""
         return frozenset(name for group in self._groups for name in group)
 
     def set_goals(self, goals: Sequence[Goal]) -> None:
-        """Look for other values of the same figures, or with other priorities, from now on."""
+        """Set new values or priorities of the same targets."""
         self._wanted.values = np.array([goal.value for goal in goals])
         self._wanted.weights = goal_weights(goals)
 

@@ -73,7 +73,7 @@ class LinearizedSolutions:
         self._count = 0
 
     def __len__(self) -> int:
-        """The number of answers that were worked out."""
+        """Return the number of answers that were worked out."""
         return self._count
 
     def __call__(self, lengths: Floats, limit: int = NEWTON_LIMIT) -> LinearizedSolution:
@@ -86,7 +86,7 @@ class LinearizedSolutions:
         return self._looks[key]
 
     def is_reachable_from_original(self, lengths: Floats) -> bool:
-        """Tell whether rest leads to the answer at ``lengths`` (p,) [%]; if not, all begin there from now on.
+        """Return whether the original leads to ``lengths`` (p,) [%]; else all start at the solution.
 
         Under sliding lines there may be several equilibria; what a design is solved to is that from rest.
         """

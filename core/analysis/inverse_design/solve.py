@@ -72,7 +72,7 @@ class InverseResult:
     points: Points = field(default_factory=lambda: np.zeros((0, 3)))
 
     def may_not_be_longer(self, name: str) -> bool:
-        """Tell of a line that is at its end which end that is."""
+        """Return which limit a line has reached."""
         return self.design.ratio(name) > self.longest - 1e-3
 
 

@@ -50,7 +50,7 @@ def _worth_a_look(stops: Sequence[Sample], sign: str) -> list[Sample]:
 
 
 def _may_vanish(looked: Sequence[Sample], at: int, sign: str) -> bool:
-    """Tell whether a margin may be none between a stop and the next, bent as it is about there."""
+    """Return whether a margin may be none between a stop and the next, bent as it is about there."""
     one, other = (stop.margin(sign) for stop in looked[at : at + 2])
     least = min(abs(one), abs(other))
     if not one * other > 0.0 or least < _NEAR:

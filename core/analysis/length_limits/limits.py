@@ -57,7 +57,7 @@ class Limits:
 
     @cached_property
     def onsets(self) -> dict[str, Length | None]:
-        """The longest length that shows each of SIGNS, up to that at rest; None where none does.
+        """Return the longest length that shows each of SIGNS, up to that at rest; None where none does.
 
         A beginning at the rest length is the other lines' doing.
         """
@@ -65,7 +65,7 @@ class Limits:
 
     @property
     def stretched(self) -> Length | None:
-        """Where the elastic it is made of is stretched to the end of its curve, if that is met."""
+        """Return the length at which the elastic reaches the end of its curve, if it does."""
         return self.below("stretched")
 
     def below(self, sign: str) -> Length | None:

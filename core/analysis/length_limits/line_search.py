@@ -127,7 +127,7 @@ def _next_stride(stride: float, off: float | None) -> float:
 
 
 def _astray(stops: list[Sample], start: PathPoint, found: PathPoint) -> bool:
-    """Tell whether an answer lies elsewhere than the way through ``stops`` leads: on another branch."""
+    """Return whether an answer lies elsewhere than the way through ``stops`` leads: on another branch."""
     led = _off(stops[-1].found, start)
     return len(stops) > 1 and _off(start, found) > _OFF_WAY * led + _OFF_ANYWAY
 

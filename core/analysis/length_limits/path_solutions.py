@@ -45,7 +45,7 @@ class PathPoint:
 
     @property
     def points(self) -> Points:
-        """The control points, shape (n, 3) [mm]."""
+        """Return the control points, shape (n, 3) [mm]."""
         return self.model.tensegric.expand(self.balance.state.moved)
 
     def interpolate(self, other: PathPoint, share: float) -> PathPoint:

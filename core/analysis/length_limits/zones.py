@@ -46,16 +46,16 @@ class Reason:
 
     @property
     def tone(self) -> str:
-        """One of TONES."""
+        """Return one of TONES."""
         return TONE_OF[self.why]
 
     def contains(self, ratio: float) -> bool:
-        """Tell whether it holds at a length [1]."""
+        """Return whether the reason applies to a length [1]."""
         return self.short <= ratio <= self.long
 
     @property
     def is_independent(self) -> bool:
-        """Whether it holds whatever this line does."""
+        """Return whether it holds whatever this line does."""
         return self.short <= RATIO_LIMITS[0] and self.long >= RATIO_LIMITS[1]
 
 
@@ -89,7 +89,7 @@ class LengthLimits:
 
     @property
     def red_below(self) -> float | None:
-        """The length below which it is red, None if it never is there [1]."""
+        """Return the length below which it is red, None if it never is there [1]."""
         first = self.zones[0]
         return first.long if first.tone == RED else None
 

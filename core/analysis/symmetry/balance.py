@@ -48,22 +48,22 @@ class BalanceResult:
 
     @property
     def is_balanced(self) -> bool:
-        """Whether both bust points come to lie alike."""
+        """Return whether both bust points come to lie alike."""
         return self.after.largest_difference < ENOUGH
 
     @property
     def gain(self) -> float:
-        """By how much nearer to each other the bust points lie, mirrored [mm]."""
+        """Return the decrease of the mirrored distance between the bust points [mm]."""
         return self.before.distance - self.after.distance
 
     @property
     def loss(self) -> float:
-        """By how much both sides together lie elsewhere than they did, in height and way out [mm]."""
+        """Return the displacement of both sides together, in height and forward [mm]."""
         return hypot(*(after - before for before, after in self.kept.values()))
 
     @property
     def is_worthwhile(self) -> bool:
-        """Whether it is even, or at least brings more than what it takes away."""
+        """Return whether it is even, or at least brings more than what it takes away."""
         return self.is_balanced or self.gain > max(self.loss, ENOUGH)
 
 

@@ -40,7 +40,7 @@ class SideDifference:
 
     @property
     def largest_difference(self) -> float:
-        """The larger one of what the bust points differ by in height and to the front [mm]."""
+        """Return the larger one of what the bust points differ by in height and to the front [mm]."""
         return max(abs(self.higher), abs(self.further_out))
 
     @property

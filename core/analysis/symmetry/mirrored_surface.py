@@ -32,12 +32,12 @@ class SkinGap:
 
     @property
     def total(self) -> float:
-        """By how much the left stands out more than the right, all in all [ml]: by how much it is larger."""
+        """Return by how much the left volume exceeds the right one [ml]."""
         return self.left_more - self.right_more
 
     @property
     def absolute_total(self) -> float:
-        """All that lies between the skin and its mirror image [ml]."""
+        """Return the whole volume between the skin and its mirror image [ml]."""
         return self.left_more + self.right_more
 
 

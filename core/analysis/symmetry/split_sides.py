@@ -16,7 +16,7 @@ ENOUGH = 0.5
 
 
 def moves_one_side(stages: Stages) -> bool:
-    """Tell whether a worn line, or those it is linked to, may change and pulls at one side alone."""
+    """Return whether an active line or its linked lines may change and act on one side alone."""
     return any(_one_sided(stages, group) for group in free_lines(stages))
 
 

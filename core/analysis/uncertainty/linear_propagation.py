@@ -70,7 +70,7 @@ class Propagation:
         return self._of_landmark(knob) if knob.source == LANDMARKS else self._of_lines(knob)
 
     def _of_placing(self) -> Effect:
-        """A fold that is placed may lead a root another way than one that is found."""
+        """Return a fold that is placed may lead a root another way than one that is found."""
         trials, stages = self.trials, self.stages
         here = original_values(trials.original)
         if not trials.has_no_active_lines:

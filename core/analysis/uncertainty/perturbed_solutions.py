@@ -144,37 +144,37 @@ class PerturbedSolutions:
 
     @property
     def has_no_active_lines(self) -> bool:
-        """Whether no line is worn, so that the body stays as it is."""
+        """Return whether no line is worn, so that the body stays as it is."""
         return not self.base.design.active_lines()
 
     @cached_property
     def values(self) -> Figures:
-        """The figures of lines and bust points where the run rests. Raises NoEquilibriumError."""
+        """Return the figures of lines and bust points where the run rests. Raises NoEquilibriumError."""
         return {} if self.has_no_active_lines else output_values(self.base, self.points)
 
     @cached_property
     def original(self) -> OriginalMeasurements:
-        """The body at rest with its landmarks where they are."""
+        """Return the body at rest with its landmarks where they are."""
         return original_measurements(self.base, self.steps)
 
     @cached_property
     def points(self) -> Points:
-        """The control points where the run rests, shape (n, 3) [mm]. Raises NoEquilibriumError."""
+        """Return the control points where the run rests, shape (n, 3) [mm]. Raises NoEquilibriumError."""
         return self.equilibrium.solution.place.points
 
     @cached_property
     def equilibrium(self) -> ConvergedSolution:
-        """The balance that the run of the design comes to. Raises NoEquilibriumError."""
+        """Return the balance that the run of the design comes to. Raises NoEquilibriumError."""
         return converged_solution(self.base, self._push)
 
     @cached_property
     def _push(self) -> float:
-        """How the control answers missing volume: alike whatever is turned."""
+        """Return how the control answers missing volume: alike whatever is turned."""
         return control_response(self.base)
 
     @cached_property
     def steps(self) -> Steps:
-        """How far under the breasts the under-bust is measured."""
+        """Return how far under the breasts the under-bust is measured."""
         rest = original_subject(self.base.body.smoothed, self.base.landmarks)
         return under_bust_steps(rest, reshaped_subject(rest, self.base, self.points))
 

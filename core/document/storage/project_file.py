@@ -39,7 +39,7 @@ class ScanFile:
 
 
 def is_project(path: str | os.PathLike[str]) -> bool:
-    """Tell whether the name is that of a project."""
+    """Return whether the name is that of a project."""
     return Path(path).suffix.lower() == SUFFIX
 
 

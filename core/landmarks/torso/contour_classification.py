@@ -23,7 +23,7 @@ MOST_LIMBS = 200
 
 
 def limbs(pieces: Pieces, main: Indices, z: Floats, middle: float) -> Flags:
-    """Tell which closed ``pieces`` belong to an arm, a hand or a leg, and not to an overhanging breast.
+    """Return which closed ``pieces`` belong to an arm, a hand or a leg, not to an overhanging breast.
 
     ``main``, shape (k,), is the piece of the trunk on each level at heights ``z`` [mm], -1 where there is
     none. Pieces that lie over one another are one limb if one of them lies beside or behind the trunk,
@@ -102,7 +102,7 @@ def split_pieces(cuts: Outlines, main: Indices, sides: Floats) -> Indices:
 
 
 def kept_pieces(cuts: Outlines, main: Indices, limb: Flags, sides: Floats) -> tuple[Flags, Flags]:
-    """Tell which pieces are trunk, and on which levels its outline is open.
+    """Return which pieces are trunk, and on which levels its outline is open.
 
     ``sides``, shape (k, 2) [mm], tell where the trunk ends on levels near by; NaN where that is unknown.
     """
@@ -128,7 +128,7 @@ def kept_pieces(cuts: Outlines, main: Indices, limb: Flags, sides: Floats) -> tu
 
 
 def _linked(lows: Floats, highs: Floats, low: float, high: float) -> Flags:
-    """Tell which ranges, from ``lows`` to ``highs`` (p,), are linked to one by gaps of at most ``GAP``."""
+    """Return which ranges, from ``lows`` to ``highs`` (p,), are linked to one by gaps of at most ``GAP``."""
     begin, end = np.append(lows, low), np.append(highs, high)
     order = np.argsort(begin, kind="stable")
     apart = begin[order][1:] > np.maximum.accumulate(end[order])[:-1] + GAP

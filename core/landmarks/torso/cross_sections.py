@@ -46,17 +46,17 @@ class Level:
 
     @property
     def points(self) -> Points:
-        """End points of the segments and bridges, shape (2 (s + b), 3) [mm]."""
+        """Return end points of the segments and bridges, shape (2 (s + b), 3) [mm]."""
         return np.concatenate([self.segments, self.bridges]).reshape(-1, 3)
 
     @property
     def tape(self) -> float:
-        """Length of a tape round the outline, bridging the hollows [mm]."""
+        """Return the length of a tape round the outline, bridging the hollows [mm]."""
         return hull_perimeter(self.points)
 
     @property
     def bridged_mm(self) -> float:
-        """Length of the outline that is no skin [mm]: under it, the girth is an estimate."""
+        """Return the length of the outline that is no skin [mm]: under it, the girth is an estimate."""
         return _length(self.bridges)
 
     @property
@@ -68,7 +68,7 @@ class Level:
 
     @property
     def skin(self) -> float:
-        """Length of the outline itself [mm]."""
+        """Return the length of the outline itself [mm]."""
         return _length(self.segments) + self.bridged_mm
 
 

@@ -63,7 +63,7 @@ class TorsoAxis:
 
     @property
     def cut(self) -> Flags:
-        """Where an arm is cut off, left and right, shape (k, 2)."""
+        """Return where arms are cut off, left and right, shape (k, 2)."""
         return np.asarray(self.necks | np.isfinite(self.clip))
 
     def centre_at(self, z: float) -> Points:
@@ -90,7 +90,7 @@ _GUIDES: WeakKeyDictionary[Mesh, TorsoAxis] = WeakKeyDictionary()
 
 
 def torso_axis(mesh: Mesh) -> TorsoAxis:
-    """Look at the whole height of ``mesh`` [mm], once. Source: ours."""
+    """Compute the axis over the whole height of ``mesh`` [mm]. Source: ours."""
     if mesh not in _GUIDES:
         _GUIDES[mesh] = _looked_at(mesh)
     return _GUIDES[mesh]
@@ -154,13 +154,13 @@ def arm_segments(cuts: Outlines, own: Indices, centre: Points) -> tuple[Indices,
 
 
 def within(cuts: Outlines, centre: Points, clip: Floats) -> Flags:
-    """Tell which segments lie no farther out than ``clip``, shape (k, 2) [mm], left and right."""
+    """Return which segments are no farther out than ``clip``, shape (k, 2) [mm], left and right."""
     x = cuts.segments[:, :, 0].mean(axis=1) - centre[cuts.level, 0]
     return np.asarray((x < clip[cuts.level, 0]) & (-x < clip[cuts.level, 1]))
 
 
 def _hollow(cuts: Outlines, keep: Flags, centre: Points) -> Flags:
-    """Tell which levels have an outline with hollows deep enough for an arm that touches, shape (k,)."""
+    """Return which levels have an outline with hollows deep enough for an arm that touches, shape (k,)."""
     length = np.linalg.norm(cuts.segments[keep, 1] - cuts.segments[keep, 0], axis=1)
     whole = np.bincount(cuts.level[keep], weights=length, minlength=len(centre))
     far = radii(cuts.segments[keep], cuts.level[keep], centre)
@@ -202,7 +202,7 @@ def _centres(cuts: Outlines, main: Indices, middle: float) -> tuple[Points, Floa
 
 
 def _legs(cuts: Outlines, main: Indices, centre: Points) -> Flags:
-    """Tell which levels, from below, are legs that touch: thin in the middle and thick on both sides."""
+    """Return which levels, from below, are legs that touch: thin in the middle and thick on both sides."""
     legs = np.zeros(len(main), dtype=bool)
     if len(cuts.piece) == 0:
         return legs

@@ -28,7 +28,7 @@ class AxisOverride:
     exact: bool
 
     def allows(self, direction: Floats) -> bool:
-        """Tell whether up or front may be ``direction``, a unit vector, shape (3,)."""
+        """Return whether up or front may be ``direction``, a unit vector, shape (3,)."""
         return bool(self.direction @ direction > (1.0 - 1e-9 if self.exact else NEAR))
 
 

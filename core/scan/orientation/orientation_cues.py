@@ -51,7 +51,7 @@ class Side:
 
     @property
     def hollow(self) -> Floats:
-        """How deep the middle line lies under a string stretched over it, shape (k,) [mm]."""
+        """Return how deep the middle line lies under a string stretched over it, shape (k,) [mm]."""
         top = [0]
         for k in range(1, len(self.middle)):
             while len(top) > 1 and self._bends_in(top[-2], top[-1], k):
@@ -75,7 +75,7 @@ class TorsoFeatures:
 
     @property
     def lean(self) -> float:
-        """How far the middle of the trunk leans backwards on its way up [1], over what is usual."""
+        """Return how far the middle of the trunk leans backwards on its way up [1], over what is usual."""
         middle = 0.5 * (self.back.middle - self.front.middle)
         rows = np.arange(len(middle)) * self.trunk.cell * self.trunk.mm
         return float(np.polyfit(rows, middle, 1)[0]) - USUAL_LEAN if len(middle) > 4 else 0.0
@@ -91,7 +91,7 @@ class Cue:
 
 
 def extract_features(trunk: Silhouette) -> TorsoFeatures:
-    """Look at ``trunk`` from the front and from the back."""
+    """Extract features of ``trunk`` from the front and from the back."""
     rows = _torso(trunk)
     return TorsoFeatures(
         trunk, find_fold(trunk), _side(trunk, trunk.front, rows), _side(trunk, trunk.back, rows)

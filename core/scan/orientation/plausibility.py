@@ -70,7 +70,7 @@ def require_plausible(cloud: Cloud, readings: Sequence[PoseCandidate]) -> None:
 
 
 def _halved(cloud: Cloud, readings: Sequence[PoseCandidate]) -> bool:
-    """Tell whether the skin is open along an upright plane, and not like a tube, at both ends."""
+    """Return whether the skin is open along an upright plane, and not like a tube, at both ends."""
     ends = [end for end in find_cut_planes(cloud.points, cloud.grain) if not end.filled]
     area = HALF * len(cloud.points) * cloud.grain**2
     return any(

@@ -53,16 +53,16 @@ class PoseCandidate:
 
     @property
     def upright(self) -> bool:
-        """Tell whether it stands along an axis of the file, but for a slight lean."""
+        """Return whether the body is along an axis of the file, except for a slight lean."""
         return bool(np.abs(self.up).max() > np.cos(np.radians(LEAN)))
 
     @property
     def score(self) -> float:
-        """How likely this is how the body stands [1]."""
+        """Return how likely this is how the body stands [1]."""
         return self.evidence + FILE_AXIS * float(self.upright) + CUT * float(self.cut) - 6.0 * self.residual
 
     def differs(self, other: PoseCandidate, degrees: float = 40.0) -> bool:
-        """Tell whether up or front point elsewhere."""
+        """Return whether up or front have another direction."""
         return bool(min(self.up @ other.up, self.back @ other.back) < np.cos(np.radians(degrees)))
 
 

@@ -65,7 +65,7 @@ class Silhouette:
 
     @cached_property
     def half_width(self) -> float:
-        """Half width of the trunk proper, without merged arms; NaN if there is none."""
+        """Return half width of the trunk proper, without merged arms; NaN if there is none."""
         return self._reference(self.width)
 
     @cached_property
@@ -76,41 +76,41 @@ class Silhouette:
 
     @cached_property
     def main_girth(self) -> float:
-        """Girth of the trunk proper; NaN if there is none."""
+        """Return the girth of the trunk proper; NaN if there is none."""
         return self._reference(self.girth)
 
     @cached_property
     def mm(self) -> float:
-        """Millimetres in a file unit, if the trunk is as stout as most."""
+        """Return millimetres in a file unit, if the trunk is as stout as most."""
         return TYPICAL_GIRTH / self.main_girth
 
     @cached_property
     def stoutness(self) -> float:
-        """Width of the trunk proper over its depth [1]."""
+        """Return the width of the trunk proper over its depth [1]."""
         width, depth = self.width[self.proper], (self.high - self.low)[self.proper]
         return float(2.0 * np.median(width) / max(float(np.median(depth)), 1e-9 * self.half_width))
 
     @cached_property
     def proper(self) -> Flags:
-        """Levels that are trunk: not neck, not head, not merged with arms."""
+        """Return levels that are trunk: not neck, not head, not merged with arms."""
         with np.errstate(invalid="ignore"):
             share = self.width / self.half_width
             return (share > 0.6) & (share < 1.3) & (self.girth > 0.7 * self.main_girth)
 
     @cached_property
     def across(self) -> Floats:
-        """Distance of each column from the middle, shape (c,) [half widths of the trunk]."""
+        """Return the distance of each column from the middle, shape (c,) [half widths of the trunk]."""
         count = self.front.shape[1]
         return np.asarray(np.abs(np.arange(count) - count // 2) * self.cell / self.half_width)
 
     @cached_property
     def height(self) -> Floats:
-        """Height of each level over the lowest, shape (k,) [mm of a typical trunk]."""
+        """Return the height of each level over the lowest, shape (k,) [mm of a typical trunk]."""
         return np.asarray((self.z - self.z[0]) * self.mm)
 
     @cached_property
     def slim(self) -> Flags:
-        """Levels too slim for a body, even for its neck: a pole that it stands on, or nothing."""
+        """Return levels too slim for a body, even for its neck: a pole that it stands on, or nothing."""
         width = np.sort(self.width[np.isfinite(self.width)])
         total = np.cumsum(width)
         usual = (
@@ -120,7 +120,7 @@ class Silhouette:
 
     @cached_property
     def stand(self) -> float:
-        """The level under which there is no body but the pole that it stands on; -inf without one."""
+        """Return the level under which there is no body but the pole that it stands on; -inf without one."""
         proper = np.flatnonzero(self.proper)
         with np.errstate(invalid="ignore"):
             thin = (self.width < NECK * self.half_width) & np.logical_or.accumulate(
@@ -220,7 +220,7 @@ def _goes_round(points: Points, row: Indices, rows: int) -> Flags:
 
 
 def _own(points: Points, row: Indices, rows: int, grain: float) -> Flags:
-    """Tell which points belong to the trunk: at each level those up to the first gap from the middle."""
+    """Return which points belong to the trunk: at each level those up to the first gap from the middle."""
     side = (points[:, 0] < 0.0).astype(np.int64)
     column = np.floor(np.abs(points[:, 0]) / grain).astype(np.int64)
     count = int(column.max()) + 1

@@ -74,7 +74,7 @@ class MirrorPlane:
 
 
 def sample_uniformly(vertices: Points, faces: Faces) -> Cloud:
-    """Lay even points on a skin, whatever its triangles are like. Any unit. Source: ours."""
+    """Sample even points on a skin, independent of its triangles. Any unit. Source: ours."""
     vectors = area_vectors(vertices, faces)
     areas = np.linalg.norm(vectors, axis=1)
     points, face = sample_surface(vertices, faces, areas, SAMPLES)

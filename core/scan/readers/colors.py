@@ -88,7 +88,7 @@ def sampled(pixels: Colours, places: Floats) -> Colours:
 
 
 def is_plain(colours: Colours | None) -> bool:
-    """Tell whether there are no colours, or the same everywhere, which shows nothing."""
+    """Return whether there are no colours, or the same everywhere."""
     if colours is None:
         return True
     known = colours[colours[:, 3] > 0]

@@ -74,7 +74,7 @@ def read_points(name: str, data: bytes, progress: Progress) -> RawScan:
 
 
 def has_decimal_commas(name: str, data: bytes) -> bool:
-    """Tell whether the commas in a list of numbers are decimal marks. Raises ScanError if nobody can tell."""
+    """Return whether the commas in a list of numbers are decimal marks. Raises ScanError if ambiguous."""
     comma = data.find(b",")
     if comma < 0:
         return False
@@ -95,7 +95,7 @@ def has_decimal_commas(name: str, data: bytes) -> bool:
 
 
 def begins_with_points(data: bytes) -> bool:
-    """Tell whether the first line that is no comment is a point."""
+    """Return whether the first line that is no comment is a point."""
     lines = data[:10_000].splitlines()[:-1]
     return _is_point(next((line for line in lines if not re.match(rb"\s*(#|$)", line)), b""))
 

@@ -46,7 +46,7 @@ class Property:
     count: Kind | None
 
     def is_needed(self, element: str) -> bool:
-        """Tell whether the property of an element is read."""
+        """Return whether the property of an element is read."""
         return self.name.startswith(NEEDED.get(element, ()))
 
 

@@ -33,7 +33,7 @@ def read_stl(name: str, data: bytes, progress: Progress) -> RawScan:
 
 
 def is_binary_stl(data: bytes) -> bool:
-    """Tell whether the file is just as long as the count of its triangles says."""
+    """Return whether the length of the file matches the count of its triangles."""
     return len(data) > _HEAD and len(data) == _HEAD + _ROW.itemsize * int.from_bytes(data[80:84], "little")
 
 

@@ -68,7 +68,7 @@ class Lines:
     first: Indices
 
     def marked(self, *words: bytes) -> Flags:
-        """Tell which lines begin with one of the words, whatever its case, and a blank."""
+        """Return which lines begin with one of the words, in any case, and a blank."""
         found = np.zeros(len(self.first), dtype=bool)
         for word in words:
             same = np.ones(len(self.first), dtype=bool)
@@ -111,7 +111,7 @@ class Table:
 
     @property
     def starts(self) -> Indices:
-        """Where the numbers of each line begin."""
+        """Return where the numbers of each line begin."""
         return np.cumsum(self.counts) - self.counts
 
     def rows(self, first: int, last: int) -> Table:

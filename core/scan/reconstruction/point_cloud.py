@@ -46,7 +46,7 @@ NEIGHBOURS = 24
 def reconstruct_surface(
     points: Points, normals: Points | None = None, progress: Progress = quiet
 ) -> tuple[Points, Faces]:
-    """Lay a surface through points, shape (n, 3), of any unit: vertices (k, 3) and faces (m, 3).
+    """Reconstruct a surface from points, shape (n, 3), of any unit: vertices (k, 3) and faces (m, 3).
 
     ``normals``, shape (n, 3), tell the outside where they are known. Noise is evened out and loners are
     dropped; where there are no points there is no surface. Raises ValueError, Cancelled. Source: ours;
@@ -73,7 +73,7 @@ def reconstruct_surface(
 
 
 def is_cloud(scan: RawScan) -> bool:
-    """Tell whether a scan has no triangles, or but for a small part of its points."""
+    """Return whether a scan has no triangles, or triangles on only a small part of its points."""
     if len(scan.faces) == 0:
         return True
     used = np.zeros(len(scan.vertices), dtype=bool)

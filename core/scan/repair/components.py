@@ -103,7 +103,7 @@ def sample_component(skin: EditableMesh, faces: Indices, count: int = SAMPLES) -
 
 
 def _is_built(skin: EditableMesh, faces: Indices) -> bool:
-    """Tell whether a piece is a plate, a body between two plates along one axis, or a pole."""
+    """Return whether a piece is a plate, a body between two plates along one axis, or a pole."""
     places = sample_component(skin, faces)
     _, near = cKDTree(places).query(places, k=NEAREST)
     around = places[near] - places[near].mean(axis=1, keepdims=True)
@@ -126,7 +126,7 @@ def _is_built(skin: EditableMesh, faces: Indices) -> bool:
 
 
 def _is_patch(skin: EditableMesh, number: int, large: Indices) -> bool:
-    """Tell whether the border of a piece runs along the borders of others, as patches of one skin do."""
+    """Return whether the border of a piece runs along the borders of others, as patches of one skin do."""
     side = skin.sides.border
     piece, start = skin.piece[side % len(skin.faces)], skin.vertices[skin.sides.ends(side)[0]]
     own, others = start[piece == number], start[np.isin(piece, large[large != number])]
@@ -151,7 +151,7 @@ def _in_two_plates(heights: Floats, thick: float) -> int:
 
 
 def _is_round(places: Points, axis: Points) -> bool:
-    """Tell whether ``places``, shape (k, 3), lie at one distance from a line along ``axis``."""
+    """Return whether ``places``, shape (k, 3), lie at one distance from a line along ``axis``."""
     across = np.linalg.svd(axis[None])[2][1:]
     flat = places @ across.T
     x, y = (flat - flat.mean(axis=0)).T

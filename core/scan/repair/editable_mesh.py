@@ -21,34 +21,34 @@ class EditableMesh:
 
     @cached_property
     def sides(self) -> Sides:
-        """Which sides of triangles lie on the same edge."""
+        """Return which sides of triangles are on the same edge."""
         return match_sides(self.faces, len(self.vertices))
 
     @cached_property
     def area_vectors(self) -> Points:
-        """Face normals times face areas, shape (m, 3)."""
+        """Return face normals times face areas, shape (m, 3)."""
         return area_vectors(self.vertices, self.faces)
 
     @cached_property
     def areas(self) -> Floats:
-        """Areas of the triangles, shape (m,)."""
+        """Return areas of the triangles, shape (m,)."""
         return np.asarray(np.sqrt(np.einsum("ij,ij->i", self.area_vectors, self.area_vectors)))
 
     @cached_property
     def centres(self) -> Points:
-        """Centres of the triangles, shape (m, 3)."""
+        """Return centres of the triangles, shape (m, 3)."""
         a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
         return np.asarray((a + b + c) / 3.0)
 
     @cached_property
     def piece(self) -> Indices:
-        """The number of the piece that each triangle belongs to, 0 .. k-1: pieces share no edge."""
+        """Return the number of the piece that each triangle belongs to, 0 .. k-1: pieces share no edge."""
         first, second, _ = self.sides.neighbours
         return components(first, second, len(self.faces))
 
     @cached_property
     def piece_areas(self) -> Floats:
-        """Areas of the pieces, shape (k,)."""
+        """Return areas of the pieces, shape (k,)."""
         return np.asarray(np.bincount(self.piece, self.areas), dtype=np.float64)
 
     def with_faces(self, keep: Flags) -> EditableMesh:
@@ -100,7 +100,7 @@ class Sides:
 
     @cached_property
     def border(self) -> Indices:
-        """Numbers of the sides that no other triangle shares, ascending, shape (b,)."""
+        """Return numbers of the sides that no other triangle shares, ascending, shape (b,)."""
         return np.sort(self.order[self.start[self.count == 1]])
 
     def ends(self, side: Indices) -> tuple[Indices, Indices]:

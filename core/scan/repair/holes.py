@@ -78,7 +78,7 @@ def find_holes(mesh: Mesh) -> tuple[Hole, ...]:
 
 
 def islands(skin: EditableMesh, twin: Indices) -> Flags:
-    """Tell which sides of the border, shape (b,), are those of loose single triangles: round no hole.
+    """Return which sides of the border, shape (b,), belong to loose single triangles, not to a hole.
 
     ``twin`` (n,) tells which vertex each is sewn to, itself if none.
     """

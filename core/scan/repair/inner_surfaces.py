@@ -90,7 +90,7 @@ def remove_occluded(skin: EditableMesh) -> tuple[EditableMesh, int]:
 
 
 def is_enclosed(before: EditableMesh, after: EditableMesh) -> bool:
-    """Tell whether much of a skin is gone that lay deep inside what is left of it."""
+    """Return whether much of the removed skin was deep inside the rest."""
     every, left = np.arange(len(before.faces)), np.arange(len(after.faces))
     skin = cKDTree(sample_component(after, left, 10 * SAMPLES))
     away = skin.query(sample_component(before, every))[0]
@@ -98,7 +98,7 @@ def is_enclosed(before: EditableMesh, after: EditableMesh) -> bool:
 
 
 def _hidden(skin: EditableMesh, own: Indices, others: Indices, size: float) -> Flags:
-    """Tell which triangles lie deep inside the skin of ``own``, or near it and cut off with what does."""
+    """Return which triangles lie deep inside the skin of ``own``, or near it and cut off with what does."""
     near, deep = np.zeros((2, len(skin.faces)), dtype=bool)
     first, member = _celled(skin.centres[others], DEPTH * size)
     places = skin.centres[others[first]]

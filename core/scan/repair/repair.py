@@ -148,7 +148,7 @@ def _drop_empty_faces(skin: EditableMesh) -> tuple[EditableMesh, int]:
 
 
 def remove_fins(skin: EditableMesh) -> tuple[EditableMesh, int]:
-    """Where more than two faces share an edge, drop the smallest patches until two are left.
+    """Remove the smallest patches where more than two faces share an edge, until two are left.
 
     A patch is what hangs together over edges of two faces. Those with a free side go first.
     """
@@ -274,7 +274,7 @@ def _wind_outward(skin: EditableMesh) -> tuple[EditableMesh, int]:
 
 
 def _inward(skin: EditableMesh, turned: Flags) -> Flags:
-    """Tell which pieces look inward with their faces ``turned``, shape (k,).
+    """Return which pieces look inward with their faces ``turned``, shape (k,).
 
     A closed piece has its volume for it, an open one its place round the middle of the body. If its own
     bulge says the opposite, as inside an arm, it keeps to the winding that the file has elsewhere.

@@ -65,7 +65,7 @@ class ConvergenceController(QObject):
             QSettings().setValue(f"plot/{plot.objectName()}", plot.quantity.name)
 
     def mark_edit(self, frame: Frame) -> None:
-        """Note at which turn the design on the screen came to be, once a frame shows it."""
+        """Record the iteration of the present design, once a frame shows it."""
         design = frame.stages.design
         records = next(iter(frame.tracks.values()))
         fresh = records[0] is not self._first
@@ -80,7 +80,7 @@ class ConvergenceController(QObject):
             self._panel.set_events(self._events)
 
     def export(self, kind: str) -> None:
-        """Ask for a place and write the turns as a table, or the plots as a picture or a drawing."""
+        """Prompt for a file and write the iterations as a table, or the plots as an image."""
         context, frame = self._context, self._context.session.frame
         if frame is None:
             return

@@ -51,7 +51,7 @@ class _Trouble:
     pair: tuple[tuple[str, ...], ...] | None = None
 
     def is_that(self, other: _Trouble) -> bool:
-        """Tell whether it is the same, as far as is known."""
+        """Return whether it is the same, as far as is known."""
         return self.complaint == other.complaint and (
             None in (self.pair, other.pair) or self.pair == other.pair
         )
@@ -90,7 +90,7 @@ class DiagnosisController(QObject):
         context.actions.add("solve", tr("Diagnose design…"), tip=said, do=self.ask, of_document=True)
 
     def follow(self, frame: Frame) -> None:
-        """Tell of a design that has come to its end; whatever is edited meanwhile ends that."""
+        """Diagnose a design at the end of its run; an edit cancels that."""
         self._frame = frame
         design = frame.stages.design
         if self._asked:
@@ -115,7 +115,7 @@ class DiagnosisController(QObject):
             self._later.start()
 
     def refuse(self, error: Exception) -> None:
-        """Look at a design whose lengths were refused; the notice of the refusal stands already."""
+        """Diagnose a design whose lengths were refused; the notice is shown already."""
         frame = self._context.session.frame
         if isinstance(error, NoEquilibriumError) and frame is not None:
             self._forget()
@@ -127,12 +127,12 @@ class DiagnosisController(QObject):
             self._run(work, partial(self._tell_refused, error))
 
     def ask(self) -> None:
-        """Say what is wrong with the present design, once it is shown, or that nothing is."""
+        """Show the diagnosis of the present design, once it is shown."""
         self._asked = True
         self._begin_asked()
 
     def _begin_asked(self) -> None:
-        """Begin with what was asked for, unless the first frame of the design is still to come."""
+        """Start with what was asked for, unless the first frame of the design is still to come."""
         frame, session = self._frame, self._context.session
         if frame is None or not (frame is session.frame and (session.is_answered or session.failure)):
             return

@@ -62,7 +62,7 @@ class ExportController(QObject):
         sheet.items[self._choices.export.what].setFocus()
 
     def export_body(self) -> None:
-        """Ask for a place and write the reshaped body, else as it was chosen last."""
+        """Prompt for a file and write the reshaped body, else with the last choices."""
         frame = self._ask_and_write("body", tr("Export body"), reshaped=True)
         doubt = self._doubt(frame) if frame is not None else ""
         if frame is not None:
@@ -71,7 +71,7 @@ class ExportController(QObject):
             self._context.notifications.warn(doubt, topic=_DOUBT)
 
     def show_frame(self, frame: Frame) -> None:
-        """Tell of the body as it is now, if somebody looks and it rests."""
+        """Show the present body, if the dialog is visible and the solver has converged."""
         if self.sheet is not None and not frame.is_running:
             self._tell()
 
@@ -95,7 +95,7 @@ class ExportController(QObject):
             self._tell()
 
     def _tell(self) -> None:
-        """Work out beside the window what will be in the file, and say so."""
+        """Compute beside the window what will be in the file, and say so."""
         context, frame, sheet = self._context, self._context.session.frame, self.sheet
         context.jobs.cancel(self._job)
         if frame is None or sheet is None:
@@ -130,7 +130,7 @@ class ExportController(QObject):
             sheet.accept()
 
     def _ask_and_write(self, what: str, title: str, reshaped: bool = False) -> Frame | None:
-        """Ask for a place and begin to write; returns what is written, or None if nothing is."""
+        """Prompt for a file and begin to write; returns what is written, or None if nothing is."""
         usual = self._choices.kind(what)
         kinds = sorted(self._choices.find(what).formats, key=lambda kind: kind != usual)
         filters = ";;".join(f"{format_title(kind)} (*.{kind})" for kind in kinds)

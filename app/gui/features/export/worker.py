@@ -32,11 +32,11 @@ class ExportWorker:
 
     @property
     def at_work(self) -> bool:
-        """Whether the file is still on its way."""
+        """Return whether the file is still on its way."""
         return self._job in self._context.jobs.at_work()
 
     def begin(self) -> None:
-        """Begin with the first of the jobs."""
+        """Start the first job."""
         self._run(tr("Saving {name}…"), self._prepare, self._prepared)
 
     def _prepare(self, progress: Progress) -> tuple[ExportPreview, list[Path]]:

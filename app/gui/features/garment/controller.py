@@ -52,7 +52,7 @@ class GarmentController(QObject):
         self._shown = None
 
     def refresh(self) -> None:
-        """Bring the list up to date."""
+        """Update the list."""
         frame = self._frame
         if frame is None or frame is self._shown:
             return

@@ -47,13 +47,13 @@ class ElasticAssignmentController(QObject):
         self._session.undo_stack.indexChanged.connect(self._follow)
 
     def show(self, name: str) -> None:
-        """Offer elastics for a line and its linked partner."""
+        """Show elastics for a line and its linked partner."""
         design = self._session.design
         if design is not None:
             self._open(design.linked_pair(name), design.line_settings(name).elastic)
 
     def show_all(self) -> None:
-        """Offer elastics for all lines of the cut list: active ones, and bands on points that do not move."""
+        """Show elastics for all lines of the cut list: active ones, and bands on fixed points."""
         frame, design = self._session.frame, self._session.design
         if frame is not None and design is not None:
             still = {line.name for line in frame.stages.model.lines if not line.constrains}

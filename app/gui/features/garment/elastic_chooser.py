@@ -101,7 +101,7 @@ class ElasticChooser(Dialog):
 
     @property
     def current(self) -> int:
-        """The marked row, or -1."""
+        """Return the marked row, or -1."""
         item = self.table.currentItem()
         return -1 if item is None else self.table.indexOfTopLevelItem(item)
 
@@ -114,7 +114,7 @@ class ElasticChooser(Dialog):
         return [each.text() for each in self._offer_buttons()]
 
     def press_offer(self, place: int) -> None:
-        """Press one of the offers."""
+        """Click one of the suggestions."""
         self._offer_buttons()[place].click()
 
     def set_advice(self, view: AdviceView) -> None:

@@ -39,13 +39,13 @@ class ElasticRequest:
 
     @cached_property
     def stages(self) -> Stages:
-        """The stages of the design."""
+        """Return the stages of the design."""
         frame, design = self.frame, self.design
         return frame.stages if frame.stages.design is design else build(design, frame.stages)
 
     @cached_property
     def lift(self) -> float:
-        """The lift before an elastic is chosen [mm]. Raises LineError if nothing balances."""
+        """Return the lift before an elastic is chosen [mm]. Raises LineError if nothing balances."""
         return outcome_of(self.stages).lift
 
     def option(self, elastic: Elastic | None, mode: str) -> ElasticOption:

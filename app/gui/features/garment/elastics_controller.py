@@ -63,7 +63,7 @@ class ElasticsController(QObject):
         sheet.open()
 
     def bring_in(self) -> None:
-        """Ask for a table of the designer's own and keep its elastic."""
+        """Prompt for a table of the user and add its elastic."""
         sheet = self.sheet
         path = ask_table(sheet or self._context.window, tr("Import elastic"))
         if not path or sheet is None:
@@ -86,14 +86,14 @@ class ElasticsController(QObject):
         self._fill(elastic.name)
 
     def hand_on(self, name: str) -> None:
-        """Ask for a place and write an elastic as a table."""
+        """Prompt for a file and write an elastic as a table."""
         design = self._context.session.design
         known = {each.name: each for each in (*(design.elastics if design else ()), *library().values())}
         title = tr("Export elastic")
         self._write(title, name, lambda path: write_elastic(path, known[name]), "")
 
     def save_template(self) -> None:
-        """Ask for a place and write a table to fill in."""
+        """Prompt for a file and write an empty table."""
         hint = tr("Enter your measurements, then import the file.")
         self._write(tr("Save template"), "elastic", write_template, hint)
 
@@ -111,7 +111,7 @@ class ElasticsController(QObject):
             sheet.notices.show_notice("ok", tr("{name} saved.").format(name=Path(path).name), hint)
 
     def take_away(self, name: str) -> None:
-        """Ask, and take one of the designer's own away."""
+        """Delete a custom elastic after confirmation."""
         sheet = self.sheet
         question = tr("Delete elastic {name}?").format(name=name)
         said = tr(

@@ -61,7 +61,7 @@ class ElasticsDialog(Dialog):
 
     @property
     def marked(self) -> str:
-        """The name of the elastic that is marked, or nothing."""
+        """Return the name of the elastic that is marked, or nothing."""
         item = self.table.currentItem()
         return str(item.data(0, _NAME)) if item is not None else ""
 

@@ -333,7 +333,7 @@ class GarmentPanel(QWidget):
             row.set_selected(name == line)
 
     def showEvent(self, event: QShowEvent) -> None:
-        """Ask for the pieces of now."""
+        """Request the current cut list."""
         super().showEvent(event)
         self.opened.emit()
 

@@ -33,7 +33,7 @@ class RatingMark(QWidget):
         self.setFont(font("secondary"))
 
     def sizeHint(self) -> QSize:
-        """Ask for room for both."""
+        """Return the size of mark and text."""
         return QSize(self.fontMetrics().horizontalAdvance(self.word) + 18, 20)
 
     def show_light(self, light: str, word: str) -> None:
@@ -67,7 +67,7 @@ class PressureScale(QWidget):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
     def sizeHint(self) -> QSize:
-        """Ask for room for marks, zones and two rows of words."""
+        """Return the size of marks, zones and two rows of text."""
         return QSize(200, 56)
 
     def show_marks(self, marks: tuple[tuple[str, str, float], ...], faint: bool) -> None:

@@ -75,11 +75,11 @@ class PressureController(QObject):
 
     @property
     def shown(self) -> PressureList | None:
-        """The pressures beside the cut list, if they are of the present body and a result."""
+        """Return the pressures beside the cut list, if they are of the present body and a result."""
         return None if self._stale or self._doubt else self._shown
 
     def follow(self) -> None:
-        """Bring the values beside the cut list up to date, if they are seen."""
+        """Update the values beside the cut list, if visible."""
         frame = self._session.frame
         if frame is None or not self._panel.isVisible():
             return

@@ -94,7 +94,7 @@ class HelpController(QObject):
         sheet.open()
 
     def show_about(self) -> None:
-        """Say what Busk is, and under which licences."""
+        """Show version and licences."""
         AboutDialog(self._context.window, __version__, licences()).open()
 
     def show_menu(self, place: QWidget) -> None:

@@ -104,11 +104,11 @@ class CrashHandler(QObject):
         context.session.opened.connect(self._tell_anew)
 
     def close(self) -> None:
-        """Hear of faults no longer."""
+        """Stop handling faults."""
         sys.excepthook, threading.excepthook = self._hooks
 
     def note(self, fault: Exception) -> None:
-        """Hear of a fault that somebody else has caught."""
+        """Record a fault that was caught elsewhere."""
         self._note(type(fault), fault, fault.__traceback__)
 
     def _note(self, kind: type[BaseException], fault: BaseException, trace: TracebackType | None, /) -> None:

@@ -10,7 +10,7 @@ from app.i18n.catalog import tr
 
 
 def explain(parts: Mapping[str, QWidget]) -> None:
-    """Give each of the main parts, by its name, its What's this."""
+    """Set the What's This texts of the main parts, by name."""
     for name, text in (_work() | _panels()).items():
         parts[name].setWhatsThis(f"<p>{text}</p>")
 

@@ -109,7 +109,7 @@ class LandmarksController(QObject):
             context.notifications.withdraw(_DOUBT)
 
     def show_unclear(self, stages: Stages) -> None:
-        """Say which of the landmarks that the control mesh hangs on could hardly be seen."""
+        """Show which landmarks of the control mesh have low confidence."""
         self._carried = {}
         self._context.view.pins.drop_back()
         marks = [mark for mark in stages.landmarks.points.values() if kind_of(mark.name) in ESSENTIAL]
@@ -151,7 +151,7 @@ class LandmarksController(QObject):
 
     @property
     def carries(self) -> bool:
-        """Whether a pin is off its place and not put down yet."""
+        """Return whether a pin is off its place and not put down yet."""
         return bool(self._carried)
 
     def take(self, name: str) -> None:
@@ -161,7 +161,7 @@ class LandmarksController(QObject):
         self._context.selection.select_landmark(name)
 
     def carry(self, name: str, place: Points) -> None:
-        """Carry a pin to a place of the body at rest, shape (3,) [mm], and let the model follow."""
+        """Move a pin to a position of the original body, shape (3,) [mm], and update the model."""
         if self._refused:
             return
         frame = self._session.frame
@@ -177,7 +177,7 @@ class LandmarksController(QObject):
             self._session.preview(self._placed(self._session.design))
 
     def nudge(self, right: float, up: float) -> bool:
-        """Carry the selected pin over the skin by so much of the picture [mm]; tells whether there is one."""
+        """Move the selected pin over the skin by a shift in the image [mm]; returns whether there is one."""
         pins, view = self._context.view.pins, self._context.view.viewport.scene.view
         name, place = pins.chosen()
         body = self._body()
@@ -206,7 +206,7 @@ class LandmarksController(QObject):
         self.carrying_changed.emit()
 
     def let_go(self) -> bool:
-        """Bring carried pins back to where they were; returns whether there were any."""
+        """Restore moved pins; returns whether there were any."""
         if not self._carried:
             return False
         self._pause.stop()
@@ -219,7 +219,7 @@ class LandmarksController(QObject):
     # -- the user asks
 
     def put_pin(self, name: str) -> None:
-        """Give a landmark that was not found a pin to move."""
+        """Add a pin for a landmark that was not detected."""
         self._context.view.pins.put(name)
         self.move_by_keys()
 
@@ -268,7 +268,7 @@ class LandmarksController(QObject):
         self._context.view.pins.hover(name)
 
     def hover_pin(self, name: str) -> None:
-        """Tell the rule of the landmark under the pointer, and draw what it was read from."""
+        """Show the definition of the landmark under the pointer, and draw its source curve."""
         self.hover(name)
         row = self._panel.rows.get(name)
         words = "" if row is None or self._carried else f"{row.view.title}\n{row.view.words()}"

@@ -262,7 +262,7 @@ class LandmarkWarnings(QFrame):
         column.addWidget(self._said)
 
     def show_doubts(self, count: int, doubts: Sequence[str]) -> None:
-        """Tell how many landmarks of the list are weak, and what is doubted."""
+        """Show how many landmarks have low confidence, and all warnings."""
         do = tr("Select each landmark: drag its pin to correct it, or confirm it.")
         self._count.setText(tr("To review: {count}").format(count=count))
         self._count.setVisible(bool(count))

@@ -33,7 +33,7 @@ class AddLinesController(QObject):
             action.triggered.connect(lambda _=False, name=name: self.add(name))
 
     def show_menu(self) -> None:
-        """Offer what can be added, and no more, under the button that asks for it."""
+        """Show a menu of lines that can be added, below its button."""
         do = self._context.actions
         if not self.menu.actions():
             self.menu.addActions([do.draw_line, do.own_line])

@@ -60,18 +60,18 @@ class BandDragController(QObject):
 
     @property
     def carries(self) -> bool:
-        """Whether a band is in the hand."""
+        """Return whether a band is in the hand."""
         return bool(self._name)
 
     def let_go(self) -> bool:
-        """Bring the line back to the length it had; returns whether one was in the hand."""
+        """Restore the length of the line; returns whether one was dragged."""
         held = self._open_hand()
         if held:
             self._session.cancel_preview()
         return bool(held)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Tell what can be done with the band that the pointer rests on."""
+        """Show the possible actions on the band under the pointer."""
         if not isinstance(event, QHelpEvent) or event.type() != QEvent.Type.ToolTip:
             return False
         cursor = self._cursor_of(self._viewport.scene.bands.hovered)

@@ -67,7 +67,7 @@ class LineDrawTool(QObject):
 
     @property
     def at_work(self) -> bool:
-        """Whether a line is being drawn."""
+        """Return whether a line is being drawn."""
         return self._sketching.at_work
 
     def begin(self) -> None:

@@ -50,12 +50,12 @@ class DrawingBase(QObject):
 
     @property
     def at_work(self) -> bool:
-        """Whether something is being drawn."""
+        """Return whether something is being drawn."""
         return self.hand.at_work
 
     @property
     def frame(self) -> Frame | None:
-        """What is shown, if it is of the present design's control mesh."""
+        """Return the shown frame, if it is of the present design's control mesh."""
         frame, design = self._context.session.frame, self._context.session.design
         same = frame is not None and design is not None and frame.stages.design.template == design.template
         return frame if same else None
@@ -67,7 +67,7 @@ class DrawingBase(QObject):
         self.card.show()
 
     def end(self) -> None:
-        """Give the pointer back, and take everything away."""
+        """Restore the pointer, and remove all drawing items."""
         if self.at_work:
             self.hand.end()
             self.card.hide()

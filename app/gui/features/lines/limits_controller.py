@@ -77,7 +77,7 @@ class LimitsController(QObject):
         return told
 
     def follow(self, frame: Frame) -> None:
-        """Work on the design of a frame at once; of one that is still in the hand, when the hand rests."""
+        """Compute the limits of a frame's design at once, or after a drag."""
         before, self._frame = self._frame, frame
         design = frame.stages.design
         if before is not None and frame.stages.body is not before.stages.body:
@@ -91,7 +91,7 @@ class LimitsController(QObject):
             self._rests.start()
 
     def _begin(self) -> None:
-        """Begin with all lines whose leeways are not known."""
+        """Start with all lines whose leeways are not known."""
         self._let_go()
         frame = self._frame
         if frame is None:
@@ -115,7 +115,7 @@ class LimitsController(QObject):
         return sorted(lines, key=lambda line: (line.name != selected, line.name not in hovered))
 
     def _work(self, stages: Stages, keys: Sequence[Key], progress: Progress) -> None:
-        """Work out one line after the other, in the job's thread; each is told as soon as it is known."""
+        """Compute one line after the other, in the job's thread; each is told as soon as it is known."""
         for at, key in enumerate(keys):
             hear = partial(_part, progress, at / len(keys))
             try:

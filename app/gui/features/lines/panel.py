@@ -198,7 +198,7 @@ class LinesPanel(QWidget):
         self.head.reset.setEnabled(any(view.settable and view.ratio != 1.0 for view in lines))
 
     def show_opening(self, name: str) -> None:
-        """Say in the place of lines that a document is being opened; an empty name: that there are none."""
+        """Show that a document is being opened in place of lines; an empty name: that there are none."""
         if name:
             hint = tr("Lines appear when the control mesh has been fitted.")
             self._empty.show_words(tr("Opening {name}…").format(name=name), hint)
@@ -230,7 +230,7 @@ class LinesPanel(QWidget):
             super().keyPressEvent(event)
 
     def do(self, what: str) -> None:
-        """Do with the selected line what can be done: hide, lock, link, split, rename, remove."""
+        """Run an action on the selected line: hide, lock, link, split, rename, remove."""
         row = self.rows.get(self._selected or "")
         if row is None:
             return

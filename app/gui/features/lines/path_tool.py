@@ -69,7 +69,7 @@ class LinePathTool(QObject):
 
     @property
     def at_work(self) -> bool:
-        """Whether a path is being edited."""
+        """Return whether a path is being edited."""
         return self._sketching.at_work
 
     def begin(self, name: str) -> None:
@@ -138,7 +138,7 @@ class LinePathTool(QObject):
             self._try((*path[: self._held], point, *path[self._held + 1 :]), keep)
 
     def _click(self, at: QPointF) -> None:
-        """Go on to a control point from the nearer end of the path."""
+        """Continue to a control point from the nearer end of the path."""
         point, path, points = (
             self._sketching.nearest(self._points(), at, _REACH),
             self._steps[-1],

@@ -67,7 +67,7 @@ class PresetsController(QObject):
         menu.addAction(tr("Save lines as preset…"), self.ask).setEnabled(opened)
 
     def show_menu(self) -> None:
-        """Offer the presets over the list of lines."""
+        """Show the menu of presets above the list of lines."""
         pull_down(self._menu, self._head.presets)
 
     def _fill_and_show(self, _: object) -> None:
@@ -76,13 +76,13 @@ class PresetsController(QObject):
             self.show_worn(self._context.session.design)
 
     def show_worn(self, design: Design) -> None:
-        """Say over the list which preset is worn, and what it leaves out."""
+        """Show the active preset above the list, and what it omits."""
         worn = next((each for each in self._known if _goes(each, design) and is_active(design, each)), None)
         leaves_out = preset_note(worn) if worn is not None and worn.leaves_out else ""
         self._head.show_preset(preset_title(worn) if worn is not None else "", leaves_out)
 
     def wear(self, preset: Preset) -> None:
-        """Wear the lines of a preset in place of the present ones; say what it leaves out."""
+        """Replace the present lines by those of a preset; show what it omits."""
         session = self._context.session
         before = session.design
         if before is None:
@@ -99,7 +99,7 @@ class PresetsController(QObject):
             self._context.notifications.info(said, preset_note(preset), [undo])
 
     def ask(self) -> None:
-        """Ask for a name, and keep the present lines as a preset."""
+        """Prompt for a name, and save the present lines as a preset."""
         # Not the name of the project: a set of lines is for more than one customer.
         taken, name = {preset.title for preset in user_presets()[0]}, tr("Custom lines")
         names = chain([name], (f"{name} {number}" for number in count(2)))

@@ -111,7 +111,7 @@ class LineRow(QFrame):
         self.update()
 
     def take_focus(self, reason: Qt.FocusReason) -> None:
-        """Give the keyboard to the slider, or to the row if its length cannot be set."""
+        """Set the keyboard focus to the slider, or to the row if its length cannot be set."""
         (self.slider if self.view.settable else self).setFocus(reason)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:

@@ -102,7 +102,7 @@ class LengthSlider(QAbstractSlider):
             self.update()
 
     def set_color(self, color: str) -> None:
-        """Give the handle the colour of its line."""
+        """Set the colour of the handle to that of its line."""
         if color != self._color:
             self._color = color
             self.update()

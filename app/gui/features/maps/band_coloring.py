@@ -101,13 +101,13 @@ class BandPainter:
         self._painted: WeakSet[Bands] = WeakSet()
 
     def paint(self, bands: Bands, shown: BandValues, ramp: Ramp) -> None:
-        """Give bands the colours of ``shown`` values in a ``ramp``."""
+        """Colour bands by ``shown`` values in a ``ramp``."""
         bands.paint({name: shown.colours(name, ramp) for name in shown.values}, ramp.blank)
         bands.raise_to(shown.rises)
         self._painted.add(bands)
 
     def give_back(self, bands: Bands) -> None:
-        """Give bands their own colours back, if they have others."""
+        """Restore the original colours of bands."""
         if bands in self._painted:
             bands.paint(None)
             bands.raise_to({})

@@ -61,12 +61,12 @@ class LegendBar(QWidget):
         return QSize(124, round(self._bar.bottom()) + 17)
 
     def say(self, note: str) -> None:
-        """Tell in a tip what the values are, and how their range is set."""
+        """Show values and range in a tooltip."""
         how = tr("Drag an end or enter a value to set the range. Double-click for the automatic range.")
         set_tip(self, "\n".join(filter(None, (note, how))))
 
     def set_small(self, small: bool) -> None:
-        """Be shorter, or as high as usual."""
+        """Set the short or the normal height."""
         self._bar.setHeight(SMALL if small else BAR.height())
         for field, y in ((self.high, self._bar.top()), (self.low, self._bar.bottom())):
             field.move(20, round(y) - field.height() // 2)

@@ -88,7 +88,7 @@ class MapsController(QObject):
 
     @property
     def now(self) -> BodyState | None:
-        """What is read off the session's body, once a map was asked for."""
+        """Return the values of the session's body, once a map was requested."""
         return self._seen.now
 
     # -- what is asked
@@ -98,7 +98,7 @@ class MapsController(QObject):
         self.choose("" if self.name else self._last)
 
     def cycle(self) -> None:
-        """Go on to the next map, and after the last one to the first."""
+        """Show the next map, and after the last one the first."""
         names = [name for name in MAPS if name != "worn" or self._worn.worn]
         self.choose(names[(names.index(self.name) + 1) % len(names) if self.name in names else 0])
 
@@ -141,7 +141,7 @@ class MapsController(QObject):
             self._pin((*self.pinned, pinned))
 
     def look_at_most(self) -> None:
-        """Turn to the place that is pressed most, and pin what it is pressed with."""
+        """Show the place of maximum pressure, with a flag."""
         listed = self._pressures.shown
         if listed is None or listed.highest is None:
             return
@@ -177,13 +177,13 @@ class MapsController(QObject):
     # -- what is shown
 
     def refresh(self) -> None:
-        """Bring legend, colours and flags up to date with the session's frame, and have the view drawn."""
+        """Update legend, colours and flags to the session's frame, and redraw the view."""
         self.follow()
         for body in self._view.beside.bodies:
             body.viewport.request_draw()
 
     def follow(self) -> None:
-        """Bring legend, colours and flags up to date; the view is being drawn anyway."""
+        """Update legend, colours and flags; the view is redrawn anyway."""
         frame = self._context.session.frame
         shown = bool(self.name) and frame is not None
         self._view.tools.set_shown("map", shown)

@@ -82,7 +82,7 @@ class Legend(FloatingPanel):
         self.bar.set_numbers(kind.unit, kind.digits, kind.both_ways, kind.marks)
 
     def show_note(self, note: str) -> None:
-        """Say under the bar what the values are."""
+        """Show a description of the values below the bar."""
         self.note.setText(note)
         self.bar.say(note)
         # What the sign means can be guessed from no colour.
@@ -95,7 +95,7 @@ class Legend(FloatingPanel):
         return self._size
 
     def set_size(self, size: str) -> None:
-        """Be one of ``SIZES``: small it is shorter, and folded it is only a title, which tells the rest."""
+        """Set one of ``SIZES``: small is shorter, folded is only a title with a tooltip."""
         self.bar.set_small(size != "full")
         self.bar.setVisible(size != "folded")
         self._size = size

@@ -37,18 +37,18 @@ class LegendPlacement(QObject):
         view.installEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Look again when the view has another size."""
+        """Check the placement when the size of the view changes."""
         if event.type() == QEvent.Type.Resize:
             self.consider()
         return False
 
     def consider(self) -> None:
-        """Look soon whether it covers something."""
+        """Check soon whether the legend covers something."""
         if not self._legend.isHidden():
             self._clock.start()
 
     def choose(self) -> None:
-        """Stay where it covers nothing, else go to the first such place, else to where it covers least.
+        """Keep a place that covers nothing, else choose the first such place, else that which covers least.
 
         Between places that all cover something it stays, unless another covers a quarter less.
         """

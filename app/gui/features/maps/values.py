@@ -20,7 +20,7 @@ class PressureSource(Protocol):
 
     @property
     def shown(self) -> PressureList | None:
-        """The pressures beside the cut list."""
+        """Return the pressures beside the cut list."""
         ...
 
     def of(self, frame: Frame) -> PressureList | None:
@@ -45,7 +45,7 @@ class WornSource(Protocol):
 
     @property
     def worn(self) -> object:
-        """The scan, or None."""
+        """Return the scan, or None."""
         ...
 
     def values(self, frame: Frame) -> Floats:
@@ -73,7 +73,7 @@ class MapValues:
         self._pressed: WeakKeyDictionary[BodyState, PressureList | None] = WeakKeyDictionary()
 
     def take(self, frame: Frame) -> bool:
-        """Follow a frame of the session; returns whether it is of another body or fit than the last one."""
+        """Set the frame; returns whether it is of another body or fit than the last one."""
         if self.now is not None and self.now.belongs_to(frame):
             self.now.follow(frame)
             return False

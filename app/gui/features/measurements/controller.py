@@ -68,7 +68,7 @@ class MeasurementsController(QObject):
         self.refresh()
 
     def refresh(self) -> None:
-        """Bring the table up to date, if it is seen; unseen it would cost each frame the same."""
+        """Update the table, if visible."""
         if self._frame is not None and self._panel.isVisible():
             self._panel.set_rows(self._spread(measure_views(self._frame)), invalid_reason(self._frame))
             self._measure(self._frame)
@@ -189,7 +189,7 @@ class MeasurementsController(QObject):
 
     @property
     def _sure(self) -> OutputUncertainties | None:
-        """How far the girths of the shown body may be off, once all of it is known."""
+        """Return how far the girths of the shown body may be off, once all of it is known."""
         spread, faint = self._uncertainties()
         return None if faint else spread
 

@@ -68,7 +68,7 @@ class CustomMeasuresController(QObject):
 
     @property
     def at_work(self) -> bool:
-        """Whether a measure is being made or changed."""
+        """Return whether a measure is being made or changed."""
         return self._panel.editing
 
     def begin(self, former: str = "") -> None:

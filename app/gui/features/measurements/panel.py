@@ -126,7 +126,7 @@ class MeasurementsPanel(QStackedWidget):
 
     @property
     def editing(self) -> bool:
-        """Whether the form for one's own measure is there."""
+        """Return whether the form for one's own measure is there."""
         return self.currentWidget() is self.editor
 
     def set_editing(self, editing: bool) -> None:
@@ -137,7 +137,7 @@ class MeasurementsPanel(QStackedWidget):
 
     @property
     def mark(self) -> str:
-        """The key of the measure that is shown on the body, or nothing."""
+        """Return the key of the measure that is shown on the body, or nothing."""
         return self._table.mark
 
     def select(self, key: str) -> None:
@@ -154,17 +154,17 @@ class MeasurementsPanel(QStackedWidget):
 
     @property
     def rows(self) -> tuple[MeasureView, ...]:
-        """The figures of the model that are shown."""
+        """Return the figures of the model that are shown."""
         return self._live
 
     @property
     def measured(self) -> tuple[MeasureView, ...]:
-        """What was measured on the body."""
+        """Return the measurements of the body."""
         return self._measured
 
     @property
     def stale(self) -> bool:
-        """Whether what was measured was measured on a former body."""
+        """Return whether what was measured was measured on a former body."""
         return self._stale
 
     def _show(self) -> None:
@@ -175,7 +175,7 @@ class MeasurementsPanel(QStackedWidget):
 
     @property
     def doubt(self) -> str:
-        """Why the measures are no result, or nothing."""
+        """Return why the measurements are not valid, or nothing."""
         return self._doubt.text()
 
     def _mark(self, key: str) -> None:
@@ -204,7 +204,7 @@ class MeasurementsPanel(QStackedWidget):
         return self._buttons
 
     def showEvent(self, event: QShowEvent) -> None:
-        """Ask for the measures of now."""
+        """Request the current measurements."""
         self.opened.emit()
 
     def hideEvent(self, event: QHideEvent) -> None:

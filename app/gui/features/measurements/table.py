@@ -51,7 +51,7 @@ class RowGeometry:
 
     @cached_property
     def wide(self) -> bool:
-        """Whether the name does not fit beside the figures."""
+        """Return whether the name does not fit beside the figures."""
         advance = _advance(self.view.label, "body")
         if self.mixed:
             advance += 10 + _advance(self.view.unit_shown, "caption")
@@ -59,17 +59,17 @@ class RowGeometry:
 
     @property
     def figures(self) -> int:
-        """Where the line with the figures begins."""
+        """Return where the line with the values begins."""
         return self.top + (NAME if self.wide else 0)
 
     @property
     def line(self) -> int:
-        """How high the line with the figures is, with ± under them [px]."""
+        """Return how high the line with the figures is, with ± under them [px]."""
         return ROW + (OFF if self.view.off else 0)
 
     @cached_property
     def texts(self) -> list[tuple[str, str, QRect]]:
-        """What stands under the figures: words, the kind of type, and where."""
+        """Return the texts below the values: words, type and position."""
         told = [(self.view.caption, "caption")] if self.view.caption else []
         told += [(each, "secondary") for each in self.view.details] if self.opened else []
         result, top = [], self.figures + self.line - 4
@@ -82,13 +82,13 @@ class RowGeometry:
 
     @property
     def foot(self) -> QRect:
-        """Where the buttons of an opened row of one's own stand."""
+        """Return the position of the buttons of an opened custom row."""
         low = self.texts[-1][2].bottom() + _GAP if self.texts else self.figures + self.line
         return QRect(EDGE, low, self.width - 2 * EDGE, FOOT if self.opened and self.view.own else 0)
 
     @cached_property
     def height(self) -> int:
-        """How high the row is [px]."""
+        """Return how high the row is [px]."""
         high = self.figures + self.line - self.top
         if self.texts:
             high += sum(rect.height() for _, _, rect in self.texts)
@@ -97,7 +97,7 @@ class RowGeometry:
         return high + self.foot.height()
 
     def holds(self, place: QPoint) -> bool:
-        """Tell whether a place lies on the row."""
+        """Return whether a position is on the row."""
         return self.top <= place.y() < self.top + self.height
 
 
@@ -289,12 +289,12 @@ class MeasurementsTable(QWidget):
         self.select("" if view is None else view.key)
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
-        """Ask for the measure to be looked at that the first click has opened."""
+        """Zoom to the measurement that the first click has opened."""
         if self.mark:
             self.framed.emit()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Go to the next measure or the one before, Enter looks at it; F2 changes, Del removes one's own."""
+        """Select the next or previous measurement; Enter zooms, F2 edits, Del deletes a custom one."""
         key = Qt.Key(event.key())
         own = any(view.own and view.key == self.mark for view in self.rows)
         if key == Qt.Key.Key_Escape and self.mark:
@@ -325,7 +325,7 @@ class MeasurementsTable(QWidget):
         self._lay_out()
 
     def event(self, event: QEvent) -> bool:
-        """Tell over a row how it is taken, and keep the keys that the menus have too."""
+        """Show the definition of a row, and keep the keys that the menus have too."""
         if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.ShortcutOverride:
             event.setAccepted(event.key() in _OWN_KEYS)
             return True

@@ -122,5 +122,5 @@ class ModelRow(NavigationRow):
         super().__init__(tr("Model options"))
 
     def set_values(self, present: Mapping[str, Any]) -> None:
-        """Say what is chosen."""
+        """Show the current choices."""
         self.show_words(summary(present))

@@ -58,7 +58,7 @@ class AutosaveController(QObject):
         self._session.undo_stack.cleanChanged.connect(lambda _: self.note())
 
     def note(self) -> None:
-        """Hear that something was edited, or saved."""
+        """Record an edit or a save."""
         if not self._session.unsaved:
             self._forget()
         elif self._session.document is not self._kept and not self._clock.isActive():
@@ -94,19 +94,19 @@ class AutosaveController(QObject):
             return ""
 
     def show_opened(self) -> None:
-        """Hold the project that was opened; what was kept of the one before is no longer wanted."""
+        """Lock the opened project, and discard the recovery data of the previous one."""
         self._forget()
         self._hold_project()
         self.note()
 
     def show_saved(self) -> None:
-        """Hold the project that was saved, and go on with what was edited meanwhile."""
+        """Lock the saved project, and continue with later edits."""
         if self._session.path != self._lock.path:
             self._hold_project()
         self.note()
 
     def adopt(self, recovery: Recovery) -> None:
-        """Go on in the folder that the present document was restored from: it is kept there already."""
+        """Continue in the folder that the present document was restored from."""
         self._writing.wait()
         if self._recovery is not None:
             self._recovery.remove()
@@ -188,4 +188,4 @@ class AutosaveController(QObject):
 
 
 def _do_nothing() -> None:
-    """The user knows: the notice goes."""
+    """Do nothing: the notice closes."""

@@ -103,7 +103,7 @@ class ProjectController(QObject):
     # -- files
 
     def open(self) -> None:
-        """Ask for a file and open it."""
+        """Prompt for a file and open it."""
         self.open_file(ask_open(self._context.window))
 
     def open_file(self, path: str) -> None:
@@ -131,7 +131,7 @@ class ProjectController(QObject):
         return self._session.save(str(path), self._preview())
 
     def save_as(self) -> bool:
-        """Ask for a place and save the project there; returns whether it is being saved."""
+        """Prompt for a file and save the project; returns whether saving has begun."""
         self.complete_edits()
         kinds = f"{tr('Projects')} (*.busk)"
         name = str(self._session.path or f"{self._session.name}.busk")
@@ -139,7 +139,7 @@ class ProjectController(QObject):
         return bool(path) and self._session.save(path, self._preview())
 
     def may_leave(self) -> bool:
-        """Ask about unsaved changes; returns whether the document may be left. A save is waited for."""
+        """Confirm unsaved changes; returns whether the document may be closed. Waits for a save."""
         self.complete_edits()
         if self._session.finish_saving():
             return True

@@ -60,12 +60,12 @@ def forget_file(path: str) -> None:
 
 
 def is_first_start() -> bool:
-    """Tell whether nobody has worked here yet: no file was opened, and the tour neither seen nor skipped."""
+    """Return whether no file was opened, and the tour neither seen nor skipped."""
     return not recent_files() and not QSettings().contains(_TOURED)
 
 
 def end_first_start() -> None:
-    """Say that the tour was seen, or not wanted."""
+    """Record that the tour was seen or skipped."""
     QSettings().setValue(_TOURED, True)
 
 

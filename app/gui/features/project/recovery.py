@@ -139,7 +139,7 @@ class RecoveryCard(OverlayCard):
         self.hide()
 
     def offer(self, view: RecoveryView) -> None:
-        """Offer one document."""
+        """Show one recovered document."""
         self._heading.setText(tr("{name} was not saved").format(name=view.name))
         said = tr("Busk was not closed properly. Last autosave: {time}. Later changes are lost.")
         said = said.format(time=view.time)
@@ -195,7 +195,7 @@ class RecoveryController(QObject):
         context.actions.add("file", tr("Open backup…"), tip=said, do=self.open_backup)
 
     def look(self) -> None:
-        """Look for what was left behind, at the start."""
+        """Find recovery data, at the start."""
         # Nobody has chosen what the window opens with.
         self._at_start = self._context.navigation.page is None
         self._offers, self._broken = find_unsaved()
@@ -208,7 +208,7 @@ class RecoveryController(QObject):
             self._context.session.restore(self._offers[0][0])
 
     def show_opened(self) -> None:
-        """Go on in the folder of a document that was restored: it is safe there all the time.
+        """Continue in the folder of a restored document.
 
         Who opens something else instead is not to have the offer in the way any longer.
         """
@@ -231,7 +231,7 @@ class RecoveryController(QObject):
             self._offer()
 
     def open_backup(self) -> None:
-        """Ask for a former version and open it, unsaved, in the place of the project."""
+        """Prompt for a previous version and open it, unsaved, in place of the project."""
         backup = ask_backup(self._context.window, self._context.session.path)
         if backup is None or not self._project.may_leave():
             return

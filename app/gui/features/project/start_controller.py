@@ -26,19 +26,19 @@ class Tour(Protocol):
 
     @property
     def place(self) -> int:
-        """Which stop is shown, from 0; -1 while there is no tour."""
+        """Return the index of the shown step, from 0; -1 without a tour."""
         ...
 
     def begin(self) -> None:
-        """Begin with the first stop."""
+        """Start with the first step."""
         ...
 
     def begin_when_settled(self) -> None:
-        """Begin once the body that is being opened has converged."""
+        """Start once the opened body has converged."""
         ...
 
     def end(self) -> None:
-        """End it, for good."""
+        """End the tour for good."""
         ...
 
 
@@ -97,7 +97,7 @@ class StartController(QObject):
             self.leave_page()
 
     def show_failure(self) -> None:
-        """Come back where there is nothing else to show; the notice stands above the page."""
+        """Show the start page where nothing else can be shown; the notice is above it."""
         if self._context.session.frame is None and not self._is_incomplete():
             self.show_page()
         else:
@@ -127,7 +127,7 @@ class StartController(QObject):
         view.viewport.frame_points(view.viewport.scene.bands.spine(LIFTING_LINE)[0])
 
     def take_tour(self) -> None:
-        """Lead through the window, on what is open or else on the sample."""
+        """Start the tour on the open document, or else on the sample."""
         context = self._context
         if context.session.frame is None:
             self._project.open_sample(FIRST_SAMPLE)
@@ -137,7 +137,7 @@ class StartController(QObject):
             self.tour.begin()
 
     def locate(self, path: str) -> None:
-        """Ask where a file that is gone has moved to, and open it there."""
+        """Prompt for the new place of a missing file, and open it."""
         found = ask_open(self._context.window)
         if found:
             forget_file(path)
@@ -149,7 +149,7 @@ class StartController(QObject):
         self.page.set_projects(project_views())
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Say over the whole window what letting go of a file will do."""
+        """Show over the whole window what dropping a file will do."""
         if isinstance(event, QDragEnterEvent) and event.type() == QEvent.Type.DragEnter:
             files = [url.fileName() for url in event.mimeData().urls() if url.isLocalFile()]
             if files:

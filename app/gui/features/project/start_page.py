@@ -139,7 +139,7 @@ class StartPage(QWidget):
         self._nothing.setVisible(not projects)
 
     def set_document(self, name: str) -> None:
-        """Offer the way back to the open document, if there is one."""
+        """Show the way back to the open document, if there is one."""
         self.back.setText(tr("Back to {name}").format(name=name))
         self.back.setVisible(bool(name))
 

@@ -82,7 +82,7 @@ class ReportController(QObject):
 
     @property
     def is_open(self) -> bool:
-        """Whether the sheet stands in the place of the work."""
+        """Return whether the sheet stands in the place of the work."""
         return self._context.navigation.page is self.page
 
     def open(self) -> None:
@@ -132,7 +132,7 @@ class ReportController(QObject):
     # -- what is shown
 
     def follow(self) -> None:
-        """Bring the sheet up to date, if it is seen: its heading at once, its figures once the run rests."""
+        """Update the report, if visible: its heading at once, its values after convergence."""
         context, frame = self._context, self._context.session.frame
         if frame is None or not self.is_open:
             return
@@ -156,7 +156,7 @@ class ReportController(QObject):
         return sizes_alike and self._context.session.is_converged and _alike(self._frame, frame)
 
     def _make(self, frame: Frame) -> None:
-        """Work out the sheet beside the window, then draw its pictures piece by piece."""
+        """Compute the sheet beside the window, then draw its pictures piece by piece."""
         context, heading = self._context, self._heading()
         self._asked = frame
         body, known = frame.stages.body, self._occlusion
@@ -305,7 +305,7 @@ class ReportController(QObject):
 
 
 def _alike(one: Frame, other: Frame) -> bool:
-    """Whether two frames have one sheet: all but the customer is the same."""
+    """Return whether two frames have one sheet: all but the customer is the same."""
     designs = (replace(each.stages.design, customer="") for each in (one, other))
     same = len(set(map(repr, designs))) == 1
     return same and np.allclose(one.control_points, other.control_points, rtol=0.0, atol=STILL)

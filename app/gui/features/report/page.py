@@ -96,7 +96,7 @@ class ReportPage(QWidget):
         self.languages.set_choice(language)
 
     def tell_name(self) -> None:
-        """Tell whose it is, if that has been typed since it was told last."""
+        """Emit the customer's name, if it was edited since the last time."""
         if self.customer.isModified():
             self.customer.setModified(False)
             name = " ".join(self.customer.text().split())

@@ -68,7 +68,7 @@ class ScanController(QObject):
 
     @property
     def painting(self) -> bool:
-        """Whether the question's pictures are being painted."""
+        """Return whether the question's pictures are being painted."""
         return self._painting is not None
 
     # -- the session speaks

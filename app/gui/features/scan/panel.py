@@ -151,7 +151,7 @@ class ScanPanel(QWidget):
 
 
 def _stays(sentence: str) -> bool:
-    """Tell whether a sentence is on a hole that was left open, and not on a repair."""
+    """Return whether a sentence is on a hole that was left open, and not on a repair."""
     return "stays open" in sentence or "stay open" in sentence
 
 

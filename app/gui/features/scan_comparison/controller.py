@@ -99,7 +99,7 @@ class ScanComparisonController(QObject):
             self._context.navigation.show_panel("result")
 
     def choose(self) -> None:
-        """Ask for the worn scan and read it."""
+        """Prompt for the fitting scan and read it."""
         if path := ask_scan(self._context.window, tr("Open fitting scan")):
             self.read(path)
 
@@ -143,7 +143,7 @@ class ScanComparisonController(QObject):
         self.follow()
 
     def apply(self) -> None:
-        """Give the design the numbers that were found, as one undo step."""
+        """Apply the calibrated parameters to the design, as one undo step."""
         if self._found is None or self._found[0] is not self._context.session.design:
             return
         found, self._found = self._found[1], None
@@ -181,7 +181,7 @@ class ScanComparisonController(QObject):
         return None
 
     def _rests(self, frame: Frame) -> bool:
-        """Tell whether the shape shown has settled, though turns beside it may go on for seconds."""
+        """Return whether the shape shown has settled, though turns beside it may go on for seconds."""
         session = self._context.session
         of_now = frame is session.frame and frame.stages.design is session.design and session.is_answered
         return of_now and (frame.verdict.motion == "settled" or not frame.is_running)
@@ -229,7 +229,7 @@ class ScanComparisonController(QObject):
         self.follow()
 
     def follow(self) -> None:
-        """Bring page and door up to date with what is shown, and let go of what is of something else."""
+        """Update page and navigation row, and drop results of other designs."""
         frame, design = self._context.session.frame, self._context.session.design
         if frame is None or design is None:
             return
@@ -279,6 +279,6 @@ class ScanComparisonController(QObject):
 
 
 def _is_as(frame: Frame, other: Frame) -> bool:
-    """Tell whether two frames show the same shape: another may have come of turns beside it alone."""
+    """Return whether two frames show the same shape: another may have come of turns beside it alone."""
     same = frame.stages is other.stages
     return same and bool((frame.control_points == other.control_points).all())

@@ -180,7 +180,7 @@ class ScanComparisonPage(QWidget):
         self._fill(self._numbers, ("", tr("Current"), tr("Calibrated"), "±"), rows, weak)
 
     def show_map(self, on: bool) -> None:
-        """Tell by the button whether the map lies on the body."""
+        """Show by the button whether the map is on the body."""
         self._mapped = on
         self.look.setText(tr("Hide map") if on else tr("Show on body"))
 

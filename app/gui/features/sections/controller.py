@@ -110,7 +110,7 @@ class SectionsController(QObject):
 
     @property
     def carries(self) -> bool:
-        """Whether a hand has hold of the plane."""
+        """Return whether a hand has hold of the plane."""
         return self._former is not None
 
     def let_go(self) -> bool:
@@ -129,12 +129,12 @@ class SectionsController(QObject):
         self.refresh()
 
     def follow_landmark(self, name: str) -> None:
-        """Go with the selected landmark if it is a bust point."""
+        """Move the plane to the selected landmark if it is a bust point."""
         if name.startswith("bust_point_") and self.is_on:
             self.go_through(name.removeprefix("bust_point_"))
 
     def export(self) -> None:
-        """Ask for a place and write the curves there."""
+        """Prompt for a file and write the curves."""
         name = f"{self._context.session.name}-{self.axis}.csv"
         path = ask_save(self._context.window, tr("Export curves as CSV…"), name, "CSV (*.csv)", ".csv")
         if not path or self._slicer is None:
@@ -249,7 +249,7 @@ class SectionsController(QObject):
             self._plot_clock.start()
 
     def _plot(self) -> None:
-        """Bring the panel up to date."""
+        """Update the panel."""
         self._plot_clock.stop()
         if self._slicer is None or self._now is None or not self.is_on:
             return

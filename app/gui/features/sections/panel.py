@@ -80,7 +80,7 @@ class SectionPanel(FloatingPanel):
 
     @property
     def is_folded(self) -> bool:
-        """Whether only title and place are shown."""
+        """Return whether only title and place are shown."""
         return self.plot.isHidden()
 
     def set_folded(self, folded: bool) -> None:

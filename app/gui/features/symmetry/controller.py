@@ -84,7 +84,7 @@ class SymmetryController(QObject):
         self.follow()
 
     def follow(self) -> None:
-        """Bring the card up to date, if it is seen; what is of a former shape is faint."""
+        """Update the card, if visible; values of a previous shape are faint."""
         frame, design = self._session.frame, self._session.design
         if self._balancing is not None and self._balancing[1] is not design:
             self._context.jobs.cancel(self._balancing[0])  # it would balance another design
@@ -111,7 +111,7 @@ class SymmetryController(QObject):
 
     @property
     def is_balancing(self) -> bool:
-        """Whether the targets are being computed; a second press asks for nothing more."""
+        """Return whether the targets are being computed; a second press asks for nothing more."""
         return self._balancing is not None and self._balancing[0].wanted
 
     def balance(self) -> None:

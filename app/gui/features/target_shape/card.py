@@ -229,7 +229,7 @@ class TargetCard(QWidget):
     # -- what is typed
 
     def commit(self) -> bool:
-        """Ask for what is still being typed; tells whether it can be."""
+        """Submit the value being typed; returns whether it is valid."""
         taken = [row.field.commit() for row in tuple(self.wishes.values())]  # all of them, whatever one says
         return all(taken)
 

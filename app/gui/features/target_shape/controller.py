@@ -94,7 +94,7 @@ class TargetShapeController(QObject):
 
     @property
     def answer(self) -> TargetAnswer | None:
-        """The answer that is shown, if there is one."""
+        """Return the answer that is shown, if there is one."""
         return self._answer
 
     @answer.setter
@@ -104,7 +104,7 @@ class TargetShapeController(QObject):
 
     @property
     def is_open(self) -> bool:
-        """Whether something is being asked for."""
+        """Return whether something is being asked for."""
         return self._pages.currentWidget() is self.card
 
     def begin(
@@ -135,7 +135,7 @@ class TargetShapeController(QObject):
         self.card.take_focus(next(iter(self.wishes), ""))
 
     def wish(self, key: str, value: float) -> None:
-        """Wish for a figure [mm], or set the limit of pressure [kPa]."""
+        """Set the target of a quantity [mm], or the limit of pressure [kPa]."""
         self.all_wishes.set(key, value)
         self.steps.note()
         self.ask()
@@ -147,7 +147,7 @@ class TargetShapeController(QObject):
         self.card.take_focus(name)
 
     def drop(self, key: str) -> None:
-        """Wish for a figure, or a profile, no longer."""
+        """Remove the target of a quantity or a profile."""
         self.all_wishes.drop(key)
         if self.handles.kind == "profile" and not self.drawn:
             self.drawing.choose("bust")
@@ -165,12 +165,12 @@ class TargetShapeController(QObject):
 
     @property
     def drawn(self) -> dict[str, ProfileCurve]:
-        """The profiles that are drawn, by section."""
+        """Return the profiles that are drawn, by section."""
         return self.all_wishes.drawn
 
     @property
     def wishes(self) -> dict[str, float | None]:
-        """The figures on the card; those without a value are not asked for."""
+        """Return the figures on the card; those without a value are not asked for."""
         return self.all_wishes.figures
 
     def goals(self) -> tuple[Goal, ...]:
@@ -179,7 +179,7 @@ class TargetShapeController(QObject):
 
     @property
     def is_tried_on(self) -> bool:
-        """Whether what is seen is the answer, solved to the end, and not taken."""
+        """Return whether what is seen is the answer, solved to the end, and not taken."""
         frame, answer = self._session.frame, self.answer
         if frame is None or answer is None or answer.reply is None or not self.is_open:
             return False
@@ -235,7 +235,7 @@ class TargetShapeController(QObject):
     # -- questions and answers
 
     def ask(self, *, hurried: bool = False) -> None:
-        """Have what is wished now answered; ``hurried`` while a hand is on its way."""
+        """Solve the current targets; ``hurried`` during a drag."""
         frame, design = self._session.frame, self.ground.design
         if not self.is_open or frame is None or design is None:
             return

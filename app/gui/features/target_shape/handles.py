@@ -53,11 +53,11 @@ class TargetHandles(QObject):
 
     @property
     def carries(self) -> bool:
-        """Whether a hand has hold of one."""
+        """Return whether a hand has hold of one."""
         return self._before is not None
 
     def let_go(self) -> bool:
-        """Bring the wishes back to what they were before a hand took hold; returns whether one had."""
+        """Restore the targets before the drag; returns whether there was one."""
         before, self._before = self._before, None
         if before is None:
             return False
@@ -77,7 +77,7 @@ class TargetHandles(QObject):
         self.profile.put_away()
 
     def follow(self) -> None:
-        """Stand where the bust points are wished on the shown body."""
+        """Place the handles at the target bust points of the shown body."""
         frame, view = self._context.session.frame, self._context.view
         if (
             frame is None
@@ -146,7 +146,7 @@ class TargetHandles(QObject):
             handle.open_hand()
 
     def _draw(self, section: str, handle: int, up: float, out: float) -> None:
-        """Go on with the curve of a section by a step of the hand at one of its handles [mm]."""
+        """Continue with the curve of a section by a step of the hand at one of its handles [mm]."""
         if self._before is not None:
             self._controller.drawing.draw(
                 section, self._controller.drawn[section].with_moved_handle(handle, up, out)
@@ -154,7 +154,7 @@ class TargetHandles(QObject):
             self._controller.wish_by_hand(dict(self._controller.wishes), at_rest=False)
 
     def _pull(self, side: str, up: float, out: float) -> None:
-        """Go on with the wishes by a step of the hand [mm]."""
+        """Continue with the wishes by a step of the hand [mm]."""
         frame = self._context.session.frame
         if frame is None or self._before is None:
             return
@@ -172,7 +172,7 @@ class TargetHandles(QObject):
         self._controller.wish_by_hand(wishes, at_rest=False)
 
     def _is_meant(self, what: str) -> bool:
-        """Tell whether the hand goes that way on purpose: a way that was free stays so if it does not."""
+        """Return whether the hand goes that way on purpose: a way that was free stays so if it does not."""
         way = abs(self._pulled[what])
         return way > _ASIDE * max(map(abs, self._pulled.values())) and way > _STILL
 

@@ -19,22 +19,22 @@ class TargetDesign:
         self.said = ""
 
     def begin(self, prepare: Callable[[Design], Design] | None, said: str) -> None:
-        """Ask of what ``prepare`` makes of the session's design."""
+        """Use what ``prepare`` makes of the session's design."""
         self._prepare, self.said = prepare, said if prepare is not None else ""
         self.follow()
 
     def follow(self) -> None:
-        """Ask of the session's design as it is now."""
+        """Use the session's present design."""
         design = self._session.design
         self.design = design if design is None or self._prepare is None else self._prepare(design)
 
     def leave(self) -> None:
-        """Ask of none any longer."""
+        """Use no design."""
         self._prepare, self.design, self.said = None, None, ""
 
     @property
     def missing(self) -> str:
-        """What has to be done before anything can be asked, if there is something."""
+        """Return what has to be done before targets can be solved, if anything."""
         # What is prepared is not in the frame yet; that its lines can move something is known.
         if self._prepare is not None or self.design is None:
             return ""
@@ -42,12 +42,12 @@ class TargetDesign:
 
     @property
     def asks(self) -> bool:
-        """Whether there are lines that can be asked for anything."""
+        """Return whether there are lines that can be asked for anything."""
         return self._session.frame is not None and self.design is not None and not self.missing
 
     @property
     def inactive(self) -> tuple[str, ...]:
-        """The lines that are off and could move the body."""
+        """Return the lines that are off and could move the body."""
         design = self.design
         if design is None:
             return ()
@@ -56,6 +56,6 @@ class TargetDesign:
 
     @property
     def moving(self) -> list[str]:
-        """The lines that lie on points which move."""
+        """Return the lines that lie on points which move."""
         frame = self._session.frame
         return [] if frame is None else [line.name for line in frame.stages.model.lines if line.constrains]

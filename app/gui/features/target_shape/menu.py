@@ -50,7 +50,7 @@ class TargetMenu(QObject):
             self.menu.addAction(words, partial(self.ask_profile, side))
 
     def ask_profile(self, side: str) -> None:
-        """Ask for a table, and wish for the profile in it."""
+        """Prompt for a table, and add its profile as a target."""
         path = ask_table(self._context.window, tr("Profile from file"))
         if path:
             self._controller.drawing.take_table(side, path)

@@ -66,7 +66,7 @@ def show_result(
 
 
 def meets_targets(wishes: Targets, answer: TargetAnswer) -> bool:
-    """Tell whether an answer is what is wished, as nearly as a tailor can tell or a hand draws."""
+    """Return whether a result meets the targets within the accuracy of tailoring."""
     reply, asked = answer.reply, answer.question.goals
     return reply is not None and (_is_met(wishes, reply, asked) or is_near(reply, asked))
 

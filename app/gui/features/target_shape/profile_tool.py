@@ -76,7 +76,7 @@ class ProfileTool(QObject):
             self._take(profile)
 
     def take_table(self, side: str, path: str) -> None:
-        """Wish for the profile in a table through the bust point of a side."""
+        """Set the profile of a table as target, through the bust point of a side."""
         from core.analysis.inverse_design.profile_csv import read_profile  # noqa: PLC0415 (few ever ask)
         from core.analysis.inverse_design.profile_curve import profile_from_table  # noqa: PLC0415
 
@@ -92,7 +92,7 @@ class ProfileTool(QObject):
             self._take(profile)
 
     def draw(self, section: str, profile: ProfileCurve) -> None:
-        """Wish for a profile as it is drawn; where it cannot be, the one before stays."""
+        """Set a drawn profile as target; an invalid one leaves the previous target."""
         frame = self._context.session.frame
         if frame is None:
             return
@@ -123,7 +123,7 @@ class ProfileTool(QObject):
         return {"wished": found} if found else {}
 
     def is_from_side(self, section: str) -> bool:
-        """Tell whether a profile is looked at from about its side: else up and out cannot be told by hand."""
+        """Return whether a profile is viewed about from its side, so that up and out can be dragged."""
         across = self._context.view.viewport.view.axes[2][0]
         return bool((across if self._controller.drawn[section].section == "left" else -across) > _SIDEWAYS)
 
@@ -150,7 +150,7 @@ class ProfileTool(QObject):
         return "right" if self._context.view.viewport.view.axes[2][0] < -_LEVEL else "left"
 
     def look_at(self, profile: ProfileCurve) -> None:
-        """Look at a profile from its side, and over the tools."""
+        """Show a profile from its side, and beside the tools."""
         from core.analysis.inverse_design.profile_curve import section_to_space  # noqa: PLC0415
 
         view, viewport, frame = self._context.view, self._context.view.viewport, self._context.session.frame

@@ -112,7 +112,7 @@ class _WishField(ValueEdit):
 
 
 def columns(row: QHBoxLayout, now: QWidget, field: QWidget, result: QWidget) -> None:
-    """Lay out three parts as in all rows of the card, and in their heading."""
+    """Lay out three columns as in all rows of the card and in their heading."""
     row.setContentsMargins(0, 0, 0, 0)
     row.setSpacing(_SPACING)
     now.setFixedWidth(_NOW)
@@ -177,7 +177,7 @@ class TargetRow(QWidget):
         return head
 
     def show_view(self, view: TargetView) -> None:
-        """Bring values and words up to date."""
+        """Update values and texts."""
         self.remove.setVisible(not view.kept)
         self.now.setText(view.now)
         self.result.setText(view.result)

@@ -48,7 +48,7 @@ class TargetOptions(QObject):
         self._controller.ask()
 
     def help(self) -> None:
-        """Lead out of it when no line may change: to sets of lines, or to unlocked ones."""
+        """Open presets or unlock lines when no line may change."""
         frame = self._context.session.frame
         groups = active_line_groups(frame.stages) if frame is not None else ()
         lines = [name for group in groups for name in group]
@@ -63,7 +63,7 @@ class TargetOptions(QObject):
         self._context.session.edit(unlocked, tr("Active lines unlocked"))
 
     def is_tried_on(self, names: tuple[str, ...], shown: Design) -> bool:
-        """Tell whether the lengths of lines in the ``shown`` design are only those of an answer."""
+        """Return whether the lengths of the ``shown`` design are only those of a result."""
         taken = self._context.session.design
         if not self._controller.is_open or taken is None:
             return False

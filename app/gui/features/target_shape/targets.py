@@ -54,18 +54,18 @@ class Targets:
         return wishes
 
     def set(self, key: str, value: float) -> None:
-        """Wish for a figure [mm], or set the limit [kPa]."""
+        """Set the target of a quantity [mm], or the limit [kPa]."""
         if key == PRESSURE:
             self.limit = min(max(value, _SOFTEST), _HARDEST)
         else:
             self.figures[key] = value
 
     def set_curve(self, section: str, goals: tuple[Goal, ...], profile: ProfileCurve) -> None:
-        """Wish for the profile of a section, from the next question on."""
+        """Set the target profile of a section, from the next request on."""
         self.curves[section], self.drawn[section] = goals, profile
 
     def drop(self, key: str) -> None:
-        """Wish for a figure or a profile no longer."""
+        """Remove the target of a quantity or profile."""
         self.figures.pop(key, None)
         self.curves.pop(key, None)
         self.drawn.pop(key, None)
@@ -77,7 +77,7 @@ class Targets:
 
     @property
     def asked(self) -> tuple[Goal, ...]:
-        """What was wished for by name."""
+        """Return the targets by name."""
         single = [
             Goal(name, value, self.priorities.get(name, "normal"))
             for name, value in self.figures.items()
@@ -92,22 +92,22 @@ class Targets:
 
     @property
     def told(self) -> tuple[str, ...]:
-        """The figures that are told of an answer."""
+        """Return the figures that are told of an answer."""
         return tuple(dict.fromkeys((*self.figures, *SEEN)))
 
     @property
     def most_kpa(self) -> float:
-        """The limit of pressure that is kept [kPa]; infinite if it is off."""
+        """Return the limit of pressure that is kept [kPa]; infinite if it is off."""
         return pressure_limits().red_kpa if self.limit is None else self.limit
 
     @property
     def set_limit(self) -> float | None:
-        """The limit of its own, if there is one."""
+        """Return the limit of its own, if there is one."""
         return None if self.limit is None or math.isinf(self.limit) else self.limit
 
     @property
     def only_limit(self) -> float | None:
-        """The limit of its own, if nothing else is wished."""
+        """Return the limit of its own, if nothing else is wished."""
         return None if self.asked else self.set_limit
 
     def goals(self, now: Mapping[str, float]) -> tuple[Goal, ...]:

@@ -65,7 +65,7 @@ class TargetUndo(QObject):
         self._last = self._state()
 
     def forget(self) -> None:
-        """Begin anew with what is asked for now: undo means the design."""
+        """Restart with the current targets: undo then applies to the design."""
         self.stack.clear()
         self._last = self._state()
         self._group.setActiveStack(self._others)
@@ -82,7 +82,7 @@ class TargetUndo(QObject):
             self._group.setActiveStack(self.stack)
 
     def show(self, state: _State) -> None:
-        """Ask for what was asked for once."""
+        """Restore earlier targets."""
         self._last = state
         self._controller.handles.let_go()
         self._controller.all_wishes = _copy(state.wishes)

@@ -28,11 +28,11 @@ class ViewState(QObject):
         self._parallel = False
 
     def remember(self) -> None:
-        """Know where the keyboard is; the camera is known once it is led away."""
+        """Record the keyboard focus; the camera is recorded when it moves."""
         self._keyboard, self._own, self._led = self._context.window.focusWidget(), None, None
 
     def look(self, view: View) -> None:
-        """Lead the camera to a view."""
+        """Move the camera to a view."""
         heading = self._context.view.viewport.heading
         if self._led is None:
             self._parallel = heading.parallel
@@ -42,7 +42,7 @@ class ViewState(QObject):
         self._context.view.viewport.glide_to(view)
 
     def go(self) -> None:
-        """Give camera and keyboard back, before the card goes."""
+        """Restore camera and keyboard focus, before the card closes."""
         own, led, viewport = self._own, self._led, self._context.view.viewport
         self._own = self._led = None
         if own is not None and led is not None:

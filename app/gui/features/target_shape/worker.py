@@ -70,7 +70,7 @@ class _Known:
     asking: LineSelection
 
     def is_of(self, question: TargetQuery) -> bool:
-        """Tell whether a question is about the same design, limit and lines."""
+        """Return whether a question is about the same design, limit and lines."""
         same = self.most_kpa == question.most_kpa and self.optional == question.optional
         return self.design is question.design and same
 
@@ -99,15 +99,15 @@ class TargetWorker(QObject):
 
     @property
     def at_work(self) -> bool:
-        """Whether the newest question is not answered yet."""
+        """Return whether the newest question is not answered yet."""
         return self._wanted is not None
 
     def is_at(self, question: TargetQuery) -> bool:
-        """Tell whether a question is the newest, and being answered."""
+        """Return whether a request is the newest, and being solved."""
         return self._at is question and self._wanted is question
 
     def ask(self, question: TargetQuery) -> None:
-        """Answer this from now on; what is in a hurry is not broken off, as it soon ends."""
+        """Solve this request from now on; a hurried one is not cancelled, as it ends soon."""
         self._wanted = question
         if self._at is not None and not self._at.hurried:
             self._jobs.cancel(self._job)
@@ -116,7 +116,7 @@ class TargetWorker(QObject):
             self._begin()
 
     def stop(self) -> None:
-        """Answer nothing any more, and keep nothing."""
+        """Stop solving and drop all results."""
         self._jobs.cancel(self._job)
         self._job = self._at = self._wanted = self._known = None
 

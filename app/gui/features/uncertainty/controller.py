@@ -73,7 +73,7 @@ class UncertaintyController(QObject):
 
     @property
     def is_computing(self) -> bool:
-        """Whether the uncertainties of the design that is shown are being computed."""
+        """Return whether the uncertainties of the design that is shown are being computed."""
         frame = self._session.frame
         return frame is not None and self._cache.is_running(frame)
 

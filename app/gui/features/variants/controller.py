@@ -59,7 +59,7 @@ class VariantsController(QObject):
         self.show_variants()
 
     def set_shown(self, shown: bool) -> None:
-        """Offer variants, or not where there is nothing to be seen of them."""
+        """Show or hide variants."""
         self.segment.setVisible(shown)
         self.show_variants()
 
@@ -135,7 +135,7 @@ class VariantsController(QObject):
         return variants
 
     def solve_others(self) -> None:
-        """Have one more variant solved that is not, if there is one; ``solved`` tells when."""
+        """Solve one more unsolved variant, if any; ``solved`` is emitted after it."""
         for name, design in self._others().items():
             if design not in self._solved and design not in self._unsolvable:
                 self._solve(name, design)

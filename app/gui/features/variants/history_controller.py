@@ -78,13 +78,13 @@ class HistoryController(QObject):
         self._session.undo_stack.setIndex(place)
 
     def show_opened(self) -> None:
-        """Begin anew with another document."""
+        """Restart with another document."""
         self._snapshots.clear()
         self.show_snapshots()
         self.show_edits()
 
     def note(self) -> None:
-        """Hear of a frame: what came of an edit is kept once the window is calm."""
+        """Record a frame: the result of an edit is kept once the window is idle."""
         if (
             self._context.session.is_converged
             and self._session.undo_stack.index() > 0
@@ -106,7 +106,7 @@ class HistoryController(QObject):
         )
 
     def restore(self, place: int) -> None:
-        """Go back to a result, in the variant that it is of, as one edit."""
+        """Restore a result in its variant, as one edit."""
         snapshot, document = self._snapshots[len(self._snapshots) - 1 - place], self._session.document
         if document is not None:
             said = tr("Restored: {edit}").format(edit=_title(snapshot, document))

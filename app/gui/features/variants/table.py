@@ -49,12 +49,12 @@ class VariantTableController(QObject):
         panel.table_requested.connect(self.export)
 
     def follow(self) -> None:
-        """Bring the figures up to date soon, if they are seen."""
+        """Update the values soon, if visible."""
         if (self._panel.isVisible() or self._are_beside) and not self._clock.isActive():
             self._clock.start()
 
     def refresh(self) -> None:
-        """Bring the figures up to date, and have solved what is not."""
+        """Update the values, and solve unsolved variants."""
         document = self._context.session.document
         variants = self._variants.frames()
         if document is None or len(variants) < 2:
@@ -77,7 +77,7 @@ class VariantTableController(QObject):
             copy_table(self._context, as_table(self._panel.view))
 
     def export(self) -> None:
-        """Ask for a place and write the table there."""
+        """Prompt for a file and write the table."""
         if self._panel.view is not None:
             title = tr("Save table of variants")
             save_table(self._context, as_table(self._panel.view), title, "variants")

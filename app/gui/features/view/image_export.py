@@ -37,7 +37,7 @@ class ImageExportController(QObject):
         do.add("file", tr("Print image…"), tip=said, do=self.print_out, of_document=True)
 
     def save(self) -> None:
-        """Ask for a place and write what the view shows."""
+        """Prompt for a file and write the view."""
         name = f"{self._context.session.name}.png"
         path = ask_save(self._context.window, tr("Save image"), name, "PNG (*.png)", ".png")
         if path:
@@ -49,7 +49,7 @@ class ImageExportController(QObject):
         self._context.notifications.done(tr("Image copied."))
 
     def print_out(self) -> None:
-        """Ask for a printer and print what the view shows."""
+        """Prompt for a printer and print the view."""
         printer = QPrinter(QPrinter.PrinterMode.HighResolution)
         printer.setDocName(self._context.session.name)
         printer.setPageOrientation(QPageLayout.Orientation.Landscape)
