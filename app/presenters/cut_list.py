@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from app.i18n.catalog import joined, number, tr
@@ -36,30 +37,64 @@ def cut_list_view(frame: Frame, cuts: CutList) -> CutListView:
     )
 
 
-def as_table(stages: Stages, cuts: CutList, pressed: PressureList | None) -> list[list[str]]:
+def as_table(
+    stages: Stages, cuts: CutList, pressed: PressureList | None, keys: Iterable[str] | None = None
+) -> list[list[str]]:
     """Return the cut list as plain cells, with a heading, in the order of the list of lines.
 
-    ``pressed`` are the contact pressures of the same shape, if known. Lengths are in mm, as in files.
+    ``pressed`` are the contact pressures of the same shape, if known; ``keys`` select columns, by default
+    all. Lengths are in mm, as in files.
     """
-    heading = [
-        tr("Line"),
-        tr("Elastic"),
-        tr("Width mm"),
-        tr("Cut mm"),
-        tr("Elongation %"),
-        tr("Tension N"),
-        tr("Maximum contact pressure kPa"),
-        tr("Front on body mm"),
-        tr("Full length on body mm"),
-        tr("Allowance mm"),
-        tr("Estimate"),
-        tr("Notes"),
-    ]
     design = stages.design
     order = list(line_colours((line.name for line in stages.model.lines), design))
     rows = sorted(cuts.rows, key=lambda row: order.index(row.line))
     most = {row.line: row.max_kpa for row in pressed.rows} if pressed is not None else {}
-    return [heading, *(_cells(row, most.get(row.line), design) for row in rows)]
+    with using_unit("mm"):
+        cells = [_columns(row, most.get(row.line), design) for row in rows]
+    titles = _titles()
+    shown = list(titles if keys is None else keys)
+    return [[titles[key] for key in shown], *([each[key] for key in shown] for each in cells)]
+
+
+def _titles() -> dict[str, str]:
+    """Return the columns of the table in order: their keys, and how each is headed."""
+    return {
+        "line": tr("Line"),
+        "elastic": tr("Elastic"),
+        "width": tr("Width mm"),
+        "cut": tr("Cut mm"),
+        "elongation": tr("Elongation %"),
+        "tension": tr("Tension N"),
+        "pressure": tr("Maximum contact pressure kPa"),
+        "front": tr("Front on body mm"),
+        "whole": tr("Full length on body mm"),
+        "allowance": tr("Allowance mm"),
+        "estimate": tr("Estimate"),
+        "notes": tr("Notes"),
+    }
+
+
+def _columns(row: CutRow, kpa: float | None, design: Design) -> dict[str, str]:
+    """Return what stands in each column of ``_titles``, by the same keys."""
+    stretch = None if row.elongation is None else 100.0 * row.elongation
+    return {
+        "line": line_title(row.line, design),
+        "elastic": elastic_title(row.elastic),
+        "width": _figure(row.width_mm),
+        "cut": _figure(row.cut_mm),
+        "elongation": _figure(stretch),
+        "tension": _figure(row.tension_n),
+        "pressure": _figure(kpa),
+        "front": _figure(row.reached_front_mm),
+        "whole": _figure(row.reached_whole_mm),
+        "allowance": _figure(row.allowance_mm),
+        "estimate": tr("yes") if row.estimate else tr("no"),
+        "notes": joined(render_all(row.notes, design)),
+    }
+
+
+def _figure(value: float | None) -> str:
+    return "" if value is None else f"{value:.1f}"
 
 
 def _off(name: str, design: Design, color: str) -> CutView:
@@ -85,25 +120,6 @@ def _view(row: CutRow, design: Design, color: str, still: bool) -> CutView:
         row.front_only,
         row.far,
     )
-
-
-def _cells(row: CutRow, kpa: float | None, design: Design) -> list[str]:
-    stretch = None if row.elongation is None else 100.0 * row.elongation
-    figures = (
-        row.width_mm,
-        row.cut_mm,
-        stretch,
-        row.tension_n,
-        kpa,
-        row.reached_front_mm,
-        row.reached_whole_mm,
-        row.allowance_mm,
-    )
-    written = ["" if each is None else f"{each:.1f}" for each in figures]
-    estimate = tr("yes") if row.estimate else tr("no")
-    with using_unit("mm"):
-        elastic, notes = elastic_title(row.elastic), joined(render_all(row.notes, design))
-    return [line_title(row.line, design), elastic, *written, estimate, notes]
 
 
 @dataclass(frozen=True)

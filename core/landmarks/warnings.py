@@ -1,4 +1,8 @@
-"""Doubts: what should be looked at before a scan's pose and landmarks are trusted, in plain words."""
+"""Warnings: what to check before pose and landmarks of a scan are trusted.
+
+A new one goes into ``landmark_warnings``; those that detection itself adds are ``Landmarks.warnings``.
+Window, report and command line show all of them.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +13,7 @@ from core.scan.body import Body
 from core.scan.edited_body import mirror_sentence
 
 ESSENTIAL = ("bust_point", "fold")
-"""The landmarks, a pair each, that the control mesh hangs on: doubts about others would only distract."""
+"""The landmarks, a pair each, that the control mesh hangs on: warnings about others would only distract."""
 
 
 def collect_warnings(body: Body, landmarks: Landmarks) -> list[Message]:
@@ -27,7 +31,9 @@ def edit_warnings(body: Body) -> list[Message]:
 
 def landmark_warnings(landmarks: Landmarks) -> list[Message]:
     """Return what should be looked at on the landmarks alone; a side without a breast is named once."""
-    said = [sentence for kind in ESSENTIAL for sentence in _doubt(kind, _untold(landmarks, kind), landmarks)]
+    said = [
+        sentence for kind in ESSENTIAL for sentence in _uncertain(kind, _untold(landmarks, kind), landmarks)
+    ]
     return [*said, *landmarks.warnings]
 
 
@@ -52,7 +58,7 @@ def uncertain_sides(landmarks: Landmarks, kind: str) -> list[str]:
     return [side for side, mark in found.items() if mark and not mark.by_hand and mark.confidence < CERTAIN]
 
 
-def _doubt(kind: str, sides: list[str], landmarks: Landmarks) -> list[Message]:
+def _uncertain(kind: str, sides: list[str], landmarks: Landmarks) -> list[Message]:
     if not sides:
         return []
     if kind == "fold":
@@ -69,7 +75,7 @@ def _doubt(kind: str, sides: list[str], landmarks: Landmarks) -> list[Message]:
             side=SideName(shown[0]),
         )
         two = Message("The nipples are not clearly visible. Check both bust points.")
-        rest = _doubt(kind, [side for side in sides if side not in shown], landmarks)
+        rest = _uncertain(kind, [side for side in sides if side not in shown], landmarks)
         return [two if len(shown) == 2 else one, *rest]
     one = Message(
         "No nipple clearly detected on the {side} breast. Check its bust point.",

@@ -1,4 +1,7 @@
-"""What every measure is: its name, its unit and what is measured, in words that a pattern cutter knows."""
+"""What every measure is: its name, its unit and what is measured, in words that a pattern cutter knows.
+
+The value of each key is yielded by ``girths.py`` or ``bust.py``; window, report and files follow.
+"""
 
 from __future__ import annotations
 

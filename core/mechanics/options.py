@@ -1,4 +1,7 @@
-"""Mechanics: the choices that make up the model, one small immutable value."""
+"""Mechanics: the choices that make up the model, one small immutable value.
+
+Each is also a field of ``Design``, by the same name and default, which is what is saved.
+"""
 
 from __future__ import annotations
 

@@ -23,9 +23,10 @@ from core.messages import LineName, Message, plain
 from core.pipeline.build import Stages, build
 
 COLUMNS = tuple(field.name for field in fields(CutRow))
-_SHOWN = (0, 3, 4, 5, 7, 8, 1)
-_NOTE = -1
-"""Columns of ``as_table`` that are printed, and the one that is printed below its row."""
+"""Columns of the output as CSV, the fields of a row: a new field needs no change here."""
+
+_SHOWN = ("line", "cut", "elongation", "tension", "front", "whole", "elastic", "notes")
+"""Columns of ``as_table`` that are printed; the last is printed below its row."""
 
 
 @dataclass(frozen=True)
@@ -63,9 +64,9 @@ def run(options: Namespace) -> int:
 
 
 def _text(found: Cut) -> str:
-    heading, *rows = as_table(found.solved.solution.stages, found.cuts, None)
-    first, *lines = table_lines([[row[at] for at in _SHOWN] for row in (heading, *rows)])
-    lines = [text for line, row in zip(lines, rows, strict=True) for text in (line, f"  {row[_NOTE]}")]
+    table = as_table(found.solved.solution.stages, found.cuts, None, _SHOWN)
+    first, *lines = table_lines([row[:-1] for row in table])
+    lines = [text for line, row in zip(lines, table[1:], strict=True) for text in (line, f"  {row[-1]}")]
     notes = [*filter(str.strip, lines), *map(str, found.cuts.notes)]
     return "\n".join([*found.solved.verdict, *found.solved.effect, "", first, *notes])
 

@@ -11,7 +11,7 @@ from app.cli.options import add_lines, picture_size
 from app.cli.output import finish
 from app.cli.solved_design import is_converged, solve_valid
 from app.presenters.assessment import assessment_lines
-from app.presenters.export import ExportOptions, ExportSource
+from app.presenters.export import ExportOptions, ExportSource, exports
 from app.presenters.export_preview import check, prepare_export
 from app.presenters.scan import KINDS as SCANS
 from core.errors import UserError, reason_of
@@ -22,22 +22,24 @@ from core.pipeline.warnings import shape_warnings
 from core.progress import in_one_go, quiet
 
 KINDS = {
-    "body": ("body", "output reshaped body (.glb, .obj, .ply, .stl)"),
-    "control": ("control-mesh", "output control mesh (.glb, .obj, .ply, .stl, .csv)"),
-    "lines": ("lines", "output active lines on the body (.dxf, .obj)"),
-    "flat": ("strips", "output active lines as flat pattern strips at full scale (.svg, .dxf)"),
-    "measures": ("measurements", "output measurements (.smis, .vit, .csv, .json)"),
+    "body": ("body", "output reshaped body ({endings})"),
+    "control": ("control-mesh", "output control mesh ({endings})"),
+    "lines": ("lines", "output active lines on the body ({endings})"),
+    "flat": ("strips", "output active lines as flat pattern strips at full scale ({endings})"),
+    "measures": ("measurements", "output measurements ({endings})"),
     "turntable": ("turntable", "output turntable (.gif, .webp, or .png for a series)"),
 }
-"""Kinds of files in order, each with its option and help."""
+"""Kinds of files in order, each with its option and help; the formats are those of ``exports``."""
 
 
 def add_options(parser: ArgumentParser) -> None:
     """Add the options of ``busk export``."""
     project = f"a project (.busk), or a scan ({SCANS}) with --line"
     parser.add_argument("input", metavar="PROJECT", help=project)
+    formats = {each.what: ", ".join(f".{ending}" for ending in each.formats) for each in exports()}
     for kind, (option, output) in KINDS.items():
-        parser.add_argument(f"--{option}", dest=kind, default="", metavar="FILE", help=output)
+        said = output.format(endings=formats[kind])
+        parser.add_argument(f"--{option}", dest=kind, default="", metavar="FILE", help=said)
     unit = "mm, cm, m or in (default: m in .glb, cm in measurements, otherwise mm)"
     parser.add_argument("--unit", dest="file_unit", metavar="UNIT", help=unit)
     axes = "z-up (front -y), y-up (front z) or z-up-front-y (front y); default: y-up in .glb, otherwise z-up"

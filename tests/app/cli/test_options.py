@@ -8,7 +8,9 @@ import pytest
 
 from app.cli.design import settings_of
 from app.cli.options import NUMBERS, SWITCHES, WORDS
+from app.presenters.model_options import defaults
 from core.document.design import Design, ScanSource
+from core.mechanics.options import ModelOptions
 
 
 @pytest.mark.parametrize(
@@ -38,3 +40,10 @@ def test_every_choice_of_the_design_can_be_set() -> None:
     not_settings = {"scan", "placed", "lines", "own_lines", "own_measures", "traits", "volume", "unknown"}
     not_settings |= {"elastics", "customer", "worn_tight_mm", "calibration"}
     assert {*WORDS, *NUMBERS, *SWITCHES} == {field.name for field in fields(Design)} - not_settings
+
+
+def test_every_model_option_is_in_the_design_and_in_the_window() -> None:
+    options = {field.name: field.default for field in fields(ModelOptions)}
+    saved = {field.name: field.default for field in fields(Design)}
+    assert options.items() <= saved.items(), "give Design a field of the same name and default"
+    assert options.keys() <= defaults().keys(), "describe it in groups() of app/presenters/model_options.py"

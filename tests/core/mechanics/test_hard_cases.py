@@ -24,7 +24,7 @@ def cases():
 
 def test_the_cases_are_hard_and_many_kinds(cases):
     for name, words in CHOICES.items():
-        assert {getattr(case.mechanics, name) for case in cases} == set(words)
+        assert {getattr(case.mechanics, name) for case in cases} == set(words), f"draw {name} in hard_case"
     assert sum(len(case.ratios) > 1 for case in cases) > 30
     assert sum(len(case.own) > 0 for case in cases) > 30
     lengths = [ratio for case in cases for ratio in case.ratios.values()]
