@@ -13,7 +13,7 @@ from app.i18n.catalog import tr
 class Inspector(QWidget):
     """Holds the panels by name; ``tabs`` are offered at the head while one of them is shown."""
 
-    LEAST, MOST = 350, 480
+    LEAST, MOST = 330, 480
 
     def __init__(self) -> None:
         super().__init__()

@@ -200,7 +200,7 @@ def test_predicted_less_real_is_the_noise_where_the_prediction_is_right(stages: 
 
 def test_another_person_another_size_and_too_little_are_refused(stages: Stages) -> None:
     mesh = stages.body.mesh
-    with pytest.raises(ScanError, match=r"0\.1 times as large.*read in cm.*Set its unit"):
+    with pytest.raises(ScanError, match=r"0\.1 times as large.*read in cm.*Set the unit"):
         align(stages, as_body(mesh.moved(0.1 * mesh.vertices), replace(POSE, unit="cm")))
     wider = mesh.moved(mesh.vertices * (1.15, 1.0, 1.0))
     with pytest.raises(ScanError, match=r"does not match the first scan: \d+ % .* 85 % is required"):

@@ -143,7 +143,7 @@ def test_the_default_gain_lies_just_below_its_limit(built: Built) -> None:
     [
         ({"template": "99"}, "no template '99'"),
         ({"volume": "magic"}, "no volume control"),
-        ({"line_contact": "floating"}, "no line contact"),
+        ({"line_contact": "floating"}, "no skin contact"),
         ({"line_stiffness": 0.0}, "line stiffness 0"),
         ({"line_height": 0.9}, "line height"),
     ],
