@@ -1,4 +1,4 @@
-"""All that can be asked of the window by menu or key; a controller adds its own with ``add``."""
+"""Actions of the window by menu or key; a controller adds its own with ``add``."""
 
 from __future__ import annotations
 

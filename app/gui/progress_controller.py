@@ -76,7 +76,7 @@ class ProgressController(QObject):
         self._context.actions.cancel.setEnabled(waited or carried)
 
     def cancel(self) -> None:
-        """Let go of what a hand carries, else of the work that is shown; all is as it was before."""
+        """Release what a hand carries, else of the work that is shown; all is as it was before."""
         if any(each.let_go() for each in self.carriers):
             return
         if self._built[0]:

@@ -43,7 +43,7 @@ class StepNavigation(QWidget):
         self._column.addStretch(1)
 
     def add_tool(self, drawing: str, action: QAction) -> ToolButton:
-        """Put a small button at the foot, for what is no step, and return it."""
+        """Place a small button at the foot, for what is no step, and return it."""
         tool = ToolButton(drawing, size=20, room=36, action=action)
         self._column.addWidget(tool, alignment=Qt.AlignmentFlag.AlignHCenter)
         return tool

@@ -372,7 +372,7 @@ class ExportSettings:
         return chosen | {"format": kind}
 
     def choose(self, what: str, key: str, value: str) -> None:
-        """Remember one choice for something."""
+        """Record one choice for something."""
         self._kept[_key(what, self.kind(what), key)] = value
 
     def manner(self, what: str, kind: str = "", view: View | None = None) -> ExportOptions:

@@ -1,4 +1,4 @@
-"""What the figures of a sheet rest on, in words of the language in use."""
+"""Notes on the values of a report, in the language in use."""
 
 from __future__ import annotations
 

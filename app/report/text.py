@@ -1,4 +1,4 @@
-"""What a sheet says, in words of the language in use: plain values for the painter."""
+"""Texts of a report in the language in use: plain values for the painter."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a design may say: words among those that there are, numbers within their range."""
+"""Validation of settings: choices and ranges."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How an exact answer moves with what is set: derivatives through the solved system (ours).
+"""Sensitivity of the exact solution to the settings, by derivatives of the solved system (ours).
 
 In a balance the forces and what is held vanish, whatever the lengths of the lines are. So a small change of a
 length moves the points by what one linear system says: the matrix is that of Newton's last step, the right

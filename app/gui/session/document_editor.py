@@ -95,7 +95,7 @@ class EditCommand(QUndoCommand):
             self._session.take_step(self.after)
 
     def undo(self) -> None:
-        """Take it back."""
+        """Undo the edit."""
         self._session.take(self.before)
 
 

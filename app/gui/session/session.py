@@ -193,7 +193,7 @@ class Session(DocumentEditor):
         self.saved.emit(str(path))
 
     def cancel(self) -> None:
-        """Let go of what is being read or built; what stood before stays."""
+        """Release what is being read or built; what stood before stays."""
         if self._opening is None and not self._solving.at_work:
             return
         self._solving.cancel()

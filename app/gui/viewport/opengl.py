@@ -1,4 +1,4 @@
-"""What draws for the window: the graphics card, software, or by wish neither (safe mode)."""
+"""Choice of OpenGL: graphics card, software, or neither (safe mode)."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def spare_graphics() -> None:
 
 
 def graphics_work() -> None:
-    """Remember that the driver has done what it was asked for."""
+    """Record that the driver has done what it was asked for."""
     spare_graphics()
     forget_failed_starts()
 

@@ -30,7 +30,7 @@ def last_folder(kind: str) -> Path:
 
 
 def remember_folder(kind: str, path: str) -> None:
-    """Remember the folder that a file of this kind lies in."""
+    """Record the folder that a file of this kind lies in."""
     QSettings().setValue(f"folder/{kind}", str(Path(path).absolute().parent))
 
 

@@ -1,4 +1,4 @@
-"""Where one setting is shown and chosen: two answers side by side, a menu, or a number."""
+"""Field of one setting: two choices side by side, a menu, or a number."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 
@@ -37,7 +37,7 @@ class Field(QWidget):
         self._inside.setAccessibleDescription(tip)
 
     def hold(self, widget: QWidget) -> None:
-        """Put the widget that does it inside, and let it have the focus."""
+        """Place the widget that does it inside, and let it have the focus."""
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.addWidget(widget)

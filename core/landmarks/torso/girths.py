@@ -1,4 +1,4 @@
-"""What a tape measures on the body: bust, under-bust and the other girths that it shows, arms taken out."""
+"""Tape girths of the body without arms: bust, under-bust and others."""
 
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ class ConvergenceController(QObject):
         self._context.session.set_pace(TURNS_PER_SECOND if slow else None)
 
     def keep_quantity(self) -> None:
-        """Remember what the plots show."""
+        """Record what the plots show."""
         for plot in self._panel.plots:
             QSettings().setValue(f"plot/{plot.objectName()}", plot.quantity.name)
 

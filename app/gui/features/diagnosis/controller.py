@@ -143,7 +143,7 @@ class DiagnosisController(QObject):
         self._run(partial(diagnose, frame.stages), partial(self._answer, frame), waited=True)
 
     def _forget(self) -> None:
-        """Let go of what was said or looked for of another design."""
+        """Release what was said or looked for of another design."""
         self._later.stop()
         self._context.jobs.cancel(self._job)
         self._job = None
@@ -263,7 +263,7 @@ class DiagnosisController(QObject):
         self._context.notifications.withdraw(ABOUT)
 
     def _note_closed(self) -> None:
-        """Remember what was closed by hand: it is not told again before something else is wrong."""
+        """Record what was closed by hand: it is not told again before something else is wrong."""
         if self._said is not None and not self._context.notifications.is_shown(ABOUT):
             self._closed, self._said = self._said, None
 

@@ -1,4 +1,4 @@
-"""What the window does to export: it shows the choices, asks for a place, and writes beside the work."""
+"""Export from the window: choices, file dialog, and writing in the background."""
 
 from __future__ import annotations
 

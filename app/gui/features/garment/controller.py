@@ -48,7 +48,7 @@ class GarmentController(QObject):
             self.refresh()
 
     def forget(self) -> None:
-        """Let go of the list of a document that has gone: its rows are none of the next one's."""
+        """Release the list of a document that has gone: its rows are none of the next one's."""
         self._shown = None
 
     def refresh(self) -> None:

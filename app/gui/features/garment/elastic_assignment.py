@@ -99,7 +99,7 @@ class ElasticAssignmentController(QObject):
         self.offer.close()
 
     def _follow(self, index: int) -> None:
-        """Let go of what is looked for once another variant is shown, or what it was asked of is undone."""
+        """Release what is looked for once another variant is shown, or what it was asked of is undone."""
         undone = index < self._index and self._session.design is not self._asked
         self._index = index
         if undone or self._shown_variant() != self._variant:

@@ -1,4 +1,4 @@
-"""What Busk is and under which terms, and what it runs on: texts to read and to copy."""
+"""Version, licences and system information, to read and to copy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the window does when Busk itself fails: the design is kept aside, and one calm question asked."""
+"""Crash handler: stores the design and shows one dialog."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the window says and does when the 3D view is painted without OpenGL in the context."""
+"""Notices and settings of safe mode."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an opened row tells and offers besides: set, reached, gap, limits, stiffness and what can be done."""
+"""Details of an opened line row: set, reached, gap, limits, stiffness and actions."""
 
 from __future__ import annotations
 

@@ -157,7 +157,7 @@ class MapsController(QObject):
         view.glide_to(framing_place(view.scene.view, place, worn.normals[worn.peak], aspect))
 
     def unpin(self, number: int) -> None:
-        """Take a flag away that is shown: those of lines are not while a map lies on the skin."""
+        """Remove a flag that is shown: those of lines are not while a map lies on the skin."""
         gone = self._flagged[number]
         self._pin(tuple(each for each in self.pinned if each is not gone))
 

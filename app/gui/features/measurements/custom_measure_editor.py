@@ -1,4 +1,4 @@
-"""Where a measure of one's own is made or changed: its kind, where it is taken, what it measures now."""
+"""Editor of a custom measurement: kind, landmarks and present value."""
 
 # ruff: noqa: N802 - Qt names its events and says what they are
 from __future__ import annotations
@@ -68,7 +68,7 @@ class MeasurementEditor(QWidget):
         column.addWidget(self._make_foot())
 
     def begin(self, draft: Draft, marks: Mapping[str, str], former: str = "") -> None:
-        """Begin with a draft; ``marks`` are the landmarks to choose from, ``former`` what is changed."""
+        """Start with a draft; ``marks`` are the landmarks to choose from, ``former`` what is changed."""
         for field in (self.start, self.end, self.at):
             field.set_marks(marks)
         self._title.setText(tr("Edit measurement") if former else tr("Custom measurement"))

@@ -1,4 +1,4 @@
-"""How the model works: every choice in plain words, out of the designer's way until it is asked for."""
+"""Panel of the model options."""
 
 from __future__ import annotations
 

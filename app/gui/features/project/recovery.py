@@ -1,4 +1,4 @@
-"""What is there to be had back: documents of windows that did not close in order, and former versions."""
+"""Recovery of unsaved documents, and previous versions."""
 
 # ruff: noqa: N802 - Qt names its events and says what they are
 

@@ -104,7 +104,7 @@ class StartController(QObject):
             self.leave_page()
 
     def show_opened(self) -> None:
-        """Remember what was opened, unless it is a sample."""
+        """Record what was opened, unless it is a sample."""
         self.leave_page()
         session = self._context.session
         if session.path is not None:

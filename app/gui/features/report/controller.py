@@ -106,7 +106,7 @@ class ReportController(QObject):
         return was_open
 
     def forget(self) -> None:
-        """Let go of the sheet of a document that has gone: nobody is to see it under the next one."""
+        """Release the sheet of a document that has gone: nobody is to see it under the next one."""
         document = self._context.session.document
         # Before the page hides: a name that was being typed is not that of the next customer.
         self.page.customer.setText(document.customer if document is not None else "")

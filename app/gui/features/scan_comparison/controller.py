@@ -204,7 +204,7 @@ class ScanComparisonController(QObject):
         self.follow()
 
     def _begin_anew(self) -> None:
-        """Let go of all that was found, or is being looked for, with another scan or thickness."""
+        """Release all that was found, or is being looked for, with another scan or thickness."""
         for begun in (self._comparing, self._fitting):
             if begun is not None:
                 self._context.jobs.cancel(begun[0])

@@ -114,7 +114,7 @@ class SectionsController(QObject):
         return self._former is not None
 
     def let_go(self) -> bool:
-        """Put the plane back to where a hand took hold of it; returns whether one had."""
+        """Place the plane back to where a hand took hold of it; returns whether one had."""
         if self._former is None:
             return False
         self._by_hand = self._former

@@ -177,7 +177,7 @@ class TargetCard(QWidget):
         self.link.setEnabled(kind != "profile")
 
     def show_help(self, shown: bool, locked: bool = False) -> None:
-        """Take Apply away while lines are missing, or all ``locked``; the button leads out of that."""
+        """Remove Apply while lines are missing, or all ``locked``; the button leads out of that."""
         self.help_.setText(tr("Unlock lines") if locked else tr("Choose lines"))
         self.help_.setVisible(shown)
         self.apply.setVisible(not shown)

@@ -1,4 +1,4 @@
-"""What the card of wishes shows of them: values that are asked for, and what the others come to."""
+"""Content of the target card: targets and resulting values."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ class ImageExportController(QObject):
             write_file(self._context.notifications, "picture", path, write_whole(png_of(self._picture())))
 
     def copy(self) -> None:
-        """Put what the view shows on the clipboard."""
+        """Copy what the view shows to the clipboard."""
         QGuiApplication.clipboard().setImage(self._picture())
         self._context.notifications.done(tr("Image copied."))
 
