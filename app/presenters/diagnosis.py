@@ -92,7 +92,7 @@ def _leading(found: Diagnosis) -> str:
 def shown_fixes(found: Diagnosis) -> tuple[Fix, ...]:
     """Return the fixes that have a button: the best, and the next if a narrow window has room."""
     best = found.fixes[:BUTTONS]
-    return best if sum(_wide(change_words(found, cure.change)) for cure in best) <= _ROOM else best[:1]
+    return best if sum(_wide(change_text(found, cure.change)) for cure in best) <= _ROOM else best[:1]
 
 
 def _wide(words: str) -> int:
@@ -114,7 +114,7 @@ def _topic(finding: Finding) -> str:
     }[finding.topic]
 
 
-def change_words(found: Diagnosis, change: Change) -> str:
+def change_text(found: Diagnosis, change: Change) -> str:
     """Return what a change does, as an undo step is called."""
     choice = {
         ("volume", "adaptive"): tr("Use Adaptive"),
@@ -221,7 +221,7 @@ def _changes(found: Diagnosis) -> Iterator[str]:
     for place, cure in enumerate(found.fixes, start=1):
         view = assessment_view(Assessment(cure.remains), cure.change.design)
         said = joined((tr("{headline}.").format(headline=view.headline), *(each for each, _ in view.reasons)))
-        change = change_words(found, cure.change)
+        change = change_text(found, cure.change)
         yield "  " + tr("{place}. {change}: {what}").format(place=place, change=change, what=said)
         if cure.option_result:
             yield "     " + _parts(cure)
@@ -236,7 +236,7 @@ def _changes(found: Diagnosis) -> Iterator[str]:
             yield "     " + listed(lengths)
     if found.nearest is not None:
         words = tr("Nearest: {change}; status “{state}”")
-        said = change_words(found, found.nearest.change)
+        said = change_text(found, found.nearest.change)
         yield words.format(change=said, state=state_title(found.nearest.remaining_problem))
 
 

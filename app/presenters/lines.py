@@ -127,7 +127,7 @@ def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineV
         elastic=elastic_title(traits.elastic),
         splits=not partner and can_split(design, _template(design.template), name),
         parted=is_split(design, name),
-        strap="" if tail is None else _strap_words(tail),
+        strap="" if tail is None else _strap_text(tail),
         over_shoulder=_over_shoulder(design, frame, name),
     )
 
@@ -153,7 +153,7 @@ def _over_shoulder(design: Design, frame: Frame, name: str) -> bool | None:
     return False if held[upper] and heights[upper] > bust_level else None
 
 
-def _strap_words(tail: Tail) -> str:
+def _strap_text(tail: Tail) -> str:
     """Return where a strap goes on from its upper end, or why it does not."""
     if tail.problem:
         return tr("{why} The line ends at the upper chest.").format(why=render(tail.problem))

@@ -183,7 +183,7 @@ def _normals() -> Choice:
     return Choice("scaled_normals", tr("Distance to mesh"), tip, options)
 
 
-def control_words(control: str) -> str:
+def control_text(control: str) -> str:
     """Return the name of an edit that chooses a volume control."""
     return tr("Volume control: {control}").format(control=_control().words(control))
 

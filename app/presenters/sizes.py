@@ -25,12 +25,12 @@ def size_views(
     answers = sizes(underbust.value, bust.value, allowance_mm)
     letters = {"jp": tuple(_letters(measured))}
     return [
-        _view(key, answer, letters.get(key, ()), within_words(answer, spread))
+        _view(key, answer, letters.get(key, ()), within_text(answer, spread))
         for key, answer in answers.items()
     ], ""
 
 
-def within_words(answer: SizeAnswer, spread: OutputUncertainties | None) -> str:
+def within_text(answer: SizeAnswer, spread: OutputUncertainties | None) -> str:
     """Return which other sizes lie within what both girths may be off, once all of that is known."""
     offs = [spread.plus_minus(f"{BEFORE}:{key}") for key in GIRTHS_OF_SIZES] if spread else [None]
     known = [off for off in offs if off is not None]

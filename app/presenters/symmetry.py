@@ -11,7 +11,7 @@ from app.i18n.lengths import length, length_number, length_unit, shown_digits, s
 from app.presenters.lines import row_title
 from app.presenters.measurements import length_uncertainty, plus_minus
 from app.presenters.messages import render
-from app.presenters.target_shape import is_met, is_signed, reasons_words, target_title
+from app.presenters.target_shape import is_met, is_signed, reasons_text, target_title
 from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER, LIFT, OUT, Goal, section_of
 from core.analysis.symmetry.compare import BeforeAfter, SideDifference, SymmetryRow, symmetry_rows
 from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, splittable_lines
@@ -236,7 +236,7 @@ def _outcome(reply: InverseResult, met: bool) -> str:
 def _why(reply: InverseResult) -> str:
     if not reply.agreed:
         return tr("The iteration over lengths, elastics and contact pressure did not converge.")
-    return tr("Reasons: {reasons}.").format(reasons=reasons_words(reply))
+    return tr("Reasons: {reasons}.").format(reasons=reasons_text(reply))
 
 
 def _way(name: str, before: float, after: float, said: str) -> str:

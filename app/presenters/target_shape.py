@@ -105,7 +105,7 @@ def result_text(
         most = max(float(np.abs(off).max()) for off in profile_deviations(goals, reply.reached).values())
         return tr("Reached within {length}.").format(length=length(most))
     if is_near(reply, goals):
-        return _near_words(reply, goals, now or {})
+        return _near_text(reply, goals, now or {})
     nearest = closest_result_text(reply, goals, now or {})
     if not reply.agreed:
         said = tr(
@@ -114,10 +114,10 @@ def result_text(
         )
         return said.format(nearest=nearest)
     said = tr("Not reachable. Closest result: {nearest}. Reasons: {reasons}.")
-    return said.format(nearest=nearest, reasons=reasons_words(reply))
+    return said.format(nearest=nearest, reasons=reasons_text(reply))
 
 
-def _near_words(reply: InverseResult, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
+def _near_text(reply: InverseResult, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
     """Return how nearly profiles are met, and what they were off if that was hardly more."""
     offs = profile_deviations(goals, reply.reached)
     section = max(offs, key=lambda each: float(np.abs(offs[each]).mean()))
@@ -215,7 +215,7 @@ def _mean_and_most(off: Floats) -> dict[str, str]:
     return {"mean": length(float(np.abs(off).mean())), "most": length(float(np.abs(off).max()))}
 
 
-def reasons_words(reply: InverseResult) -> str:
+def reasons_text(reply: InverseResult) -> str:
     """Return why an answer is not what was asked for, as part of a sentence."""
     return tr("; ").join(reasons(reply))
 
@@ -241,7 +241,7 @@ def reasons(reply: InverseResult) -> list[str]:
     return causes or [tr("the active lines cannot produce this movement")]
 
 
-def change_words(before: Design, reply: InverseResult) -> list[str]:
+def change_text(before: Design, reply: InverseResult) -> list[str]:
     """Return how lengths would change, row by row, what elastics press with, and if others were not asked."""
     after, said = reply.design, []
     for title, name in _rows(sorted(after.active_lines()), after):
@@ -279,7 +279,7 @@ def missing_input_text(design: Design, moving: Collection[str]) -> str:
     return ""
 
 
-def step_words(goals: Sequence[Goal], limit: float | None = None) -> str:
+def step_text(goals: Sequence[Goal], limit: float | None = None) -> str:
     """Return what the step of undo is called; a ``limit`` [kPa] was asked for besides, or alone."""
     wishes = [targets_text(goals)] if goals else []
     if limit is not None:
@@ -299,12 +299,12 @@ def _rows(names: Iterable[str], design: Design) -> list[tuple[str, str]]:
     return list(rows.items())
 
 
-def value_words(value: float | None, signed: bool) -> str:
+def formatted_value(value: float | None, signed: bool) -> str:
     """Return what a figure is now [mm], without its unit; nothing before it is known."""
     return "" if value is None else length_number(value, 1, signed=signed)
 
 
-def result_words(now: Mapping[str, float], then: Mapping[str, float], name: str) -> str:
+def target_result_text(now: Mapping[str, float], then: Mapping[str, float], name: str) -> str:
     """Return what a figure comes to with its change, as "+0.4 (+0.2)"; nothing before it is known."""
     if name not in then or name not in now:
         return ""
@@ -315,7 +315,7 @@ def _with_change(value: float, change: float, signed: bool) -> str:
     return f"{length_number(value, 1, signed=signed)} ({length_number(change, 1, signed=True)})"
 
 
-def pressure_words(now: Mapping[str, float], then: Mapping[str, float]) -> tuple[str, str]:
+def pressure_text(now: Mapping[str, float], then: Mapping[str, float]) -> tuple[str, str]:
     """Return what lines press with at most now [kPa], and what they come to with its change."""
     before = number(most := max(now.values())) if now else ""
     if not now or not then:
@@ -324,7 +324,7 @@ def pressure_words(now: Mapping[str, float], then: Mapping[str, float]) -> tuple
     return before, f"{number(result)} ({number(result - most, 1, True)})"
 
 
-def conflict_words(conflicts: Iterable[Conflict]) -> tuple[str, ...]:
+def conflict_text(conflicts: Iterable[Conflict]) -> tuple[str, ...]:
     """Return one sentence per target that is missed: its value alone, and what another one loses."""
     return tuple(map(_sentence, conflicts))
 
@@ -350,7 +350,7 @@ def _value(name: str, value: float) -> str:
     return tr("deviation {length}").format(length=size) if section_of(name) else size
 
 
-def unlimited_words(free: InverseResult, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
+def unlimited_text(free: InverseResult, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
     """Return what targets come to without a limit of pressure, and what lines press with then."""
     most = number(max(free.pressure.values(), default=0.0))
     if is_met(free, goals):
@@ -367,7 +367,7 @@ def activated_text(before: Design, after: Design) -> str:
     return tr("Activated: {lines}.").format(lines=lines) if lines else ""
 
 
-def inactive_words(design: Design, names: Iterable[str]) -> str:
+def inactive_text(design: Design, names: Iterable[str]) -> str:
     """Return which lines that are off may be switched on; empty if there are none."""
     lines = _titles(sorted(names), design)
     words = tr("Activate inactive lines where they improve the result: {lines}")

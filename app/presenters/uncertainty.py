@@ -18,7 +18,7 @@ LEAST = 0.01
 """A source with a smaller share of the variance is not named [1]."""
 
 
-def source_words(source: str) -> str:
+def source_text(source: str) -> str:
     """Return a source in a word or two."""
     return {
         "landmarks": tr("landmarks"),
@@ -84,7 +84,7 @@ def _shares(
         if doubt is None or off is None:
             continue
         parts = [
-            f"{source_words(source)} {number(100.0 * share, 0)} %"
+            f"{source_text(source)} {number(100.0 * share, 0)} %"
             for source, share in doubt.shares.items()
             if share >= LEAST
         ]

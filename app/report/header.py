@@ -5,7 +5,7 @@ from __future__ import annotations
 from app.i18n.catalog import joined, number, tr
 from app.i18n.lengths import length_number, length_unit
 from app.presenters.assessment import IDLE, AssessmentView
-from app.presenters.bust_shift import forward_words
+from app.presenters.bust_shift import forward_text
 from app.presenters.measurements import length_uncertainty
 from app.presenters.messages import render
 from app.rendering.palette import LIGHT
@@ -199,7 +199,7 @@ def _lift(sheet: Report) -> Block:
     left, room, caption = _CELLS[3], _CELLS[4] - _CELLS[3] - 6.0, tr("Bust point lift")
     if sheet.lift is None:
         return _sentence(left, room, caption, tr("No value: the shape is not valid."))
-    off, below = sheet.off.get(LIFT), forward_words(sheet.lift.forward, sheet.off.get(OUT))
+    off, below = sheet.off.get(LIFT), forward_text(sheet.lift.forward, sheet.off.get(OUT))
     figure = length_number(sheet.lift.up, signed=True)
     told = "" if off is None else f"{length_uncertainty(off)} {length_unit()}"
     return _great(left, room, caption, figure, below, length_unit(), told)

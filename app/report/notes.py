@@ -7,7 +7,7 @@ from typing import Any
 
 from app.i18n.catalog import colon, joined, language, listed, tr
 from app.presenters.messages import render, render_all
-from app.presenters.uncertainty import source_words
+from app.presenters.uncertainty import source_text
 from app.report.text import REASONS, assessment_text, is_known, system_word
 from core.export.report_data import Report
 from core.garment.pressure_limits import pressure_limits
@@ -66,7 +66,7 @@ def _meaning(sheet: Report) -> list[str]:
     """Return what ± means, if it stands on the sheet."""
     if not (sheet.off and sheet.is_valid):
         return []
-    sources = listed([source_words(each) for each in sheet.off_sources])
+    sources = listed([source_text(each) for each in sheet.off_sources])
     means = tr("± is twice the standard deviation: 95 % of cases if errors are normally distributed.")
     holds = tr("Included: {sources}. Not included: bonded or sliding skin contact.").format(sources=sources)
     return [joined([means, holds]), *map(render, sheet.off_notes)]

@@ -13,7 +13,7 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from app.i18n.catalog import number, tr
-from app.presenters.model_options import control_words
+from app.presenters.model_options import control_text
 from core.document.design import Design
 from core.document.document import Document
 from core.document.lines import CustomLine
@@ -164,7 +164,7 @@ class DocumentEditor(QObject):
 
     def choose_control(self, control: str) -> None:
         """Choose the volume control."""
-        self.change({"volume": control}, control_words(control))
+        self.change({"volume": control}, control_text(control))
 
     def choose_template(self, template: str) -> None:
         """Choose the control mesh by its number of polygons."""

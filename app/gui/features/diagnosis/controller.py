@@ -269,7 +269,7 @@ class DiagnosisController(QObject):
 
     def _fixes(self, found: Diagnosis) -> list[Action]:
         """Return a button for each of the best fixes; the others are in the details."""
-        said = ((words.change_words(found, cure.change), cure) for cure in words.shown_fixes(found))
+        said = ((words.change_text(found, cure.change), cure) for cure in words.shown_fixes(found))
         return [(text, partial(self._apply, text, cure.change.design)) for text, cure in said]
 
     def _apply(self, said: str, cured: Design) -> None:

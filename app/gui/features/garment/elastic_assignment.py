@@ -10,7 +10,7 @@ from app.gui.features.garment.elastic_offer import ElasticOffer, ElasticRequest
 from app.gui.features.garment.panel import GarmentPanel
 from app.gui.session.jobs import Job
 from app.i18n.catalog import number, tr
-from app.presenters.bust_shift import up_words
+from app.presenters.bust_shift import up_text
 from app.presenters.elastics import title_of
 from app.presenters.lines import row_title
 from core.document.design import Design
@@ -156,4 +156,4 @@ def _told(before: float, after: float, cut: bool) -> str:
         same = tr("Cut length adapted; length on body and lift unchanged.")
         return same if cut else tr("Set length adapted; length on body and lift unchanged.")
     words = tr("Bust point height changed from {before} to {after}; adjust the length if needed.")
-    return words.format(before=up_words(before), after=up_words(after))
+    return words.format(before=up_text(before), after=up_text(after))

@@ -17,7 +17,7 @@ from app.gui.viewport.body_view import BodyView
 from app.gui.viewport.value_labels import ValueFlag, ValueFlags
 from app.i18n.catalog import number
 from app.i18n.lengths import length
-from app.presenters.maps import LINE_MAPS, MAPS, BodyState, automatic_range, bridge_words, map_kinds, ramp_of
+from app.presenters.maps import LINE_MAPS, MAPS, BodyState, automatic_range, bridge_text, map_kinds, ramp_of
 from app.rendering.appearance import appearance_of
 from app.rendering.camera import framing_place
 from app.rendering.vertex_colors import Ramp
@@ -287,7 +287,7 @@ class MapsController(QObject):
             if np.isnan(value) or not self._view.after:
                 return None
             place = scene.bands.spine(pinned.line)[0][pinned.at]
-            words = self._words(value) if np.isnan(off) else bridge_words(off)
+            words = self._words(value) if np.isnan(off) else bridge_text(off)
             return ValueFlag(place, words), value
         values = now.at_rest(self.name)
         if self._view.after:

@@ -263,14 +263,14 @@ class ScanComparisonController(QObject):
         at_work = self._fitting is not None and self._fitting[0].wanted
         return ScanComparisonView(
             file=worn.name if worn else "",
-            lies=words.aligned_words(worn) if worn else "",
+            lies=words.aligned_text(worn) if worn else "",
             rows=words.residual_rows(shown) if shown else (),
             bust=words.summary_text(shown) if shown else "",
             numbers=words.parameter_rows(found, design) if found else (),
             surely=words.determination_text(found, design) if found else "",
             kept=words.fixed_parameters_text(found, design) if found else "",
             better=words.improvement_text(found, design) if found else "",
-            record=words.record_words(design.calibration),
+            record=words.record_text(design.calibration),
             faint=faint,
             ready=bool(worn) and self._context.session.is_converged and not at_work and not faint,
             helped=found is not None and found.is_improved,

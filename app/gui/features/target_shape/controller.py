@@ -26,7 +26,7 @@ from app.gui.features.target_shape.worker import TargetAnswer, TargetQuery, Targ
 from app.gui.widgets.accessibility import announce
 from app.i18n.catalog import tr
 from app.presenters.messages import render
-from app.presenters.target_shape import inactive_words, step_words
+from app.presenters.target_shape import inactive_text, step_text
 from core.analysis.inverse_design.quantities import Goal
 from core.document.design import Design
 from core.errors import UserError
@@ -193,7 +193,7 @@ class TargetShapeController(QObject):
         self._apply_due = self.work.at_work or self._rest.isActive()
         if self._apply_due or answer is None or answer.reply is None:
             return
-        design, words = answer.reply.design, step_words(self.all_wishes.asked, self.all_wishes.set_limit)
+        design, words = answer.reply.design, step_text(self.all_wishes.asked, self.all_wishes.set_limit)
         if self.ground.said:
             words = " · ".join((self.ground.said, words))
         self.end()
@@ -309,7 +309,7 @@ class TargetShapeController(QObject):
             self.card.show_wishes([], missing)
             self.card.show_answer()
         else:
-            self.card.show_optional(inactive_words(design, self.ground.inactive), self.all_wishes.optional)
+            self.card.show_optional(inactive_text(design, self.ground.inactive), self.all_wishes.optional)
             hint = self.drawing.hint()
             self.card.show_wishes(list(target_views(self.all_wishes, self.answer)), hint)
             said = self.ground.said
