@@ -96,13 +96,13 @@ class StepButton(QAbstractButton):
             raise ValueError(state)
         changed = (state, count) != (self._state, self._count)
         self._state, self._count = state, count
-        said = {
+        text = {
             "done": tr("done"),
             "look": tr("needs review"),
             "bad": tr("not valid"),
             "missing": tr("not available yet"),
         }
-        self.setAccessibleDescription(said.get(state, ""))
+        self.setAccessibleDescription(text.get(state, ""))
         if changed:
             self.update()
 

@@ -124,8 +124,8 @@ def sides_text(move: BustShift) -> tuple[str, str]:
 
 def bust_sentence(move: BustShift, offs: Offs = UNKNOWN) -> str:
     """Return a move in one line, with both sides where they differ; ``offs`` are those of the mean."""
-    said = tr("Bust points: {shift}").format(shift=step_text(move.mean, offs))
+    text = tr("Bust points: {shift}").format(shift=step_text(move.mean, offs))
     if not move.differs:
-        return said
+        return text
     left, right = sides_text(move)
-    return tr("{shift} (left {left}, right {right})").format(shift=said, left=left, right=right)
+    return tr("{shift} (left {left}, right {right})").format(shift=text, left=left, right=right)

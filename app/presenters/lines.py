@@ -293,7 +293,7 @@ def band_label(design: Design, frame: Frame, name: str) -> tuple[str, str]:
     ratio = design.ratio(name)
     if design.line_settings(name).elastic:
         stretch = frame.lengths[name] / (ratio * line.rest_length) - 1.0
-        said = tr("elongation {value}").format(value=f"{number(100.0 * stretch)} %")
-        return f"{title} {length(frame.lengths[name])}", said
+        text = tr("elongation {value}").format(value=f"{number(100.0 * stretch)} %")
+        return f"{title} {length(frame.lengths[name])}", text
     change = (ratio - 1.0) * line.rest_length
     return f"{title} {number(100.0 * ratio)} %", length(change, signed=True)

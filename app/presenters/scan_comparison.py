@@ -68,7 +68,7 @@ def bust_text(difference: Residuals) -> str:
         "left": tr("Bust point left: predicted {shift}, {forward}."),
         "right": tr("Bust point right: predicted {shift}, {forward}."),
     }
-    said = [
+    texts = [
         named[side].format(
             shift=_way(
                 float(way[2]),
@@ -80,7 +80,7 @@ def bust_text(difference: Residuals) -> str:
         )
         for side, way in difference.bust_points.items()
     ]
-    return joined([*said, tr("± is the uncertainty of the bust points on both scans.")])
+    return joined([*texts, tr("± is the uncertainty of the bust points on both scans.")])
 
 
 def _way(mm: float, more: str, less: str, sure: float = 0.0) -> str:
@@ -95,10 +95,10 @@ def summary_text(difference: Residuals) -> str:
 def shown_text(difference: Residuals) -> str:
     """Return how much of the moving skin the worn scan shows, where that is not nearly all."""
     share = difference.total.seen
-    said = tr("The fitting scan covers {share} % of the reshaped region.").format(
+    text = tr("The fitting scan covers {share} % of the reshaped region.").format(
         share=number(100.0 * share, 0)
     )
-    return "" if share > 0.9 else said
+    return "" if share > 0.9 else text
 
 
 def parameter_rows(found: CalibrationResult, design: Design) -> tuple[ParameterRow, ...]:

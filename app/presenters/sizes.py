@@ -52,8 +52,8 @@ def _letters(measured: Measures) -> Iterator[str]:
 
 
 def _view(key: str, answer: SizeAnswer, letters: tuple[str, ...], within: str) -> SizeView:
-    said = (*answer.doubts, *(letter_sizes().doubts if letters else ()))
-    doubts, caution = _unlike([each.told(language()) for each in said]), answer.table.caution
+    texts = (*answer.doubts, *(letter_sizes().doubts if letters else ()))
+    doubts, caution = _unlike([each.told(language()) for each in texts]), answer.table.caution
     return SizeView(
         key,
         key.upper() if len(key) == 2 else answer.table.system,

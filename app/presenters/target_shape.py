@@ -97,8 +97,8 @@ def result_text(
     """
     most = max(reply.pressure.values(), default=0.0)
     if limit is not None and reply.agreed and most < _ABOUT * limit:
-        said = tr("Contact pressure at most {kpa} kPa; result: {values}.")
-        return said.format(kpa=number(most), values=listed(_come(reply, goals)))
+        text = tr("Contact pressure at most {kpa} kPa; result: {values}.")
+        return text.format(kpa=number(most), values=listed(_come(reply, goals)))
     if reply.reachable:
         return tr("All targets reached.")
     if is_met(reply, goals):
@@ -108,13 +108,13 @@ def result_text(
         return _near_text(reply, goals, now or {})
     nearest = closest_result_text(reply, goals, now or {})
     if not reply.agreed:
-        said = tr(
+        text = tr(
             "Closest result: {nearest}. The iteration over lengths, elastics and contact "
             "pressure did not converge."
         )
-        return said.format(nearest=nearest)
-    said = tr("Not reachable. Closest result: {nearest}. Reasons: {reasons}.")
-    return said.format(nearest=nearest, reasons=reasons_text(reply))
+        return text.format(nearest=nearest)
+    text = tr("Not reachable. Closest result: {nearest}. Reasons: {reasons}.")
+    return text.format(nearest=nearest, reasons=reasons_text(reply))
 
 
 def _near_text(reply: InverseResult, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
@@ -123,10 +123,10 @@ def _near_text(reply: InverseResult, goals: Sequence[Goal], now: Mapping[str, fl
     section = max(offs, key=lambda each: float(np.abs(offs[each]).mean()))
     before = _off_before(goals, now, section)
     if before is None or float(np.abs(offs[section]).mean()) <= _MUCH * before:
-        said = tr("Reached with a deviation of {mean} on average, {most} maximum.")
+        text = tr("Reached with a deviation of {mean} on average, {most} maximum.")
     else:
-        said = tr("Closest result: deviation {mean} on average, {most} maximum (before: {before}).")
-    return said.format(**_mean_and_most(offs[section]), before=length(before or 0.0))
+        text = tr("Closest result: deviation {mean} on average, {most} maximum (before: {before}).")
+    return text.format(**_mean_and_most(offs[section]), before=length(before or 0.0))
 
 
 def _off_before(goals: Sequence[Goal], now: Mapping[str, float], section: str) -> float | None:
@@ -157,10 +157,10 @@ def _nearest(reply: InverseResult, goals: Sequence[Goal], now: Mapping[str, floa
         yield target_text(goal.name, reply.reached[goal.name])
     profiles = profile_deviations(goals, reply.reached)
     for section, off in profiles.items():
-        said = tr("profile deviation {mean} on average ({most} maximum)")
+        text = tr("profile deviation {mean} on average ({most} maximum)")
         if len(profiles) > 1:
-            said = tr("{profile}: deviation {mean} on average ({most} maximum)")
-        words = said.format(profile=target_title(section), **_mean_and_most(off))
+            text = tr("{profile}: deviation {mean} on average ({most} maximum)")
+        words = text.format(profile=target_title(section), **_mean_and_most(off))
         before = _off_before(goals, now, section)
         if before is not None:
             words += tr(", {before} before").format(before=length(before))
@@ -182,9 +182,9 @@ def bust_movement_text(goals: Sequence[Goal], now: Mapping[str, float], then: Ma
 
 def _from_to(name: str, before: float, after: float) -> str:
     """Return a figure with what it was and what it comes to: "Bust point up +0.2 → +0.4 mm"."""
-    said, signed = tr("{quantity} {before} → {after}"), is_signed(name)
+    text, signed = tr("{quantity} {before} → {after}"), is_signed(name)
     values = {"before": length_number(before, 1, signed=signed), "after": length(after, 1, signed=signed)}
-    return said.format(quantity=target_title(name), **values)
+    return text.format(quantity=target_title(name), **values)
 
 
 def deviation_text(goals: Sequence[Goal], reached: Mapping[str, float], section: str) -> str:
@@ -227,8 +227,8 @@ def reasons(reply: InverseResult) -> list[str]:
     slack = [name for name in reply.slack if name not in reply.at_limit]
     kpa = number(reply.limit)
     causes = [
-        said.format(lines=_titles(names, reply.design), kpa=kpa)
-        for names, said in (
+        text.format(lines=_titles(names, reply.design), kpa=kpa)
+        for names, text in (
             (short, tr("{lines}: lower length limit")),
             (long, tr("{lines}: upper length limit, a longer line would be slack")),
             (slack, tr("{lines}: slack, the tension would be negative")),
@@ -243,24 +243,24 @@ def reasons(reply: InverseResult) -> list[str]:
 
 def change_text(before: Design, reply: InverseResult) -> list[str]:
     """Return how lengths would change, row by row, what elastics press with, and if others were not asked."""
-    after, said = reply.design, []
+    after, texts = reply.design, []
     for title, name in _rows(sorted(after.active_lines()), after):
         one, other = before.ratio(name), after.ratio(name)
         if abs(one - other) >= SAME:
             words = tr("{line} {before} → {after} %") + " ({change})"
             values = {"before": number(100.0 * one), "after": number(100.0 * other)}
             values["change"] = number(100.0 * (other - one), 1, True)
-            said.append(words.format(line=title, **values))
-    said = said or [tr("No line changes")]
+            texts.append(words.format(line=title, **values))
+    texts = texts or [tr("No line changes")]
     if reply.pressure:
         most = max(reply.pressure.values())
-        said.append(tr("contact pressure at most {kpa} kPa").format(kpa=number(most)))
+        texts.append(tr("contact pressure at most {kpa} kPa").format(kpa=number(most)))
     if reply.unchecked and reply.pressure:
         lines = _titles(reply.unchecked, after)
-        said.append(tr("contact pressure of {lines} not checked: see Garment").format(lines=lines))
+        texts.append(tr("contact pressure of {lines} not checked: see Garment").format(lines=lines))
     elif reply.unchecked:
-        said.append(tr("contact pressure not checked: see Garment"))
-    return said
+        texts.append(tr("contact pressure not checked: see Garment"))
+    return texts
 
 
 def locked_lines_text(design: Design, kept: Collection[str]) -> str:

@@ -185,8 +185,8 @@ def _cut_caption(sheet: Report) -> str:
     return tr("Cut length (estimate)") if guessed else tr("Cut length")
 
 
-def _sentence(left: float, room: float, caption: str, said: str) -> Block:
-    lines = wrap(said, "body", room)[:4]
+def _sentence(left: float, room: float, caption: str, text: str) -> Block:
+    lines = wrap(text, "body", room)[:4]
 
     def paint(paper: PagePainter, x: float, y: float) -> None:
         paper.text(x + left, y + 4.6, caption, "caption")

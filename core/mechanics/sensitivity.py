@@ -128,7 +128,7 @@ class Sensitivities:
             _, push = self._skin.projected(self.place)
             factor = band.lu(self._skin.derivative(self.potential, self.place, multipliers))
         if factor is None:
-            raise ValueError("the balance moves without bound")
+            raise ValueError("the equilibrium is singular")
 
         def solve(right: Floats, factor: Solve = factor) -> Floats:
             # The trace of stiffness in the matrix does not matter to Newton's steps, but to the tenth digit.

@@ -155,8 +155,8 @@ class DocumentEditor(QObject):
             return
         worn = None if is_original_length(ratio) else ratio
         text = tr("{line} deactivated") if worn is None else tr("{line} {percent} %")
-        said = text.format(line=title, percent=number(100.0 * ratio, 1))
-        self.edit(lambda design: design.with_linked(name, worn), said, what=f"length of {name}")
+        sentence = text.format(line=title, percent=number(100.0 * ratio, 1))
+        self.edit(lambda design: design.with_linked(name, worn), sentence, what=f"length of {name}")
 
     def reset_lines(self) -> None:
         """Take every line off: the body as scanned."""

@@ -66,6 +66,6 @@ def graphics_in_words() -> list[tuple[str, str]]:
     if not (context.create() and context.makeCurrent(ground)):
         return [("OpenGL", "-")]
     functions = context.functions()
-    said = [(name, str(functions.glGetString(number))) for name, number in _STRINGS]
+    texts = [(name, str(functions.glGetString(number))) for name, number in _STRINGS]
     context.doneCurrent()
-    return said
+    return texts

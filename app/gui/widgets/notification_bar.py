@@ -212,8 +212,8 @@ class NotificationBar(FloatingPanel):
             return
         notice = self._shown = self._waiting.popleft()
         self._icon.show_icon(TONE_ICONS[notice.tone], notice.tone)
-        said, hint = (add_word_joiners(escape(each)) for each in (notice.sentence, notice.hint))
-        self._words.setText(f'<span style="font-weight:600">{said}</span>&nbsp; {hint}')
+        message, hint = (add_word_joiners(escape(each)) for each in (notice.sentence, notice.hint))
+        self._words.setText(f'<span style="font-weight:600">{message}</span>&nbsp; {hint}')
         self._set_buttons(notice.actions)
         self.details.setPlainText(notice.details)
         self.unfold.setChecked(False)

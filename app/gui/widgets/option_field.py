@@ -165,9 +165,9 @@ class AmountEdit(InlineEdit):
         if figure is None:
             raise ValueError(tr("“{text}” is not a number.").format(text=text))
         if not low <= figure / self._amount.scale <= high:
-            said = tr("Enter a value from {low} to {high}{unit}.")
+            sentence = tr("Enter a value from {low} to {high}{unit}.")
             unit = f" {self._amount.unit}" if self._amount.unit else ""
-            raise ValueError(said.format(low=self._plain(low), high=self._plain(high), unit=unit))
+            raise ValueError(sentence.format(low=self._plain(low), high=self._plain(high), unit=unit))
         return figure / self._amount.scale
 
     def _take(self, value: float | None) -> None:

@@ -113,7 +113,7 @@ def girth_levels(landmarks: Landmarks) -> Mapping[str, float]:
 
 def girth_warnings(found: Mapping[str, Girth]) -> list[Message]:
     """Return one sentence for each girth of the bust that is an estimate, or whose height is uncertain."""
-    estimates = [said for name, said in ESTIMATES.items() if name in found and found[name].bridged_mm > MUCH]
+    estimates = [text for name, text in ESTIMATES.items() if name in found and found[name].bridged_mm > MUCH]
     return estimates + [UNCERTAIN] * ("underbust" in found and found["underbust"].confidence < CERTAIN)
 
 

@@ -86,7 +86,7 @@ BROKEN = [
     ("[" * 100_000, "nested too deeply"),
     (changed(format=2), "not of format 1"),
     (changed(format=True), "not of format 1"),
-    (changed(more=1), "has 'more', which no table has"),
+    (changed(more=1), "has 'more', which is unknown"),
     (without("doubts"), "lacks 'doubts'"),
     (changed(system=" "), "system must be a text"),
     (changed(names={"ja": "日本"}), "names must have 'en'"),

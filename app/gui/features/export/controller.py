@@ -206,5 +206,5 @@ class ExportController(QObject):
 
 
 def _sentence(ready: ExportPreview) -> str:
-    said = tr("{contents}, {details}") if ready.how else "{contents}"
-    return said.format(contents=ready.contents, details=ready.how)
+    text = tr("{contents}, {details}") if ready.how else "{contents}"
+    return text.format(contents=ready.contents, details=ready.how)

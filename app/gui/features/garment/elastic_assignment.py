@@ -83,8 +83,8 @@ class ElasticAssignmentController(QObject):
         if design is None:
             return
         words = tr("{line}: elongation {percent} %")
-        said = words.format(line=row_title(name, design), percent=number(100.0 * share))
-        self._session.edit(lambda before: before.with_linked(name, 1.0 / (1.0 + share)), said)
+        sentence = words.format(line=row_title(name, design), percent=number(100.0 * share))
+        self._session.edit(lambda before: before.with_linked(name, 1.0 / (1.0 + share)), sentence)
 
     def _open(self, names: tuple[str, ...], chosen: str | None) -> None:
         frame, design = self._session.frame, self._session.design

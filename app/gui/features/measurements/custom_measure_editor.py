@@ -98,12 +98,12 @@ class MeasurementEditor(QWidget):
         """Let a girth lie so high above the lowest point of the scan."""
         self._set(at="", level=float(mm))
 
-    def show_value(self, value: str, said: str, doubt: str, suggested: str) -> None:
+    def show_value(self, value: str, message: str, doubt: str, suggested: str) -> None:
         """Show what it measures, what is said of it and what is doubtful; without a value it is not kept.
 
         ``suggested`` is the name that it gets if none is typed.
         """
-        for part, words in ((self.value, value), (self.said, said), (self.doubt, doubt)):
+        for part, words in ((self.value, value), (self.said, message), (self.doubt, doubt)):
             part.setText(words)
             part.setVisible(bool(words))
         self.name.setPlaceholderText(suggested or tr("Name"))

@@ -55,12 +55,12 @@ class ModelPanel(QWidget):
         assert isinstance(field, AmountField)
         field.edit.setPlaceholderText(number(gain, 2))
         above = gain > limit
-        said = (
+        text = (
             tr("Above {limit} the solver oscillates. Enter a lower gain.")
             if above
             else tr("The solver oscillates above {limit}.")
         )
-        self._limit.setText(said.format(limit=number(limit, 2)))
+        self._limit.setText(text.format(limit=number(limit, 2)))
         set_tag(self._limit, "tone", "warn" if above else "")
 
     def _foot(self) -> QWidget:

@@ -63,9 +63,9 @@ class ScanComparisonController(QObject):
         self._connect()
 
     def _connect(self) -> None:
-        said = tr("Compare the prediction with a scan of the worn garment")
+        text = tr("Compare the prediction with a scan of the worn garment")
         begin = tr("Compare with fitting scan…")
-        self._context.actions.add("file", begin, tip=said, do=self.begin, of_document=True)
+        self._context.actions.add("file", begin, tip=text, do=self.begin, of_document=True)
         self._context.session.design_changed.connect(lambda _: self.follow())
         self._context.session.opened.connect(lambda _: self.close())
         page = self.page
@@ -147,8 +147,8 @@ class ScanComparisonController(QObject):
         if self._found is None or self._found[0] is not self._context.session.design:
             return
         found, self._found = self._found[1], None
-        said = tr("Calibration with {file}").format(file=found.calibration.worn)
-        self._context.session.edit(lambda _: found.design, said)
+        text = tr("Calibration with {file}").format(file=found.calibration.worn)
+        self._context.session.edit(lambda _: found.design, text)
 
     def _tell_unit(self, unit: str) -> None:
         self._unit = unit

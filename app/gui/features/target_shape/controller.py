@@ -74,10 +74,10 @@ class TargetShapeController(QObject):
 
     def _connect(self) -> None:
         context, card, session = self._context, self.card, self._session
-        said = tr("Set target positions; Busk computes the lengths of the active lines")
+        text = tr("Set target positions; Busk computes the lengths of the active lines")
         do = context.actions
         do.rule("lines")
-        do.add("lines", tr("Target shape…"), "A", said, do=self.begin, of_document=True)
+        do.add("lines", tr("Target shape…"), "A", text, do=self.begin, of_document=True)
         card.entered.connect(self.wish)
         card.removed.connect(self.drop)
         card.add_requested.connect(self.menu.show)
@@ -111,7 +111,7 @@ class TargetShapeController(QObject):
         self,
         goals: Sequence[Goal] = (),
         prepare: Callable[[Design], Design] | None = None,
-        said: str = "",
+        text: str = "",
         limit: float | None = None,
     ) -> None:
         """Open the card, with ``goals`` wished for already.
@@ -127,7 +127,7 @@ class TargetShapeController(QObject):
         self._context.navigation.show_step("lines")
         limit = math.inf if math.isinf(self.all_wishes.most_kpa) else limit
         self.all_wishes, self.answer, self._apply_due = replace(Targets.of(goals), limit=limit), None, False
-        self.ground.begin(prepare, said)
+        self.ground.begin(prepare, text)
         self.back.remember()
         self._pages.setCurrentWidget(self.card)
         self.drawing.choose("bust")
@@ -287,8 +287,8 @@ class TargetShapeController(QObject):
         self.answer = None
         self._session.cancel_preview()
         self._show()
-        said = render(problem.text)
-        self.card.show_answer(said, "warn")
+        text = render(problem.text)
+        self.card.show_answer(text, "warn")
 
     def _follow_design(self, _: Design) -> None:
         if self.is_open:
@@ -312,8 +312,8 @@ class TargetShapeController(QObject):
             self.card.show_optional(inactive_text(design, self.ground.inactive), self.all_wishes.optional)
             hint = self.drawing.hint()
             self.card.show_wishes(list(target_views(self.all_wishes, self.answer)), hint)
-            said = self.ground.said
-            show_result(self.card, design, self.all_wishes, self.answer, apart=said, busy=self._busy())
+            text = self.ground.said
+            show_result(self.card, design, self.all_wishes, self.answer, apart=text, busy=self._busy())
         self.handles.follow()
 
     def _busy(self) -> str:

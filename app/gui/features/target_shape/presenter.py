@@ -52,17 +52,17 @@ def show_result(
     else:
         reply, asked = answer.reply, answer.question.goals
         met = _is_met(wishes, reply, asked)
-        said = result_text(reply, asked, wishes.only_limit, answer.now)
+        text = result_text(reply, asked, wishes.only_limit, answer.now)
         price, why = bust_movement_text(asked, answer.now, answer.then), ""
         conflicts, switched = conflict_text(answer.conflicts), activated_text(design, reply.design)
         if has_balance_targets(asked) and wishes.only_limit is None:
-            said, price, why = balance_result_texts(reply, asked, answer.now, answer.then)
+            text, price, why = balance_result_texts(reply, asked, answer.now, answer.then)
             conflicts = ()  # that sentence names the price
         free = "" if answer.unlimited is None else unlimited_text(answer.unlimited, asked, answer.now)
         lines = listed(change_text(design, reply))
         changes = "\n".join(filter(None, (free, why, lines, switched, *conflicts)))
         tone = "ok" if met else "" if is_near(reply, asked) else "warn"
-        card.show_answer(said, tone, price, changes, note, can_apply=True)
+        card.show_answer(text, tone, price, changes, note, can_apply=True)
 
 
 def meets_targets(wishes: Targets, answer: TargetAnswer) -> bool:
