@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from app.i18n.catalog import joined, language, listed, number, tr
+from app.i18n.catalog import colon, joined, language, listed, number, tr
 from app.i18n.lengths import length
 from app.presenters.lines import LineView, line_colours
 from app.presenters.messages import line_title, render, render_all
@@ -22,8 +22,8 @@ def rating_text(light: str) -> str:
 
 def rating_limits() -> RatingLimits:
     """Return the limits of the light in words."""
-    limits, colon = pressure_limits(), "：" if language() == "ja" else ": "
-    told = [f"{each.named(language())}{colon}{each.words.told(language())}" for each in limits.sources]
+    limits = pressure_limits()
+    told = [f"{each.named(language())}{colon()}{each.words.told(language())}" for each in limits.sources]
     doubts = [words.told(language()) for words in limits.doubts]
     return RatingLimits(
         limits.amber_kpa,

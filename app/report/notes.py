@@ -57,8 +57,7 @@ def size_cautions(sheet: Report) -> str:
     for each in sheet.sizes:
         if each["caution"]:
             told.setdefault(_caution(each), []).append(system_word(each))
-    between = "；" if language() == "ja" else "; "
-    words = between.join(f"{listed(systems)}{colon()}{caution}" for caution, systems in told.items())
+    words = tr("; ").join(f"{listed(systems)}{colon()}{caution}" for caution, systems in told.items())
     return tr("* Other size charts give another size. {details}").format(details=words) if words else ""
 
 
@@ -75,7 +74,7 @@ def _meaning(sheet: Report) -> list[str]:
 def _limits() -> list[str]:
     """Return how sure the limits of the lights are, and between whose figures they stand."""
     limits = pressure_limits()
-    sources = ("、" if language() == "ja" else "; ").join(each.named(language()) for each in limits.sources)
+    sources = tr("; ").join(each.named(language()) for each in limits.sources)
     return [limits.doubts[0].told(language()), tr("Sources: {names}.").format(names=sources)]
 
 
