@@ -53,7 +53,7 @@ GOALS = (Goal("lift", 5.0),)
                 "length limit; Full bust: upper length limit, a longer line would be slack."
             ),
             (
-                "到達できません。最も近い結果：BPの上昇 +2.0 mm。理由：バスト下部：長さの下限、"
+                "到達できません。最も近い結果：BPの上昇 +2.0 mm。理由：バスト下部：長さの下限；"
                 "トップバスト：長さの上限（長くするとたるみます）。"
             ),
         ),
