@@ -206,8 +206,8 @@ def test_a_broken_truth_is_told_in_a_sentence(tmp_path: Path, content: object, s
 @pytest.mark.parametrize(
     ("entry", "said"),
     [
-        ({"file": None}, "'file' must be the plain name"),
-        ({"file": "../a.ply"}, "'file' must be the plain name"),
+        ({"file": None}, "'file' must be a file name"),
+        ({"file": "../a.ply"}, "'file' must be a file name"),
         ({"unit": "feet"}, "'unit' must be one of mm, cm, m, inch"),
         ({"unit": ["mm"]}, "'unit' must be one of"),
         ({"landmarks_file": {"fold_left": [1, 2]}}, "'landmarks_file: fold_left' must be 3 numbers"),
