@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from app.cli.options import NUMBERS, SWITCHES, WORDS, shown_words, stored_word
+from app.cli.options import NUMBERS, SWITCHES, WORDS, shown_text, stored_word
 from core.control_mesh.template import read_template
 from core.document.design import Design, ScanSource
 from core.document.document import Document
@@ -119,7 +119,7 @@ def _word(key: str, value: str) -> str:
     if plain not in WORDS[key]:
         raise UserError(
             Message("'{value}' is not a value of {key}.", value=value, key=key),
-            Message("Choose one of: {choices}.", choices=", ".join(shown_words(key))),
+            Message("Choose one of: {choices}.", choices=", ".join(shown_text(key))),
         )
     return plain
 

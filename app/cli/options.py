@@ -114,7 +114,7 @@ def picture_size(text: str) -> tuple[int, int]:
     return int(match[1]), int(match[2])
 
 
-def shown_words(key: str) -> list[str]:
+def shown_text(key: str) -> list[str]:
     """Return the values of a setting as they are shown."""
     return [_SHOWN.get(word, word) for word in WORDS[key]]
 
@@ -122,5 +122,5 @@ def shown_words(key: str) -> list[str]:
 def settings_help() -> str:
     """Return the keys of ``--settings`` with the values that each takes."""
     numbers = f"{', '.join(NUMBERS)} (a number; firm_chest also on, off; gain also auto)"
-    words = [f"{key} ({', '.join(shown_words(key))})" for key in WORDS]
+    words = [f"{key} ({', '.join(shown_text(key))})" for key in WORDS]
     return ", ".join([numbers, *words, *(f"{key} (yes, no)" for key in SWITCHES)])

@@ -8,7 +8,7 @@ from functools import cached_property, reduce
 
 from app.cli.design import apply_elastics, apply_lines
 from app.presenters.assessment import assessment_lines
-from app.presenters.elastics import effect_words, next_step
+from app.presenters.elastics import effect_text, next_step
 from core.document.design import Design
 from core.document.elastic import ElasticError
 from core.errors import LineError
@@ -102,7 +102,7 @@ def solve_design(
 def _effect_of(stages: Stages, rigid: Stages) -> tuple[str, ...]:
     """Return the lift of a design compared with rigid bands, if both have an equilibrium."""
     try:
-        return (effect_words(outcome_of(stages), outcome_of(rigid)),)
+        return (effect_text(outcome_of(stages), outcome_of(rigid)),)
     except LineError:
         return ()
 

@@ -1,4 +1,4 @@
-"""All that can be asked of the window by menu or key; a controller adds its own with ``add``."""
+"""Actions of the window by menu or key; a controller adds its own with ``add``."""
 
 from __future__ import annotations
 
@@ -47,10 +47,10 @@ class Actions(Menus):
         self.rule("file")
         self.save = self.add("file", tr("Save"), _KEYS.Save, of_document=True)
         self.save_as = self.add("file", tr("Save as…"), "Ctrl+Shift+S", of_document=True)
-        said = tr("Export body, lines, pattern strips, measurements, images or a turntable")
-        self.export_any = self.add("file", tr("Export…"), "Ctrl+Shift+E", said, of_document=True)
-        said = tr("Export the reshaped body with the last settings")
-        self.export = self.add("file", tr("Export body…"), "Ctrl+E", said, of_document=True)
+        text = tr("Export body, lines, pattern strips, measurements, images or a turntable")
+        self.export_any = self.add("file", tr("Export…"), "Ctrl+Shift+E", text, of_document=True)
+        text = tr("Export the reshaped body with the last settings")
+        self.export = self.add("file", tr("Export body…"), "Ctrl+E", text, of_document=True)
         self.rule("file")
         self.cancel = self.add("file", tr("Cancel current task"), "Esc")
         self.cancel.setEnabled(False)
@@ -67,12 +67,12 @@ class Actions(Menus):
         for action in (self.undo, self.redo):
             self.place("edit", action)
         self.rule("edit")
-        said = tr("Deactivate all unlocked lines")
-        self.reset = self.add("edit", tr("Reset all lines"), "Ctrl+R", said, of_document=True)
+        text = tr("Deactivate all unlocked lines")
+        self.reset = self.add("edit", tr("Reset all lines"), "Ctrl+R", text, of_document=True)
 
     def _fill_view(self, view: Mapping[str, QAction]) -> None:
-        said = tr("Switch between original and reshaped body")
-        self.flip = self.add("view", tr("Before / after"), "Space", said, of_document=True)
+        text = tr("Switch between original and reshaped body")
+        self.flip = self.add("view", tr("Before / after"), "Space", text, of_document=True)
         self.submenu("view", "compare", tr("Compare"))
         self.submenu("view", "looks", tr("View direction"))
         self.submenu("view", "layers", tr("Show"))
@@ -96,10 +96,10 @@ class Actions(Menus):
         }
         self.add_lines = {name: self.add("lines", title, of_document=True) for name, title in titles.items()}
         self.rule("lines")
-        said = tr(
+        text = tr(
             "Click points on the body to draw a line. It keeps the drawn curve or snaps to control points."
         )
-        self.draw_line = self.add("lines", tr("Draw line"), "N", said, of_document=True)
+        self.draw_line = self.add("lines", tr("Draw line"), "N", text, of_document=True)
         self.own_line = self.add("lines", tr("Line through control points…"), of_document=True)
 
     def _fill_solve(self) -> None:
@@ -116,8 +116,8 @@ class Actions(Menus):
         counts = {name: tr("{count} polygons").format(count=name) for name in ("168", "120")}
         self.templates = self.group("templates", counts)
         self.rule("solve")
-        said = tr("Model options: line, skin and volume behaviour")
-        self.model = self.add("solve", tr("Model options…"), "Ctrl+M", said, of_document=True)
+        text = tr("Model options: line, skin and volume behaviour")
+        self.model = self.add("solve", tr("Model options…"), "Ctrl+M", text, of_document=True)
 
     def _fill_window(self) -> None:
         titles = {
@@ -132,23 +132,23 @@ class Actions(Menus):
         self.rule("window")
         self.inspector = self.add("window", tr("Inspector"), "Ctrl+I", checkable=True)
         self.strip = self.add("window", tr("Live plot"), "Ctrl+J", checkable=True)
-        said = tr("Show only the 3D view (Tab to restore)")
-        self.alone = self.add("window", tr("3D view only"), "Tab", said, checkable=True)
+        text = tr("Show only the 3D view (Tab to restore)")
+        self.alone = self.add("window", tr("3D view only"), "Tab", text, checkable=True)
         # Elsewhere Tab goes on to the next field: the layout gives this action to the view alone.
         self.alone.setShortcutContext(Qt.ShortcutContext.WidgetShortcut)
         self.full_screen = self.add("window", tr("Full screen"), "F11", checkable=True)
         self.next_pane = self.add("window", tr("Next pane"), "F6", tr("Move keyboard focus to the next pane"))
-        said = tr("Select menus with the arrow keys")
-        self.add("window", tr("Menu bar"), "F10", said, do=self.enter_bar)
+        text = tr("Select menus with the arrow keys")
+        self.add("window", tr("Menu bar"), "F10", text, do=self.enter_bar)
         self.rule("window")
-        said = tr("Restore default panel sizes")
-        self.reset_layout = self.add("window", tr("Reset layout"), tip=said)
+        text = tr("Restore default panel sizes")
+        self.reset_layout = self.add("window", tr("Reset layout"), tip=text)
 
     def _fill_help(self) -> None:
-        said = tr("Open the page for the current task in the browser")
-        self.guide = self.add("help", tr("User guide"), _KEYS.HelpContents, said)
-        said = tr("From a scan to a cut list, click by click")
-        self.first_steps = self.add("help", tr("Quick start"), tip=said)
+        text = tr("Open the page for the current task in the browser")
+        self.guide = self.add("help", tr("User guide"), _KEYS.HelpContents, text)
+        text = tr("From a scan to a cut list, click by click")
+        self.first_steps = self.add("help", tr("Quick start"), tip=text)
         self.rule("help")
         self.about = self.add("help", tr("About Busk"))
         self.about.setMenuRole(QAction.MenuRole.AboutRole)

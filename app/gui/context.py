@@ -1,4 +1,4 @@
-"""What every controller is given: the session, and the parts of the program that all features share."""
+"""Shared services of all controllers: the session, and common parts of the program."""
 
 from __future__ import annotations
 

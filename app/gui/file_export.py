@@ -47,7 +47,7 @@ def write_whole(data: bytes) -> Callable[[Path], object]:
 
 
 def copy_table(context: AppContext, table: Table) -> None:
-    """Put a table on the clipboard, its cells apart by tabs as spreadsheets take them."""
+    """Copy a table to the clipboard, its cells apart by tabs as spreadsheets take them."""
     lines = ("\t".join(str(cell(each)) for each in row) for row in table)
     QGuiApplication.clipboard().setText("".join(f"{line}\n" for line in lines))
     context.notifications.done(tr("Table copied."))

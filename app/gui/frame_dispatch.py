@@ -1,4 +1,4 @@
-"""How a frame of the solver reaches its receivers: in one order, some of them at most so often."""
+"""Dispatch of solver frames to receivers: one order, some of them at a limited rate."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the parts of the window stand: splitters, what is folded away, and sizes kept between sessions."""
+"""Layout of the window: splitters, collapsed panes, and sizes kept between sessions."""
 
 from __future__ import annotations
 
@@ -144,7 +144,7 @@ class Layout(QObject):
         self.fit()
 
     def next_pane(self) -> None:
-        """Let the keyboard go on in the next part of the window that takes it."""
+        """Move the keyboard focus in the next part of the window that takes it."""
         panes, has = self._panes(), QApplication.focusWidget()
         at = next((place for place, pane in enumerate(panes) if has and pane.isAncestorOf(has)), -1)
         for pane in (panes[(at + step) % len(panes)] for step in range(1, len(panes) + 1)):
@@ -157,11 +157,11 @@ class Layout(QObject):
                 return
 
     def next_stop(self, forward: bool) -> bool:
-        """Let the keyboard go on to the next field or button, through all panes; returns whether it did."""
+        """Move the keyboard focus to the next field or button, through all panes; returns whether it did."""
         return next_stop(self._stops(), forward)
 
     def enter(self) -> None:
-        """Let the keyboard begin in the inspector: Tab goes on to what its panel has.
+        """Set the keyboard focus in the inspector: Tab goes on to what its panel has.
 
         No button has the keyboard meanwhile, so the space bar still flips the body.
         """
@@ -263,7 +263,7 @@ class Layout(QObject):
     # -- between sessions
 
     def restore(self) -> None:
-        """Put the window where it stood last, or on a screen that is there; ``keep`` is then due."""
+        """Place the window where it stood last, or on a screen that is there; ``keep`` is then due."""
         settings, self._restored = QSettings(), True
         put_as_last(self._window)
         self._width = _number(settings.value("window/inspector"))
@@ -273,7 +273,7 @@ class Layout(QObject):
         self.show_inspector(settings.value("window/inspector_shown") != "false")
 
     def keep(self) -> None:
-        """Remember where the window stands, if it was put there from memory: pictures leave no trace."""
+        """Record where the window stands, if it was put there from memory: pictures leave no trace."""
         self._keeps.stop()
         if not self._restored:
             return

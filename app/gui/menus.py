@@ -66,7 +66,7 @@ class Menus:
         return action
 
     def place(self, menu: str, action: QAction) -> None:
-        """Put an action that was made elsewhere at the foot of a menu, above what ends it."""
+        """Place an action that was made elsewhere at the foot of a menu, above what ends it."""
         self.menus[menu].insertAction(self._ends.get(menu), action)  # type: ignore[arg-type]
 
     def rule(self, menu: str) -> None:
@@ -105,7 +105,7 @@ class Menus:
             action.setEnabled(True)
 
     def enter_bar(self) -> None:
-        """Let the keyboard go through the menus."""
+        """Move the keyboard focus through the menus."""
         self.bar.setFocus(Qt.FocusReason.MenuBarFocusReason)
         self.bar.setActiveAction(self.bar.actions()[0])
 

@@ -1,4 +1,4 @@
-"""Where notices appear: floating on the 3D view, or above a page that takes the place of the work."""
+"""Place of notices: over the 3D view, or above a page in place of it."""
 
 # ruff: noqa: N802 - Qt names its events
 from __future__ import annotations

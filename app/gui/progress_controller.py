@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject
 
 from app.gui.status_bar import StatusBar
 from app.gui.widgets.notification_bar import NotificationBar
-from app.presenters.scan import work_steps, work_words
+from app.presenters.scan import work_steps, work_text
 
 if TYPE_CHECKING:
     from app.gui.context import AppContext
@@ -53,7 +53,7 @@ class ProgressController(QObject):
 
     def show_work(self, what: str, share: float) -> None:
         """Name what is read or built, and how much of it is done; an empty name ends it."""
-        words = work_words(what)
+        words = work_text(what)
         if words or not what:
             self._built = words, share
             self.show()
@@ -76,7 +76,7 @@ class ProgressController(QObject):
         self._context.actions.cancel.setEnabled(waited or carried)
 
     def cancel(self) -> None:
-        """Let go of what a hand carries, else of the work that is shown; all is as it was before."""
+        """Release what a hand carries, else of the work that is shown; all is as it was before."""
         if any(each.let_go() for each in self.carriers):
             return
         if self._built[0]:

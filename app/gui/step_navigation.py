@@ -43,7 +43,7 @@ class StepNavigation(QWidget):
         self._column.addStretch(1)
 
     def add_tool(self, drawing: str, action: QAction) -> ToolButton:
-        """Put a small button at the foot, for what is no step, and return it."""
+        """Place a small button at the foot, for what is no step, and return it."""
         tool = ToolButton(drawing, size=20, room=36, action=action)
         self._column.addWidget(tool, alignment=Qt.AlignmentFlag.AlignHCenter)
         return tool
@@ -96,13 +96,13 @@ class StepButton(QAbstractButton):
             raise ValueError(state)
         changed = (state, count) != (self._state, self._count)
         self._state, self._count = state, count
-        said = {
+        text = {
             "done": tr("done"),
             "look": tr("needs review"),
             "bad": tr("not valid"),
             "missing": tr("not available yet"),
         }
-        self.setAccessibleDescription(said.get(state, ""))
+        self.setAccessibleDescription(text.get(state, ""))
         if changed:
             self.update()
 

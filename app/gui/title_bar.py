@@ -45,12 +45,12 @@ class TitleBar(QWidget):
         grid.addLayout(right, 0, 2)
 
     def place(self, widget: QWidget) -> None:
-        """Put what is always wanted between undo and the buttons at the end."""
+        """Place what is always wanted between undo and the buttons at the end."""
         self._right.insertWidget(self._right.indexOf(self.export), widget)
         self._right.insertSpacing(self._right.indexOf(self.export), 8)
 
     def add_primary(self, action: QAction) -> None:
-        """Put what the work leads to at the end."""
+        """Place what the work leads to at the end."""
         self.primary = button(action.text(), "primary")
         self.primary.setEnabled(action.isEnabled())
         set_tip(self.primary, action.toolTip())

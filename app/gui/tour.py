@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QWidget
 from app.gui.features.project.recent_files import end_first_start
 from app.gui.widgets.coach_mark import CoachMark
 from app.i18n.catalog import tr
-from app.presenters.bust_shift import bust_shift, up_words
+from app.presenters.bust_shift import bust_shift, up_text
 
 if TYPE_CHECKING:
     from app.gui.main_window import MainWindow
@@ -130,7 +130,7 @@ class Tour(QObject):
                 tr(
                     "The bust points moved by: {move}. Press Space, or click Before and After, "
                     "to switch between original and reshaped body."
-                ).format(move=up_words(bust_shift(frame).mean.up)),
+                ).format(move=up_text(bust_shift(frame).mean.up)),
                 lambda: self._place_of(window.view.compare),
             ),
             TourStop(

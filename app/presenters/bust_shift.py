@@ -92,17 +92,17 @@ def uncertainties_of(spread: OutputUncertainties | None, side: str = "") -> Offs
     return up, out
 
 
-def step_words(step: BustStep, offs: Offs = UNKNOWN) -> str:
+def step_text(step: BustStep, offs: Offs = UNKNOWN) -> str:
     """Return a move in words: "3.9 mm up, 2.1 mm forward", or "3.9 ± 0.4 mm up" where that is known."""
-    return listed((up_words(step.up, offs[0]), forward_words(step.forward, offs[1])))
+    return listed((up_text(step.up, offs[0]), forward_text(step.forward, offs[1])))
 
 
-def up_words(up: float, off: float | None = None) -> str:
+def up_text(up: float, off: float | None = None) -> str:
     """Return a move up or down in words [mm]."""
     return (tr("{length} down") if round(up, 1) < 0.0 else tr("{length} up")).format(length=_sized(up, off))
 
 
-def forward_words(forward: float, off: float | None = None) -> str:
+def forward_text(forward: float, off: float | None = None) -> str:
     """Return a move forward or back in words [mm]."""
     back = round(forward, 1) < 0.0
     return (tr("{length} back") if back else tr("{length} forward")).format(length=_sized(forward, off))
@@ -114,18 +114,18 @@ def _sized(move: float, off: float | None) -> str:
     return " ".join(told).replace(" ", "\N{NO-BREAK SPACE}") + f" {length_unit()}"
 
 
-def sides_words(move: BustShift) -> tuple[str, str]:
+def sides_text(move: BustShift) -> tuple[str, str]:
     """Return the moves of left and right in words: that part of them which differs more, up or forward."""
     left, right = move.left, move.right
     if abs(left.up - right.up) >= abs(left.forward - right.forward):
-        return up_words(left.up), up_words(right.up)
-    return forward_words(left.forward), forward_words(right.forward)
+        return up_text(left.up), up_text(right.up)
+    return forward_text(left.forward), forward_text(right.forward)
 
 
 def bust_sentence(move: BustShift, offs: Offs = UNKNOWN) -> str:
     """Return a move in one line, with both sides where they differ; ``offs`` are those of the mean."""
-    said = tr("Bust points: {shift}").format(shift=step_words(move.mean, offs))
+    text = tr("Bust points: {shift}").format(shift=step_text(move.mean, offs))
     if not move.differs:
-        return said
-    left, right = sides_words(move)
-    return tr("{shift} (left {left}, right {right})").format(shift=said, left=left, right=right)
+        return text
+    left, right = sides_text(move)
+    return tr("{shift} (left {left}, right {right})").format(shift=text, left=left, right=right)

@@ -72,11 +72,11 @@ def hint(found: Diagnosis) -> str:
     """Return what leads to the buttons, or what there is to do where there are none."""
     if found.fixes:
         return _leading(found)
-    said = [tr("No fix found among changes of one line, of the gain or of the model.")]
+    texts = [tr("No fix found among changes of one line, of the gain or of the model.")]
     if found.locked:
         titles = listed(line_title(name, found.stages.design) for name in found.locked)
-        said.append(tr("Locked lines were not changed: {lines}.").format(lines=titles))
-    return joined(said)
+        texts.append(tr("Locked lines were not changed: {lines}.").format(lines=titles))
+    return joined(texts)
 
 
 def _leading(found: Diagnosis) -> str:
@@ -92,7 +92,7 @@ def _leading(found: Diagnosis) -> str:
 def shown_fixes(found: Diagnosis) -> tuple[Fix, ...]:
     """Return the fixes that have a button: the best, and the next if a narrow window has room."""
     best = found.fixes[:BUTTONS]
-    return best if sum(_wide(change_words(found, cure.change)) for cure in best) <= _ROOM else best[:1]
+    return best if sum(_wide(change_text(found, cure.change)) for cure in best) <= _ROOM else best[:1]
 
 
 def _wide(words: str) -> int:
@@ -114,7 +114,7 @@ def _topic(finding: Finding) -> str:
     }[finding.topic]
 
 
-def change_words(found: Diagnosis, change: Change) -> str:
+def change_text(found: Diagnosis, change: Change) -> str:
     """Return what a change does, as an undo step is called."""
     choice = {
         ("volume", "adaptive"): tr("Use Adaptive"),
@@ -220,9 +220,9 @@ def _changes(found: Diagnosis) -> Iterator[str]:
         yield tr("Fixes, verified from the original and the current shape, best first:")
     for place, cure in enumerate(found.fixes, start=1):
         view = assessment_view(Assessment(cure.remains), cure.change.design)
-        said = joined((tr("{headline}.").format(headline=view.headline), *(each for each, _ in view.reasons)))
-        change = change_words(found, cure.change)
-        yield "  " + tr("{place}. {change}: {what}").format(place=place, change=change, what=said)
+        text = joined((tr("{headline}.").format(headline=view.headline), *(each for each, _ in view.reasons)))
+        change = change_text(found, cure.change)
+        yield "  " + tr("{place}. {change}: {what}").format(place=place, change=change, what=text)
         if cure.option_result:
             yield "     " + _parts(cure)
         if cure.change.kind == "together":
@@ -236,8 +236,8 @@ def _changes(found: Diagnosis) -> Iterator[str]:
             yield "     " + listed(lengths)
     if found.nearest is not None:
         words = tr("Nearest: {change}; status “{state}”")
-        said = change_words(found, found.nearest.change)
-        yield words.format(change=said, state=state_title(found.nearest.remaining_problem))
+        text = change_text(found, found.nearest.change)
+        yield words.format(change=text, state=state_title(found.nearest.remaining_problem))
 
 
 def _parts(cure: Fix) -> str:

@@ -85,7 +85,7 @@ def mode_titles() -> list[tuple[str, str]]:
     return [(KEEP_FIT, tr("Keep length on body")), (KEEP_CUT, tr("Keep cut length"))]
 
 
-def mode_words(mode: str, design: Design) -> str:
+def mode_text(mode: str, design: Design) -> str:
     """Return what a mode means for cutting the garment."""
     if design.line_hold == "held":
         return tr("Line lengths are fixed in this design: an elastic changes the cut length, not the shape.")
@@ -96,16 +96,16 @@ def mode_words(mode: str, design: Design) -> str:
     )
 
 
-def effect_words(outcome: Outcome, rigid: Outcome) -> str:
+def effect_text(outcome: Outcome, rigid: Outcome) -> str:
     """Return the lift with an elastic against that of a band that does not stretch."""
     with_it, without = (length(each.lift, signed=True) for each in (outcome, rigid))
-    if kept := kept_words(outcome, rigid):
+    if kept := kept_text(outcome, rigid):
         words = tr("Lift {lift}, {kept} of the lift of {rigid} with an inextensible band.")
         return words.format(lift=with_it, kept=kept, rigid=without)
     return tr("Lift {lift}; with an inextensible band {rigid}.").format(lift=with_it, rigid=without)
 
 
-def kept_words(outcome: Outcome, rigid: Outcome) -> str:
+def kept_text(outcome: Outcome, rigid: Outcome) -> str:
     """Return the share of the lift that is kept, or nothing where there is none to compare with."""
     if rigid.lift < LEAST_LIFT:
         return ""
@@ -157,7 +157,7 @@ def _note(option: ElasticOption, rigid: Outcome | None, far: bool, name: str) ->
     if far:
         end = f"{100 * option.elastic.max_elongation:g}"
         notes.append(tr("High elongation: the curve ends at {end} %").format(end=end))
-    kept = kept_words(option.outcome, rigid) if rigid is not None else ""
+    kept = kept_text(option.outcome, rigid) if rigid is not None else ""
     if kept:
         notes.append(tr("Lift: {kept}").format(kept=kept))
     return " · ".join(notes)
@@ -172,16 +172,16 @@ def advice_view(
         return AdviceView("")
     if option.outcome is not None:
         told = option.elastic is not None and rigid is not None
-        return AdviceView(effect_words(option.outcome, rigid) if told and rigid is not None else "")
+        return AdviceView(effect_text(option.outcome, rigid) if told and rigid is not None else "")
     lines, offers = [render(option.reason, design)], []
     if option.closest is not None:
-        lines = [joined((*lines, effect_words(option.closest, rigid) if rigid is not None else ""))]
+        lines = [joined((*lines, effect_text(option.closest, rigid) if rigid is not None else ""))]
         offers.append((tr("Use at limit"), place, True))
     other = _other(option, options, titles, names)
     if other is not None:
         at, limited = other
         offers.append((_offer(titles[at], limited), at, limited))
-        lines.append(_other_words(options[at], titles[at], limited, rigid))
+        lines.append(_other_text(options[at], titles[at], limited, rigid))
     elif (
         option.closest is None
         and option.problem is not None
@@ -223,13 +223,13 @@ def _offer(title: str, limited: bool) -> str:
     return words.format(elastic=title)
 
 
-def _other_words(option: ElasticOption, title: str, limited: bool, rigid: Outcome | None) -> str:
+def _other_text(option: ElasticOption, title: str, limited: bool, rigid: Outcome | None) -> str:
     outcome = option.closest if limited else option.outcome
     assert outcome is not None
     words = tr("Nearest suitable elastic: {elastic}.")
     if limited:
         words = tr("No elastic is suitable at this length; {elastic} is nearest.")
-    effect = effect_words(outcome, rigid) if rigid is not None else ""
+    effect = effect_text(outcome, rigid) if rigid is not None else ""
     return joined((words.format(elastic=title), effect))
 
 

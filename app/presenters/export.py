@@ -181,8 +181,8 @@ def _unit(units: tuple[str, ...] = tuple(UNITS)) -> Choice:
         "m": tr("Metres"),
         "in": tr("Inches"),
     }
-    said = tr("Unit of lengths in the file.")
-    return Choice("unit", tr("Unit"), said, tuple((unit, words[unit]) for unit in units))
+    sentence = tr("Unit of lengths in the file.")
+    return Choice("unit", tr("Unit"), sentence, tuple((unit, words[unit]) for unit in units))
 
 
 def _axes() -> Choice:
@@ -191,8 +191,8 @@ def _axes() -> Choice:
         "y-up": tr("y up, face to z: CLO, Maya"),
         "z-up-front-y": tr("z up, face to y: some CAD"),
     }
-    said = tr("Up and front directions in the file.")
-    return Choice("axes", tr("Axes"), said, tuple((axes, words[axes]) for axes in AXES))
+    sentence = tr("Up and front directions in the file.")
+    return Choice("axes", tr("Axes"), sentence, tuple((axes, words[axes]) for axes in AXES))
 
 
 def _view() -> Choice:
@@ -372,7 +372,7 @@ class ExportSettings:
         return chosen | {"format": kind}
 
     def choose(self, what: str, key: str, value: str) -> None:
-        """Remember one choice for something."""
+        """Record one choice for something."""
         self._kept[_key(what, self.kind(what), key)] = value
 
     def manner(self, what: str, kind: str = "", view: View | None = None) -> ExportOptions:

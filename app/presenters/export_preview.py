@@ -104,10 +104,10 @@ def _table_kind(path: str, manner: ExportOptions) -> None:
 
 def _in_space(space: FileSpace) -> str:
     axes = {"z-up": tr("z-up"), "y-up": tr("y-up"), "z-up-front-y": tr("z-up-front-y")}[space.axes]
-    return tr("in {unit}, {axes}").format(unit=_unit_words(space.unit), axes=axes)
+    return tr("in {unit}, {axes}").format(unit=_unit_text(space.unit), axes=axes)
 
 
-def _unit_words(unit: str) -> str:
+def _unit_text(unit: str) -> str:
     return tr("inches") if unit == "in" else unit
 
 
@@ -145,10 +145,10 @@ def _flat(path: str, outcome: ExportSource, manner: ExportOptions) -> ExportPrev
     drawn = strips(outcome.stages, outcome.control_points, *outcome.looks)
     told = listed(f"{each.title} {length(each.length)}" for each in drawn)
     heading = f"Busk {__version__} · {outcome.whose}"
-    return ExportPreview(told, "1:1", lambda at, _, hear: write_strips(at, drawn, heading, _strip_words))
+    return ExportPreview(told, "1:1", lambda at, _, hear: write_strips(at, drawn, heading, _strip_text))
 
 
-def _strip_words(message: Message) -> str:
+def _strip_text(message: Message) -> str:
     """Return what stands on a strip in the language in use; files keep millimetres."""
     with using_unit("mm"):
         return render(message)
@@ -168,7 +168,7 @@ def _measures(path: str, outcome: ExportSource, manner: ExportOptions) -> Export
         if manner.before
         else tr("{count} measurements of the reshaped body")
     )
-    how = tr("in {unit}").format(unit=_unit_words(unit))
+    how = tr("in {unit}").format(unit=_unit_text(unit))
     # Files for pattern programs hold lengths alone, each by its name there.
     kind = measurement_file_kind(path, unit)
     count = len(seamly_names(sheet.lengths) if kind in LENGTHS_ALONE else values)

@@ -68,8 +68,8 @@ def hint(leeway: LengthLimits, ratio: float) -> str:
 
 def length_tip(short: float, long: float) -> str:
     """Return what a slider from ``short`` to ``long`` [1] means, and its keys."""
-    said = tr("Set the front length, {short} to {long} % of the original.\n← → 0.1 %, Shift 1 %, Alt 0.01 %")
-    return said.format(short=number(100.0 * short, 0), long=number(100.0 * long, 0))
+    text = tr("Set the front length, {short} to {long} % of the original.\n← → 0.1 %, Shift 1 %, Alt 0.01 %")
+    return text.format(short=number(100.0 * short, 0), long=number(100.0 * long, 0))
 
 
 def resistance_reason(leeway: LengthLimits | None) -> str:

@@ -127,7 +127,7 @@ def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineV
         elastic=elastic_title(traits.elastic),
         splits=not partner and can_split(design, _template(design.template), name),
         parted=is_split(design, name),
-        strap="" if tail is None else _strap_words(tail),
+        strap="" if tail is None else _strap_text(tail),
         over_shoulder=_over_shoulder(design, frame, name),
     )
 
@@ -153,7 +153,7 @@ def _over_shoulder(design: Design, frame: Frame, name: str) -> bool | None:
     return False if held[upper] and heights[upper] > bust_level else None
 
 
-def _strap_words(tail: Tail) -> str:
+def _strap_text(tail: Tail) -> str:
     """Return where a strap goes on from its upper end, or why it does not."""
     if tail.problem:
         return tr("{why} The line ends at the upper chest.").format(why=render(tail.problem))
@@ -293,7 +293,7 @@ def band_label(design: Design, frame: Frame, name: str) -> tuple[str, str]:
     ratio = design.ratio(name)
     if design.line_settings(name).elastic:
         stretch = frame.lengths[name] / (ratio * line.rest_length) - 1.0
-        said = tr("elongation {value}").format(value=f"{number(100.0 * stretch)} %")
-        return f"{title} {length(frame.lengths[name])}", said
+        text = tr("elongation {value}").format(value=f"{number(100.0 * stretch)} %")
+        return f"{title} {length(frame.lengths[name])}", text
     change = (ratio - 1.0) * line.rest_length
     return f"{title} {number(100.0 * ratio)} %", length(change, signed=True)

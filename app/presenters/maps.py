@@ -15,8 +15,8 @@ from app.presenters.bust_shift import (
     BustShift,
     BustStep,
     bust_sentence,
-    forward_words,
-    step_words,
+    forward_text,
+    step_text,
     uncertainties_of,
 )
 from app.presenters.pressure import limit_marks
@@ -147,7 +147,7 @@ def pressure_note(listed: PressureList | None, stale: bool) -> str:
     return ""
 
 
-def bridge_words(off: float) -> str:
+def bridge_text(off: float) -> str:
     """Return the note on a place where a band bridges a hollow, ``off`` the skin [mm]."""
     return tr("bridges a hollow, {length} off the skin").format(length=length(off, 0))
 
@@ -175,24 +175,24 @@ def rounded_up(value: float) -> float:
     return next(unit * power for unit in _ROUND if unit * power >= value * (1.0 - 1e-9))
 
 
-def section_words(axis: str, side: str, move: BustShift, spread: OutputUncertainties | None = None) -> str:
+def section_text(axis: str, side: str, move: BustShift, spread: OutputUncertainties | None = None) -> str:
     """Return how far the bust points went, in words; a plane across x has that of its ``side`` alone."""
     if axis != "x":
         return bust_sentence(move, uncertainties_of(spread))
     offs = uncertainties_of(spread, side)
     if side == "left":
-        return tr("Bust point left: {shift}").format(shift=step_words(move.left, offs))
-    return tr("Bust point right: {shift}").format(shift=step_words(move.right, offs))
+        return tr("Bust point left: {shift}").format(shift=step_text(move.left, offs))
+    return tr("Bust point right: {shift}").format(shift=step_text(move.right, offs))
 
 
-def sides_words(axis: str, pairs: Sequence[tuple[Floats, Floats]]) -> str:
+def sides_text(axis: str, pairs: Sequence[tuple[Floats, Floats]]) -> str:
     """Return how far the foremost places of two sides are apart, in words; a pair is (other, this) [mm]."""
     steps = [this - other for other, this in pairs]
     if axis == "x" and len(steps) == 1:
-        way = step_words(BustStep(float(steps[0][1]), float(steps[0][0])))
+        way = step_text(BustStep(float(steps[0][1]), float(steps[0][0])))
         return tr("Apex, relative to the other side: {shift}").format(shift=way)
     if axis == "z" and len(steps) == 2:
-        way = forward_words(-float(steps[0][1]))
+        way = forward_text(-float(steps[0][1]))
         return tr("Apex left, relative to right: {shift}").format(shift=way)
     return ""
 

@@ -208,13 +208,13 @@ class MeasureView:
             return self.off_told
         named = tr("ISO 8559-1: {name}").format(name=self.iso) if self.iso else tr("Not in ISO 8559-1")
         sure = tr("Confidence of the landmarks used: {percent} %")
-        said = (
+        texts = (
             self.tip,
             "" if self.own else named,
             "" if self.sure is None or not self.known else sure.format(percent=number(100 * self.sure, 0)),
             "" if self.note == self.caption else self.note,
         )
-        return (*(each for each in said if each), *self.off_told)
+        return (*(each for each in texts if each), *self.off_told)
 
     def written(self, value: float | None, signed: bool = False) -> str:
         """Return a value as it stands in the table."""
@@ -314,13 +314,13 @@ def value_texts(before: Measure, after: Measure) -> tuple[str, str, str]:
     if before.value is None or after.value is None:
         return "", "", render(before.note or after.note)
     values = f"{length_number(before.value)} → {length(after.value)}"
-    said = tr("before → after, {change}").format(
+    text = tr("before → after, {change}").format(
         change=length(round(after.value, 1) - round(before.value, 1), signed=True)
     )
     sure = min(before.confidence, after.confidence)
     unsure = tr("Confidence of the landmarks used: {percent} %").format(percent=number(100 * sure, 0))
     doubts = (unsure if sure < CERTAIN else "", render(after.note))
-    return values, said, "\n".join(each for each in doubts if each)
+    return values, text, "\n".join(each for each in doubts if each)
 
 
 def _free(name: str, taken: Collection[str]) -> str:

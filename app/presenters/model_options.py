@@ -84,14 +84,14 @@ def consequences(key: str, value: Any, present: Mapping[str, Any]) -> dict[str, 
 def summary(present: Mapping[str, Any]) -> str:
     """Return in a line what is chosen: how lines act always, else what is not as in a new design."""
     usual = defaults()
-    said = [
+    texts = [
         setting.words(present[setting.key])
         for _, settings in groups()
         for setting in settings
         if setting.key in ("line_contact", "line_hold")
         or (isinstance(setting, Choice) and present[setting.key] != usual[setting.key])
     ]
-    return " · ".join(said)
+    return " · ".join(texts)
 
 
 def _contact() -> Choice:
@@ -183,7 +183,7 @@ def _normals() -> Choice:
     return Choice("scaled_normals", tr("Distance to mesh"), tip, options)
 
 
-def control_words(control: str) -> str:
+def control_text(control: str) -> str:
     """Return the name of an edit that chooses a volume control."""
     return tr("Volume control: {control}").format(control=_control().words(control))
 

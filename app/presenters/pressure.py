@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from app.i18n.catalog import joined, language, listed, number, tr
+from app.i18n.catalog import colon, joined, language, listed, number, tr
 from app.i18n.lengths import length
 from app.presenters.lines import LineView, line_colours
 from app.presenters.messages import line_title, render, render_all
@@ -22,8 +22,8 @@ def rating_text(light: str) -> str:
 
 def rating_limits() -> RatingLimits:
     """Return the limits of the light in words."""
-    limits, colon = pressure_limits(), "：" if language() == "ja" else ": "
-    told = [f"{each.named(language())}{colon}{each.words.told(language())}" for each in limits.sources]
+    limits = pressure_limits()
+    told = [f"{each.named(language())}{colon()}{each.words.told(language())}" for each in limits.sources]
     doubts = [words.told(language()) for words in limits.doubts]
     return RatingLimits(
         limits.amber_kpa,
@@ -76,19 +76,19 @@ def _unmeant(row: PressureRow) -> list[str]:
 def _figures(row: PressureRow) -> list[str]:
     assert row.max_kpa is not None
     assert row.mean_kpa is not None
-    most = tr("Maximum {kpa}").format(kpa=kpa_words(row.max_kpa))
-    mean = tr("Mean on the skin {kpa}").format(kpa=kpa_words(row.mean_kpa))
+    most = tr("Maximum {kpa}").format(kpa=kpa_text(row.max_kpa))
+    mean = tr("Mean on the skin {kpa}").format(kpa=kpa_text(row.mean_kpa))
     force = tr("Total force on the skin {force} N").format(force=number(row.force_n or 0.0))
-    where = listed((most, place_words(row))) if row.where else most
+    where = listed((most, place_text(row))) if row.where else most
     return [where, mean, force]
 
 
-def kpa_words(kpa: float) -> str:
+def kpa_text(kpa: float) -> str:
     """Return a pressure in kPa and in mmHg."""
     return f"{number(kpa)} kPa · {number(mmhg(kpa), 0)} mmHg"
 
 
-def side_words(where: str) -> str:
+def side_text(where: str) -> str:
     """Return which side of the body is meant by one of ``core.garment.body_location``."""
     return {
         "front": tr("front"),
@@ -104,11 +104,11 @@ def side_words(where: str) -> str:
     }[where]
 
 
-def place_words(row: PressureRow) -> str:
+def place_text(row: PressureRow) -> str:
     """Return where a line presses most, in words."""
     height = length(row.height_mm or 0.0, 0)
     words = tr("{side}, {length} above the lowest point of the scan")
-    return words.format(side=side_words(row.where), length=height)
+    return words.format(side=side_text(row.where), length=height)
 
 
 def unknown_pressure() -> str:
@@ -129,21 +129,21 @@ def pressure_summary(listed: PressureList | None, design: Design, doubt: str = "
         for row in listed.rows
         if row.max_kpa is not None
     )
-    place = tr("{line}, {side}").format(line=line_title(most.line, design), side=side_words(most.where))
+    place = tr("{line}, {side}").format(line=line_title(most.line, design), side=side_text(most.where))
     look = tr("Show on the map of contact pressure")
     return PressureSummary(
-        kpa_words(most.max_kpa),
+        kpa_text(most.max_kpa),
         most.light,
         rating_text(most.light),
         place,
-        f"{place_words(most)}\n{look}",
+        f"{place_text(most)}\n{look}",
         joined((pressure_limits().description(most.max_kpa).told(language()), *_unmeant(most))),
-        total_words(listed),
+        total_text(listed),
         marks,
     )
 
 
-def total_words(listed: PressureList) -> str:
+def total_text(listed: PressureList) -> str:
     """Return the total force of all bands on the skin in words: of those whose tension is known."""
     if listed.force_n is None:
         return tr("Total force on the skin unknown")

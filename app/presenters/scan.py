@@ -75,7 +75,7 @@ def _copy_notes(body: Body) -> tuple[str, ...]:
     return (tr("Measured on a smoothed copy: the scan noise is {noise}.").format(noise=length(body.noise)),)
 
 
-def work_words(what: str) -> str:
+def work_text(what: str) -> str:
     """Return the name of a step of the work; empty for one that takes no time."""
     words = {
         "read scan": tr("Reading scan"),
@@ -105,7 +105,7 @@ def work_steps() -> list[str]:
         "bind body",
         "preparing the view",
     )
-    return [work_words(name) for name in names]
+    return [work_text(name) for name in names]
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ from core.document.design import Design
 from core.geometry.mesh import Floats
 
 
-def aligned_words(worn: FittingScan) -> str:
+def aligned_text(worn: FittingScan) -> str:
     """Return how well a worn scan lies on the first, in a sentence or two."""
     laid = worn.alignment
     met = tr(
@@ -60,7 +60,7 @@ def map_values(difference: Residuals | None, count: int) -> Floats:
     return values
 
 
-def bust_words(difference: Residuals) -> str:
+def bust_text(difference: Residuals) -> str:
     """Return how far the predicted bust points lie from the real ones, in a sentence."""
     if not difference.bust_points:
         return tr("The bust points are unclear on the fitting scan.")
@@ -68,7 +68,7 @@ def bust_words(difference: Residuals) -> str:
         "left": tr("Bust point left: predicted {shift}, {forward}."),
         "right": tr("Bust point right: predicted {shift}, {forward}."),
     }
-    said = [
+    texts = [
         named[side].format(
             shift=_way(
                 float(way[2]),
@@ -80,7 +80,7 @@ def bust_words(difference: Residuals) -> str:
         )
         for side, way in difference.bust_points.items()
     ]
-    return joined([*said, tr("± is the uncertainty of the bust points on both scans.")])
+    return joined([*texts, tr("± is the uncertainty of the bust points on both scans.")])
 
 
 def _way(mm: float, more: str, less: str, sure: float = 0.0) -> str:
@@ -89,16 +89,16 @@ def _way(mm: float, more: str, less: str, sure: float = 0.0) -> str:
 
 def summary_text(difference: Residuals) -> str:
     """Return the text below the residuals: the bust points, and the compared share of the skin."""
-    return joined([bust_words(difference), shown_words(difference)])
+    return joined([bust_text(difference), shown_text(difference)])
 
 
-def shown_words(difference: Residuals) -> str:
+def shown_text(difference: Residuals) -> str:
     """Return how much of the moving skin the worn scan shows, where that is not nearly all."""
     share = difference.total.seen
-    said = tr("The fitting scan covers {share} % of the reshaped region.").format(
+    text = tr("The fitting scan covers {share} % of the reshaped region.").format(
         share=number(100.0 * share, 0)
     )
-    return "" if share > 0.9 else said
+    return "" if share > 0.9 else text
 
 
 def parameter_rows(found: CalibrationResult, design: Design) -> tuple[ParameterRow, ...]:
@@ -106,9 +106,9 @@ def parameter_rows(found: CalibrationResult, design: Design) -> tuple[ParameterR
     return tuple(
         ParameterRow(
             parameter_title(each.name, design),
-            value_words(each, each.before),
-            value_words(each, each.after),
-            f"±{value_words(each, each.plus_minus)}",
+            formatted_value(each, each.before),
+            formatted_value(each, each.after),
+            f"±{formatted_value(each, each.plus_minus)}",
             each.is_well_determined,
         )
         for each in found.calibration.numbers
@@ -159,7 +159,7 @@ def parameter_title(name: str, design: Design) -> str:
     }.get(name, name)
 
 
-def value_words(of: FittedParameter, value: float) -> str:
+def formatted_value(of: FittedParameter, value: float) -> str:
     """Return one value of a number, with its unit where it has one."""
     if of.name == TISSUE:
         return f"{number(value, 0)} N/m"
@@ -189,7 +189,7 @@ def improvement_text(found: CalibrationResult, design: Design) -> str:
     )
 
 
-def record_words(record: Calibration | None) -> str:
+def record_text(record: Calibration | None) -> str:
     """Return what a design keeps of a calibration, in a line; nothing if there was none."""
     if record is None:
         return ""
@@ -202,7 +202,7 @@ def navigation_text(record: Calibration | None, worn: FittingScan | None) -> str
     """Return what stands on the door: what was calibrated, what is compared, or what is behind it."""
     if worn is not None:
         return worn.name
-    return record_words(record) or tr("Residuals from a scan of the worn garment")
+    return record_text(record) or tr("Residuals from a scan of the worn garment")
 
 
 def notes_of(worn: FittingScan | None, pending: bool) -> Iterator[str]:

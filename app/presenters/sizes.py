@@ -25,12 +25,12 @@ def size_views(
     answers = sizes(underbust.value, bust.value, allowance_mm)
     letters = {"jp": tuple(_letters(measured))}
     return [
-        _view(key, answer, letters.get(key, ()), within_words(answer, spread))
+        _view(key, answer, letters.get(key, ()), within_text(answer, spread))
         for key, answer in answers.items()
     ], ""
 
 
-def within_words(answer: SizeAnswer, spread: OutputUncertainties | None) -> str:
+def within_text(answer: SizeAnswer, spread: OutputUncertainties | None) -> str:
     """Return which other sizes lie within what both girths may be off, once all of that is known."""
     offs = [spread.plus_minus(f"{BEFORE}:{key}") for key in GIRTHS_OF_SIZES] if spread else [None]
     known = [off for off in offs if off is not None]
@@ -52,8 +52,8 @@ def _letters(measured: Measures) -> Iterator[str]:
 
 
 def _view(key: str, answer: SizeAnswer, letters: tuple[str, ...], within: str) -> SizeView:
-    said = (*answer.doubts, *(letter_sizes().doubts if letters else ()))
-    doubts, caution = _unlike([each.told(language()) for each in said]), answer.table.caution
+    texts = (*answer.doubts, *(letter_sizes().doubts if letters else ()))
+    doubts, caution = _unlike([each.told(language()) for each in texts]), answer.table.caution
     return SizeView(
         key,
         key.upper() if len(key) == 2 else answer.table.system,

@@ -9,7 +9,7 @@ import numpy as np
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length, length_number, length_unit
 from app.presenters.assessment import AssessmentView
-from app.presenters.bust_shift import bust_shift, mean_lifts, sides_words, step_words
+from app.presenters.bust_shift import bust_shift, mean_lifts, sides_text, step_text
 from core.garment.pressure_list import PressureList
 from core.mechanics.mesh_quality import MeshQuality
 from core.pipeline.live_solver import Frame
@@ -171,7 +171,7 @@ def _figures(
     if verdict.condition and state == "overstrained":
         return [kept, (tr("Skin strain"), _strain(verdict.condition))]
     move = bust_shift(frame)
-    told = [(tr("Bust point"), step_words(move.mean))]
+    told = [(tr("Bust point"), step_text(move.mean))]
     if girths is not None:
         change = f"{length_number(girths[0])} → {length(girths[1])}"
         told.append((tr("Bust girth"), change))
@@ -179,7 +179,7 @@ def _figures(
     if hardest is not None and hardest.max_kpa is not None:
         told.append((tr("Peak pressure"), f"{number(hardest.max_kpa)} kPa"))
     elif move.differs:
-        told.append((tr("Left · right"), " · ".join(sides_words(move))))
+        told.append((tr("Left · right"), " · ".join(sides_text(move))))
     return [*told, kept]
 
 

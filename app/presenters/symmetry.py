@@ -11,7 +11,7 @@ from app.i18n.lengths import length, length_number, length_unit, shown_digits, s
 from app.presenters.lines import row_title
 from app.presenters.measurements import length_uncertainty, plus_minus
 from app.presenters.messages import render
-from app.presenters.target_shape import is_met, is_signed, reasons_words, target_title
+from app.presenters.target_shape import is_met, is_signed, reasons_text, target_title
 from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER, LIFT, OUT, Goal, section_of
 from core.analysis.symmetry.compare import BeforeAfter, SideDifference, SymmetryRow, symmetry_rows
 from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, splittable_lines
@@ -45,9 +45,9 @@ def symmetry_view(
     rows = {row.key: row for row in symmetry_rows(told.before, told.after)}
     hint, possible = _hint(stages, now) if not doubt else (doubt, False)
     offs = _offs(spread)
-    said = _sentence(now, {}, tr("Bust points before: {position}.")) if doubt else _sentence(now, offs)
+    text = _sentence(now, {}, tr("Bust points before: {position}.")) if doubt else _sentence(now, offs)
     return SymmetryView(
-        joined((*map(render, edit_warnings(stages.body)), said)),
+        joined((*map(render, edit_warnings(stages.body)), text)),
         tuple(_view(rows[key], bool(doubt), offs.get(key)) for key in _titles()),
         (*map(render, told.notes), *_rests_on()),
         hint,
@@ -91,8 +91,8 @@ def _sentence(now: SideDifference, offs: Mapping[str, float], words: str = "") -
             )
             parts.append((left if value > 0.0 else right).format(length=size))
             within &= off is not None and abs(value) <= off
-    said = (words or tr("Bust points: {position}.")).format(position=listed(parts))
-    return joined((said, tr("No significant difference in position."))) if within else said
+    text = (words or tr("Bust points: {position}.")).format(position=listed(parts))
+    return joined((text, tr("No significant difference in position."))) if within else text
 
 
 def _view(row: SymmetryRow, doubtful: bool, off: float | None) -> SymmetryRowView:
@@ -182,11 +182,11 @@ def split_titles(design: Design, names: tuple[str, ...]) -> list[str]:
 
 def not_balanced_reason(gained: float, lost: float) -> tuple[str, str]:
     """Return why a design is not made even, and what could be done; both in mm, see ``Evened``."""
-    said = tr(
+    text = tr(
         "The active lines cannot reduce the asymmetry further: {gained} gain would move both sides by {lost}."
     )
     hint = tr("Add other lines: a strap lifts one side alone.")
-    return said.format(gained=length(max(gained, 0.0)), lost=length(lost)), hint
+    return text.format(gained=length(max(gained, 0.0)), lost=length(lost)), hint
 
 
 def has_balance_targets(goals: Sequence[Goal]) -> bool:
@@ -236,10 +236,10 @@ def _outcome(reply: InverseResult, met: bool) -> str:
 def _why(reply: InverseResult) -> str:
     if not reply.agreed:
         return tr("The iteration over lengths, elastics and contact pressure did not converge.")
-    return tr("Reasons: {reasons}.").format(reasons=reasons_words(reply))
+    return tr("Reasons: {reasons}.").format(reasons=reasons_text(reply))
 
 
-def _way(name: str, before: float, after: float, said: str) -> str:
+def _way(name: str, before: float, after: float, text: str) -> str:
     """Return the change of a value, in the form ``said``: with its side in place of a sign, if it has one."""
     titles = {
         HIGHER: (tr("Left higher"), tr("Right higher")),
@@ -248,15 +248,15 @@ def _way(name: str, before: float, after: float, said: str) -> str:
     if name not in titles:
         signed = is_signed(name)
         values = {"before": length_number(before, 1, signed), "after": length(after, 1, signed)}
-        return said.format(quantity=target_title(name), **values)
+        return text.format(quantity=target_title(name), **values)
     one, other = (titles[name][each < 0.0] for each in (before, after))
     values = {"before": length_number(abs(before)), "after": length(abs(after))}
     if min(abs(before), abs(after)) < _SEEN:  # even has no side
         one = other = one if abs(before) >= abs(after) else other
     if one != other:
-        said = tr("{quantity} {before} → {other} {after}")
+        text = tr("{quantity} {before} → {other} {after}")
         values["before"] = length(abs(before))
-    return said.format(quantity=one, other=other, **values)
+    return text.format(quantity=one, other=other, **values)
 
 
 @dataclass(frozen=True)

@@ -97,36 +97,36 @@ def result_text(
     """
     most = max(reply.pressure.values(), default=0.0)
     if limit is not None and reply.agreed and most < _ABOUT * limit:
-        said = tr("Contact pressure at most {kpa} kPa; result: {values}.")
-        return said.format(kpa=number(most), values=listed(_come(reply, goals)))
+        text = tr("Contact pressure at most {kpa} kPa; result: {values}.")
+        return text.format(kpa=number(most), values=listed(_come(reply, goals)))
     if reply.reachable:
         return tr("All targets reached.")
     if is_met(reply, goals):
         most = max(float(np.abs(off).max()) for off in profile_deviations(goals, reply.reached).values())
         return tr("Reached within {length}.").format(length=length(most))
     if is_near(reply, goals):
-        return _near_words(reply, goals, now or {})
+        return _near_text(reply, goals, now or {})
     nearest = closest_result_text(reply, goals, now or {})
     if not reply.agreed:
-        said = tr(
+        text = tr(
             "Closest result: {nearest}. The iteration over lengths, elastics and contact "
             "pressure did not converge."
         )
-        return said.format(nearest=nearest)
-    said = tr("Not reachable. Closest result: {nearest}. Reasons: {reasons}.")
-    return said.format(nearest=nearest, reasons=reasons_words(reply))
+        return text.format(nearest=nearest)
+    text = tr("Not reachable. Closest result: {nearest}. Reasons: {reasons}.")
+    return text.format(nearest=nearest, reasons=reasons_text(reply))
 
 
-def _near_words(reply: InverseResult, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
+def _near_text(reply: InverseResult, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
     """Return how nearly profiles are met, and what they were off if that was hardly more."""
     offs = profile_deviations(goals, reply.reached)
     section = max(offs, key=lambda each: float(np.abs(offs[each]).mean()))
     before = _off_before(goals, now, section)
     if before is None or float(np.abs(offs[section]).mean()) <= _MUCH * before:
-        said = tr("Reached with a deviation of {mean} on average, {most} maximum.")
+        text = tr("Reached with a deviation of {mean} on average, {most} maximum.")
     else:
-        said = tr("Closest result: deviation {mean} on average, {most} maximum (before: {before}).")
-    return said.format(**_mean_and_most(offs[section]), before=length(before or 0.0))
+        text = tr("Closest result: deviation {mean} on average, {most} maximum (before: {before}).")
+    return text.format(**_mean_and_most(offs[section]), before=length(before or 0.0))
 
 
 def _off_before(goals: Sequence[Goal], now: Mapping[str, float], section: str) -> float | None:
@@ -157,10 +157,10 @@ def _nearest(reply: InverseResult, goals: Sequence[Goal], now: Mapping[str, floa
         yield target_text(goal.name, reply.reached[goal.name])
     profiles = profile_deviations(goals, reply.reached)
     for section, off in profiles.items():
-        said = tr("profile deviation {mean} on average ({most} maximum)")
+        text = tr("profile deviation {mean} on average ({most} maximum)")
         if len(profiles) > 1:
-            said = tr("{profile}: deviation {mean} on average ({most} maximum)")
-        words = said.format(profile=target_title(section), **_mean_and_most(off))
+            text = tr("{profile}: deviation {mean} on average ({most} maximum)")
+        words = text.format(profile=target_title(section), **_mean_and_most(off))
         before = _off_before(goals, now, section)
         if before is not None:
             words += tr(", {before} before").format(before=length(before))
@@ -182,9 +182,9 @@ def bust_movement_text(goals: Sequence[Goal], now: Mapping[str, float], then: Ma
 
 def _from_to(name: str, before: float, after: float) -> str:
     """Return a figure with what it was and what it comes to: "Bust point up +0.2 → +0.4 mm"."""
-    said, signed = tr("{quantity} {before} → {after}"), is_signed(name)
+    text, signed = tr("{quantity} {before} → {after}"), is_signed(name)
     values = {"before": length_number(before, 1, signed=signed), "after": length(after, 1, signed=signed)}
-    return said.format(quantity=target_title(name), **values)
+    return text.format(quantity=target_title(name), **values)
 
 
 def deviation_text(goals: Sequence[Goal], reached: Mapping[str, float], section: str) -> str:
@@ -215,7 +215,7 @@ def _mean_and_most(off: Floats) -> dict[str, str]:
     return {"mean": length(float(np.abs(off).mean())), "most": length(float(np.abs(off).max()))}
 
 
-def reasons_words(reply: InverseResult) -> str:
+def reasons_text(reply: InverseResult) -> str:
     """Return why an answer is not what was asked for, as part of a sentence."""
     return tr("; ").join(reasons(reply))
 
@@ -227,8 +227,8 @@ def reasons(reply: InverseResult) -> list[str]:
     slack = [name for name in reply.slack if name not in reply.at_limit]
     kpa = number(reply.limit)
     causes = [
-        said.format(lines=_titles(names, reply.design), kpa=kpa)
-        for names, said in (
+        text.format(lines=_titles(names, reply.design), kpa=kpa)
+        for names, text in (
             (short, tr("{lines}: lower length limit")),
             (long, tr("{lines}: upper length limit, a longer line would be slack")),
             (slack, tr("{lines}: slack, the tension would be negative")),
@@ -241,26 +241,26 @@ def reasons(reply: InverseResult) -> list[str]:
     return causes or [tr("the active lines cannot produce this movement")]
 
 
-def change_words(before: Design, reply: InverseResult) -> list[str]:
+def change_text(before: Design, reply: InverseResult) -> list[str]:
     """Return how lengths would change, row by row, what elastics press with, and if others were not asked."""
-    after, said = reply.design, []
+    after, texts = reply.design, []
     for title, name in _rows(sorted(after.active_lines()), after):
         one, other = before.ratio(name), after.ratio(name)
         if abs(one - other) >= SAME:
             words = tr("{line} {before} → {after} %") + " ({change})"
             values = {"before": number(100.0 * one), "after": number(100.0 * other)}
             values["change"] = number(100.0 * (other - one), 1, True)
-            said.append(words.format(line=title, **values))
-    said = said or [tr("No line changes")]
+            texts.append(words.format(line=title, **values))
+    texts = texts or [tr("No line changes")]
     if reply.pressure:
         most = max(reply.pressure.values())
-        said.append(tr("contact pressure at most {kpa} kPa").format(kpa=number(most)))
+        texts.append(tr("contact pressure at most {kpa} kPa").format(kpa=number(most)))
     if reply.unchecked and reply.pressure:
         lines = _titles(reply.unchecked, after)
-        said.append(tr("contact pressure of {lines} not checked: see Garment").format(lines=lines))
+        texts.append(tr("contact pressure of {lines} not checked: see Garment").format(lines=lines))
     elif reply.unchecked:
-        said.append(tr("contact pressure not checked: see Garment"))
-    return said
+        texts.append(tr("contact pressure not checked: see Garment"))
+    return texts
 
 
 def locked_lines_text(design: Design, kept: Collection[str]) -> str:
@@ -279,7 +279,7 @@ def missing_input_text(design: Design, moving: Collection[str]) -> str:
     return ""
 
 
-def step_words(goals: Sequence[Goal], limit: float | None = None) -> str:
+def step_text(goals: Sequence[Goal], limit: float | None = None) -> str:
     """Return what the step of undo is called; a ``limit`` [kPa] was asked for besides, or alone."""
     wishes = [targets_text(goals)] if goals else []
     if limit is not None:
@@ -299,12 +299,12 @@ def _rows(names: Iterable[str], design: Design) -> list[tuple[str, str]]:
     return list(rows.items())
 
 
-def value_words(value: float | None, signed: bool) -> str:
+def formatted_value(value: float | None, signed: bool) -> str:
     """Return what a figure is now [mm], without its unit; nothing before it is known."""
     return "" if value is None else length_number(value, 1, signed=signed)
 
 
-def result_words(now: Mapping[str, float], then: Mapping[str, float], name: str) -> str:
+def target_result_text(now: Mapping[str, float], then: Mapping[str, float], name: str) -> str:
     """Return what a figure comes to with its change, as "+0.4 (+0.2)"; nothing before it is known."""
     if name not in then or name not in now:
         return ""
@@ -315,7 +315,7 @@ def _with_change(value: float, change: float, signed: bool) -> str:
     return f"{length_number(value, 1, signed=signed)} ({length_number(change, 1, signed=True)})"
 
 
-def pressure_words(now: Mapping[str, float], then: Mapping[str, float]) -> tuple[str, str]:
+def pressure_text(now: Mapping[str, float], then: Mapping[str, float]) -> tuple[str, str]:
     """Return what lines press with at most now [kPa], and what they come to with its change."""
     before = number(most := max(now.values())) if now else ""
     if not now or not then:
@@ -324,7 +324,7 @@ def pressure_words(now: Mapping[str, float], then: Mapping[str, float]) -> tuple
     return before, f"{number(result)} ({number(result - most, 1, True)})"
 
 
-def conflict_words(conflicts: Iterable[Conflict]) -> tuple[str, ...]:
+def conflict_text(conflicts: Iterable[Conflict]) -> tuple[str, ...]:
     """Return one sentence per target that is missed: its value alone, and what another one loses."""
     return tuple(map(_sentence, conflicts))
 
@@ -350,7 +350,7 @@ def _value(name: str, value: float) -> str:
     return tr("deviation {length}").format(length=size) if section_of(name) else size
 
 
-def unlimited_words(free: InverseResult, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
+def unlimited_text(free: InverseResult, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
     """Return what targets come to without a limit of pressure, and what lines press with then."""
     most = number(max(free.pressure.values(), default=0.0))
     if is_met(free, goals):
@@ -367,7 +367,7 @@ def activated_text(before: Design, after: Design) -> str:
     return tr("Activated: {lines}.").format(lines=lines) if lines else ""
 
 
-def inactive_words(design: Design, names: Iterable[str]) -> str:
+def inactive_text(design: Design, names: Iterable[str]) -> str:
     """Return which lines that are off may be switched on; empty if there are none."""
     lines = _titles(sorted(names), design)
     words = tr("Activate inactive lines where they improve the result: {lines}")

@@ -18,7 +18,7 @@ LEAST = 0.01
 """A source with a smaller share of the variance is not named [1]."""
 
 
-def source_words(source: str) -> str:
+def source_text(source: str) -> str:
     """Return a source in a word or two."""
     return {
         "landmarks": tr("landmarks"),
@@ -84,13 +84,13 @@ def _shares(
         if doubt is None or off is None:
             continue
         parts = [
-            f"{source_words(source)} {number(100.0 * share, 0)} %"
+            f"{source_text(source)} {number(100.0 * share, 0)} %"
             for source, share in doubt.shares.items()
             if share >= LEAST
         ]
         told = length_uncertainty(off) if unit == "mm" else plus_minus(off)
-        said = tr("{head}: {off} {unit}").format(head=head, off=told, unit=shown_unit(unit))
-        lines.append(f"{said} ({listed(parts)})" if parts else said)
+        text = tr("{head}: {off} {unit}").format(head=head, off=told, unit=shown_unit(unit))
+        lines.append(f"{text} ({listed(parts)})" if parts else text)
     return tuple(lines)
 
 
@@ -101,8 +101,8 @@ def uncertainty_view(spread: OutputUncertainties | None, waiting: str, faint: bo
     meaning = tr("± is twice the standard deviation: 95 % of cases if errors are normally distributed.")
     told = tr("± of the previous shape: details") if faint else tr("± covers 95 % of cases: details")
     shares = tr("Point at a measurement for the share of each source.")
-    said = joined([meaning, shares, _without_off(), *map(render, spread.cautions)])
-    return UncertaintyView(said, _contact(spread), faint, told)
+    text = joined([meaning, shares, _without_off(), *map(render, spread.cautions)])
+    return UncertaintyView(text, _contact(spread), faint, told)
 
 
 def _contact(spread: OutputUncertainties) -> str:
@@ -110,11 +110,11 @@ def _contact(spread: OutputUncertainties) -> str:
         return ""
     up, out = (length(spread.other[key], signed=True) for key in (LIFT, OUT))
     if spread.contact == "sliding":
-        said = tr("With sliding lines: bust points {up} up, {out} forward.")
+        text = tr("With sliding lines: bust points {up} up, {out} forward.")
     else:
-        said = tr("With bonded lines: bust points {up} up, {out} forward.")
+        text = tr("With bonded lines: bust points {up} up, {out} forward.")
     between = tr("Real contact is between bonded and sliding; the ± does not include this.")
-    told = said.format(up=up, out=out)
+    told = text.format(up=up, out=out)
     return f"{told} {between}" if language() == "en" else f"{told}{between}"
 
 

@@ -246,7 +246,7 @@ class VariantTexts:
         return self.values[place] or "–"
 
     def apart(self, place: int) -> None:
-        """Raise an error: texts have no difference."""
+        """Return None: texts have no difference."""
 
     def cells(self) -> list[str]:
         """Return the words, for a table."""

@@ -1,4 +1,4 @@
-"""How open the sky above each place of a body is: folds are darker than what lies free."""
+"""Ambient occlusion of the body: folds are darker."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a band is: the line that it is drawn of, its colour and how wide it is."""
+"""Band of a line: path, colour and width."""
 
 from __future__ import annotations
 

@@ -136,7 +136,7 @@ class Bands:
         self._show_what_is_asked()
 
     def clear(self) -> None:
-        """Take all ribbons away."""
+        """Remove all ribbons."""
         for drawn in (*self._ribbons.values(), *self._casings.values()):
             self._plotter.remove_actor(drawn.actor, reset_camera=False, render=False)
         self._bands, self._ribbons, self._casings, self._rises = {}, {}, {}, {}
@@ -175,7 +175,7 @@ class Bands:
                 casing.move(displacement)
 
     def mark(self, selected: str, hovered: str) -> None:
-        """Put a white casing round the selected band and a faint one round the band under the pointer."""
+        """Draw a white casing round the selected band and a faint one round the band under the pointer."""
         self.selected, self.hovered = selected, hovered
         self._show_what_is_asked()
 

@@ -68,7 +68,7 @@ class ControlActor:
             self._write(self._points)
 
     def remove(self) -> None:
-        """Take the control mesh away."""
+        """Remove the control mesh."""
         for actor in self._actors:
             self._plotter.remove_actor(actor, reset_camera=False, render=False)
 

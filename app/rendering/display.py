@@ -1,4 +1,4 @@
-"""Whether there is a display, and what to do without one; imported before Qt and VTK."""
+"""Availability of a display; imported before Qt and VTK."""
 
 from __future__ import annotations
 

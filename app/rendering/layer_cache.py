@@ -1,4 +1,4 @@
-"""What stands still in a picture need not be drawn again while other things move."""
+"""Cache of static layers of an image while other parts move."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What of a body can be made ready to be drawn in another thread than the window's."""
+"""Preparation of a body for drawing in a background thread."""
 
 from __future__ import annotations
 

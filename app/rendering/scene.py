@@ -90,7 +90,7 @@ class Scene:
         self._trace.show(self.carried_points(points) if len(points) else points)
 
     def mark_bands(self, selected: str = "", hovered: str = "") -> None:
-        """Put a white casing round the selected line and a faint one round the one under the pointer.
+        """Draw a white casing round the selected line and a faint one round the one under the pointer.
 
         An empty or unknown name marks none.
         """

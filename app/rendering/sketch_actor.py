@@ -52,7 +52,7 @@ class SketchActor:
             actor.user_matrix = matrix
 
     def clear(self) -> None:
-        """Take everything away."""
+        """Remove everything."""
         none = np.empty((0, 3))
         self.show(none, none, none, INK)
 

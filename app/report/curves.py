@@ -90,7 +90,7 @@ def _section(
     scale = float((room / (box[1] - box[0])).min())
     centre, step = box.mean(axis=0), next(each for each in _GRID[length_unit()] if each * scale >= _NARROWEST)
     low, high = centre - zero + np.array([[-0.5], [0.5]]) * room / scale
-    said = elide(tr("grid {length}, origin at bust point").format(length=length(step, 0)), "caption", width)
+    text = elide(tr("grid {length}, origin at bust point").format(length=length(step, 0)), "caption", width)
     bands = [_band(curve, off) for curve, off in zip(cut.after, cut.off_mm, strict=False) if len(curve) > 2]
 
     def paint(paper: PagePainter, x: float, y: float) -> None:
@@ -114,7 +114,7 @@ def _section(
         ):
             paper.disc(*place, 0.8, ink)
         paper.unclip()
-        paper.text(x + width, y + height - 0.6, said, "caption", align="right")
+        paper.text(x + width, y + height - 0.6, text, "caption", align="right")
 
     return Block(height, paint)
 
@@ -153,11 +153,11 @@ def _plots(
     sheet: Report, left: float, top: float, width: float, height: float
 ) -> list[tuple[float, float, Block]]:
     """Return the plots of the run with where they stand, or why there are none."""
-    turns, said = sheet.turns, tr("No iterations to plot: the exact solution is computed directly.")
+    turns, text = sheet.turns, tr("No iterations to plot: the exact solution is computed directly.")
     if not sheet.cuts.rows:
-        said = tr("No iterations to plot: no active lines.")
+        text = tr("No iterations to plot: no active lines.")
     if not _plotted(sheet):
-        return [(left, top, _sentence(said, 2.0 * width + _GAP))]
+        return [(left, top, _sentence(text, 2.0 * width + _GAP))]
     error, up = tr("Volume error, %"), tr("Bust point lift, {unit}").format(unit=length_unit())
     heights = [shown_value(each) for each in turns.up_mm]
     if not sheet.is_valid:
@@ -172,14 +172,14 @@ def _plotted(sheet: Report) -> bool:
     return len(sheet.turns.turn) > 1 and bool(sheet.cuts.rows)
 
 
-def _sentence(said: str, width: float) -> Block:
-    lines = wrap(said, "small", width)
+def _sentence(text: str, width: float) -> Block:
+    lines = wrap(text, "small", width)
     return Block(8.0, lambda paper, x, y: paper.lines(x, y + 1.0, lines, "small"))
 
 
 def _plot(turns: IterationCurve, values: Sequence[float], title: str, width: float, height: float) -> Block:
     """Return a figure over the turns of the run."""
-    said, last = (
+    text, last = (
         elide(title, "caption", width),
         tr("iteration {iteration}").format(iteration=number(turns.turn[-1], 0)),
     )
@@ -192,7 +192,7 @@ def _plot(turns: IterationCurve, values: Sequence[float], title: str, width: flo
     room = height - 4.0 - _FOOT
 
     def paint(paper: PagePainter, x: float, y: float) -> None:
-        paper.text(x, y + 2.6, said, "caption")
+        paper.text(x, y + 2.6, text, "caption")
         left, top = x + _AXIS, y + 4.0
 
         def down(value: Floats | float) -> Floats:

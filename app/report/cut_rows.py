@@ -69,8 +69,8 @@ def force_range_warning(sheet: Report) -> str:
         return ""
     if worst > MOST_VAGUE:
         return tr("Tension and contact pressure are order-of-magnitude estimates: measure them on a sample.")
-    said = tr("Tension and contact pressure are uncertain by a factor of {factor}: measure them on a sample.")
-    return said.format(factor=number(worst, 0))
+    text = tr("Tension and contact pressure are uncertain by a factor of {factor}: measure them on a sample.")
+    return text.format(factor=number(worst, 0))
 
 
 def _rows(sheet: Report, order: Sequence[str]) -> list[tuple[CutRow, PressureRow]]:
@@ -91,10 +91,10 @@ def _within_words(cut: CutRow, press: PressureRow, sheet: Report) -> Iterator[st
     if off is not None and cut.cut_mm is not None:
         parts.append(tr("cut {off} {unit}").format(off=length_uncertainty(off), unit=length_unit()))
     words = tr("tension {low} to {high} N"), tr("maximum contact pressure {low} to {high} kPa")
-    for said, ends in zip(words, _force_ends(cut, press, sheet), strict=True):
+    for text, ends in zip(words, _force_ends(cut, press, sheet), strict=True):
         if ends is not None and _factor(*ends) < VAGUE:
             low, high = (number(each, 1) for each in ends)
-            parts.append(said.format(low=low, high=high))
+            parts.append(text.format(low=low, high=high))
     if parts:
         yield tr("In 95 % of cases: {values}.").format(values=listed(parts))
 
@@ -160,16 +160,16 @@ def _cut_view(cut: CutRow, press: PressureRow) -> CutRowText:
 
 def _remark(cut: CutRow) -> str:
     """Return in a few words why no piece can be cut, or what to mind of it."""
-    said = [tr("Slack (no tension).")] if cut.slack else []
+    texts = [tr("Slack (no tension).")] if cut.slack else []
     if not cut.elastic:
-        said.append(tr("No elastic chosen: the value is the length on the body."))
+        texts.append(tr("No elastic chosen: the value is the length on the body."))
     elif cut.refused:
-        said.append(tr("The elongation exceeds the curve of the elastic."))
+        texts.append(tr("The elongation exceeds the curve of the elastic."))
     elif cut.cut_mm is None and not cut.slack:
-        said.append(tr("Tension unknown."))
+        texts.append(tr("Tension unknown."))
     if cut.cut_mm is not None and cut.front_only:
-        said.append(tr("Front part only: add the part over shoulder or back."))
-    return joined(said)
+        texts.append(tr("Front part only: add the part over shoulder or back."))
+    return joined(texts)
 
 
 def _length(mm: float | None, signed: bool = False) -> str:

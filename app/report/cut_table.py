@@ -32,8 +32,8 @@ def cut_blocks(handout: ReportDocument) -> list[Block]:
     """Return the cut list with what each band presses with, or what is missing for it."""
     title = heading(tr("Cut list"), WIDE)
     if not handout.report.cuts.rows:
-        said = tr("No active lines. Shorten a line to add it to this list.")
-        return [title, paragraph(said, "body", WIDE)]
+        text = tr("No active lines. Shorten a line to add it to this list.")
+        return [title, paragraph(text, "body", WIDE)]
     views = cut_views(handout.report, list(handout.colours))
     rows = (_cut_row(view, handout.colours.get(view.line, "")) for view in views)
     return [title, _cut_head(), *rows, _legend()]
@@ -98,13 +98,13 @@ def _cut_row(view: CutRowText, colour: str) -> Block:
 
 def _legend() -> Block:
     """Return what the lights say, on one line."""
-    said = pressure_legend()
+    text = pressure_legend()
     before = tr("Tension and contact pressure are estimates. Maximum pressure:")
 
     def paint(paper: PagePainter, x: float, y: float) -> None:
         paper.text(x, y + 2.6, before, "small")
         x += text_width(before, "small") + 3.5
-        for light, words in said:
+        for light, words in text:
             paint_light(paper, x, y + 1.8, light)
             paper.text(x + 2.2, y + 2.6, words, "small")
             x += text_width(words, "small") + 7.5

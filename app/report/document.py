@@ -1,4 +1,4 @@
-"""What a sheet is painted from: its figures, pictures of the body, and the colours of the lines."""
+"""Content of a report: values, images of the body, and colours of the lines."""
 
 from __future__ import annotations
 

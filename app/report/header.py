@@ -5,7 +5,7 @@ from __future__ import annotations
 from app.i18n.catalog import joined, number, tr
 from app.i18n.lengths import length_number, length_unit
 from app.presenters.assessment import IDLE, AssessmentView
-from app.presenters.bust_shift import forward_words
+from app.presenters.bust_shift import forward_text
 from app.presenters.measurements import length_uncertainty
 from app.presenters.messages import render
 from app.rendering.palette import LIGHT
@@ -185,8 +185,8 @@ def _cut_caption(sheet: Report) -> str:
     return tr("Cut length (estimate)") if guessed else tr("Cut length")
 
 
-def _sentence(left: float, room: float, caption: str, said: str) -> Block:
-    lines = wrap(said, "body", room)[:4]
+def _sentence(left: float, room: float, caption: str, text: str) -> Block:
+    lines = wrap(text, "body", room)[:4]
 
     def paint(paper: PagePainter, x: float, y: float) -> None:
         paper.text(x + left, y + 4.6, caption, "caption")
@@ -199,7 +199,7 @@ def _lift(sheet: Report) -> Block:
     left, room, caption = _CELLS[3], _CELLS[4] - _CELLS[3] - 6.0, tr("Bust point lift")
     if sheet.lift is None:
         return _sentence(left, room, caption, tr("No value: the shape is not valid."))
-    off, below = sheet.off.get(LIFT), forward_words(sheet.lift.forward, sheet.off.get(OUT))
+    off, below = sheet.off.get(LIFT), forward_text(sheet.lift.forward, sheet.off.get(OUT))
     figure = length_number(sheet.lift.up, signed=True)
     told = "" if off is None else f"{length_uncertainty(off)} {length_unit()}"
     return _great(left, room, caption, figure, below, length_unit(), told)

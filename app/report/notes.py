@@ -1,4 +1,4 @@
-"""What the figures of a sheet rest on, in words of the language in use."""
+"""Notes on the values of a report, in the language in use."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 from app.i18n.catalog import colon, joined, language, listed, tr
 from app.presenters.messages import render, render_all
-from app.presenters.uncertainty import source_words
+from app.presenters.uncertainty import source_text
 from app.report.text import REASONS, assessment_text, is_known, system_word
 from core.export.report_data import Report
 from core.garment.pressure_limits import pressure_limits
@@ -57,8 +57,7 @@ def size_cautions(sheet: Report) -> str:
     for each in sheet.sizes:
         if each["caution"]:
             told.setdefault(_caution(each), []).append(system_word(each))
-    between = "；" if language() == "ja" else "; "
-    words = between.join(f"{listed(systems)}{colon()}{caution}" for caution, systems in told.items())
+    words = tr("; ").join(f"{listed(systems)}{colon()}{caution}" for caution, systems in told.items())
     return tr("* Other size charts give another size. {details}").format(details=words) if words else ""
 
 
@@ -66,7 +65,7 @@ def _meaning(sheet: Report) -> list[str]:
     """Return what ± means, if it stands on the sheet."""
     if not (sheet.off and sheet.is_valid):
         return []
-    sources = listed([source_words(each) for each in sheet.off_sources])
+    sources = listed([source_text(each) for each in sheet.off_sources])
     means = tr("± is twice the standard deviation: 95 % of cases if errors are normally distributed.")
     holds = tr("Included: {sources}. Not included: bonded or sliding skin contact.").format(sources=sources)
     return [joined([means, holds]), *map(render, sheet.off_notes)]
@@ -75,7 +74,7 @@ def _meaning(sheet: Report) -> list[str]:
 def _limits() -> list[str]:
     """Return how sure the limits of the lights are, and between whose figures they stand."""
     limits = pressure_limits()
-    sources = ("、" if language() == "ja" else "; ").join(each.named(language()) for each in limits.sources)
+    sources = tr("; ").join(each.named(language()) for each in limits.sources)
     return [limits.doubts[0].told(language()), tr("Sources: {names}.").format(names=sources)]
 
 

@@ -31,8 +31,8 @@ _SECOND = 3.2  # so much higher is a row whose title takes two lines
 
 def heading(title: str, width: float, *, gap: float = 5.0) -> Block:
     """Return the title of what follows, which stays with it."""
-    said = elide(title, "heading", width)
-    return Block(5.4, lambda paper, x, y: paper.text(x, y + 3.6, said, "heading"), gap=gap, keep=True)
+    message = elide(title, "heading", width)
+    return Block(5.4, lambda paper, x, y: paper.text(x, y + 3.6, message, "heading"), gap=gap, keep=True)
 
 
 def key_blocks(sheet: Report) -> Iterator[Block]:
@@ -58,8 +58,8 @@ def measure_blocks(sheet: Report) -> Iterator[Block]:
     yield heading(tr("Other measurements"), HALF)
     yield _measure_head(edges)
     for group, rows in groups:
-        said = elide(group, "strong", HALF)
-        yield Block(5.0, _ruled(said, "strong", HALF, 5.0), gap=1.2, keep=True)
+        message = elide(group, "strong", HALF)
+        yield Block(5.0, _ruled(message, "strong", HALF, 5.0), gap=1.2, keep=True)
         for row in rows:
             yield _measure(row, edges) if row.values else paragraph(row.note, "small", HALF, 0.9)
 
@@ -129,8 +129,8 @@ def _in_two(title: str, width: float) -> list[str]:
 
 
 def _title(title: str) -> Block:
-    said = elide(title, "small strong", HALF)
-    return Block(3.6, lambda paper, x, y: paper.text(x, y + 2.5, said, "small strong"), gap=1.4, keep=True)
+    message = elide(title, "small strong", HALF)
+    return Block(3.6, lambda paper, x, y: paper.text(x, y + 2.5, message, "small strong"), gap=1.4, keep=True)
 
 
 def bullet(sentence: str) -> Block:

@@ -1,4 +1,4 @@
-"""What a sheet says, in words of the language in use: plain values for the painter."""
+"""Texts of a report in the language in use: plain values for the painter."""
 
 from __future__ import annotations
 
@@ -61,17 +61,17 @@ def size_words(sheet: Report) -> str:
     """Return the size as each system writes it, and which others lie within what girths may be off."""
     within = sheet.sizes[0].get("within_off")
     words = tr("Also within ±: {sizes}") if within else tr("No other size within ±.")
-    said = words.format(sizes=listed(within or ())) if within is not None and sheet.sizes[0]["inside"] else ""
-    return "\n".join(filter(None, (said, other_sizes(sheet))))
+    text = words.format(sizes=listed(within or ())) if within is not None and sheet.sizes[0]["inside"] else ""
+    return "\n".join(filter(None, (text, other_sizes(sheet))))
 
 
 def other_sizes(sheet: Report) -> str:
     """Return the size as each system writes it, the chosen one first; a star where others find another."""
-    said = (
+    text = (
         f"{system_word(each)} {each['size'] or NOTHING}{'*' * bool(each['caution'])}" for each in sheet.sizes
     )
     # What belongs together is not parted at the end of a line, nor does a line begin with a dot.
-    return "\N{NO-BREAK SPACE}· ".join(each.replace(" ", "\N{NO-BREAK SPACE}") for each in said)
+    return "\N{NO-BREAK SPACE}· ".join(each.replace(" ", "\N{NO-BREAK SPACE}") for each in text)
 
 
 REASONS = 4

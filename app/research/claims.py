@@ -116,7 +116,7 @@ def _three_percent(study: Study) -> Claim:
         for control in (*CONTROLS.values(), "exact")
     }
     error = {key: abs(100.0 * run.last.error) for key, run in runs.items()}
-    said = {
+    text = {
         body: ", ".join(
             f"{control} {error[body, control]:.2g} %" for control in (*CONTROLS.values(), "exact")
         )
@@ -126,7 +126,7 @@ def _three_percent(study: Study) -> Claim:
     return Claim(
         "4, Figs. 3, 4",
         "line about 3 % shorter, volume error below 0.1 %",
-        f"line at {lengths}; " + "; ".join(f"{body}: {words}" for body, words in said.items()),
+        f"line at {lengths}; " + "; ".join(f"{body}: {words}" for body, words in text.items()),
         _verdict(*(error[body, "adaptive"] < 0.1 for body in BODIES.values())),
     )
 
@@ -171,19 +171,19 @@ def _states(study: Study, control: str) -> dict[str, dict[float, str]]:
 
 
 def _vibrates(study: Study) -> Claim:
-    said, holds = [], []
+    texts, holds = [], []
     for body, states in _states(study, "conventional").items():
         bad = [ratio for ratio, state in states.items() if state in ("vibrating", "diverging")]
         calm = [ratio for ratio in LENGTHS if ratio not in bad]
         stages = study.stages(body)
         shortest = 100 * reached_length(stages, min(calm, default=1.0))
         words = f"vibrates at {_percents(bad)}, not at {_percents(calm)} (which reaches {shortest:.0f} %)"
-        said.append(f"{body}, gain {stages.gain:.2f}: {words}")
+        texts.append(f"{body}, gain {stages.gain:.2f}: {words}")
         holds.append(bool(bad) and MODEST in calm)
     return Claim(
         "5",
         "it vibrates or diverges when the line is too short, not when it is a little shorter",
-        "with the default gain, " + "; ".join(said),
+        "with the default gain, " + "; ".join(texts),
         _verdict(*holds),
     )
 

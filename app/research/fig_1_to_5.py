@@ -164,12 +164,12 @@ def figure_2(study: Study) -> Figure:
                 ha="right",
                 transform=plot.transAxes,
             )
-    said = "; ".join(
+    text = "; ".join(
         f"{row[0]} {row[1]:.0f} %: {row[3]:.0f} and {row[4]:.0f} mm" for row in rows if row[1] != 100.0
     )
     caption = (
         "A sphere 200 mm across, control mesh of 168 polygons with no fixed point, body of 20,480, solved "
-        f"exactly. Size across the line's plane and in it: {said}. Volume of the control mesh within "
+        f"exactly. Size across the line's plane and in it: {text}. Volume of the control mesh within "
         f"{max(abs(float(str(row[5]))) for row in rows):.1g} %, of the body within "
         f"{max(abs(float(str(row[6]))) for row in rows):.2g} %."
     )
@@ -230,7 +230,7 @@ def figure_4(study: Study) -> Figure:
     way = arc_length(rest)
     way = way[np.linalg.norm(rest - at[1:], axis=1).argmin()] - way
     rows: list[tuple[object, ...]] = [("rest", 100.0, float(y), float(z)) for y, z in rest]
-    said = []
+    texts = []
     for plot, reached in zip((axes["p0"], axes["p1"]), REACHED, strict=True):
         ratio = study.ratio_for(BODY, reached)
         plot.plot(*rest.T, color=COLOURS["rest"], lw=1.0, ls=(0, (3, 2)), label="before")
@@ -245,14 +245,14 @@ def figure_4(study: Study) -> Figure:
             dashes = "-" if reached == REACHED[0] else (0, (4, 2))
             label = f"{title}, {100 * reached:.0f} %"
             axes["change"].plot(outward(rest, shape), way, color=colour, ls=dashes, lw=1.2, label=label)
-            said.append(_words(solution, title))
+            texts.append(_words(solution, title))
         _frame(plot, at, f"line {100 * (1 - reached):.0f} % shorter")
     axes["p0"].legend(loc="lower left", fontsize=6.5)
     _name_change(axes["change"])
     caption = (
         f"Side views of the {BODY}, the line reaching {100 * REACHED[0]:.0f} % of its rest length; "
         f"profiles through the left bust point also at {100 * REACHED[1]:.0f} %; with the volume free the "
-        "line has the same natural length. " + " ".join(said)
+        "line has the same natural length. " + " ".join(texts)
     )
     columns = ("state", "reached_percent_with_volume_held", "profile_y_mm", "profile_z_mm")
     return Figure("fig-4-side-view", "Side view before and after", caption, columns, rows, drawn)

@@ -39,7 +39,7 @@ def figure_6(study: Study) -> Figure:
     drawn = sheet(8.2)
     axes = drawn.subplots(4, 2, sharex=True, sharey="row")
     rows: list[tuple[object, ...]] = []
-    said = []
+    texts = []
     for block, ratio in enumerate(LENGTHS):
         for column, (letter, body) in enumerate(BODIES.items()):
             upper, lower = axes[2 * block, column], axes[2 * block + 1, column]
@@ -56,7 +56,7 @@ def figure_6(study: Study) -> Figure:
             for plot, level in zip((upper, lower), (exact[-1] - exact[0]).tolist(), strict=True):
                 plot.axhline(level, color=COLOURS["exact"], lw=0.9, ls=(0, (4, 3)), zorder=1)
             higher = ends["2"] - ends["1"]
-            said.append(
+            texts.append(
                 f"{body} at {100 * ratio:.0f} %: bust point {higher[0]:+.2f} mm, apex {higher[1]:+.2f} mm"
             )
             upper.set_title(f"({letter}) {body}, line at {100 * ratio:.0f} %")
@@ -69,7 +69,7 @@ def figure_6(study: Study) -> Figure:
         "Height of the bust points (mean of left and right) and of the apex, the foremost place of the "
         f"breasts, over {TURNS} turns, against that at rest. a: mannequin on {TEMPLATE['mannequin']} "
         f"triangles, b: person on {TEMPLATE['person']}; 1: conventional, 2: adaptive; dashed: exact. "
-        "Adaptive less conventional, means of the last 20 turns: " + "; ".join(said) + "."
+        "Adaptive less conventional, means of the last 20 turns: " + "; ".join(texts) + "."
     )
     columns = ("curve", "body", "control", "set_percent", "turn", "bust_point_change_mm", "apex_change_mm")
     return Figure("fig-6-bust-point", "Height of the bust points", caption, columns, rows, drawn)
@@ -80,7 +80,7 @@ def figure_7(study: Study) -> Figure:
     drawn = sheet(4.6)
     axes = drawn.subplots(2, 2, sharex=True, sharey="row")
     rows: list[tuple[object, ...]] = []
-    said = []
+    texts = []
     for block, ratio in enumerate(LENGTHS):
         for column, (letter, body) in enumerate(BODIES.items()):
             plot = axes[block, column]
@@ -90,7 +90,7 @@ def figure_7(study: Study) -> Figure:
                 _line(plot, errors[:, 0], control, f"{letter}{digit} {control}")
                 name = (f"{letter}{digit}", body, control, 100.0 * ratio)
                 rows += [(*name, turn, *map(float, pair)) for turn, pair in enumerate(errors)]
-                said.append(_error_words(f"{letter}{digit} at {100 * ratio:.0f} %", errors))
+                texts.append(_error_words(f"{letter}{digit} at {100 * ratio:.0f} %", errors))
             rest = solution.stages.model.volume.rest_volume / 1e5
             side = plot.secondary_yaxis("right", functions=(lambda p, r=rest: p * r, lambda m, r=rest: m / r))
             side.set_ylabel("[ml]")
@@ -101,7 +101,7 @@ def figure_7(study: Study) -> Figure:
         plot.set_xlabel("turn")
     caption = (
         f"Volume error of the control mesh over {TURNS} iterations; negative for missing volume. "
-        + "; ".join(said)
+        + "; ".join(texts)
         + "."
     )
     columns = ("curve", "body", "control", "set_percent", "turn", "volume_error_percent", "volume_error_ml")
@@ -114,7 +114,7 @@ def figure_8(study: Study) -> Figure:
     drawn = sheet(4.8)
     axes = drawn.subplots(2, 2, sharex=True, sharey="row")
     rows: list[tuple[object, ...]] = []
-    said = []
+    texts = []
     for column, (letter, body) in enumerate(BODIES.items()):
         # Turns hold the volume of both breasts together, so they are set against the answer that does.
         exact = study.solved(body, ratio, "exact", volume_of="both")
@@ -123,7 +123,7 @@ def figure_8(study: Study) -> Figure:
             for plot, values in zip(axes[:, column], (away, 100.0 * np.abs(error)), strict=True):
                 plot.semilogy(np.arange(turns + 1), values, color=COLOURS[control], label=control)
             rows += _way_rows(body, control, away, error)
-            said.append(
+            texts.append(
                 f"{body}, {control}: {away[-1]:.2g} mm and {100 * error[-1]:+.2g} % after {turns} iterations"
             )
         away, error = study.newton_way(body, ratio, exact.state.moved)
@@ -131,14 +131,14 @@ def figure_8(study: Study) -> Figure:
         rows += _way_rows(body, "exact", away, error)
         axes[0, column].set_title(f"({letter}) {body}, line at {100 * ratio:.0f} %")
         axes[1, column].set_xlabel("iteration or Newton step")
-        said.append(
+        texts.append(
             f"{body}, exact: {exact.last.iteration} Newton steps, {abs(100 * exact.last.error):.1g} %"
         )
     _label_distances(axes)
     caption = (
         "Largest distance of a control point to the exact answer with one pressure for both breasts, as "
         "turns have, and size of the volume error; accumulating: half of each error is added. "
-        + "; ".join(said)
+        + "; ".join(texts)
         + "."
     )
     columns = ("body", "control", "turn_or_step", "distance_to_exact_mm", "volume_error_percent")
@@ -188,7 +188,7 @@ def figure_9(study: Study) -> Figure:
     drawn = sheet(3.5)
     axes = drawn.subplots(1, 2, sharey=True)[None][0]
     rows: list[tuple[object, ...]] = []
-    said = []
+    texts = []
     for plot, (letter, body) in zip(axes, BODIES.items(), strict=True):
         limit = study.stages(body).gain_limit
         swing = np.array([[_swing(study, body, r, "conventional", g) for r in SWEPT_RATIOS] for g in GAINS])
@@ -200,7 +200,7 @@ def figure_9(study: Study) -> Figure:
             for j, gain in enumerate(GAINS)
             for i, ratio in enumerate(SWEPT_RATIOS)
         ]
-        said.append(
+        texts.append(
             f"{body}: limit {limit:.2f}, default {GAIN_SHARE * limit:.2f}; the adaptive force leaves at most "
             f"{max(calm):.1g} % at any of these lengths"
         )
@@ -212,7 +212,7 @@ def figure_9(study: Study) -> Figure:
     caption = (
         f"Largest swing of the volume from turn to turn in the last 12 of {SWEPT_TURNS} turns. Line: the "
         "gain limit computed at rest before any turn is made; dashed: the default gain. "
-        + "; ".join(said)
+        + "; ".join(texts)
         + "."
     )
     columns = ("body", "set_percent", "gain", "swing_percent", "gain_limit_at_rest")
@@ -264,7 +264,7 @@ def figure_10(study: Study) -> Figure:
     drawn = sheet(8.4)
     axes = drawn.subplots(4, 2, height_ratios=(1.35, 1.0, 1.0, 1.0))
     rows: list[tuple[object, ...]] = []
-    said = []
+    texts = []
     for column, (letter, body) in enumerate(BODIES.items()):
         own = _show_slings(study, body, axes[0, column], f"({letter}) {body} with slings")
         for ratio in RATIOS:
@@ -285,7 +285,7 @@ def figure_10(study: Study) -> Figure:
                 ]
                 ends[digit] = height[-20:].mean() - height[0]
                 first = max(first, float(np.abs(error[:11]).max())) if control == "adaptive" else first
-            said.append(
+            texts.append(
                 f"{body} at {100 * ratio:.0f} %: bust points {ends['1']:+.2f} and {ends['2']:+.2f} mm, first "
                 f"error {first:.2f} % ({words})"
             )
@@ -293,7 +293,7 @@ def figure_10(study: Study) -> Figure:
     caption = (
         "Slings from the upper edge of the control mesh round each breast, glued, in place of the line. "
         "Conventional and adaptive force at the end, and largest error of the first ten turns, adaptive: "
-        f"{'; '.join(said)}."
+        f"{'; '.join(texts)}."
     )
     return Figure("fig-10-slings", "Slings instead of the line", caption, COLUMNS, rows, drawn)
 

@@ -119,7 +119,7 @@ def sheet(height: float) -> Sheet:
 
 
 def show(axes: Axes, picture: npt.NDArray[np.uint8], title: str = "") -> None:
-    """Put a rendered picture on axes without a frame, its white margin cut away."""
+    """Place a rendered picture on axes without a frame, its white margin cut away."""
     axes.imshow(picture)
     axes.set_axis_off()
     if title:

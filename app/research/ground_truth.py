@@ -20,7 +20,7 @@ from core.scan.orientation.pose import MILLIMETRES
 
 FILE = "truth.json"
 MOST_BYTES = 100_000_000
-FORM = Message("Its format is described in the user guide, page Validation.")
+FORM = Message("The format is described in the user guide, page Validation.")
 TINY = 1e-9
 
 ROUNDED = 5e-3
@@ -160,7 +160,7 @@ def _truth(name: str, entry: Table, degraded: bool) -> tuple[Truth, set[str]]:
     """Return the values of an entry of truth.json, and its unknown names. Raises ValueError."""
     file = entry.get("file")
     if not isinstance(file, str) or file != Path(file).name:
-        raise ValueError("'file' must be the plain name of a file in the folder")
+        raise ValueError("'file' must be a file name without a folder")
     to_mm, stands = _to_mm(entry)
     where, matrix = "landmarks_file", np.asarray(np.eye(4))
     told = _table(entry, where)
@@ -201,7 +201,7 @@ def _to_mm(entry: Table) -> tuple[Floats, bool]:
         turn, scale = matrix[:3, :3], np.cbrt(max(np.linalg.det(matrix[:3, :3]), 0.0))
         even = np.abs(turn @ turn.T - scale**2 * np.eye(3)).max() < ROUNDED * scale**2
         if not even or not np.array_equal(matrix[3], [0, 0, 0, 1]):
-            raise ValueError("'canonical_to_file' is no matrix that turns, scales and shifts")
+            raise ValueError("'canonical_to_file' must be a matrix of rotation, scale and translation")
         return np.asarray(np.linalg.inv(matrix)), True
     unit = entry.get("unit", "mm")
     if not isinstance(unit, str) or unit not in MILLIMETRES:

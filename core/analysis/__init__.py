@@ -1,1 +1,1 @@
-"""What can be computed about a design beyond its solution."""
+"""Analyses of a design beyond its solution."""

@@ -1,4 +1,4 @@
-"""How good a fit is, measured: how far the skin lies from the control mesh, how sound its triangles are."""
+"""Quality of a fit: distance to the skin and shape of the triangles."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a fitted control mesh must fulfil, so that lines, volume and t-FFD work on it."""
+"""Requirements of a fitted control mesh for lines, volume and t-FFD."""
 
 from __future__ import annotations
 

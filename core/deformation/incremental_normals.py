@@ -1,4 +1,4 @@
-"""What changes where a body moves: shading normals and the volume it encloses, without touching the rest."""
+"""Incremental shading normals and volume of a moving body."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a design keeps of a calibration: which scan it was, what it changed and how well that fits."""
+"""Record of a calibration in a design: its scan, its changes and its residual."""
 
 from __future__ import annotations
 

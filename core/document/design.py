@@ -201,8 +201,8 @@ class Design:
             reduce(Design.with_line_settings, map(LineSettings.mechanical, each.traits), each)
             for each in (self, other)
         )
-        said: dict[str, Any] = {"own_measures": (), "customer": "", "worn_tight_mm": 0.0, "calibration": None}
-        return replace(mine, **said) == replace(others, **said)
+        text: dict[str, Any] = {"own_measures": (), "customer": "", "worn_tight_mm": 0.0, "calibration": None}
+        return replace(mine, **text) == replace(others, **text)
 
     def with_template(self, template: str) -> Design:
         """Return the design with another template. Raises LineError if there are own lines.

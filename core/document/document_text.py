@@ -38,7 +38,7 @@ def from_texts(texts: Mapping[str, str]) -> Document:
         told = parsed(texts[VARIANTS])
         shown, others = told["shown"], {name: from_values(each) for name, each in told["others"].items()}
         if shown in others:
-            raise ValueError("two designs are the shown one")
+            raise ValueError("more than one design is shown")
         return Document(tuple(sorted({**others, shown: design}.items())), shown).with_design(design)
     except ProjectError:
         raise

@@ -1,4 +1,4 @@
-"""What the designer decides of lines: which are worn and how long, lines of her own, how each is treated."""
+"""Line settings: active lines, lengths, custom lines and their options."""
 
 from __future__ import annotations
 

@@ -79,7 +79,7 @@ def from_json(text: str) -> Design:
 def from_values(values: Any) -> Design:
     """Read a design of JSON values; keys of later versions are kept. Raises ProjectError, ValueError."""
     if not isinstance(values, Mapping) or not {"format", "scan", "lines"} <= values.keys():
-        raise ValueError("it is no design")
+        raise ValueError("not a design")
     written = whole_number(values["format"], "format")
     if written > FORMAT:
         raise ProjectError(

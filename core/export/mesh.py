@@ -1,4 +1,4 @@
-"""What leaves the program as geometry: the deformed body and the control mesh, whole file or no file."""
+"""Geometry export: the reshaped body and the control mesh, a complete file or none."""
 
 from __future__ import annotations
 

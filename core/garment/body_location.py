@@ -1,4 +1,4 @@
-"""Where on the body a place is, as one would tell it: which side, how high."""
+"""Names of positions on the body: side and height."""
 
 from __future__ import annotations
 

@@ -157,7 +157,7 @@ def write_template(path: Path) -> None:
 
 
 def remove_elastic(name: str) -> None:
-    """Take one of the designer's own elastics away, with its table. Raises UserError."""
+    """Remove one of the designer's own elastics, with its table. Raises UserError."""
     for path in _own_tables():
         if _holds(path, name):
             try:

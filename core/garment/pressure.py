@@ -152,21 +152,21 @@ class LinePressure:
     @property
     def notes(self) -> tuple[Message, ...]:
         """Return notes on assumptions, and on parts without contact."""
-        said = list(self.input_notes)
+        texts = list(self.input_notes)
         if not self.tension.any():
-            said.append(SLACK_NOTE)
+            texts.append(SLACK_NOTE)
         elif not self.tension.all():
-            said.append(Message("Partly slack: no contact pressure there."))
+            texts.append(Message("Partly slack: no contact pressure there."))
         if self.bridges:
             most = max(bridge.height for bridge in self.bridges)
-            said.append(
+            texts.append(
                 Message(
                     "Bridges hollows over {length}, up to {height} off the skin: no contact pressure there.",
                     length=Length(self.bridged_length),
                     height=Length(most),
                 )
             )
-        return tuple(said)
+        return tuple(texts)
 
 
 def mmhg(kpa: float) -> float:
@@ -205,11 +205,11 @@ def pressures(stages: Stages, control_points: Points) -> Mapping[str, LinePressu
 
 def _told(stages: Stages, name: str, tension: LineTension) -> tuple[Message, ...]:
     """Return in sentences what was taken for granted."""
-    said = []
+    texts = []
     if tension.estimate:
-        said.append(Message("The tension is computed from the tissue stiffness alone (estimate)."))
+        texts.append(Message("The tension is computed from the tissue stiffness alone (estimate)."))
     if not stages.design.line_settings(name).width:
-        said.append(Message("Width not specified: {width} assumed.", width=Length(USUAL_WIDTH)))
+        texts.append(Message("Width not specified: {width} assumed.", width=Length(USUAL_WIDTH)))
     if any(line.name == name and is_strap(stages, line) for line in stages.model.lines):
-        said.append(NOT_FOR_STRAPS)
-    return tuple(said)
+        texts.append(NOT_FOR_STRAPS)
+    return tuple(texts)

@@ -1,4 +1,4 @@
-"""When a band presses too much: a traffic light whose limits, sources and doubts are data."""
+"""Contact pressure limits with sources and uncertainties, as data."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What each worn line presses with, in figures: a row a line, and what holds for all of them."""
+"""Contact pressures of all active lines, a row for each line, and totals."""
 
 from __future__ import annotations
 

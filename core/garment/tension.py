@@ -1,4 +1,4 @@
-"""What worn lines pull with, in newtons, wherever the body stands."""
+"""Tension of active lines in newtons."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where points lie seen from triangles: coordinates in their frames, and the nearest place on them.
+"""Closest points on triangles, and coordinates in their frames.
 
 Points are asked about in groups that lie close together, each with all triangles that matter to it. So every
 array is a full table, one row a triangle and one column a point, and no pair needs an index.

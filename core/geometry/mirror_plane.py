@@ -1,4 +1,4 @@
-"""How the left and the right of a body differ: the one side laid over the other like a sheet of glass."""
+"""Mirror plane of a body, and the difference of its sides."""
 
 from __future__ import annotations
 

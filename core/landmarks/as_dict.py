@@ -1,4 +1,4 @@
-"""What is found on a scan, as plain values for other programs: landmarks, levels, girths, pose."""
+"""Detection results as plain values for other programs: landmarks, levels, girths, pose."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether a body has the size of a body: its lengths against those of women."""
+"""Plausibility of the scale of a body, by the lengths of adults."""
 
 from __future__ import annotations
 

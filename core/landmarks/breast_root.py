@@ -1,4 +1,4 @@
-"""Where each breast passes into the chest at its sides: the inner and the outer end of its root."""
+"""Inner and outer ends of each breast root."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the breasts stand out of the trunk: the poles of both."""
+"""Poles of the breasts on the trunk."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether a trunk leans in a file that is level."""
+"""Lean of the trunk in a level file."""
 
 from __future__ import annotations
 

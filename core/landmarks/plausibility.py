@@ -1,4 +1,4 @@
-"""What else a body may be than an upper body of true size that stands upright, told by its proportions."""
+"""Plausibility of an upright upper body of true size, by its proportions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How finely a scan shows the breasts: what is found on a coarse one is less sure."""
+"""Resolution of the breasts in a scan: results of a coarse one have a lower confidence."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether what was found can be a bust: refused where it cannot, warned of where it is only unusual."""
+"""Validation of a detected bust: errors where impossible, warnings where unusual."""
 
 from __future__ import annotations
 

@@ -31,10 +31,10 @@ def edit_warnings(body: Body) -> list[Message]:
 
 def landmark_warnings(landmarks: Landmarks) -> list[Message]:
     """Return what should be looked at on the landmarks alone; a side without a breast is named once."""
-    said = [
+    texts = [
         sentence for kind in ESSENTIAL for sentence in _uncertain(kind, _untold(landmarks, kind), landmarks)
     ]
-    return [*said, *landmarks.warnings]
+    return [*texts, *landmarks.warnings]
 
 
 def first_warning(landmarks: Landmarks) -> str:

@@ -1,4 +1,4 @@
-"""What is measured on the bust: distances, cups, volumes, and how left and right differ."""
+"""Measurements of the bust: distances, cups, volumes, and differences of left and right."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every measure is: its name, its unit and what is measured, in words that a pattern cutter knows.
+"""Definitions of all measurements: name, unit and method.
 
 The value of each key is yielded by ``girths.py`` or ``bust.py``; window, report and files follow.
 """

@@ -1,4 +1,4 @@
-"""What a table of sizes is: bands after the under-bust girth, cups after what the bust has more."""
+"""Size charts: bands by under-bust girth, cups by the difference of the girths."""
 
 from __future__ import annotations
 

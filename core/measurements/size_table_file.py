@@ -86,11 +86,11 @@ def _come_out(table: SizeTable, example: Example) -> None:
     made = table.labelled(*table.steps(example.underbust, example.bust))
     if made != example.size:
         girths = f"{example.underbust:g} and {example.bust:g} {table.unit}"
-        raise ValueError(f"it makes {made or 'no size'} of {girths}, but its example says {example.size}")
+        raise ValueError(f"it makes {made or 'no size'} of {girths}, but the example lists {example.size}")
 
 
 def _no_number(text: str) -> float:
-    raise ValueError(f"{text} is no number")
+    raise ValueError(f"{text} is not a number")
 
 
 def _same_keys(what: str, values: Any, keys: tuple[str, ...], may: tuple[str, ...] = ()) -> None:
@@ -101,7 +101,7 @@ def _same_keys(what: str, values: Any, keys: tuple[str, ...], may: tuple[str, ..
     if missing:
         raise ValueError(f"{what} lacks '{missing[0]}'")
     if unknown:
-        raise ValueError(f"{what} has '{unknown[0]}', which no table has")
+        raise ValueError(f"{what} has '{unknown[0]}', which is unknown")
 
 
 def _text(what: str, value: Any) -> str:
@@ -157,11 +157,11 @@ def _scale(what: str, values: Any, side: str) -> Scale:
         if high.least < low.most:
             raise ValueError(f"in {what} {high.name} begins before {low.name} ends")
     if len({step.name for step in steps}) < len(steps):
-        raise ValueError(f"in {what} a name stands twice")
+        raise ValueError(f"a name in {what} is repeated")
     scale = Scale(steps, _SIDES[side])
     for step, (begin, end) in zip(steps, pairwise(scale.borders), strict=True):
         if end <= begin:
-            raise ValueError(f"in {what} nothing is left for {step.name}")
+            raise ValueError(f"{step.name} in {what} is empty")
     return scale
 
 

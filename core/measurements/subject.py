@@ -1,4 +1,4 @@
-"""Who is measured: a skin with its landmarks, the trunk's levels and both breasts, at rest or reshaped."""
+"""Measured body: skin with landmarks, trunk levels and both breasts, original or reshaped."""
 
 from __future__ import annotations
 

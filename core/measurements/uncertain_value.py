@@ -1,4 +1,4 @@
-"""How far figures of a solved design may be off: a standard deviation by source, and what it is told as."""
+"""Standard deviation of a value by source, and its format."""
 
 from __future__ import annotations
 

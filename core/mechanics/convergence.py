@@ -1,4 +1,4 @@
-"""How a run stands: a small pure function of its records and of the condition of its control mesh.
+"""Convergence state of a run, a pure function of its records and its mesh quality.
 
 Paper section 5 names the cases; the rules and figures are ours.
 """

@@ -1,4 +1,4 @@
-"""What a unit of the model's stiffness is in newtons.
+"""Newtons per unit of the model's stiffness.
 
 The model's cables have relative stiffness and no unit. As a net they resist stretching like a membrane; if
 skin and tissue are said to resist with so many N/m, one unit becomes so many N/mm (ours; see

@@ -1,4 +1,4 @@
-"""When the conventional force vibrates: the gain limit, at rest and in any balance, before any turn (ours).
+"""Gain limit of the conventional force, at the original and at any equilibrium (ours).
 
 A turn is linear for small moves: it moves the points by M^-1 (P a - K d), M being the lower triangle of the
 stiffness that a turn solves for, K the true stiffness where the points are and a the direction of the volume

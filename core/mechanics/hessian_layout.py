@@ -1,4 +1,4 @@
-"""Where the second derivatives of a model lie: worked out once, so that filling a matrix is one product."""
+"""Layout of the second derivatives of a model, computed once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How an exact answer moves with what is set: derivatives through the solved system (ours).
+"""Sensitivity of the exact solution to the settings, by derivatives of the solved system (ours).
 
 In a balance the forces and what is held vanish, whatever the lengths of the lines are. So a small change of a
 length moves the points by what one linear system says: the matrix is that of Newton's last step, the right
@@ -128,7 +128,7 @@ class Sensitivities:
             _, push = self._skin.projected(self.place)
             factor = band.lu(self._skin.derivative(self.potential, self.place, multipliers))
         if factor is None:
-            raise ValueError("the balance moves without bound")
+            raise ValueError("the equilibrium is singular")
 
         def solve(right: Floats, factor: Solve = factor) -> Floats:
             # The trace of stiffness in the matrix does not matter to Newton's steps, but to the tenth digit.

@@ -1,4 +1,4 @@
-"""What is watched on the moved body: its bust points, its foremost place and its girths."""
+"""Observables of the reshaped body: bust points, apexes and girths."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What can be read off every place of the body: how far it moved, how it strained, how lines pull."""
+"""Surface fields of the body: displacement, strain and line tension."""
 
 from __future__ import annotations
 

@@ -49,19 +49,19 @@ def shape_warnings(shown: ShownState) -> list[Message]:
         return []
     if state == "folded":
         turn = f"{condition.largest_rotation:.0f}"
-        said = Message(
+        text = Message(
             "The mesh is folded: a triangle of the control mesh has rotated by {degrees} degrees.",
             degrees=turn,
         )
     else:
         low, high = f"{100.0 * condition.shortest:.0f}", f"{100.0 * condition.longest:.0f}"
-        said = Message(
+        text = Message(
             "The mesh is overstrained: edges of the control mesh are at {low} to {high} % of "
             "their original lengths.",
             low=low,
             high=high,
         )
-    return [join((said, Message("The shape does not represent a real body.")))]
+    return [join((text, Message("The shape does not represent a real body.")))]
 
 
 def immovable_lines(stages: Stages) -> list[Message]:

@@ -1,4 +1,4 @@
-"""Where a scan is read from, how it is set upright, and its edits."""
+"""Source of a scan: file, orientation and edits."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from app.gui.features.scan_comparison.page import ScanComparisonPage, ScanCompar
 from app.gui.main_window import MainWindow
 from app.i18n.catalog import using_language
 from app.presenters.samples import sample_design
-from app.presenters.scan_comparison import bust_words, parameter_title
+from app.presenters.scan_comparison import bust_text, parameter_title
 from core.analysis.calibration.api import Residuals, ResidualSummary, calibrate, compare
 from core.control_mesh.template import read_template
 from core.document.line_notation import ready_made_lines
@@ -161,7 +161,7 @@ def test_a_shape_that_has_settled_is_compared_while_turns_beside_it_go_on(pair: 
 def test_where_the_bust_points_are_is_said_without_a_sign() -> None:
     figures = ResidualSummary(0.0, 1.0, 2.0, 1.0)
     way = {"left": np.array([0.0, 0.7, -0.3]), "right": np.array([0.0, -0.2, 0.04])}
-    words = bust_words(Residuals(np.zeros(3), figures, {}, way, {"left": 5.66, "right": 10.8}))
+    words = bust_text(Residuals(np.zeros(3), figures, {}, way, {"left": 5.66, "right": 10.8}))
     assert words.startswith(
         "Bust point left: predicted 0.3 mm lower (±5.7 mm), 0.7 mm further back. Bust point right: "
     )

@@ -15,7 +15,7 @@ from window_tools import Script, drag, run_main, settled
 from app.gui.features.report.controller import ReportController
 from app.gui.main_window import MainWindow
 from app.gui.widgets.coach_mark import CoachMark
-from app.presenters.bust_shift import bust_shift, shift_between, up_words
+from app.presenters.bust_shift import bust_shift, shift_between, up_text
 from app.presenters.samples import FIRST_SAMPLE, LIFTING_LINE, SAMPLES, lifted_sample
 from core.garment.assessment import BAD, assess
 from core.pipeline.build import build
@@ -80,7 +80,7 @@ def before_and_after(window: MainWindow) -> Script:
     """The number that is told is that of the body; Space shows the original one, and the reshaped again."""
     mark = window.start_controller.tour.mark
     assert lift(window) > SEEN
-    assert up_words(lift(window)) in mark.accessibleName()
+    assert up_text(lift(window)) in mark.accessibleName()
     window.activateWindow()
     yield window.isActiveWindow
     for after in (False, True):

@@ -14,7 +14,7 @@ from app.cli.design import check_project_name, save_design, stages_of
 from app.cli.options import add_forms, add_lines, add_project_output
 from app.cli.output import finish, table_lines
 from app.presenters.scan_comparison import (
-    aligned_words,
+    aligned_text,
     determination_text,
     fixed_parameters_text,
     improvement_text,
@@ -94,7 +94,7 @@ def run(options: Namespace) -> int:
 
 def _text(done: Calibrated) -> Iterator[str]:
     found, design = done.found, done.stages.design
-    yield from (aligned_words(done.worn), "")
+    yield from (aligned_text(done.worn), "")
     for when, difference in (("before", found.before), ("after", found.after)):
         rows = [(row.title, row.mean, row.rms, row.most) for row in residual_rows(difference)]
         yield from table_lines([(f"residual {when} [mm]", "mean", "RMS", "95 %"), *rows])

@@ -13,7 +13,7 @@ from app.cli.options import add_forms, add_lines, add_scan, form_of
 from app.cli.output import csv_text, finish, table_lines, write_output
 from app.cli.solved_design import SolvedDesign, solve_design
 from app.presenters.cut_list import as_table
-from app.presenters.elastics import choice_view, mode_words, title_of
+from app.presenters.elastics import choice_view, mode_text, title_of
 from core import __version__
 from core.errors import LineError, UserError
 from core.garment.cut_list import CutList, CutRow, cut_list
@@ -103,7 +103,7 @@ def elastics_text(stages: Stages, name: str, *, keep_fit: bool = False) -> str:
         view = choice_view(title_of(elastic), option, rigid, names, design)
         values = (each or "-" for each in (view.stretch, view.cut, view.reached, view.lift))
         rows.append([view.title, *values, view.note])
-    return "\n".join([mode_words(mode, design), "", *table_lines(rows)])
+    return "\n".join([mode_text(mode, design), "", *table_lines(rows)])
 
 
 def _refused(_: object) -> str:

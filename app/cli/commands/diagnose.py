@@ -11,7 +11,7 @@ from app.cli.design import check_project_name, save_design, stages_of
 from app.cli.options import add_forms, add_lines, add_project_output, add_scan, add_volume
 from app.cli.output import finish
 from app.presenters.assessment import assessment_lines
-from app.presenters.diagnosis import change_words, details, hint, sentence
+from app.presenters.diagnosis import change_text, details, hint, sentence
 from core import __version__
 from core.analysis.diagnosis.candidate_changes import Change, Fix
 from core.analysis.diagnosis.diagnose import Diagnosis, diagnose
@@ -122,7 +122,7 @@ def _change(found: Diagnosis, change: Change) -> dict[str, Any]:
     key, value = change.setting
     return {
         "kind": change.kind,
-        "words": change_words(found, change),
+        "words": change_text(found, change),
         "lengths_percent": {line.name: 100.0 * line.ratio for line in change.design.lines},
         "gain": change.design.gain,
         "setting": {key: value} if key else None,

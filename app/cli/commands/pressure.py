@@ -12,7 +12,7 @@ from app.cli.options import add_forms, add_lines, add_scan, form_of
 from app.cli.output import csv_text, finish, table_lines, write_output
 from app.cli.solved_design import SolvedDesign, solve_design
 from app.presenters.messages import line_title
-from app.presenters.pressure import place_words, rating_limits, rating_text, total_words
+from app.presenters.pressure import place_text, rating_limits, rating_text, total_text
 from core import __version__
 from core.document.design import Design
 from core.garment.pressure_list import PressureList, PressureRow, pressure_list
@@ -50,7 +50,7 @@ def _text(found: Pressures) -> str:
     heading, *lines = table_lines([_HEADING, *(_cells(row, design) for row in listed.rows)])
     notes = ([f"  {note}" for note in row.notes] for row in listed.rows)
     rows = (text for line, below in zip(lines, notes, strict=True) for text in (line, *below))
-    lines = [heading, *rows, "", f"{total_words(listed)}.", "", *_limits()]
+    lines = [heading, *rows, "", f"{total_text(listed)}.", "", *_limits()]
     return "\n".join([*found.solved.verdict, *found.solved.effect, "", *lines])
 
 
@@ -62,7 +62,7 @@ def _cells(row: PressureRow, design: Design) -> tuple[str, ...]:
         *_written(pressures),
         rating_text(row.light) if row.light else "-",
         *_written(others),
-        place_words(row) if row.where else "",
+        place_text(row) if row.where else "",
     )
 
 

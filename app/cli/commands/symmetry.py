@@ -14,7 +14,7 @@ from app.cli.output import finish, table_lines
 from app.cli.solved_design import is_converged, solve_valid
 from app.presenters.assessment import assessment_lines
 from app.presenters.symmetry import balance_result_texts, not_balanced_reason, split_titles, symmetry_view
-from app.presenters.target_shape import change_words, reasons
+from app.presenters.target_shape import change_text, reasons
 from core import __version__
 from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER
 from core.analysis.symmetry.balance import EVEN, BalanceResult, balance_sides
@@ -136,7 +136,7 @@ def _balance(found: Symmetry, made: BalanceResult) -> Iterator[str]:
     if made.split:
         yield f"Left and right unlinked: {', '.join(split_titles(before, made.split))}."
         before = split_sides(before, read_template(before.template))
-    yield from change_words(before, made.result)
+    yield from change_text(before, made.result)
     values = [
         {
             HIGHER: each.higher,

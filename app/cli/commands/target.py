@@ -21,8 +21,8 @@ from app.i18n.lengths import length
 from app.presenters.assessment import assessment_lines
 from app.presenters.target_shape import (
     activated_text,
-    change_words,
-    conflict_words,
+    change_text,
+    conflict_text,
     deviation_text,
     is_signed,
     reasons,
@@ -230,8 +230,8 @@ def _text(found: TargetResult, out: str) -> Iterator[str]:
     for section in filter(None, sections):
         yield f"{target_title(section)}: {deviation_text(found.goals, reply.reached, section)}"
     yield result_text(reply, found.goals)
-    yield from filter(None, (*change_words(before, reply), activated_text(before, reply.design)))
-    yield from conflict_words(found.conflicts)
+    yield from filter(None, (*change_text(before, reply), activated_text(before, reply.design)))
+    yield from conflict_text(found.conflicts)
     yield f"Total tension of all lines: {reply.tension:.1f} N{', an estimate' if reply.unchecked else ''}."
     if out:
         yield f"written to {out}"

@@ -1,4 +1,4 @@
-"""Where a plot is seen and touched: the wheel zooms, a drag shifts, the pointer reads the curves."""
+"""Canvas of a plot: the wheel zooms, a drag moves, the pointer reads the curves."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations

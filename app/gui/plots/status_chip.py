@@ -1,4 +1,4 @@
-"""How the run stands, as icon and word on a coloured pill, and in words on the one line beside it."""
+"""Status chip: icon and word on a coloured pill, with one line of details."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations

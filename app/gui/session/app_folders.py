@@ -80,5 +80,5 @@ def shown_folder(folder: Path) -> str:
 def show_folder(folder: Path, inform: Callable[[str, str], object]) -> None:
     """Show a folder as the desktop does; where that does not go, say where it is."""
     if not (folder.is_dir() and open_outside(folder)):
-        said = tr("The folder could not be opened."), tr("Folder: {folder}").format(folder=folder)
-        inform(*said)
+        texts = tr("The folder could not be opened."), tr("Folder: {folder}").format(folder=folder)
+        inform(*texts)

@@ -13,7 +13,7 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from app.i18n.catalog import number, tr
-from app.presenters.model_options import control_words
+from app.presenters.model_options import control_text
 from core.document.design import Design
 from core.document.document import Document
 from core.document.lines import CustomLine
@@ -95,7 +95,7 @@ class EditCommand(QUndoCommand):
             self._session.take_step(self.after)
 
     def undo(self) -> None:
-        """Take it back."""
+        """Undo the edit."""
         self._session.take(self.before)
 
 
@@ -155,8 +155,8 @@ class DocumentEditor(QObject):
             return
         worn = None if is_original_length(ratio) else ratio
         text = tr("{line} deactivated") if worn is None else tr("{line} {percent} %")
-        said = text.format(line=title, percent=number(100.0 * ratio, 1))
-        self.edit(lambda design: design.with_linked(name, worn), said, what=f"length of {name}")
+        sentence = text.format(line=title, percent=number(100.0 * ratio, 1))
+        self.edit(lambda design: design.with_linked(name, worn), sentence, what=f"length of {name}")
 
     def reset_lines(self) -> None:
         """Take every line off: the body as scanned."""
@@ -164,7 +164,7 @@ class DocumentEditor(QObject):
 
     def choose_control(self, control: str) -> None:
         """Choose the volume control."""
-        self.change({"volume": control}, control_words(control))
+        self.change({"volume": control}, control_text(control))
 
     def choose_template(self, template: str) -> None:
         """Choose the control mesh by its number of polygons."""

@@ -134,7 +134,7 @@ class Jobs(QObject):
         return sorted(jobs, key=lambda job: not job.waited)
 
     def cancel(self, job: Job | None) -> None:
-        """Let go of a job at once; its thread ends when it next tells how far it is."""
+        """Release a job at once; its thread ends when it next tells how far it is."""
         if job is not None:
             job.wanted = False
             if job in self._pieces:
@@ -142,13 +142,13 @@ class Jobs(QObject):
             self.changed.emit()
 
     def leave(self, job: Job | None) -> None:
-        """Let go of a job because the user says so, and tell who began it."""
+        """Release a job because the user says so, and tell who began it."""
         if job is not None:
             self.cancel(job)
             job.left()
 
     def close(self) -> None:
-        """Let go of all jobs, and wait until their threads have ended; none begins after that."""
+        """Release all jobs, and wait until their threads have ended; none begins after that."""
         self._open = False
         self._clock.stop()
         self._between.stop()

@@ -109,11 +109,11 @@ class Notifications(QObject):
     # -- what is over
 
     def withdraw(self, topic: str) -> None:
-        """Take away the notifications of a topic."""
+        """Remove the notifications of a topic."""
         self._bar.withdraw(topic)
 
     def keep_only(self, topic: str, sentences: Collection[Text]) -> None:
-        """Take away the notifications of a topic whose sentence no longer holds."""
+        """Remove the notifications of a topic whose sentence no longer holds."""
         self._bar.keep_only(topic, sentences)
 
     def is_shown(self, topic: str) -> bool:

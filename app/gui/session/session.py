@@ -193,7 +193,7 @@ class Session(DocumentEditor):
         self.saved.emit(str(path))
 
     def cancel(self) -> None:
-        """Let go of what is being read or built; what stood before stays."""
+        """Release what is being read or built; what stood before stays."""
         if self._opening is None and not self._solving.at_work:
             return
         self._solving.cancel()
@@ -238,8 +238,8 @@ class Session(DocumentEditor):
         self._revision = self._solving.submit(design, fresh)
         if opening is not None:
             name = opening.path.name if opening.path else opening.document.design.scan.name
-            said = Message("{name} was not opened because the current design was edited.", name=name)
-            self.failed.emit(UserError(said, Message("Open the file again when the edit is finished.")))
+            text = Message("{name} was not opened because the current design was edited.", name=name)
+            self.failed.emit(UserError(text, Message("Open the file again when the edit is finished.")))
 
     def _answer(self, frame: Frame) -> None:
         if frame.revision < self._oldest:

@@ -1,4 +1,4 @@
-"""What the user has wished for in the preferences, and what holds until then."""
+"""User preferences and their defaults."""
 
 from __future__ import annotations
 

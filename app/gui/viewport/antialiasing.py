@@ -1,4 +1,4 @@
-"""How finely a scene is drawn on a canvas: quickly while things move, with smooth outlines at rest."""
+"""Antialiasing of a canvas: fast during motion, smooth outlines otherwise."""
 
 from __future__ import annotations
 

@@ -99,7 +99,7 @@ class BodyView:
         self.select_line(self.selected_line)
 
     def select_line(self, name: str) -> None:
-        """Put a casing round one line."""
+        """Draw a casing round one line."""
         self.selected_line = name
         if self.body is None:
             return

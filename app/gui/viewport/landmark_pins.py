@@ -69,7 +69,7 @@ class LandmarkPins:
         self._show()
 
     def put(self, name: str) -> None:
-        """Put the pin of a landmark that was not found in the middle of the view, to be carried away."""
+        """Place the pin of a landmark that was not found in the middle of the view, to be carried away."""
         place = self._viewports[0].skin_at(self._viewports[0].rect().toRectF().center())
         if place is not None:
             self._selected, self._carried = name, {name: place}
@@ -83,7 +83,7 @@ class LandmarkPins:
         return name, place if self._shown else None
 
     def drop_back(self) -> None:
-        """Put carried pins back to where their landmarks are."""
+        """Place carried pins back to where their landmarks are."""
         if self._carried:
             self._carried = {}
             self._show()
@@ -119,5 +119,5 @@ class LandmarkPins:
             viewport.set_pins(pins if viewport is self._viewports[0] else (), chosen[-1] if chosen else "")
 
     def _pin(self, mark: Landmark) -> Pin:
-        said = landmark_view(mark.name, mark, self.accepted)
-        return Pin(mark.name, said.title, mark.position, said.tone, said.state)
+        text = landmark_view(mark.name, mark, self.accepted)
+        return Pin(mark.name, text.title, mark.position, text.tone, text.state)

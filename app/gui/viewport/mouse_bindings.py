@@ -1,4 +1,4 @@
-"""What the buttons and the wheel do in the 3D view, for hands that come from different programs."""
+"""Mouse bindings of the 3D view, after those of other programs."""
 
 from __future__ import annotations
 

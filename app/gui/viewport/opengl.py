@@ -1,4 +1,4 @@
-"""What draws for the window: the graphics card, software, or by wish neither (safe mode)."""
+"""Choice of OpenGL: graphics card, software, or neither (safe mode)."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def spare_graphics() -> None:
 
 
 def graphics_work() -> None:
-    """Remember that the driver has done what it was asked for."""
+    """Record that the driver has done what it was asked for."""
     spare_graphics()
     forget_failed_starts()
 
@@ -66,6 +66,6 @@ def graphics_in_words() -> list[tuple[str, str]]:
     if not (context.create() and context.makeCurrent(ground)):
         return [("OpenGL", "-")]
     functions = context.functions()
-    said = [(name, str(functions.glGetString(number))) for name, number in _STRINGS]
+    texts = [(name, str(functions.glGetString(number))) for name, number in _STRINGS]
     context.doneCurrent()
-    return said
+    return texts

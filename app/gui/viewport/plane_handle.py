@@ -97,9 +97,9 @@ class PlaneHandle(Handle):
         across = view.to_picture(beside, self._viewport.width(), self._viewport.height())[0] - spot
         full = float(np.linalg.norm(across[:2]))
         self.at_eye = bool(np.linalg.norm(way[:2]) < _FLATTEST * full)
-        said = tr("Drag to move the section plane (Shift: fine, Esc: cancel)")
+        text = tr("Drag to move the section plane (Shift: fine, Esc: cancel)")
         towards = tr("Drag up to move the plane away from you, down to move it towards you.")
-        set_tip(self, "\n".join((said, towards)) if self.at_eye else said)
+        set_tip(self, "\n".join((text, towards)) if self.at_eye else text)
         if not self.at_eye:
             return way[:2]
         return np.array([0.0, full if plane.normal @ back > 0.0 else -full])

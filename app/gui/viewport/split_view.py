@@ -231,7 +231,7 @@ class SplitView(QWidget):
         self._place_titles([0, *edges, self.width()])
 
     def _place_titles(self, edges: Sequence[int]) -> None:
-        """Put each title at the border to the next pane, the last one at the border before it.
+        """Place each title at the border to the next pane, the last one at the border before it.
 
         All stand at one height: where one would be hidden, under what hides it.
         """

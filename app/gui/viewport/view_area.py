@@ -190,7 +190,7 @@ class ViewArea(QWidget):
         return self._main.selected_line
 
     def select_line(self, name: str) -> None:
-        """Put a casing round one line."""
+        """Draw a casing round one line."""
         for body in self.beside.bodies:
             body.select_line(name)
 

@@ -165,12 +165,12 @@ class Viewport(QWidget):
     # -- what is shown over the view
 
     def select_band(self, name: str | None) -> None:
-        """Put a white casing round one line, or round none."""
+        """Draw a white casing round one line, or round none."""
         self.scene.mark_bands(name or "", self.scene.bands.hovered)
         self.request_draw()
 
     def hover_band(self, name: str | None) -> None:
-        """Put a faint casing round one line, as the pointer does, or round none."""
+        """Draw a faint casing round one line, as the pointer does, or round none."""
         self.scene.mark_bands(self.scene.bands.selected, name or "")
         self.request_draw()
 
@@ -218,7 +218,7 @@ class Viewport(QWidget):
         return self._glide.end if self._glide.running else self.view
 
     def set_view(self, name: str) -> None:
-        """Glide to the side called ``name`` in ``app.rendering.camera.VIEWS``."""
+        """Move the camera to the side called ``name`` in ``app.rendering.camera.VIEWS``."""
         self._go(self.view.named(name))
 
     def set_parallel(self, parallel: bool) -> None:
@@ -244,12 +244,12 @@ class Viewport(QWidget):
         self._go(self._fit(self._aspect()))
 
     def glide_to(self, view: View) -> None:
-        """Glide to another view."""
+        """Move the camera to another view."""
         self._fit = None
         self._go(view)
 
     def frame_bust(self) -> None:
-        """Glide to the bust, and keep it framed when the size changes."""
+        """Move the camera to the bust, and keep it framed when the size changes."""
         self._fit = self.scene.framing_bust
         self._go(self._fit(self._aspect()))
 

@@ -1,4 +1,4 @@
-"""What is told to those who hear the window instead of seeing it."""
+"""Texts for screen readers."""
 
 from __future__ import annotations
 

@@ -156,9 +156,9 @@ class ToolButton(QToolButton):
 
     def tip(self) -> str:
         """Return what this is, with the key that does the same."""
-        action, said = self.defaultAction(), self.toolTip()
+        action, message = self.defaultAction(), self.toolTip()
         key = "" if action is None else action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
-        return f"{said}  {key}" if key and not said.endswith((key, f"({key})")) else said
+        return f"{message}  {key}" if key and not message.endswith((key, f"({key})")) else message
 
     def tip_at(self, place: QPoint) -> str:
         return self.tip() if self.toolTip() else ""

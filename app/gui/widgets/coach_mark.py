@@ -70,7 +70,7 @@ class CoachMark(OverlayCard):
         self.adjustSize()
 
     def point_at(self, target: QRect, room: QRect, clear: Sequence[QRect] = ()) -> None:
-        """Put the ring round ``target``, a part of the parent, and the card next to it within ``room``.
+        """Place the ring round ``target``, a part of the parent, and the card next to it within ``room``.
 
         What must be seen besides is in ``clear``.
         """

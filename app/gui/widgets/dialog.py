@@ -54,7 +54,7 @@ class Dialog(QDialog):
             self.resize(*size)
 
     def add_button(self, text: str, do: Callable[[], object], kind: str = "secondary") -> QPushButton:
-        """Put one more button at the right of the foot; the primary one answers the Enter key."""
+        """Place one more button at the right of the foot; the primary one answers the Enter key."""
         result = button(text, kind)
         result.setAutoDefault(False)
         result.setDefault(kind == "primary")
@@ -95,7 +95,7 @@ class Dialog(QDialog):
         return next_stop(stops(self), next)
 
     def add_close(self) -> QPushButton:
-        """Put the button that closes the sheet at the foot."""
+        """Place the button that closes the sheet at the foot."""
         return self.add_button(tr("Close"), self.accept, "primary")
 
 

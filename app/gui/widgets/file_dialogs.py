@@ -30,7 +30,7 @@ def last_folder(kind: str) -> Path:
 
 
 def remember_folder(kind: str, path: str) -> None:
-    """Remember the folder that a file of this kind lies in."""
+    """Record the folder that a file of this kind lies in."""
     QSettings().setValue(f"folder/{kind}", str(Path(path).absolute().parent))
 
 
@@ -103,8 +103,8 @@ def _may_replace(parent: QWidget, name: str) -> bool:
 
 def ask_about_changes(parent: QWidget | None, name: str) -> str:
     """Return what to do with unsaved changes: "save", "discard" or "stay"."""
-    question, said = tr("Save the changes to {name}?").format(name=name), tr("Unsaved changes will be lost.")
-    return ask(parent, question, said, [("save", tr("Save")), ("discard", tr("Don't save"))]) or "stay"
+    question, text = tr("Save the changes to {name}?").format(name=name), tr("Unsaved changes will be lost.")
+    return ask(parent, question, text, [("save", tr("Save")), ("discard", tr("Don't save"))]) or "stay"
 
 
 def ask_overwrite(parent: QWidget, name: str, protected: bool = False) -> str:
@@ -115,13 +115,13 @@ def ask_overwrite(parent: QWidget, name: str, protected: bool = False) -> str:
     question = tr("{name} was changed outside this window.").format(name=name)
     if protected:
         question = tr("{name} is write-protected.").format(name=name)
-    said = tr("Saving overwrites that version. Busk tries to keep a copy under File, Open backup.")
+    text = tr("Saving overwrites that version. Busk tries to keep a copy under File, Open backup.")
     answers = [("elsewhere", tr("Save as…")), ("overwrite", tr("Replace"))]
-    return ask(parent, question, said, answers) or "stay"
+    return ask(parent, question, text, answers) or "stay"
 
 
 def may_discard(parent: QWidget, name: str) -> bool:
     """Confirm that recovery data may be deleted."""
     question = tr("Discard the recovered changes to {name}?").format(name=name)
-    said = tr("This cannot be undone.")
-    return ask(parent, question, said, [("discard", tr("Discard"))]) == "discard"
+    text = tr("This cannot be undone.")
+    return ask(parent, question, text, [("discard", tr("Discard"))]) == "discard"

@@ -1,4 +1,4 @@
-"""What is done before a window is painted, and what can wait until it is seen."""
+"""Work before the first paint of a window, and after it."""
 
 from __future__ import annotations
 

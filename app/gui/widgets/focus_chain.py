@@ -1,4 +1,4 @@
-"""Where the keyboard goes on to, in the order that eyes read; a ring where a widget shows no focus itself."""
+"""Keyboard focus in reading order; a ring where a widget shows no focus itself."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def stops(pane: QWidget) -> list[QWidget]:
 
 
 def next_stop(order: Sequence[QWidget], forward: bool) -> bool:
-    """Let the keyboard go on in an order of stops; returns whether it did.
+    """Move the keyboard focus in an order of stops; returns whether it did.
 
     From what takes it no longer, because it has gone, it goes to what stood nearest in the same part; from
     a panel that has it as a whole to what stands first in it.

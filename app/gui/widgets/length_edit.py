@@ -37,8 +37,10 @@ class LengthEdit(InlineEdit):
         self.setProperty("kind", "number")
         self.setTextMargins(0, 0, self._unit_width(), 0)
         self.setFixedSize(self.sizeHint())
-        said = tr("Enter 94, −6%, −20mm, 440mm, 44cm or 17 1/4in: front length, 50 to 130 % of the original.")
-        set_tip(self, said)
+        sentence = tr(
+            "Enter 94, −6%, −20mm, 440mm, 44cm or 17 1/4in: front length, 50 to 130 % of the original."
+        )
+        set_tip(self, sentence)
         self.name_line("")
 
     def sizeHint(self) -> QSize:

@@ -200,8 +200,10 @@ class StiffnessField(InlineEdit):
         plain, (low, high) = text.strip().replace(",", "."), RANGES["line_stiffness"]
         stiffness = (read_number(plain) or 0.0) if plain else None
         if stiffness is not None and not low <= stiffness <= high:
-            said = tr("Enter a stiffness from {low} to {high}, or leave the field empty for the model value.")
-            raise ValueError(said.format(low=low, high=number(high, 0)))
+            sentence = tr(
+                "Enter a stiffness from {low} to {high}, or leave the field empty for the model value."
+            )
+            raise ValueError(sentence.format(low=low, high=number(high, 0)))
         return stiffness
 
     def _take(self, value: float | None) -> None:

@@ -18,7 +18,7 @@ LOSING = ("delete", "discard", "replace")
 _WIDTH = 460
 
 
-def ask(parent: QWidget | None, question: str, said: str, answers: Sequence[tuple[str, str]]) -> str:
+def ask(parent: QWidget | None, question: str, message: str, answers: Sequence[tuple[str, str]]) -> str:
     """Return the name of the answer that is chosen, or an empty text.
 
     ``answers`` are names with the words on their buttons: first the one that Enter gives, then others, from
@@ -31,8 +31,8 @@ def ask(parent: QWidget | None, question: str, said: str, answers: Sequence[tupl
         chosen[0] = name
         sheet.accept()
 
-    if said:
-        sheet.body.addWidget(sentence(said, "body"))
+    if message:
+        sheet.body.addWidget(sentence(message, "body"))
     (main, words), *others = answers
     for name, other in reversed(others):
         sheet.add_button(other, partial(choose, name))

@@ -51,8 +51,10 @@ class NavigationRow(QAbstractButton):
         painter.drawText(room, _LEFT, self.text())
         painter.setFont(font("caption"))
         painter.setPen(QColor(tokens.text_caption))
-        said = painter.fontMetrics().elidedText(self._said, Qt.TextElideMode.ElideRight, int(room.width()))
-        painter.drawText(room.translated(0, 18), _LEFT, said)
+        sentence = painter.fontMetrics().elidedText(
+            self._said, Qt.TextElideMode.ElideRight, int(room.width())
+        )
+        painter.drawText(room.translated(0, 18), _LEFT, sentence)
         paint_icon(
             painter,
             "caret-right",

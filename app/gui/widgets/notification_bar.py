@@ -109,25 +109,25 @@ class NotificationBar(FloatingPanel):
         return any(each is not None and each.about == about for each in (self._shown, *self._waiting))
 
     def close_notice(self) -> None:
-        """Take the notice away and show the next."""
+        """Remove the notice and show the next."""
         self._shown = None
         self._next()
         self.closed.emit()
 
     def clear(self) -> None:
-        """Take all notices away."""
+        """Remove all notices."""
         self._waiting.clear()
         self.close_notice()
 
     def withdraw(self, about: str) -> None:
-        """Take away what was said about something: it is no longer so."""
+        """Remove what was said about something: it is no longer so."""
         self._waiting = deque(each for each in self._waiting if each.about != about)
         if self._shown is not None and self._shown.about == about:
             self.close_notice()
         self._show_waiting()
 
     def keep_only(self, about: str, sentences: Collection[Text]) -> None:
-        """Take away the notices about something whose sentence holds no longer."""
+        """Remove the notices about something whose sentence holds no longer."""
         texts = set(map(render, sentences))
         self._waiting = deque(e for e in self._waiting if e.about != about or e.sentence in texts)
         shown = self._shown
@@ -212,8 +212,8 @@ class NotificationBar(FloatingPanel):
             return
         notice = self._shown = self._waiting.popleft()
         self._icon.show_icon(TONE_ICONS[notice.tone], notice.tone)
-        said, hint = (add_word_joiners(escape(each)) for each in (notice.sentence, notice.hint))
-        self._words.setText(f'<span style="font-weight:600">{said}</span>&nbsp; {hint}')
+        message, hint = (add_word_joiners(escape(each)) for each in (notice.sentence, notice.hint))
+        self._words.setText(f'<span style="font-weight:600">{message}</span>&nbsp; {hint}')
         self._set_buttons(notice.actions)
         self.details.setPlainText(notice.details)
         self.unfold.setChecked(False)
@@ -257,7 +257,7 @@ class NotificationBar(FloatingPanel):
         self._place_buttons()
 
     def _place_buttons(self) -> None:
-        """Put the buttons beside the words, or under them where those would be squeezed into a column."""
+        """Place the buttons beside the words, or under them where those would be squeezed into a column."""
         others = (each for each in (self.more, self.unfold) if not each.isHidden())
         taken = sum(each.sizeHint().width() + 8 for each in (*self.buttons, *others))
         wide = self.width() - taken < _LEAST_WORDS

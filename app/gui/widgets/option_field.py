@@ -1,4 +1,4 @@
-"""Where one setting is shown and chosen: two answers side by side, a menu, or a number."""
+"""Field of one setting: two choices side by side, a menu, or a number."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 
@@ -37,7 +37,7 @@ class Field(QWidget):
         self._inside.setAccessibleDescription(tip)
 
     def hold(self, widget: QWidget) -> None:
-        """Put the widget that does it inside, and let it have the focus."""
+        """Place the widget that does it inside, and let it have the focus."""
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.addWidget(widget)
@@ -165,9 +165,9 @@ class AmountEdit(InlineEdit):
         if figure is None:
             raise ValueError(tr("“{text}” is not a number.").format(text=text))
         if not low <= figure / self._amount.scale <= high:
-            said = tr("Enter a value from {low} to {high}{unit}.")
+            sentence = tr("Enter a value from {low} to {high}{unit}.")
             unit = f" {self._amount.unit}" if self._amount.unit else ""
-            raise ValueError(said.format(low=self._plain(low), high=self._plain(high), unit=unit))
+            raise ValueError(sentence.format(low=self._plain(low), high=self._plain(high), unit=unit))
         return figure / self._amount.scale
 
     def _take(self, value: float | None) -> None:

@@ -71,14 +71,14 @@ class OverlayLayout(QObject):
                 panel.removeEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Put the panels in their places when one comes, goes or grows."""
+        """Place the panels in their places when one comes, goes or grows."""
         kinds = (QEvent.Type.Show, QEvent.Type.Hide, QEvent.Type.LayoutRequest)
         if event.type() in kinds or (watched is self._view and event.type() == QEvent.Type.Resize):
             self.settle()
         return False
 
     def settle(self) -> None:
-        """Put all panels in their places."""
+        """Place all panels in their places."""
         taken: dict[bool, list[QRect]] = {True: [], False: []}
         self._put(self._shown(yields=False), taken)
         firm = [*taken[True], *taken[False]]
@@ -88,7 +88,7 @@ class OverlayLayout(QObject):
             self.rearranged.emit()
 
     def _put(self, panels: list[tuple[str, QWidget]], taken: dict[bool, list[QRect]]) -> None:
-        """Put panels in their corners, off what is ``taken`` at the lower edge (True) and at the upper."""
+        """Place panels in their corners, off what is ``taken`` at the lower edge (True) and at the upper."""
         for corner, panel in panels:
             low = corner.startswith("bottom")
             panel.adjustSize()

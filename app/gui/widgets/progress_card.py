@@ -1,4 +1,4 @@
-"""What is being done, how much of it is done, and a way to stop it: a card over the view."""
+"""Progress card over the view: current task, progress and cancel button."""
 
 from __future__ import annotations
 

@@ -70,9 +70,9 @@ class ThumbnailList(QListWidget):
         for view in views:
             item = QListWidgetItem(view.title, self)
             item.setData(VIEW, view)
-            said = "  ".join((view.time, *view.words))
-            item.setData(Qt.ItemDataRole.ToolTipRole, f"{view.title}\n{said}")
-            item.setData(Qt.ItemDataRole.AccessibleDescriptionRole, said)
+            sentence = "  ".join((view.time, *view.words))
+            item.setData(Qt.ItemDataRole.ToolTipRole, f"{view.title}\n{sentence}")
+            item.setData(Qt.ItemDataRole.AccessibleDescriptionRole, sentence)
             self.mark(item, view.present)
 
 
@@ -132,8 +132,8 @@ class RowPainter(QStyledItemDelegate):
         painter.setFont(font(role, tabular=role == "caption"))
         painter.setPen(QColor(getattr(tokens_of(self.widget), token)))
         room = round(area.width())
-        said = painter.fontMetrics().elidedText(text, Qt.TextElideMode.ElideRight, room)
-        painter.drawText(area, _LEFT, said)
+        sentence = painter.fontMetrics().elidedText(text, Qt.TextElideMode.ElideRight, room)
+        painter.drawText(area, _LEFT, sentence)
 
 
 class ThumbnailRowPainter(RowPainter):

@@ -1,4 +1,4 @@
-"""Where a window stands: on a screen that is there, and never larger than it."""
+"""Geometry of a window: on an existing screen, and no larger than it."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def fitted(place: QRect, free: Sequence[QRect]) -> QRect:
 
 
 def put_as_last(window: QWidget) -> None:
-    """Put the main window, or what stands in its place, where that stood last and a screen is there."""
+    """Place the main window, or what stands in its place, where that stood last and a screen is there."""
     place = QSettings().value("window/geometry")
     if isinstance(place, QByteArray) and window.restoreGeometry(place):
         put_on_screen(window, window.normalGeometry())
@@ -43,7 +43,7 @@ def put_as_last(window: QWidget) -> None:
 
 
 def put_first(window: QWidget, wanted: QSize) -> None:
-    """Put a window in the middle of the first screen; one that has no room there fills the screen."""
+    """Place a window in the middle of the first screen; one that has no room there fills the screen."""
     free = screens()
     place = QRect(window.pos(), wanted)
     place.moveCenter(free[0].center())
@@ -53,7 +53,7 @@ def put_first(window: QWidget, wanted: QSize) -> None:
 
 
 def put_on_screen(window: QWidget, place: QRect) -> None:
-    """Put a window where it is seen as a whole, as near to ``place`` as that goes; it stays maximised."""
+    """Place a window where it is seen as a whole, as near to ``place`` as that goes; it stays maximised."""
     state, inside = window.windowState(), fitted(place, screens())
     window.setMinimumSize(window.minimumSize().boundedTo(inside.size()))
     if inside != window.geometry():

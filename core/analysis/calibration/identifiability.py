@@ -1,4 +1,4 @@
-"""Which numbers a second scan tells, and what the others cannot be told from (ours)."""
+"""Identifiability of the calibrated parameters (ours)."""
 
 from __future__ import annotations
 

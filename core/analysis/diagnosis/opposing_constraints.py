@@ -1,4 +1,4 @@
-"""What fights: which force each constraint puts on the body in a balance, and which two oppose each other.
+"""Opposing constraints: forces of each constraint at equilibrium, and the most opposed pair.
 
 Read off the balance that the run itself comes to rest at (ours): tensions and directions of lines, the
 multiplier of the volume and its gradient. At the free points these forces and what the skin answers with add

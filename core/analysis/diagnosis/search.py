@@ -1,4 +1,4 @@
-"""What ends a complaint: the smallest single change, looked for by outlooks and proved by runs (ours).
+"""Search for fixes: the smallest single change, chosen by forecasts and verified by runs (ours).
 
 On each way - a line longer or shorter, the gain lower - the first step whose outlook is good is closed in on;
 then the smallest of all is made and run, and if that does not do, a somewhat larger one or the next. What a
@@ -206,7 +206,7 @@ class Search:
         return hopes
 
     def _further(self, hopes: list[_Hope], hope: _Hope, after: int) -> None:
-        """Put a way back with the fewest steps beyond ``after`` whose outlook is good, if there are any."""
+        """Place a way back with the fewest steps beyond ``after`` whose outlook is good, if there are any."""
         steps = self.first_good(hope.way, after=after)
         if steps is not None:
             known = len(self._stood)

@@ -1,4 +1,4 @@
-"""How a run will end, known before it is made: where its turns come to rest, and whether they stay (ours).
+"""Stability forecast: equilibrium of the iteration and its growth rate (ours).
 
 Turns of each control come to rest where the forces balance at the volume that the control then keeps. From
 there some dozen turns after a small push tell whether a swing fades or grows.

@@ -1,4 +1,4 @@
-"""How a design stands when it is run from rest as the window runs it: well, or with what complaint."""
+"""Trial run of a design from the original, with its problem, if any."""
 
 from __future__ import annotations
 

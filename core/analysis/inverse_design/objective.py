@@ -1,4 +1,4 @@
-"""What is wanted of the lengths of lines, within limits, and the step that leads there (ours)."""
+"""Objective of the line lengths within limits, and the step towards it (ours)."""
 
 from __future__ import annotations
 

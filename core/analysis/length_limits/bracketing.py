@@ -1,4 +1,4 @@
-"""Where signs begin and end on the way of a line: closed in on between two stops of it."""
+"""Bracketing of the lengths at which signs begin and end."""
 
 from __future__ import annotations
 

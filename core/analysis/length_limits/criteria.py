@@ -1,4 +1,4 @@
-"""What is looked at where a line is tried: how far answers are from straining, vibrating, pressing."""
+"""Criteria of a line length: margins to strain, oscillation and pressure limits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far a line can go: where its lengths strain, fold, vibrate, press or hang slack (ours).
+"""Limits of a line length: strain, folding, oscillation, pressure and slack (ours).
 
 The exact answer follows the line's length from rest to either end, each balance from the ones before it, and
 what begins or ends between two of them is closed in on.

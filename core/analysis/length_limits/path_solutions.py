@@ -1,4 +1,4 @@
-"""What a line is tried on: answers of a model at other lengths of one line, from rest or near others."""
+"""Solutions of a model at other lengths of one line, from the original or from near ones."""
 
 from __future__ import annotations
 

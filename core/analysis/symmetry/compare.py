@@ -1,4 +1,4 @@
-"""How left and right differ, at rest and reshaped: bust points and skin of both breasts (ours)."""
+"""Differences of left and right, original and reshaped: bust points and skin of both breasts (ours)."""
 
 from __future__ import annotations
 

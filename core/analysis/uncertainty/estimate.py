@@ -1,4 +1,4 @@
-"""How far the figures of a solved design may be off: a standard deviation for each, and a band for its skin.
+"""Uncertainties of a solved design: a standard deviation for each value, and a range for its skin.
 
 What is not known exactly is a number in ``resources/spread.json``; it is propagated to all figures by
 derivatives (``linear_propagation``), or sampled by solving designs anew (``monte_carlo``).

@@ -1,4 +1,4 @@
-"""What figures may be off by: standard deviations of all sources, with where each comes from, as data."""
+"""Standard deviations of all uncertain inputs with their sources, as data."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What each knob does to all figures, by derivatives: propagated through the solved system.
+"""Linear propagation of each uncertain parameter to all values, by derivatives of the solved system.
 
 What lines are made of and how long they are goes through the linear system of the balance; figures are then
 read a step to either side along what that says. Landmarks move the control mesh itself, and no fit is
@@ -70,7 +70,7 @@ class Propagation:
         return self._of_landmark(knob) if knob.source == LANDMARKS else self._of_lines(knob)
 
     def _of_placing(self) -> Effect:
-        """Return a fold that is placed may lead a root another way than one that is found."""
+        """Return the effect of placement: a root at a placed fold may differ from that at a detected one."""
         trials, stages = self.trials, self.stages
         here = original_values(trials.original)
         if not trials.has_no_active_lines:

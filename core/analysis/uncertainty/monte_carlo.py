@@ -1,4 +1,4 @@
-"""What figures become when all knobs are turned at random and each design is solved anew."""
+"""Monte Carlo samples: all uncertain parameters at random, each design solved."""
 
 from __future__ import annotations
 

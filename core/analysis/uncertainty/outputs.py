@@ -1,4 +1,4 @@
-"""All figures of a solved design whose spread is told, read off one body."""
+"""All values of a solved design that have an uncertainty, read off one body."""
 
 from __future__ import annotations
 

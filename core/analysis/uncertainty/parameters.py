@@ -1,4 +1,4 @@
-"""What is turned to see how far figures may be off: one knob for each thing that is not known exactly."""
+"""Uncertain parameters of a design."""
 
 from __future__ import annotations
 

@@ -49,6 +49,6 @@ def failed_starts() -> list[Path]:
 
 
 def forget_failed_starts() -> None:
-    """Take away the marks whose process is gone."""
+    """Remove the marks whose process is gone."""
     for folder in failed_starts():
         shutil.rmtree(folder, ignore_errors=True)

@@ -35,5 +35,5 @@ class FolderLock:
             raise
 
     def release(self) -> None:
-        """Let go of the folder."""
+        """Release the folder."""
         os.close(self._file)

@@ -187,7 +187,7 @@ def load_unsaved(folder: Path) -> RecoveredDocument:
 def _kept(folder: Path, told: _Told, document: Document) -> RecoveredDocument:
     scan, picture = folder / told.scan, folder / _PICTURE
     if scan.stat().st_size != told.size:
-        raise ValueError("the scan is not whole")
+        raise ValueError("the scan is incomplete")
     return RecoveredDocument(
         with_scan(document, str(scan), ""),
         told.name,

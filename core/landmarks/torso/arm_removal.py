@@ -1,4 +1,4 @@
-"""Where arms leave the trunk: outlines that belong to an arm, necks between the two, and shoulders."""
+"""Removal of arms from the trunk: arm outlines, necks between arm and trunk, and shoulders."""
 
 from __future__ import annotations
 

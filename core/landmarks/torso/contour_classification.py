@@ -1,4 +1,4 @@
-"""Which pieces of outline are the trunk, and which are arms, hands or legs."""
+"""Classification of contours: trunk, arms, hands and legs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a tape measures on the body: bust, under-bust and the other girths that it shows, arms taken out."""
+"""Tape girths of the body without arms: bust, under-bust and others."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def girth_levels(landmarks: Landmarks) -> Mapping[str, float]:
 
 def girth_warnings(found: Mapping[str, Girth]) -> list[Message]:
     """Return one sentence for each girth of the bust that is an estimate, or whose height is uncertain."""
-    estimates = [said for name, said in ESTIMATES.items() if name in found and found[name].bridged_mm > MUCH]
+    estimates = [text for name, text in ESTIMATES.items() if name in found and found[name].bridged_mm > MUCH]
     return estimates + [UNCERTAIN] * ("underbust" in found and found["underbust"].confidence < CERTAIN)
 
 

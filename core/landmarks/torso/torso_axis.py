@@ -1,4 +1,4 @@
-"""How the trunk runs up the body: looked at once a mesh, so that any level of it knows arms and holes."""
+"""Axis of the torso over its height, computed once for a mesh."""
 
 from __future__ import annotations
 

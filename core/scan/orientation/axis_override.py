@@ -1,4 +1,4 @@
-"""What a user tells of the directions in a scan file: an axis, or a direction as three numbers."""
+"""Directions in a scan file set by the user: an axis, or three numbers."""
 
 from __future__ import annotations
 

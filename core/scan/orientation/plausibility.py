@@ -1,4 +1,4 @@
-"""What is no upper body, and in which words it is refused."""
+"""Plausibility of an upper body, and the errors without it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a scan file is to be understood: its unit, which way is up, which way the body faces."""
+"""Unit, up and front of a scan file."""
 
 from __future__ import annotations
 

@@ -100,10 +100,10 @@ def _ways_to_stand(
     for way in ways:
         for sign in (1, -1):
             seen = extract_features(trunk.turned(way, sign))
-            evidence, said = score(seen)
+            evidence, text = score(seen)
             directions = (way * sign * plane.side, sign * back, way * up)
             found.append(
-                PoseCandidate(*directions, way * sign * plane.offset, plane.residual, seen, evidence, said)
+                PoseCandidate(*directions, way * sign * plane.offset, plane.residual, seen, evidence, text)
             )
     return found
 

@@ -200,7 +200,7 @@ class _Reader:
         """Return the rows of an accessor, shape (count, width). Raises ValueError if there are others."""
         accessor = self.json["accessors"][index]
         if needed not in (None, accessor["count"]):
-            raise ValueError("values of other vertices")
+            raise ValueError("values for other vertices")
         kind, width = np.dtype(_KINDS[accessor["componentType"]]), _WIDTHS[accessor["type"]]
         if "sparse" in accessor or "bufferView" not in accessor:
             raise ScanError(

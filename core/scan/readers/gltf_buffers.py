@@ -1,4 +1,4 @@
-"""What a glTF file keeps in files beside it, joined with it to one GLB file."""
+"""External buffers of a glTF file, joined with it to one GLB file."""
 
 from __future__ import annotations
 

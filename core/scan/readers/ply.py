@@ -96,7 +96,7 @@ class _Content:
                 self._raw[place : place + kind.itemsize], self._order, signed=kind.kind == "i"
             )
         if count < 0:
-            raise ValueError("a list of less than nothing")
+            raise ValueError("a list of negative length")
         return count
 
 

@@ -94,7 +94,7 @@ def _elements(lines: list[str]) -> tuple[str, list[Element]]:
             kinds = [np.dtype((order or "<") + _TYPES[word]) for word in words[1:-1] if word != "list"]
             is_list = words[1] == "list"
             if len(kinds) != 1 + is_list or (is_list and kinds[0].kind == "f"):
-                raise ValueError("a property of no kind")
+                raise ValueError("a property without a type")
             known = elements[-1].properties
             new = Property(words[-1], kinds[-1], kinds[0] if is_list else None)
             elements[-1] = replace(elements[-1], properties=(*known, new))

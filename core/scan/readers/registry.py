@@ -159,7 +159,7 @@ def _unpacked(name: str, data: bytes, progress: Progress) -> bytes:
             if not waiting:
                 waiting, at = data[at : at + _STEP], at + _STEP
             if not waiting:
-                raise ValueError("a packed file without an end")
+                raise ValueError("a truncated compressed file")
             parts.append(unpacker.decompress(waiting, 16 * _STEP))
             waiting = unpacker.unconsumed_tail
             held += len(parts[-1])
@@ -171,7 +171,7 @@ def _unpacked(name: str, data: bytes, progress: Progress) -> bytes:
         if not waiting.strip(b"\0"):  # some programs fill up with zeros
             break
     else:
-        raise ValueError("packed in too many pieces")
+        raise ValueError("too many compressed parts")
     if not held:
         raise ScanError(Message("{file} is empty.", file=name), AGAIN)
     return b"".join(parts)

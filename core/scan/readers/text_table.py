@@ -198,15 +198,15 @@ def numbers(text: bytes, count: int) -> Floats:
         text = re.sub(rb"-?(nan|ind)\([a-z]*\)|-?1\.#[A-Z]+\w*", b"nan", text)
     read = np.fromstring(text, sep=" ") if count else np.empty(0)
     if len(read) != count:
-        raise ValueError("a word that is no number")
+        raise ValueError("a word that is not a number")
     return np.asarray(read, dtype=np.float64)
 
 
 def whole(values: Floats) -> Indices:
     """Return numbers that must be whole ones as such. Raises ValueError."""
     if len(values) and not (values.min() > -(2.0**53) and values.max() < 2.0**53):  # or not a number
-        raise ValueError("a number beyond all counts")
+        raise ValueError("a number that is too large")
     result = values.astype(np.int64)
     if (result != values).any():
-        raise ValueError("a number that is not whole")
+        raise ValueError("a number that is not an integer")
     return result

@@ -94,7 +94,7 @@ class _Outline:
             self._array.text.append(text)
 
     def refuse(self, *_: object) -> None:
-        raise ValueError("a document that declares things of its own")
+        raise ValueError("a document with its own entities")
 
 
 def read_vtp(name: str, data: bytes, progress: Progress) -> RawScan:
@@ -164,7 +164,7 @@ class _Values:
         """Return the ``count`` numbers of an array, shape (count,)."""
         values = self._read(array)
         if len(values) != count:
-            raise ValueError("an array of another size")
+            raise ValueError("an array of the wrong size")
         return values
 
     def _read(self, array: _Array) -> Values:
@@ -203,7 +203,7 @@ class _Values:
             parts.append(zlib.decompressobj().decompress(packed[at : at + length], size + 1))
             at += length
         if [len(part) for part in parts] != sizes:
-            raise ValueError("a block of another size")
+            raise ValueError("a block of the wrong size")
         return b"".join(parts)
 
 
@@ -222,9 +222,9 @@ class _Source:
     def peek(self, size: int) -> bytes:
         """Return the next bytes and stay in front of them."""
         if not 0 <= size <= len(self._data):
-            raise ValueError("more than the file holds")
+            raise ValueError("data beyond the end of the file")
         letters = self._data[self._at : self._at + (size if self._raw else -(-size // 3) * 4)]
         taken = letters if self._raw else base64.b64decode(letters, validate=True)[:size]
         if len(taken) != size:
-            raise ValueError("more than the file holds")
+            raise ValueError("data beyond the end of the file")
         return taken

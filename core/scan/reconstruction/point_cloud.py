@@ -56,7 +56,7 @@ def reconstruct_surface(
     placed = _placed(points)
     spots, outside = points[placed], None if normals is None else normals[placed]
     if len(spots) == 0:
-        raise ValueError("no point has a place")
+        raise ValueError("no point has a position")
     cell = THINNING * spacing_of(spots) or float(np.ptp(spots, axis=0).max()) / 1000.0
     for share in (0.1, 0.3, 0.5):  # noise fills more cells than the skin does: less so on the patches
         spots, outside, cell = _thinned(spots, outside, cell)
@@ -97,13 +97,13 @@ def _placed(points: Points) -> Flags:
 def _thinned(points: Points, normals: Points | None, cell: float) -> tuple[Points, Points | None, float]:
     """Thin points to few enough, and drop those that lie alone; also return the side of the cells."""
     if not cell > 0.0:
-        raise ValueError("all points at one place")
+        raise ValueError("all points at one position")
     spots, outside = _even(points, normals, cell)
     while len(spots) > WORK_POINTS:
         cell *= 1.05 * np.sqrt(len(spots) / WORK_POINTS)
         spots, outside = _even(points, normals, cell)
     if len(spots) < FEWEST_PLACES:
-        raise ValueError("too few points at different places")
+        raise ValueError("too few different points")
     return *_without_loners(spots, outside), cell
 
 
@@ -156,7 +156,7 @@ def _outward(spots: Points, direction: Points, outside: Points | None) -> Points
     start, end = np.repeat(np.arange(count), near.shape[1] - 1), near[:, 1:].ravel()
     alike = np.abs(np.einsum("ij,ij->i", direction[start], direction[end]))
     if np.mean(alike) < SMOOTHEST_FOG:
-        raise ValueError("the points lie on no surface")
+        raise ValueError("the points do not form a surface")
     if outside is not None:
         agree = np.einsum("ij,ij->i", direction, outside)
         if np.mean(np.abs(agree)) > TRUE_NORMALS:

@@ -1,4 +1,4 @@
-"""What of a skin lies inside another part of it: linings, layers scanned twice, legs that reach in."""
+"""Inner surfaces of a skin: linings, layers scanned twice, legs that extend into the body."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from app.gui.features.sections.panel import STEPS, SectionPanel
 from app.gui.plots.section_plot import SectionDrawing, SectionPlot, grid_step
 from app.gui.widgets.inline_edit import read_number
 from app.presenters.bust_shift import BustShift, BustStep
-from app.presenters.maps import MAPS, automatic_range, map_kinds, ramp_of, section_words, sides_words
+from app.presenters.maps import MAPS, automatic_range, map_kinds, ramp_of, section_text, sides_text
 from app.rendering.appearance import rgb
 from core.measurements.uncertain_value import SOURCES, OutputUncertainties, Uncertainty
 
@@ -104,12 +104,12 @@ def test_ranges_are_round_and_colours_start_at_the_material() -> None:
 
 def test_a_section_tells_how_far_the_bust_points_went() -> None:
     move = BustShift(BustStep(4.0, -1.5), BustStep(-3.0, 2.5))
-    assert section_words("x", "left", move) == "Bust point left: 4.0 mm up, 1.5 mm back"
-    assert section_words("x", "right", move) == "Bust point right: 3.0 mm down, 2.5 mm forward"
+    assert section_text("x", "left", move) == "Bust point left: 4.0 mm up, 1.5 mm back"
+    assert section_text("x", "right", move) == "Bust point right: 3.0 mm down, 2.5 mm forward"
     both = "Bust points: 0.5 mm up, 0.5 mm forward (left 4.0 mm up, right 3.0 mm down)"
-    assert section_words("z", "left", move) == both
+    assert section_text("z", "left", move) == both
     alike = BustShift(BustStep(4.0, -1.5), BustStep(4.4, -1.1))
-    assert section_words("y", "left", alike) == "Bust points: 4.2 mm up, 1.3 mm back"
+    assert section_text("y", "left", alike) == "Bust points: 4.2 mm up, 1.3 mm back"
 
 
 def test_a_section_tells_how_far_that_may_be_off() -> None:
@@ -118,19 +118,19 @@ def test_a_section_tells_how_far_that_may_be_off() -> None:
         key: Uncertainty({"scan": sd}) for key, sd in (("lift left", 0.6), ("out left", 0.02), ("lift", 6.0))
     }
     spread = OutputUncertainties(doubts, np.zeros(0), 0.2, 2.0, SOURCES, {}, "sliding")
-    said = section_words("x", "left", move, spread).replace("\N{NO-BREAK SPACE}", " ")
+    said = section_text("x", "left", move, spread).replace("\N{NO-BREAK SPACE}", " ")
     assert said == "Bust point left: 4.0 ± 1.2 mm up, 1.5 ± 0.1 mm back"
-    assert section_words("x", "right", move, spread) == "Bust point right: 4.4 mm up, 2.5 mm forward"
-    said = section_words("z", "left", move, spread).replace("\N{NO-BREAK SPACE}", " ")
+    assert section_text("x", "right", move, spread) == "Bust point right: 4.4 mm up, 2.5 mm forward"
+    said = section_text("z", "left", move, spread).replace("\N{NO-BREAK SPACE}", " ")
     assert said.startswith("Bust points: 4.2 ± 12 mm up, 0.5 mm forward")
 
 
 def test_sides_are_compared_in_words() -> None:
     pair = (np.array([200.0, 300.0]), np.array([198.5, 304.0]))
-    assert sides_words("x", [pair]).endswith("the other side: 4.0 mm up, 1.5 mm back")
+    assert sides_text("x", [pair]).endswith("the other side: 4.0 mm up, 1.5 mm back")
     level = [(np.array([80.0, -200.0]), np.array([80.0, -203.0])), (np.array([-80.0, -200.0]),) * 2]
-    assert sides_words("z", level) == "Apex left, relative to right: 3.0 mm forward"
-    assert sides_words("y", []) == ""
+    assert sides_text("z", level) == "Apex left, relative to right: 3.0 mm forward"
+    assert sides_text("y", []) == ""
 
 
 def test_both_axes_of_the_plot_are_alike_and_the_wheel_keeps_the_place(qapp: QApplication) -> None:

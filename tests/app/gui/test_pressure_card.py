@@ -15,7 +15,7 @@ from app.gui.features.maps.legend import Legend
 from app.gui.theme.stylesheet import tokens_of
 from app.i18n.catalog import use_language
 from app.presenters.maps import map_kinds, ramp_of
-from app.presenters.pressure import pressure_summary, pressure_views, rating_limits, side_words
+from app.presenters.pressure import pressure_summary, pressure_views, rating_limits, side_text
 from core.document.design import Design, ScanSource
 from core.garment.body_location import SHOULDERS, SIDES
 from core.garment.pressure_limits import AMBER, GREEN, RED, pressure_limits
@@ -130,9 +130,9 @@ def test_the_legend_marks_the_limits_in_their_tones(qapp: QApplication) -> None:
 
 
 def test_all_of_it_is_said_in_japanese() -> None:
-    english = rating_limits(), [side_words(side) for side in (*SIDES, *SHOULDERS)]
+    english = rating_limits(), [side_text(side) for side in (*SIDES, *SHOULDERS)]
     use_language("ja")
-    limits, sides = rating_limits(), [side_words(side) for side in (*SIDES, *SHOULDERS)]
+    limits, sides = rating_limits(), [side_text(side) for side in (*SIDES, *SHOULDERS)]
     assert len(set(sides)) == len(sides)
     assert not set(sides) & set(english[1])
     assert not set(limits.words) & set(english[0].words)

@@ -11,7 +11,7 @@ from app.presenters.bust_shift import (
     bust_sentence,
     mean_lifts,
     shift_between,
-    step_words,
+    step_text,
 )
 from core.mechanics.iteration import Observables
 
@@ -34,7 +34,7 @@ def test_a_move_is_counted_from_the_body_before() -> None:
     ],
 )
 def test_words_say_the_way_and_need_no_sign(step: BustStep, words: str) -> None:
-    assert step_words(step) == words
+    assert step_text(step) == words
 
 
 def test_sides_are_told_apart_from_one_millimetre_on() -> None:

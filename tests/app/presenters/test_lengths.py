@@ -9,7 +9,7 @@ from app.gui.features.lines.row import LineRow, LineView
 from app.gui.widgets.length_edit import LengthEdit
 from app.gui.widgets.value_edit import ValueEdit
 from app.i18n.lengths import length, read_length, use_unit
-from app.presenters.bust_shift import up_words
+from app.presenters.bust_shift import up_text
 from app.presenters.measurements import MeasureView, as_table, length_uncertainty
 from app.presenters.variants import VariantValues
 from app.report.text import value_text
@@ -140,4 +140,4 @@ def test_other_units_than_millimetres_are_left_alone() -> None:
     assert VariantValues("%", 1, False, (94.0,)).written(0) == "94.0 %"
     assert VariantValues("mm", 1, True, (25.4,)).written(0) == "+1.00 in"
     assert (value_text(25.4, 1), value_text(25.4, 1, "mm")) == ("25.4", "1.00")
-    assert up_words(25.4, 2.54).split() == ["1.00", "±", "0.10", "in", "up"]
+    assert up_text(25.4, 2.54).split() == ["1.00", "±", "0.10", "in", "up"]

@@ -10,18 +10,18 @@ from app.i18n.catalog import using_language
 from app.presenters.samples import sample_design
 from app.presenters.target_shape import (
     bust_movement_text,
-    change_words,
+    change_text,
     deviation_text,
+    formatted_value,
     is_met,
     is_near,
     locked_lines_text,
-    pressure_words,
+    pressure_text,
     result_text,
-    result_words,
-    step_words,
+    step_text,
+    target_result_text,
     target_title,
-    unlimited_words,
-    value_words,
+    unlimited_text,
 )
 from core.analysis.inverse_design.quantities import GIRTH, NAMES, Goal, profile_name
 from core.analysis.inverse_design.solve import InverseResult
@@ -53,7 +53,7 @@ GOALS = (Goal("lift", 5.0),)
                 "length limit; Full bust: upper length limit, a longer line would be slack."
             ),
             (
-                "到達できません。最も近い結果：BPの上昇 +2.0 mm。理由：バスト下部：長さの下限、"
+                "到達できません。最も近い結果：BPの上昇 +2.0 mm。理由：バスト下部：長さの下限；"
                 "トップバスト：長さの上限（長くするとたるみます）。"
             ),
         ),
@@ -65,7 +65,7 @@ GOALS = (Goal("lift", 5.0),)
             ),
             (
                 "到達できません。最も近い結果：BPの上昇 +2.0 mm。理由：バスト下部：接触圧の上限 4.0 "
-                "kPa、肌のひずみが限界を超えます。"
+                "kPa；肌のひずみが限界を超えます。"
             ),
         ),
         (
@@ -110,24 +110,24 @@ def test_of_a_profile_it_is_told_how_far_it_is_off() -> None:
     assert "Closest result: Profile through the left bust point: deviation 3.5 mm on " in result_text(
         answer, both
     )
-    assert step_words([*GOALS, *goals]) == (
+    assert step_text([*GOALS, *goals]) == (
         "Targets: Bust point lift +5.0 mm, Profile through the left bust point"
     )
 
 
 def test_changes_are_told_line_by_line_and_what_presses() -> None:
     before = design().with_line("mid-bust", 0.95)
-    assert change_words(before, reply(pressure={"mid-bust": 2.46})) == [
+    assert change_text(before, reply(pressure={"mid-bust": 2.46})) == [
         "Mid-bust 95.0 → 93.0 % (\N{MINUS SIGN}2.0)",
         "contact pressure at most 2.5 kPa",
     ]
-    assert change_words(design(), reply()) == ["No line changes"]
+    assert change_text(design(), reply()) == ["No line changes"]
     assert (
-        change_words(design(), reply(unchecked=("mid-bust",)))[-1]
+        change_text(design(), reply(unchecked=("mid-bust",)))[-1]
         == "contact pressure not checked: see Garment"
     )
     some = reply(unchecked=("full-bust",), pressure={"mid-bust": 2.46})
-    assert change_words(design(), some)[-2:] == [
+    assert change_text(design(), some)[-2:] == [
         "contact pressure at most 2.5 kPa",
         "contact pressure of Full bust not checked: see Garment",
     ]
@@ -204,21 +204,21 @@ def test_of_a_drawn_profile_it_is_told_what_it_was_off_and_how_the_bust_point_mo
 
 def test_values_of_a_row_are_now_and_the_result_with_its_change() -> None:
     now, then = {"lift": -0.21, GIRTH: 872.4}, {"lift": 0.42, GIRTH: 869.4}
-    assert value_words(now["lift"], signed=True) == "\N{MINUS SIGN}0.2"
-    assert value_words(None, signed=True) == ""
-    assert result_words(now, then, "lift") == "+0.4 (+0.6)"
-    assert result_words(now, then, GIRTH) == "869.4 (\N{MINUS SIGN}3.0)"
-    assert result_words({}, then, "lift") == result_words(now, {}, "lift") == ""
-    assert pressure_words({"a": 12.9, "b": 1.0}, {"a": 2.0, "b": 4.0}) == ("12.9", "4.0 (\N{MINUS SIGN}8.9)")
-    assert pressure_words({}, {}) == ("", "")
+    assert formatted_value(now["lift"], signed=True) == "\N{MINUS SIGN}0.2"
+    assert formatted_value(None, signed=True) == ""
+    assert target_result_text(now, then, "lift") == "+0.4 (+0.6)"
+    assert target_result_text(now, then, GIRTH) == "869.4 (\N{MINUS SIGN}3.0)"
+    assert target_result_text({}, then, "lift") == target_result_text(now, {}, "lift") == ""
+    assert pressure_text({"a": 12.9, "b": 1.0}, {"a": 2.0, "b": 4.0}) == ("12.9", "4.0 (\N{MINUS SIGN}8.9)")
+    assert pressure_text({}, {}) == ("", "")
 
 
 def test_what_the_limit_of_pressure_costs_is_one_sentence() -> None:
     free = reply(pressure={"mid-bust": 25.8})
-    assert unlimited_words(free, GOALS, {}) == (
+    assert unlimited_text(free, GOALS, {}) == (
         "Closest result without the contact pressure limit: Bust point lift +2.0 mm, at 25.8 kPa."
     )
     met = replace(free, reachable=True)
-    assert unlimited_words(met, GOALS, {}) == (
+    assert unlimited_text(met, GOALS, {}) == (
         "All targets are reached without the contact pressure limit, at 25.8 kPa."
     )

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.presenters.diagnosis import change_words, details
+from app.presenters.diagnosis import change_text, details
 from app.presenters.samples import sample_design
 from core.analysis.diagnosis.candidate_changes import line_paths
 from core.analysis.diagnosis.diagnose import Diagnosis, diagnose
@@ -120,7 +120,7 @@ def test_all_lines_together_are_told_with_how_far_they_go() -> None:
     change = replace(found.best_fix.change, kind="together", design=after, lines=lines, setting=("", None))
     most = 0.1 * found.line("mid-bust").rest_length
     assert found.moves_mm(change) == pytest.approx(most)
-    assert change_words(found, change) == f"Move all lines up to {most:.0f} mm closer to 100 %"
+    assert change_text(found, change) == f"Move all lines up to {most:.0f} mm closer to 100 %"
 
 
 def test_forces_are_told_as_sums_over_points() -> None:

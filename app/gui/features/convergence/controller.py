@@ -35,8 +35,8 @@ class ConvergenceController(QObject):
         self._marked: Design | None = None
         self._first: object = None
         self._events: list[Event] = []
-        said = tr("Step through the iterations slowly")
-        self.slow = context.actions.add("solve", tr("Slow motion"), "T", said, checkable=True)
+        text = tr("Step through the iterations slowly")
+        self.slow = context.actions.add("solve", tr("Slow motion"), "T", text, checkable=True)
         tool = ToolButton("slow-turns", size=16, room=26, action=self.slow)
         tool.setAccessibleName(tr("Slow motion"))
         panel.tools.insertWidget(1, tool)
@@ -60,7 +60,7 @@ class ConvergenceController(QObject):
         self._context.session.set_pace(TURNS_PER_SECOND if slow else None)
 
     def keep_quantity(self) -> None:
-        """Remember what the plots show."""
+        """Record what the plots show."""
         for plot in self._panel.plots:
             QSettings().setValue(f"plot/{plot.objectName()}", plot.quantity.name)
 

@@ -143,7 +143,7 @@ class DiagnosisController(QObject):
         self._run(partial(diagnose, frame.stages), partial(self._answer, frame), waited=True)
 
     def _forget(self) -> None:
-        """Let go of what was said or looked for of another design."""
+        """Release what was said or looked for of another design."""
         self._later.stop()
         self._context.jobs.cancel(self._job)
         self._job = None
@@ -263,13 +263,13 @@ class DiagnosisController(QObject):
         self._context.notifications.withdraw(ABOUT)
 
     def _note_closed(self) -> None:
-        """Remember what was closed by hand: it is not told again before something else is wrong."""
+        """Record what was closed by hand: it is not told again before something else is wrong."""
         if self._said is not None and not self._context.notifications.is_shown(ABOUT):
             self._closed, self._said = self._said, None
 
     def _fixes(self, found: Diagnosis) -> list[Action]:
         """Return a button for each of the best fixes; the others are in the details."""
-        said = ((words.change_words(found, cure.change), cure) for cure in words.shown_fixes(found))
+        said = ((words.change_text(found, cure.change), cure) for cure in words.shown_fixes(found))
         return [(text, partial(self._apply, text, cure.change.design)) for text, cure in said]
 
     def _apply(self, said: str, cured: Design) -> None:

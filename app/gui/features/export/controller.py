@@ -1,4 +1,4 @@
-"""What the window does to export: it shows the choices, asks for a place, and writes beside the work."""
+"""Export from the window: choices, file dialog, and writing in the background."""
 
 from __future__ import annotations
 
@@ -206,5 +206,5 @@ class ExportController(QObject):
 
 
 def _sentence(ready: ExportPreview) -> str:
-    said = tr("{contents}, {details}") if ready.how else "{contents}"
-    return said.format(contents=ready.contents, details=ready.how)
+    text = tr("{contents}, {details}") if ready.how else "{contents}"
+    return text.format(contents=ready.contents, details=ready.how)

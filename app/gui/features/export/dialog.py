@@ -1,4 +1,4 @@
-"""What leaves Busk: on the left what can be exported, on the right how, and what will be in the file."""
+"""Export dialog: content on the left, options and preview on the right."""
 
 # ruff: noqa: N802 - Qt names its events and says what they are
 from __future__ import annotations

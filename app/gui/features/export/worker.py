@@ -62,8 +62,8 @@ class ExportWorker:
         return ready.write(self.path, pictures, progress) or [self.path]
 
     def _run(self, words: str, work: Any, done: Any) -> None:
-        said = words.format(name=self.path.name)
-        self._job = self._context.jobs.run(said, work, done, self._failed, waited=True)
+        text = words.format(name=self.path.name)
+        self._job = self._context.jobs.run(text, work, done, self._failed, waited=True)
 
     def _failed(self, error: Exception) -> None:
         self._context.notifications.error(error, self._about)
@@ -71,7 +71,7 @@ class ExportWorker:
     def _done(self, ready: ExportPreview, files: list[Path]) -> None:
         first, last = files[0].name, files[-1].name
         name = first if len(files) == 1 else tr("{first} to {last}").format(first=first, last=last)
-        said = tr("{name} saved, {details}.") if ready.how else tr("{name} saved.")
+        text = tr("{name} saved, {details}.") if ready.how else tr("{name} saved.")
         self._context.notifications.file_written(
-            self._about, said.format(name=name, details=ready.how), str(files[0])
+            self._about, text.format(name=name, details=ready.how), str(files[0])
         )

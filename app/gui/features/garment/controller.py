@@ -48,7 +48,7 @@ class GarmentController(QObject):
             self.refresh()
 
     def forget(self) -> None:
-        """Let go of the list of a document that has gone: its rows are none of the next one's."""
+        """Release the list of a document that has gone: its rows are none of the next one's."""
         self._shown = None
 
     def refresh(self) -> None:
@@ -73,8 +73,8 @@ class GarmentController(QObject):
             self._panel.set_view(cut_list_view(frame, cuts), invalid_reason(frame))
 
     def _set_tissue(self, stiffness: float) -> None:
-        said = tr("Tissue stiffness {value} N/m").format(value=number(stiffness, 0))
-        self._context.session.change({"tissue_stiffness": stiffness}, said)
+        text = tr("Tissue stiffness {value} N/m").format(value=number(stiffness, 0))
+        self._context.session.change({"tissue_stiffness": stiffness}, text)
 
     def _as_table(self) -> list[list[str]]:
         frame = self._shown

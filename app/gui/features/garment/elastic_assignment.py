@@ -10,7 +10,7 @@ from app.gui.features.garment.elastic_offer import ElasticOffer, ElasticRequest
 from app.gui.features.garment.panel import GarmentPanel
 from app.gui.session.jobs import Job
 from app.i18n.catalog import number, tr
-from app.presenters.bust_shift import up_words
+from app.presenters.bust_shift import up_text
 from app.presenters.elastics import title_of
 from app.presenters.lines import row_title
 from core.document.design import Design
@@ -83,8 +83,8 @@ class ElasticAssignmentController(QObject):
         if design is None:
             return
         words = tr("{line}: elongation {percent} %")
-        said = words.format(line=row_title(name, design), percent=number(100.0 * share))
-        self._session.edit(lambda before: before.with_linked(name, 1.0 / (1.0 + share)), said)
+        sentence = words.format(line=row_title(name, design), percent=number(100.0 * share))
+        self._session.edit(lambda before: before.with_linked(name, 1.0 / (1.0 + share)), sentence)
 
     def _open(self, names: tuple[str, ...], chosen: str | None) -> None:
         frame, design = self._session.frame, self._session.design
@@ -99,7 +99,7 @@ class ElasticAssignmentController(QObject):
         self.offer.close()
 
     def _follow(self, index: int) -> None:
-        """Let go of what is looked for once another variant is shown, or what it was asked of is undone."""
+        """Release what is looked for once another variant is shown, or what it was asked of is undone."""
         undone = index < self._index and self._session.design is not self._asked
         self._index = index
         if undone or self._shown_variant() != self._variant:
@@ -156,4 +156,4 @@ def _told(before: float, after: float, cut: bool) -> str:
         same = tr("Cut length adapted; length on body and lift unchanged.")
         return same if cut else tr("Set length adapted; length on body and lift unchanged.")
     words = tr("Bust point height changed from {before} to {after}; adjust the length if needed.")
-    return words.format(before=up_words(before), after=up_words(after))
+    return words.format(before=up_text(before), after=up_text(after))

@@ -13,7 +13,7 @@ from app.gui.features.garment.elastic_chooser import ElasticChooser
 from app.gui.features.garment.elastic_list import Entry, elastic_entries
 from app.gui.session.jobs import Job
 from app.i18n.catalog import joined, tr
-from app.presenters.elastics import ChoiceView, advice_view, choice_view, mode_titles, mode_words
+from app.presenters.elastics import ChoiceView, advice_view, choice_view, mode_text, mode_titles
 from app.presenters.lines import row_title
 from app.presenters.messages import render
 from core.document.design import Design
@@ -121,7 +121,7 @@ class ElasticOffer(QObject):
         """Choose what is kept: one of ``core.garment.elastic_options.MODES``."""
         self.mode = mode
         if self.chooser is not None and self._offer is not None:
-            self.chooser.set_mode(mode, mode_words(mode, self._offer.asked.design))
+            self.chooser.set_mode(mode, mode_text(mode, self._offer.asked.design))
             self.chooser.set_rows([self._view(at) for at in range(len(self._offer.entries))])
             self._advise()
 

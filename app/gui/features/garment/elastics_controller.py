@@ -44,10 +44,10 @@ class ElasticsController(QObject):
         self._context = context
         do = context.actions
         do.rule("lines")
-        said = tr("View, import and delete elastics")
-        do.add("lines", tr("Elastics…"), tip=said, do=self.show)
-        said = tr("Show cut length, elastic and elongation of all active lines")
-        do.add("lines", tr("Cut list"), tip=said, do=self._show_cuts, of_document=True)
+        text = tr("View, import and delete elastics")
+        do.add("lines", tr("Elastics…"), tip=text, do=self.show)
+        text = tr("Show cut length, elastic and elongation of all active lines")
+        do.add("lines", tr("Cut list"), tip=text, do=self._show_cuts, of_document=True)
         panel.elastics_requested.connect(self.show)
         self.sheet: ElasticsDialog | None = None
 
@@ -81,8 +81,8 @@ class ElasticsController(QObject):
             sheet.notices.show_notice("bad", problem.message, problem.hint, lasting=True)
             return
         sheet.notices.clear()
-        said = tr("Custom elastic {name} added.").format(name=elastic.name)
-        sheet.notices.show_notice("ok", said, seams, lasting=bool(seams))
+        text = tr("Custom elastic {name} added.").format(name=elastic.name)
+        sheet.notices.show_notice("ok", text, seams, lasting=bool(seams))
         self._fill(elastic.name)
 
     def hand_on(self, name: str) -> None:
@@ -114,11 +114,11 @@ class ElasticsController(QObject):
         """Delete a custom elastic after confirmation."""
         sheet = self.sheet
         question = tr("Delete elastic {name}?").format(name=name)
-        said = tr(
+        text = tr(
             "The table of the elastic is deleted from your folder. Projects that use the elastic "
             "keep the curve."
         )
-        if sheet is None or ask(sheet, question, said, [("delete", tr("Delete"))]) != "delete":
+        if sheet is None or ask(sheet, question, text, [("delete", tr("Delete"))]) != "delete":
             return
         try:
             remove_elastic(name)

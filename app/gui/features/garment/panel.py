@@ -224,8 +224,8 @@ class _StretchField(ValueEdit):
     MOST = 100.0
 
     def __init__(self) -> None:
-        said = tr("Elongation on the body")
-        super().__init__("%", said, digits=0, signed=True, widest="+100")
+        message = tr("Elongation on the body")
+        super().__init__("%", message, digits=0, signed=True, widest="+100")
         self.setFont(font("caption", tabular=True))
         self.setProperty("ring", "true")  # beside figures that cannot be set
         self.setFixedSize(NEWTONS, 20)

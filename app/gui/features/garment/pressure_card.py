@@ -73,9 +73,9 @@ class PressureScale(QWidget):
     def show_marks(self, marks: tuple[tuple[str, str, float], ...], faint: bool) -> None:
         """Show where lines stand: title, colour, pressure [kPa]."""
         self.marks, self._faint = marks, faint
-        said = [f"{title} {number(kpa)} kPa" for title, _, kpa in marks]
-        set_tip(self, "\n".join(said))
-        self.setAccessibleName(", ".join(said))
+        texts = [f"{title} {number(kpa)} kPa" for title, _, kpa in marks]
+        set_tip(self, "\n".join(texts))
+        self.setAccessibleName(", ".join(texts))
         self.update()
 
     def x_of(self, kpa: float) -> float:

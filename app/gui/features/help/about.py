@@ -1,4 +1,4 @@
-"""What Busk is and under which terms, and what it runs on: texts to read and to copy."""
+"""Version, licences and system information, to read and to copy."""
 
 from __future__ import annotations
 
@@ -55,8 +55,8 @@ class DiagnosticsDialog(Dialog):
 
     def __init__(self, parent: QWidget, facts: Facts, folders: Sequence[tuple[str, Path]]) -> None:
         super().__init__(parent, tr("Diagnostics"), (680, 560))
-        said = tr("System information for bug reports. Contains no scans, measurements or file names.")
-        self.body.addWidget(sentence(said))
+        message = tr("System information for bug reports. Contains no scans, measurements or file names.")
+        self.body.addWidget(sentence(message))
         self.text = as_text(facts)
         self.body.addWidget(text_viewer(self.text, tr("Diagnostics"), code=True), 1)
         self.body.addLayout(self._openers(folders))

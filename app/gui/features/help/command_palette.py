@@ -1,4 +1,4 @@
-"""All commands of the window in one list: to learn their keys, or to find and give one by its words."""
+"""Command palette: all commands of the window with their keys, to search and run."""
 
 # ruff: noqa: N802 - Qt names its events and says what they are
 from __future__ import annotations

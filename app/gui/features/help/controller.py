@@ -42,12 +42,12 @@ class HelpController(QObject):
         super().__init__(context.session)
         self._context, self._keys_of_parts, self._pages = context, keys_of_parts, pages
         add = context.actions.add
-        said = tr("Search and run commands")
-        self.palette = add("help", tr("Find command…"), "Ctrl+K", said, do=self.find_command)
+        text = tr("Search and run commands")
+        self.palette = add("help", tr("Find command…"), "Ctrl+K", text, do=self.find_command)
         add("help", tr("Keyboard shortcuts"), "Ctrl+/", do=self.show_keys)
         explain(parts)
-        said = tr("Click a part of the window to read its description")
-        add("help", tr("What's this?"), "Shift+F1", said, do=QWhatsThis.enterWhatsThisMode)
+        text = tr("Click a part of the window to read its description")
+        add("help", tr("What's this?"), "Shift+F1", text, do=QWhatsThis.enterWhatsThisMode)
         context.actions.rule("help")
         add(
             "help",

@@ -1,4 +1,4 @@
-"""What the window does when Busk itself fails: the design is kept aside, and one calm question asked."""
+"""Crash handler: stores the design and shows one dialog."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ class CrashDialog(Dialog):
     def __init__(self, parent: QWidget, kept: str, trace: str, machine: str) -> None:
         super().__init__(parent, tr("An internal error occurred in Busk"), (620, 0))
         self._trace, self._machine = trace, machine
-        said = (
+        text = (
             tr("A copy of your design is stored until you save or discard it: {place}").format(place=kept)
             if kept
             else tr("Your design is still open. Save it under a new name.")
         )
-        self.said = sentence(said, "body")
+        self.said = sentence(text, "body")
         self.body.addWidget(self.said)
         self.body.addWidget(sentence(tr("You can continue. If the error occurs again, restart Busk.")))
         self._unfold = Disclosure(tr("Details for a bug report"))

@@ -1,4 +1,4 @@
-"""Why the parts of the window are there: what a click says after Shift+F1."""
+"""What's This texts of the parts of the window (Shift+F1)."""
 
 from __future__ import annotations
 

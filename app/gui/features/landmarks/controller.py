@@ -100,12 +100,12 @@ class LandmarksController(QObject):
 
     def show_found(self, stages: Stages) -> None:
         """Show what was found on a body."""
-        context, said = self._context, landmark_warnings(stages.landmarks)
+        context, sentence = self._context, landmark_warnings(stages.landmarks)
         views = landmark_views(stages.landmarks.points, context.view.pins.accepted)
-        self._panel.set_landmarks(views, render_all(said))
+        self._panel.set_landmarks(views, render_all(sentence))
         weak = sum(view.weak for view in views)
-        context.navigation.mark_step("landmarks", "look" if weak or said else "done", weak)
-        if not (weak or said):
+        context.navigation.mark_step("landmarks", "look" if weak or sentence else "done", weak)
+        if not (weak or sentence):
             context.notifications.withdraw(_DOUBT)
 
     def show_unclear(self, stages: Stages) -> None:
@@ -115,7 +115,7 @@ class LandmarksController(QObject):
         marks = [mark for mark in stages.landmarks.points.values() if kind_of(mark.name) in ESSENTIAL]
         worst = min(marks, key=lambda mark: mark.confidence)
         if tone_of(worst.confidence) == "bad" or stages.landmarks.warnings:
-            said, *more = landmark_warnings(stages.landmarks)
+            sentence, *more = landmark_warnings(stages.landmarks)
             spoken_of = first_warning(stages.landmarks)
             actions = [(tr("Review"), lambda: self._look_at(spoken_of))]
             if stages.landmarks.size_doubted:
@@ -123,7 +123,7 @@ class LandmarksController(QObject):
             if up := stages.landmarks.upright:
                 actions.insert(0, (tr("Set upright"), lambda: self._stand_upright(up)))
             self._context.notifications.show(
-                "warn", said, joined(map(render, more)), actions, lasting=True, topic=_DOUBT
+                "warn", sentence, joined(map(render, more)), actions, lasting=True, topic=_DOUBT
             )
 
     def show_stuck(self, stuck: IncompleteBuildError) -> None:

@@ -75,10 +75,10 @@ class BandDragController(QObject):
         if not isinstance(event, QHelpEvent) or event.type() != QEvent.Type.ToolTip:
             return False
         cursor = self._cursor_of(self._viewport.scene.bands.hovered)
-        said = tr("Drag up to shorten, down to lengthen: 0.1 % per pixel (Shift 0.01 %, Esc cancels)")
+        text = tr("Drag up to shorten, down to lengthen: 0.1 % per pixel (Shift 0.01 %, Esc cancels)")
         if cursor is not None:
             locked = cursor == Qt.CursorShape.ForbiddenCursor
-            show_tip(event.globalPos(), locked_tip() if locked else said, self._viewport)
+            show_tip(event.globalPos(), locked_tip() if locked else text, self._viewport)
         return cursor is not None
 
     def _cursor_of(self, name: str) -> Qt.CursorShape | None:

@@ -179,8 +179,8 @@ class LinesController(QObject):
             (tr("Split into left and right"), None, "split"),
         ):
             do.add("lines", text, key, do=partial(self._row_asked, act), of_document=True)
-        said = tr("Built-in lines cannot be removed: at 100 % they are inactive")
-        remove = do.add("lines", tr("Remove line"), "Del", said, do=partial(self._row_asked, "remove"))
+        sentence = tr("Built-in lines cannot be removed: at 100 % they are inactive")
+        remove = do.add("lines", tr("Remove line"), "Del", sentence, do=partial(self._row_asked, "remove"))
         # Elsewhere the key takes other things away.
         remove.setShortcutContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
         self._panel.addAction(remove)

@@ -1,4 +1,4 @@
-"""What an opened row tells and offers besides: set, reached, gap, limits, stiffness and what can be done."""
+"""Details of an opened line row: set, reached, gap, limits, stiffness and actions."""
 
 from __future__ import annotations
 
@@ -239,8 +239,8 @@ def _show_side(
         gap = _figure(length_number(off, signed=True), f"{length_unit()}&nbsp; {number(share * 100)} %")
         if stretch:
             gap = _figure(number(100.0 * off / set_mm, signed=True), "%")
-    said = (side.title, _figure(length_number(set_mm), unit), reached, gap)
-    for each, text in zip(figures, said, strict=True):
+    texts = (side.title, _figure(length_number(set_mm), unit), reached, gap)
+    for each, text in zip(figures, texts, strict=True):
         each.setText(text)
     set_tag(figures[3], "tone", tone)
 

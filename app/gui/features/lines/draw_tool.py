@@ -289,14 +289,14 @@ class LineDrawTool(QObject):
 def _fit_words(found: Snapped | FreeCurve) -> list[str]:
     """Return how a line lies to what was drawn, and what it does not do."""
     if isinstance(found, FreeCurve):
-        said = [tr("Deviation from the drawn curve: up to {length}.").format(length=length(found.deviation))]
+        texts = [tr("Deviation from the drawn curve: up to {length}.").format(length=length(found.deviation))]
         if found.cut:
-            said.append(tr("The part outside the control mesh was removed: the body is fixed there."))
+            texts.append(tr("The part outside the control mesh was removed: the body is fixed there."))
     else:
         what = tr("Snapped to the control mesh; maximum deviation {length}.")
         if found.deviation > _WIDE:
             what = tr("Restricted to the control mesh; maximum deviation {length}.")
-        said = [what.format(length=length(found.deviation, 0))]
+        texts = [what.format(length=length(found.deviation, 0))]
     if not found.is_movable:
-        said.append(tr("All points are fixed: the line is measured only and does not reshape the body."))
-    return said
+        texts.append(tr("All points are fixed: the line is measured only and does not reshape the body."))
+    return texts

@@ -1,4 +1,4 @@
-"""What drawing a line and leading one elsewhere share: the hand, the sketch on the body, and the card."""
+"""Common base of drawing a line and editing its path: pointer, sketch on the body, and card."""
 
 from __future__ import annotations
 

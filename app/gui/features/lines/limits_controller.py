@@ -140,7 +140,7 @@ class LimitsController(QObject):
         self._job = None
 
     def _let_go(self) -> None:
-        """Let go of work on a design that is no longer shown."""
+        """Release work on a design that is no longer shown."""
         self._rests.stop()
         self._context.jobs.cancel(self._job)
         self._job = None

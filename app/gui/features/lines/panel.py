@@ -252,10 +252,10 @@ class LinesPanel(QWidget):
         self._scroll = ScrollColumn("", (8, 0, 8, 12), 2, keys=False)
         self._list = self._scroll.column
         # Lasting, and before anybody looks for a waist to lock.
-        said = tr(
+        message = tr(
             "Lines run on the control mesh, from under-bust to armpits. Waist, hip and shoulders are outside."
         )
-        self._reach = sentence(said, "caption")
+        self._reach = sentence(message, "caption")
         self._reach.setContentsMargins(10, 10, 10, 0)
         self._list.addWidget(self._reach)
         self._list.addStretch(1)

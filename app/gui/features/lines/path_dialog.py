@@ -169,16 +169,16 @@ class LineDialog(QDialog):
         """Understand what is written, and show it on the map."""
         text = self.points.text().strip().strip(",")
         line: CustomLine | None = None
-        said: Message | str = ""
+        message: Message | str = ""
         try:
             closed = ",closed" if self.ends.button("closed").isChecked() else ""
             line = parse_line(f"{self.name.text()}={text}{closed}", self._template)
             if line.name in self._names:
-                line, said = None, tr("A line of that name already exists.")
+                line, message = None, tr("A line of that name already exists.")
         except UserError as error:
-            said = error.message if text.count(",") + text.count(":") else ""
+            message = error.message if text.count(",") + text.count(":") else ""
         self.line = line
-        self._said.setText(render(said))
+        self._said.setText(render(message))
         self._add.setEnabled(line is not None)
         self.map.show_path(path_cells(line, self._template) if line else self._so_far(text))
 

@@ -94,9 +94,9 @@ class PresetsController(QObject):
             return
         led = _led_anew(before, session.design)
         if led:
-            said = tr("Line paths from preset {name}: {lines}").format(name=title, lines=led)
+            text = tr("Line paths from preset {name}: {lines}").format(name=title, lines=led)
             undo = tr("Undo"), partial(session.undo_stack.setIndex, step)
-            self._context.notifications.info(said, preset_note(preset), [undo])
+            self._context.notifications.info(text, preset_note(preset), [undo])
 
     def ask(self) -> None:
         """Prompt for a name, and save the present lines as a preset."""
@@ -115,8 +115,8 @@ class PresetsController(QObject):
     def _may_replace(self, title: str) -> bool:
         """Ask whether the preset of that name may go; without an answer the name is asked for again."""
         question = tr("Replace the preset {name}?").format(name=title)
-        said = tr("A preset of that name already exists. Its lines will be lost.")
-        return ask(self._context.window, question, said, [("replace", tr("Replace"))]) == "replace"
+        text = tr("A preset of that name already exists. Its lines will be lost.")
+        return ask(self._context.window, question, text, [("replace", tr("Replace"))]) == "replace"
 
     def save(self, title: str) -> None:
         """Keep the present lines as a preset."""

@@ -17,7 +17,7 @@ from app.gui.viewport.body_view import BodyView
 from app.gui.viewport.value_labels import ValueFlag, ValueFlags
 from app.i18n.catalog import number
 from app.i18n.lengths import length
-from app.presenters.maps import LINE_MAPS, MAPS, BodyState, automatic_range, bridge_words, map_kinds, ramp_of
+from app.presenters.maps import LINE_MAPS, MAPS, BodyState, automatic_range, bridge_text, map_kinds, ramp_of
 from app.rendering.appearance import appearance_of
 from app.rendering.camera import framing_place
 from app.rendering.vertex_colors import Ramp
@@ -157,7 +157,7 @@ class MapsController(QObject):
         view.glide_to(framing_place(view.scene.view, place, worn.normals[worn.peak], aspect))
 
     def unpin(self, number: int) -> None:
-        """Take a flag away that is shown: those of lines are not while a map lies on the skin."""
+        """Remove a flag that is shown: those of lines are not while a map lies on the skin."""
         gone = self._flagged[number]
         self._pin(tuple(each for each in self.pinned if each is not gone))
 
@@ -216,11 +216,11 @@ class MapsController(QObject):
             self._values = np.empty(0)
             self._on_bands = {view: self._seen.on_bands(self.name, view) for view in bodies}
             beside = [each for shown in self._on_bands.values() for each in shown.values.values()]
-            said = self._seen.note(self.name, self._on_bands[bodies[0]])
-            self.legend.show_note(said or self._kinds[self.name].note)
+            text = self._seen.note(self.name, self._on_bands[bodies[0]])
+            self.legend.show_note(text or self._kinds[self.name].note)
         else:
-            said = self._seen.skin_note(self.name, frame, self._view.after)
-            self.legend.show_note(said or self._kinds[self.name].note)
+            text = self._seen.skin_note(self.name, frame, self._view.after)
+            self.legend.show_note(text or self._kinds[self.name].note)
             self._values, self._on_bands = self._seen.on_skin(self.name, self.now), {}
             beside = [self._values] + [self._values_of(view) for view in bodies[1:]]
         values = np.concatenate([np.empty(0), *beside])
@@ -268,10 +268,10 @@ class MapsController(QObject):
     def _show_flags(self) -> None:
         """Show the values that are pinned, where there are any."""
         told = {each: self._told(each) for each in self.pinned} if self.name else {}
-        self._flagged = tuple(each for each, said in told.items() if said is not None)
-        said = [each for each in told.values() if each is not None]
-        self.flags.show_flags(flag for flag, _ in said)
-        self.legend.show_value(said[-1][1] if said else None)
+        self._flagged = tuple(each for each, texts in told.items() if texts is not None)
+        texts = [each for each in told.values() if each is not None]
+        self.flags.show_flags(flag for flag, _ in texts)
+        self.legend.show_value(texts[-1][1] if texts else None)
         self._place.consider()
 
     def _told(self, pinned: Pinned) -> tuple[ValueFlag, float] | None:
@@ -287,7 +287,7 @@ class MapsController(QObject):
             if np.isnan(value) or not self._view.after:
                 return None
             place = scene.bands.spine(pinned.line)[0][pinned.at]
-            words = self._words(value) if np.isnan(off) else bridge_words(off)
+            words = self._words(value) if np.isnan(off) else bridge_text(off)
             return ValueFlag(place, words), value
         values = now.at_rest(self.name)
         if self._view.after:

@@ -1,4 +1,4 @@
-"""Where the legend of a map floats: on no other panel, and where it covers no band, label or flag."""
+"""Placement of the legend of a map, off other panels, bands, labels and flags."""
 
 # ruff: noqa: N802 - Qt names its events
 from __future__ import annotations

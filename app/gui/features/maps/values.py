@@ -1,4 +1,4 @@
-"""What maps say of the bodies that are seen: the session's own, and variants beside it."""
+"""Map values of the shown bodies: the session's own, and variants."""
 
 from __future__ import annotations
 

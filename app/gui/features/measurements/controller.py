@@ -176,8 +176,8 @@ class MeasurementsController(QObject):
         self._show_sizes()
 
     def _allow(self, mm: float) -> None:
-        said = tr("Tape tension allowance: {length}").format(length=length(mm))
-        self._context.session.change({"worn_tight_mm": mm}, said)
+        text = tr("Tape tension allowance: {length}").format(length=length(mm))
+        self._context.session.change({"worn_tight_mm": mm}, text)
         self._show_sizes()
 
     def _show_sizes(self) -> None:

@@ -1,4 +1,4 @@
-"""Where a measure of one's own is made or changed: its kind, where it is taken, what it measures now."""
+"""Editor of a custom measurement: kind, landmarks and present value."""
 
 # ruff: noqa: N802 - Qt names its events and says what they are
 from __future__ import annotations
@@ -68,7 +68,7 @@ class MeasurementEditor(QWidget):
         column.addWidget(self._make_foot())
 
     def begin(self, draft: Draft, marks: Mapping[str, str], former: str = "") -> None:
-        """Begin with a draft; ``marks`` are the landmarks to choose from, ``former`` what is changed."""
+        """Start with a draft; ``marks`` are the landmarks to choose from, ``former`` what is changed."""
         for field in (self.start, self.end, self.at):
             field.set_marks(marks)
         self._title.setText(tr("Edit measurement") if former else tr("Custom measurement"))
@@ -98,12 +98,12 @@ class MeasurementEditor(QWidget):
         """Let a girth lie so high above the lowest point of the scan."""
         self._set(at="", level=float(mm))
 
-    def show_value(self, value: str, said: str, doubt: str, suggested: str) -> None:
+    def show_value(self, value: str, message: str, doubt: str, suggested: str) -> None:
         """Show what it measures, what is said of it and what is doubtful; without a value it is not kept.
 
         ``suggested`` is the name that it gets if none is typed.
         """
-        for part, words in ((self.value, value), (self.said, said), (self.doubt, doubt)):
+        for part, words in ((self.value, value), (self.said, message), (self.doubt, doubt)):
             part.setText(words)
             part.setVisible(bool(words))
         self.name.setPlaceholderText(suggested or tr("Name"))

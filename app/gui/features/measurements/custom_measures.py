@@ -61,10 +61,10 @@ class CustomMeasuresController(QObject):
         panel.removing.connect(self.remove)
         context.session.frame_ready.connect(self._follow)
         context.session.opened.connect(lambda *_: self.leave())
-        said = tr("Measure between two landmarks, or a girth at a height")
+        sentence = tr("Measure between two landmarks, or a girth at a height")
         do = context.actions
         do.rule("edit")
-        self.action = do.add("edit", tr("Add measurement…"), tip=said, do=self.begin, of_document=True)
+        self.action = do.add("edit", tr("Add measurement…"), tip=sentence, do=self.begin, of_document=True)
 
     @property
     def at_work(self) -> bool:
@@ -186,8 +186,8 @@ class CustomMeasuresController(QObject):
         if found is None:
             self._context.jobs.cancel(self._job)
             self._job = self._asked = None
-        value, said, doubt = value_texts(*found) if found else ("", "", why)
-        self._form.show_value(value, said, doubt, self._suggested())
+        value, sentence, doubt = value_texts(*found) if found else ("", "", why)
+        self._form.show_value(value, sentence, doubt, self._suggested())
         self.tried.emit(found)
 
     def _suggested(self) -> str:

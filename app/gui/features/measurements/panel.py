@@ -1,4 +1,4 @@
-"""What the garment does to the measures of the body: before, after and the change."""
+"""Panel of measurements: before, after and change."""
 
 # ruff: noqa: N802 - Qt names its events and says what they are
 from __future__ import annotations

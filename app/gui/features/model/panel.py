@@ -1,4 +1,4 @@
-"""How the model works: every choice in plain words, out of the designer's way until it is asked for."""
+"""Panel of the model options."""
 
 from __future__ import annotations
 
@@ -55,12 +55,12 @@ class ModelPanel(QWidget):
         assert isinstance(field, AmountField)
         field.edit.setPlaceholderText(number(gain, 2))
         above = gain > limit
-        said = (
+        text = (
             tr("Above {limit} the solver oscillates. Enter a lower gain.")
             if above
             else tr("The solver oscillates above {limit}.")
         )
-        self._limit.setText(said.format(limit=number(limit, 2)))
+        self._limit.setText(text.format(limit=number(limit, 2)))
         set_tag(self._limit, "tone", "warn" if above else "")
 
     def _foot(self) -> QWidget:

@@ -59,10 +59,10 @@ class PreferencesController(QObject):
         if key == "theme" and isinstance(app, QApplication):
             apply_theme(app, chosen_dark(value))
         elif key in ("language", "unit"):
-            said = tr("The language changes when Busk restarts.")
+            text = tr("The language changes when Busk restarts.")
             if key == "unit":
-                said = tr("The unit of lengths changes when Busk restarts.")
-            self._context.notifications.info(said, "", [(tr("Restart now"), self.restart)])
+                text = tr("The unit of lengths changes when Busk restarts.")
+            self._context.notifications.info(text, "", [(tr("Restart now"), self.restart)])
         elif key == "motion":
             self.set_motion()
         elif key == "material":

@@ -76,8 +76,8 @@ def _autosave() -> Amount:
     every = tr("Interval of autosave for unsaved changes, {least} to {most} s.")
     least, most = AUTOSAVE
     unit = tr("{seconds} s").format(seconds="").strip()
-    said = every.format(least=least, most=most)
-    return Amount("autosave", tr("Autosave"), said, unit, 1.0, 0, (float(least), float(most)))
+    text = every.format(least=least, most=most)
+    return Amount("autosave", tr("Autosave"), text, unit, 1.0, 0, (float(least), float(most)))
 
 
 def _groups() -> tuple[tuple[str, tuple[Setting, ...]], ...]:

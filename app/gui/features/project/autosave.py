@@ -152,8 +152,8 @@ class AutosaveController(QObject):
             return
         logging.error("the document could not be kept aside", exc_info=fault)
         if not self._told:
-            said = (fault.message, fault.hint) if isinstance(fault, UserError) else (str(fault), "")
-            self._context.notifications.warn(*said, topic=_ASIDE)
+            text = (fault.message, fault.hint) if isinstance(fault, UserError) else (str(fault), "")
+            self._context.notifications.warn(*text, topic=_ASIDE)
         self._told = True
         self._clock.start(60_000)
 

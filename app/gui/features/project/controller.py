@@ -96,8 +96,8 @@ class ProjectController(QObject):
         remember_file(path)
         self._context.notifications.withdraw(FILES)
         without = self._session.trial is not None
-        said = tr("Saved {time} (pending targets not included)") if without else tr("Saved {time}")
-        self.save_state.emit(said.format(time=time.strftime("%H:%M")))
+        text = tr("Saved {time} (pending targets not included)") if without else tr("Saved {time}")
+        self.save_state.emit(text.format(time=time.strftime("%H:%M")))
         self.show_title()
 
     # -- files

@@ -69,10 +69,10 @@ class ProjectCard(QAbstractButton):
         self.setCursor(Qt.CursorShape.PointingHandCursor)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
-        said = tr("File not found.") if view.gone else view.look
+        sentence = tr("File not found.") if view.gone else view.look
         self.setAccessibleName(view.name)
-        self.setAccessibleDescription("  ".join(filter(None, (view.day, said))))
-        set_tip(self, "\n".join(filter(None, (view.path, said))))
+        self.setAccessibleDescription("  ".join(filter(None, (view.day, sentence))))
+        set_tip(self, "\n".join(filter(None, (view.path, sentence))))
         self.clicked.connect(self._act)
         self._remove = ToolButton("x", tr("Remove from list (Del)"), size=14, room=26)
         self._remove.setParent(self)
@@ -161,8 +161,8 @@ class ProjectCard(QAbstractButton):
         painter.drawText(QRectF(left, PICTURE + 9, room, 24), upright, name)
         painter.setFont(font("caption"))
         painter.setPen(QColor(tokens.accent if self.view.gone else tokens.text_caption))
-        said = tr("Missing · Locate…") if self.view.gone else self.view.day
-        painter.drawText(QRectF(left, PICTURE + 33, room, 20), upright, said)
+        sentence = tr("Missing · Locate…") if self.view.gone else self.view.day
+        painter.drawText(QRectF(left, PICTURE + 33, room, 20), upright, sentence)
         if self.view.look and not self.view.gone:
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(QColor(tokens.warn_mark))

@@ -36,7 +36,7 @@ def recent_files() -> list[str]:
 
 
 def remember_file(path: str) -> None:
-    """Put a file on top of the list."""
+    """Place a file on top of the list."""
     path, settings = str(Path(path).absolute()), QSettings()
     paths = [path, *(other for other in recent_files() if other != path)][:_MOST]
     times = _opened() | {path: time.time()}

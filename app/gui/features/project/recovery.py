@@ -1,4 +1,4 @@
-"""What is there to be had back: documents of windows that did not close in order, and former versions."""
+"""Recovery of unsaved documents, and previous versions."""
 
 # ruff: noqa: N802 - Qt names its events and says what they are
 
@@ -141,12 +141,12 @@ class RecoveryCard(OverlayCard):
     def offer(self, view: RecoveryView) -> None:
         """Show one recovered document."""
         self._heading.setText(tr("{name} was not saved").format(name=view.name))
-        said = tr("Busk was not closed properly. Last autosave: {time}. Later changes are lost.")
-        said = said.format(time=view.time)
-        self._words.setText(said)
+        text = tr("Busk was not closed properly. Last autosave: {time}. Later changes are lost.")
+        text = text.format(time=view.time)
+        self._words.setText(text)
         self._more.setText(tr("{count} more").format(count=view.more) if view.more else "")
         self._picture.show_image(view.picture)
-        self.setAccessibleName(f"{self._heading.text()}. {said}")
+        self.setAccessibleName(f"{self._heading.text()}. {text}")
         self.adjustSize()
         self.show()
         self.raise_()
@@ -191,8 +191,8 @@ class RecoveryController(QObject):
         self.card.discard.connect(self.discard)
         self.card.later.connect(self.close)
         context.window.installEventFilter(self)
-        said = tr("Open a previous version of a project")
-        context.actions.add("file", tr("Open backup…"), tip=said, do=self.open_backup)
+        text = tr("Open a previous version of a project")
+        context.actions.add("file", tr("Open backup…"), tip=text, do=self.open_backup)
 
     def look(self) -> None:
         """Find recovery data, at the start."""
@@ -220,8 +220,8 @@ class RecoveryController(QObject):
             self._offer()
         elif self._offers and not self._at_start:
             self.close()
-            said = tr("Unsaved changes are offered for recovery at the next start.")
-            self._context.notifications.info(said)
+            text = tr("Unsaved changes are offered for recovery at the next start.")
+            self._context.notifications.info(text)
         self._at_start = False
 
     def discard(self) -> None:

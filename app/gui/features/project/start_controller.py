@@ -58,8 +58,8 @@ class StartController(QObject):
         self.veil = DropVeil(context.window)
         context.window.installEventFilter(self)
         self._connect()
-        said = tr("Start with a scan or continue a recent project")
-        context.actions.add("file", tr("Start page"), "Ctrl+Shift+N", said, do=self.show_page)
+        text = tr("Start with a scan or continue a recent project")
+        context.actions.add("file", tr("Start page"), "Ctrl+Shift+N", text, do=self.show_page)
         context.actions.add(
             "help", tr("Tour"), tip=tr("Show the main parts of the window step by step"), do=self.take_tour
         )
@@ -104,7 +104,7 @@ class StartController(QObject):
             self.leave_page()
 
     def show_opened(self) -> None:
-        """Remember what was opened, unless it is a sample."""
+        """Record what was opened, unless it is a sample."""
         self.leave_page()
         session = self._context.session
         if session.path is not None:

@@ -88,10 +88,10 @@ class DropVeil(QWidget):
         painter.setFont(font("page"))
         painter.setPen(QColor(tokens.text))
         words = QRectF(40, middle.y() + 4, self.width() - 80, 40)
-        said = painter.fontMetrics().elidedText(
+        message = painter.fontMetrics().elidedText(
             self._said, Qt.TextElideMode.ElideMiddle, round(words.width())
         )
-        painter.drawText(words, Qt.AlignmentFlag.AlignCenter, said)
+        painter.drawText(words, Qt.AlignmentFlag.AlignCenter, message)
 
 
 def _centred(text: str, role: str) -> QLabel:

@@ -68,9 +68,9 @@ class ReportController(QObject):
         self._laid: tuple[ReportDocument | None, str] = (None, "")
         self._whole: Frame | None = None  # its figures are of
         self._occlusion: tuple[object, Floats] | None = None
-        said = tr("Preview, save or print sizes, cut lengths, measurements, contact pressures and images")
+        sentence = tr("Preview, save or print sizes, cut lengths, measurements, contact pressures and images")
         do = context.actions
-        self.action = do.add("file", tr("Report…"), "Ctrl+P", said, do=self.open, of_document=True)
+        self.action = do.add("file", tr("Report…"), "Ctrl+P", sentence, do=self.open, of_document=True)
         self.page.closed.connect(self.leave)
         self.page.customer_changed.connect(self._name)
         self.page.language_chosen.connect(self._speak)
@@ -106,7 +106,7 @@ class ReportController(QObject):
         return was_open
 
     def forget(self) -> None:
-        """Let go of the sheet of a document that has gone: nobody is to see it under the next one."""
+        """Release the sheet of a document that has gone: nobody is to see it under the next one."""
         document = self._context.session.document
         # Before the page hides: a name that was being typed is not that of the next customer.
         self.page.customer.setText(document.customer if document is not None else "")
@@ -120,8 +120,8 @@ class ReportController(QObject):
         design = self._context.session.design
         if design is None or design.customer == customer:
             return
-        said = tr("Customer {name}").format(name=customer) if customer else tr("No customer")
-        self._context.session.change({"customer": customer}, said)
+        sentence = tr("Customer {name}").format(name=customer) if customer else tr("No customer")
+        self._context.session.change({"customer": customer}, sentence)
         if self.handout is not None:
             self._take(self.handout)  # at once: it may be given away with the next word
 
@@ -287,8 +287,8 @@ class ReportController(QObject):
             return
         painter = QPainter()
         if not painter.begin(printer):
-            said = Message("The report could not be printed."), Message("Choose another printer.")
-            self._context.notifications.error(ProjectError(*said), "print")
+            texts = Message("The report could not be printed."), Message("Choose another printer.")
+            self._context.notifications.error(ProjectError(*texts), "print")
             return
         wished = range(pages.count)
         if printer.printRange() == QPrinter.PrintRange.PageRange:

@@ -1,4 +1,4 @@
-"""How the scan was understood: its unit, which way it stands, what was repaired; each can be said instead."""
+"""Panel of the scan: unit, orientation and repairs, each with a manual override."""
 
 from __future__ import annotations
 

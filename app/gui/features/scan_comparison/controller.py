@@ -63,9 +63,9 @@ class ScanComparisonController(QObject):
         self._connect()
 
     def _connect(self) -> None:
-        said = tr("Compare the prediction with a scan of the worn garment")
+        text = tr("Compare the prediction with a scan of the worn garment")
         begin = tr("Compare with fitting scan…")
-        self._context.actions.add("file", begin, tip=said, do=self.begin, of_document=True)
+        self._context.actions.add("file", begin, tip=text, do=self.begin, of_document=True)
         self._context.session.design_changed.connect(lambda _: self.follow())
         self._context.session.opened.connect(lambda _: self.close())
         page = self.page
@@ -147,8 +147,8 @@ class ScanComparisonController(QObject):
         if self._found is None or self._found[0] is not self._context.session.design:
             return
         found, self._found = self._found[1], None
-        said = tr("Calibration with {file}").format(file=found.calibration.worn)
-        self._context.session.edit(lambda _: found.design, said)
+        text = tr("Calibration with {file}").format(file=found.calibration.worn)
+        self._context.session.edit(lambda _: found.design, text)
 
     def _tell_unit(self, unit: str) -> None:
         self._unit = unit
@@ -204,7 +204,7 @@ class ScanComparisonController(QObject):
         self.follow()
 
     def _begin_anew(self) -> None:
-        """Let go of all that was found, or is being looked for, with another scan or thickness."""
+        """Release all that was found, or is being looked for, with another scan or thickness."""
         for begun in (self._comparing, self._fitting):
             if begun is not None:
                 self._context.jobs.cancel(begun[0])
@@ -263,14 +263,14 @@ class ScanComparisonController(QObject):
         at_work = self._fitting is not None and self._fitting[0].wanted
         return ScanComparisonView(
             file=worn.name if worn else "",
-            lies=words.aligned_words(worn) if worn else "",
+            lies=words.aligned_text(worn) if worn else "",
             rows=words.residual_rows(shown) if shown else (),
             bust=words.summary_text(shown) if shown else "",
             numbers=words.parameter_rows(found, design) if found else (),
             surely=words.determination_text(found, design) if found else "",
             kept=words.fixed_parameters_text(found, design) if found else "",
             better=words.improvement_text(found, design) if found else "",
-            record=words.record_words(design.calibration),
+            record=words.record_text(design.calibration),
             faint=faint,
             ready=bool(worn) and self._context.session.is_converged and not at_work and not faint,
             helped=found is not None and found.is_improved,

@@ -97,8 +97,8 @@ class ScanComparisonPage(QWidget):
     def _lay(self) -> None:
         area = ScrollColumn(tr("Fitting scan"), (18, 4, 18, 16), 8)
         column = area.column
-        said = tr("Compare the prediction with a scan of the same person in the garment.")
-        column.addWidget(sentence(said))
+        message = tr("Compare the prediction with a scan of the same person in the garment.")
+        column.addWidget(sentence(message))
         column.addWidget(self.record)
         for each in (self.file, self.lies):
             column.addWidget(each)

@@ -18,7 +18,7 @@ from app.gui.widgets.file_dialogs import ask_save
 from app.i18n.catalog import tr
 from app.i18n.lengths import length
 from app.presenters.bust_shift import bust_shift
-from app.presenters.maps import BodyState, section_words, sides_words
+from app.presenters.maps import BodyState, section_text, sides_text
 from app.presenters.plots import PLOT_INTERVAL
 from app.presenters.status import is_result
 from core.export.mesh import write_profile
@@ -114,7 +114,7 @@ class SectionsController(QObject):
         return self._former is not None
 
     def let_go(self) -> bool:
-        """Put the plane back to where a hand took hold of it; returns whether one had."""
+        """Place the plane back to where a hand took hold of it; returns whether one had."""
         if self._former is None:
             return False
         self._by_hand = self._former
@@ -139,9 +139,9 @@ class SectionsController(QObject):
         path = ask_save(self._context.window, tr("Export curves as CSV…"), name, "CSV (*.csv)", ".csv")
         if not path or self._slicer is None:
             return
-        plane, curves, said = self._slicer.plane, self.curves, tr("Curves saved to {name}.")
+        plane, curves, text = self._slicer.plane, self.curves, tr("Curves saved to {name}.")
         write_file(
-            self._context.notifications, "curves", path, lambda to: write_profile(to, plane, curves), said
+            self._context.notifications, "curves", path, lambda to: write_profile(to, plane, curves), text
         )
 
     # -- the handle in the view
@@ -268,7 +268,7 @@ class SectionsController(QObject):
             spread is not None and not spread.whole,
             most_off(now, self._slicer, curves["after"], spread),
         )
-        words = sides_words(plane.axis, pairs) if sides else self._words(spread)
+        words = sides_text(plane.axis, pairs) if sides else self._words(spread)
         self.panel.show_curves(drawn, words, again=self._again)
         self._again = False
         self._point(self._place)
@@ -278,7 +278,7 @@ class SectionsController(QObject):
         assert self._slicer is not None
         frame, side = self._now.frame, side_of(self._now, self._slicer.plane)
         known = spread if spread is not None and spread.whole else None
-        return section_words(self.axis, side, bust_shift(frame), known) if is_result(frame) else ""
+        return section_text(self.axis, side, bust_shift(frame), known) if is_result(frame) else ""
 
     def _point(self, place: Floats | None) -> None:
         """Read how far the curves are apart at a place of the plot, (2,) [mm]."""

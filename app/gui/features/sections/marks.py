@@ -1,4 +1,4 @@
-"""What is marked on the curves of a section: bust points, foremost places, how far the skin may be off."""
+"""Marks on section curves: bust points, apexes and uncertainty of the skin."""
 
 from __future__ import annotations
 

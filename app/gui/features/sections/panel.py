@@ -105,8 +105,8 @@ class SectionPanel(FloatingPanel):
             part.setVisible(not folded)
         self.fold.show_icon("caret-up" if folded else "caret-down")
         self.fold.setEnabled(not self._cramped)
-        said = tr("Show curves") if folded else tr("Collapse curves")
-        self.fold.setAccessibleName(tr("Not enough space for curves") if self._cramped else said)
+        text = tr("Show curves") if folded else tr("Collapse curves")
+        self.fold.setAccessibleName(tr("Not enough space for curves") if self._cramped else text)
         set_tip(self.fold, self.fold.accessibleName())
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:

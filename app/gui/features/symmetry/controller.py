@@ -147,8 +147,8 @@ class SymmetryController(QObject):
             return
         template = read_template(design.template)
         titles = listed(split_titles(design, made.split))
-        said = tr("Left and right separated: {lines}").format(lines=titles)
-        self.targets_proposed.emit(made.goals, lambda before: split_sides(before, template), said, limit)
+        text = tr("Left and right separated: {lines}").format(lines=titles)
+        self.targets_proposed.emit(made.goals, lambda before: split_sides(before, template), text, limit)
 
 
 def _balance(stages: Stages, progress: Progress) -> BalanceResult:

@@ -112,15 +112,15 @@ class TargetCard(QWidget):
         return more
 
     def _said(self) -> QVBoxLayout:
-        said = QVBoxLayout()
-        said.setSpacing(6)
+        text = QVBoxLayout()
+        text.setSpacing(6)
         self.hint = sentence("")
         self.answer, self.price = sentence("", "name"), sentence("")
         self.changes, self.note = sentence(""), sentence("", "caption")
         for part in (self.hint, self.answer, self.price, self.changes, self.note):
-            said.addWidget(part)
+            text.addWidget(part)
             part.hide()
-        return said
+        return text
 
     def _foot(self) -> QHBoxLayout:
         foot = QHBoxLayout()
@@ -177,7 +177,7 @@ class TargetCard(QWidget):
         self.link.setEnabled(kind != "profile")
 
     def show_help(self, shown: bool, locked: bool = False) -> None:
-        """Take Apply away while lines are missing, or all ``locked``; the button leads out of that."""
+        """Remove Apply while lines are missing, or all ``locked``; the button leads out of that."""
         self.help_.setText(tr("Unlock lines") if locked else tr("Choose lines"))
         self.help_.setVisible(shown)
         self.apply.setVisible(not shown)

@@ -26,7 +26,7 @@ from app.gui.features.target_shape.worker import TargetAnswer, TargetQuery, Targ
 from app.gui.widgets.accessibility import announce
 from app.i18n.catalog import tr
 from app.presenters.messages import render
-from app.presenters.target_shape import inactive_words, step_words
+from app.presenters.target_shape import inactive_text, step_text
 from core.analysis.inverse_design.quantities import Goal
 from core.document.design import Design
 from core.errors import UserError
@@ -74,10 +74,10 @@ class TargetShapeController(QObject):
 
     def _connect(self) -> None:
         context, card, session = self._context, self.card, self._session
-        said = tr("Set target positions; Busk computes the lengths of the active lines")
+        text = tr("Set target positions; Busk computes the lengths of the active lines")
         do = context.actions
         do.rule("lines")
-        do.add("lines", tr("Target shape…"), "A", said, do=self.begin, of_document=True)
+        do.add("lines", tr("Target shape…"), "A", text, do=self.begin, of_document=True)
         card.entered.connect(self.wish)
         card.removed.connect(self.drop)
         card.add_requested.connect(self.menu.show)
@@ -111,7 +111,7 @@ class TargetShapeController(QObject):
         self,
         goals: Sequence[Goal] = (),
         prepare: Callable[[Design], Design] | None = None,
-        said: str = "",
+        text: str = "",
         limit: float | None = None,
     ) -> None:
         """Open the card, with ``goals`` wished for already.
@@ -127,7 +127,7 @@ class TargetShapeController(QObject):
         self._context.navigation.show_step("lines")
         limit = math.inf if math.isinf(self.all_wishes.most_kpa) else limit
         self.all_wishes, self.answer, self._apply_due = replace(Targets.of(goals), limit=limit), None, False
-        self.ground.begin(prepare, said)
+        self.ground.begin(prepare, text)
         self.back.remember()
         self._pages.setCurrentWidget(self.card)
         self.drawing.choose("bust")
@@ -193,7 +193,7 @@ class TargetShapeController(QObject):
         self._apply_due = self.work.at_work or self._rest.isActive()
         if self._apply_due or answer is None or answer.reply is None:
             return
-        design, words = answer.reply.design, step_words(self.all_wishes.asked, self.all_wishes.set_limit)
+        design, words = answer.reply.design, step_text(self.all_wishes.asked, self.all_wishes.set_limit)
         if self.ground.said:
             words = " · ".join((self.ground.said, words))
         self.end()
@@ -287,8 +287,8 @@ class TargetShapeController(QObject):
         self.answer = None
         self._session.cancel_preview()
         self._show()
-        said = render(problem.text)
-        self.card.show_answer(said, "warn")
+        text = render(problem.text)
+        self.card.show_answer(text, "warn")
 
     def _follow_design(self, _: Design) -> None:
         if self.is_open:
@@ -309,11 +309,11 @@ class TargetShapeController(QObject):
             self.card.show_wishes([], missing)
             self.card.show_answer()
         else:
-            self.card.show_optional(inactive_words(design, self.ground.inactive), self.all_wishes.optional)
+            self.card.show_optional(inactive_text(design, self.ground.inactive), self.all_wishes.optional)
             hint = self.drawing.hint()
             self.card.show_wishes(list(target_views(self.all_wishes, self.answer)), hint)
-            said = self.ground.said
-            show_result(self.card, design, self.all_wishes, self.answer, apart=said, busy=self._busy())
+            text = self.ground.said
+            show_result(self.card, design, self.all_wishes, self.answer, apart=text, busy=self._busy())
         self.handles.follow()
 
     def _busy(self) -> str:

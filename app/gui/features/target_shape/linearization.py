@@ -18,9 +18,9 @@ class TargetDesign:
         self.design: Design | None = None
         self.said = ""
 
-    def begin(self, prepare: Callable[[Design], Design] | None, said: str) -> None:
+    def begin(self, prepare: Callable[[Design], Design] | None, text: str) -> None:
         """Use what ``prepare`` makes of the session's design."""
-        self._prepare, self.said = prepare, said if prepare is not None else ""
+        self._prepare, self.said = prepare, text if prepare is not None else ""
         self.follow()
 
     def follow(self) -> None:

@@ -1,4 +1,4 @@
-"""What the card of wishes shows of them: values that are asked for, and what the others come to."""
+"""Content of the target card: targets and resulting values."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from app.presenters.symmetry import balance_result_texts, has_balance_targets
 from app.presenters.target_shape import (
     activated_text,
     bust_movement_text,
-    change_words,
-    conflict_words,
+    change_text,
+    conflict_text,
     deviation_text,
+    formatted_value,
     is_met,
     is_near,
     is_signed,
     locked_lines_text,
-    pressure_words,
+    pressure_text,
     profile_title,
     result_text,
-    result_words,
+    target_result_text,
     target_title,
-    unlimited_words,
-    value_words,
+    unlimited_text,
 )
 from core.analysis.inverse_design.quantities import Goal
 from core.document.design import Design
@@ -52,17 +52,17 @@ def show_result(
     else:
         reply, asked = answer.reply, answer.question.goals
         met = _is_met(wishes, reply, asked)
-        said = result_text(reply, asked, wishes.only_limit, answer.now)
+        text = result_text(reply, asked, wishes.only_limit, answer.now)
         price, why = bust_movement_text(asked, answer.now, answer.then), ""
-        conflicts, switched = conflict_words(answer.conflicts), activated_text(design, reply.design)
+        conflicts, switched = conflict_text(answer.conflicts), activated_text(design, reply.design)
         if has_balance_targets(asked) and wishes.only_limit is None:
-            said, price, why = balance_result_texts(reply, asked, answer.now, answer.then)
+            text, price, why = balance_result_texts(reply, asked, answer.now, answer.then)
             conflicts = ()  # that sentence names the price
-        free = "" if answer.unlimited is None else unlimited_words(answer.unlimited, asked, answer.now)
-        lines = listed(change_words(design, reply))
+        free = "" if answer.unlimited is None else unlimited_text(answer.unlimited, asked, answer.now)
+        lines = listed(change_text(design, reply))
         changes = "\n".join(filter(None, (free, why, lines, switched, *conflicts)))
         tone = "ok" if met else "" if is_near(reply, asked) else "warn"
-        card.show_answer(said, tone, price, changes, note, can_apply=True)
+        card.show_answer(text, tone, price, changes, note, can_apply=True)
 
 
 def meets_targets(wishes: Targets, answer: TargetAnswer) -> bool:
@@ -81,7 +81,7 @@ def target_views(wishes: Targets, answer: TargetAnswer | None) -> Iterator[Targe
     then = answer.then if answer is not None else {}
     for name, value in wishes.figures.items():
         signed, priority = is_signed(name), wishes.priorities.get(name, "normal")
-        before, result = value_words(now.get(name), signed), result_words(now, then, name)
+        before, result = formatted_value(now.get(name), signed), target_result_text(now, then, name)
         yield TargetView(name, target_title(name), value, before, result, signed=signed, priority=priority)
     for section, goals in wishes.curves.items():
         reply = answer.reply if answer is not None else None
@@ -96,7 +96,7 @@ def _pressure(wishes: Targets, answer: TargetAnswer | None) -> TargetView:
     presses = answer.presses if answer is not None else {}
     reply = answer.reply if answer is not None else None
     then = reply.pressure if reply is not None else {}
-    before, result = pressure_words(presses, then)
+    before, result = pressure_text(presses, then)
     tone = "bad" if result and max(then.values()) >= pressure_limits().red_kpa else ""
     on = not math.isinf(wishes.most_kpa)
     shown, title = wishes.most_kpa if on else None, tr("Contact pressure limit")

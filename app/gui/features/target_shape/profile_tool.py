@@ -1,4 +1,4 @@
-"""What is dragged on the body while the result is asked for, and profiles that are drawn there."""
+"""Handles and profiles on the body for target shapes."""
 
 from __future__ import annotations
 

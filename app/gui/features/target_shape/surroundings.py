@@ -1,4 +1,4 @@
-"""What is around the card while the result is asked for: locked lines, and those that are only tried on."""
+"""Options of target shapes: locked lines, and inactive lines on trial."""
 
 from __future__ import annotations
 

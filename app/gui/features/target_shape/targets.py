@@ -1,4 +1,4 @@
-"""What is wished of the result: figures, profiles, and a limit of pressure."""
+"""Targets: quantities, profiles, and a limit of pressure."""
 
 from __future__ import annotations
 

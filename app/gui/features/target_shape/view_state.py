@@ -1,4 +1,4 @@
-"""Where camera and keyboard were before the result was asked for: both go back when the card goes."""
+"""Camera and keyboard focus before the target card opened; both are restored when it closes."""
 
 from __future__ import annotations
 

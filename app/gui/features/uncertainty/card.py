@@ -1,4 +1,4 @@
-"""What is said below the measures of how sure they are: what ± means, whence it comes, what is left out."""
+"""Uncertainty card: meaning of ±, sources and omissions."""
 
 from __future__ import annotations
 

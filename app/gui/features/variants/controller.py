@@ -93,11 +93,11 @@ class VariantsController(QObject):
             if self._context.view.beside.way == "variants":
                 self._context.view.compare_by("after")
             else:
-                said = (
+                texts = (
                     tr("Only one variant."),
                     tr("Choose B or C at the top to start a copy."),
                 )
-                self._context.notifications.info(*said)
+                self._context.notifications.info(*texts)
             return
         missing = [each for each in others.items() if each[1] not in self._solved]
         self._asked = bool(missing)
@@ -215,10 +215,10 @@ class VariantsController(QObject):
             actions.add("variants", text, f"Alt+{place}", do=partial(self.choose, name), of_document=True)
         actions.rule("variants")
         actions.add("variants", tr("Remove this variant"), do=self._remove_shown, of_document=True)
-        said = tr("Show all variants side by side with linked cameras")
+        sentence = tr("Show all variants side by side with linked cameras")
         title, flip = tr("Variants side by side"), self.flip_side_by_side
         self.beside = actions.add(
-            "variants", title, "Shift+V", said, do=flip, checkable=True, of_document=True
+            "variants", title, "Shift+V", sentence, do=flip, checkable=True, of_document=True
         )
 
     def _remove_shown(self) -> None:

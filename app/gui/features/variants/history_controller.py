@@ -109,8 +109,8 @@ class HistoryController(QObject):
         """Restore a result in its variant, as one edit."""
         snapshot, document = self._snapshots[len(self._snapshots) - 1 - place], self._session.document
         if document is not None:
-            said = tr("Restored: {edit}").format(edit=_title(snapshot, document))
-            self._session.go_back(snapshot.within(document), said)
+            text = tr("Restored: {edit}").format(edit=_title(snapshot, document))
+            self._session.go_back(snapshot.within(document), text)
 
     def close(self) -> None:
         """Stop the clock."""
@@ -166,5 +166,5 @@ def _figures(frame: Frame, headline: str) -> tuple[str, ...]:
     if not is_result(frame):
         return headline, tr("Not valid for production")
     percent = number(controlled_volume(frame)[0], 2, signed=True)
-    said = tr("{state}, volume {percent} %").format(percent=percent, state=headline)
-    return said, bust_sentence(bust_shift(frame))
+    text = tr("{state}, volume {percent} %").format(percent=percent, state=headline)
+    return text, bust_sentence(bust_shift(frame))

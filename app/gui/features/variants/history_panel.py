@@ -1,4 +1,4 @@
-"""What was done, edit by edit, and the results that it led to; a click goes back to either."""
+"""History of edits and results; a click restores either."""
 
 from __future__ import annotations
 

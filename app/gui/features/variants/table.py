@@ -72,7 +72,7 @@ class VariantTableController(QObject):
         return self._context.view.beside.way == "variants"
 
     def copy(self) -> None:
-        """Put the table on the clipboard."""
+        """Copy the table to the clipboard."""
         if self._panel.view is not None:
             copy_table(self._context, as_table(self._panel.view))
 

@@ -33,8 +33,8 @@ class ViewController(QObject):
         self._context, self._view = context, context.view
         do = context.actions
         CompareKey(context.window, do.flip, context.view, show_variants)
-        said = tr("Zoom to the selected line or landmark")
-        self.fit = do.add("view", tr("Zoom to selection"), "F", said, do=self._view.frame_selection)
+        text = tr("Zoom to the selected line or landmark")
+        self.fit = do.add("view", tr("Zoom to selection"), "F", text, do=self._view.frame_selection)
         self._add_maps()
         for name, title in (("variants", tr("Table of variants")), ("history", tr("History"))):
             do.add("window", title, do=partial(self._open_tab, name), of_document=True)

@@ -31,10 +31,10 @@ class ImageExportController(QObject):
         context.view.tools.picture_requested.connect(self.save)
         do = context.actions
         do.rule("file")
-        said = tr("Copy the view to the clipboard at high resolution")
-        do.add("file", tr("Copy image"), "Ctrl+Shift+C", said, do=self.copy, of_document=True)
-        said = tr("Print the view on one page")
-        do.add("file", tr("Print image…"), tip=said, do=self.print_out, of_document=True)
+        text = tr("Copy the view to the clipboard at high resolution")
+        do.add("file", tr("Copy image"), "Ctrl+Shift+C", text, do=self.copy, of_document=True)
+        text = tr("Print the view on one page")
+        do.add("file", tr("Print image…"), tip=text, do=self.print_out, of_document=True)
 
     def save(self) -> None:
         """Prompt for a file and write the view."""
@@ -44,7 +44,7 @@ class ImageExportController(QObject):
             write_file(self._context.notifications, "picture", path, write_whole(png_of(self._picture())))
 
     def copy(self) -> None:
-        """Put what the view shows on the clipboard."""
+        """Copy what the view shows to the clipboard."""
         QGuiApplication.clipboard().setImage(self._picture())
         self._context.notifications.done(tr("Image copied."))
 
@@ -58,8 +58,8 @@ class ImageExportController(QObject):
         picture, page = self._picture(), printer.pageLayout().paintRectPixels(printer.resolution())
         painter = QPainter()
         if not painter.begin(printer):
-            said = Message("The image could not be printed."), Message("Choose another printer.")
-            self._context.notifications.error(ProjectError(*said), "print")
+            texts = Message("The image could not be printed."), Message("Choose another printer.")
+            self._context.notifications.error(ProjectError(*texts), "print")
             return
         painter.drawImage(fitted(picture.size(), page.size()), picture)
         painter.end()
