@@ -183,7 +183,7 @@ class ExportController(QObject):
         return known
 
     def _manner(self, what: str, kind: str = "") -> ExportOptions:
-        return self._choices.manner(what, kind, self._context.view.viewport.scene.view)
+        return self._choices.manner(what, kind, self._context.view.viewport.view)
 
     def _stem(self, what: str) -> str:
         return f"{self._context.session.name}-{what}"

@@ -58,6 +58,7 @@ class LandmarksController(QObject):
     def __init__(self, context: AppContext, panel: LandmarksPanel) -> None:
         super().__init__(context.session)
         self._context, self._panel = context, panel
+        self._viewport = context.view.viewport
         self._session = context.session
         self._carried: dict[str, Points] = {}
         self._refused = False
@@ -69,7 +70,7 @@ class LandmarksController(QObject):
         self._connect()
 
     def _connect(self) -> None:
-        panel, viewport = self._panel, self._context.view.viewport
+        panel, viewport = self._panel, self._viewport
         panel.landmark_selected.connect(self.take)
         panel.reset_requested.connect(self.reset)
         panel.confirmed.connect(self.confirm)
@@ -178,7 +179,7 @@ class LandmarksController(QObject):
 
     def nudge(self, right: float, up: float) -> bool:
         """Move the selected pin over the skin by a shift in the image [mm]; returns whether there is one."""
-        pins, view = self._context.view.pins, self._context.view.viewport.scene.view
+        pins, view = self._context.view.pins, self._viewport.view
         name, place = pins.chosen()
         body = self._body()
         if place is None or body is None:
@@ -225,7 +226,7 @@ class LandmarksController(QObject):
 
     def move_by_keys(self) -> None:
         """Let the arrow keys move the selected pin."""
-        self._context.view.viewport.setFocus()
+        self._viewport.setFocus()
 
     def confirm(self, names: Sequence[str]) -> None:
         """Keep landmarks where they are: the designer has looked at them.
@@ -272,7 +273,7 @@ class LandmarksController(QObject):
         self.hover(name)
         row = self._panel.rows.get(name)
         words = "" if row is None or self._carried else f"{row.view.title}\n{row.view.words()}"
-        show_tip(QCursor.pos(), words, self._context.view.viewport)
+        show_tip(QCursor.pos(), words, self._viewport)
 
     # -- inside
 

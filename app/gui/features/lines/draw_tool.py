@@ -40,6 +40,7 @@ class LineDrawTool(QObject):
     def __init__(self, context: AppContext, panel: LinesPanel, add: AddLinesController) -> None:
         super().__init__(context.session)
         self._context, self._add = context, add
+        self._viewport = context.view.viewport
         self._sketching = DrawingBase(context, self)
         panel.draw_requested.connect(self.begin)
         context.actions.draw_line.triggered.connect(self.begin)
@@ -140,7 +141,7 @@ class LineDrawTool(QObject):
         if self._closes(at):
             self._propose(closed=True)
             return
-        place = self._context.view.viewport.skin_at(at)
+        place = self._viewport.skin_at(at)
         if place is None:
             return
         if self._places:
@@ -152,7 +153,7 @@ class LineDrawTool(QObject):
         """Show how the line would go on to the pointer."""
         if self._found is not None or not self._places:
             return
-        place = self._places[0] if self._closes(at) else self._context.view.viewport.skin_at(at)
+        place = self._places[0] if self._closes(at) else self._viewport.skin_at(at)
         if place is not None:
             self._draw([*self._curve, self._way(self._places[-1], place)])
 

@@ -34,6 +34,7 @@ class DrawingBase(QObject):
     def __init__(self, context: AppContext, owner: QObject) -> None:
         super().__init__(owner)
         self._context = context
+        self._viewport = context.view.viewport
         viewport = context.view.viewport
         canvas = viewport.overlay.parentWidget()
         assert canvas is not None
@@ -74,12 +75,12 @@ class DrawingBase(QObject):
             self._drawn = self._control = None
             if self._sketch is not None:
                 self._sketch.clear()
-            self._context.view.viewport.request_draw()
+            self._viewport.request_draw()
 
     def draw(self, curve: Points, path: Points, points: Points, colour: str) -> None:
         """Draw a curve (k, 3), a path (p, 3) in ``colour`` and points (n, 3) to hold; each may be empty."""
         self._drawn = curve, path, points, colour
-        scene = self._context.view.viewport.scene
+        scene = self._viewport.scene
         if self._sketch is None:
             from app.rendering.sketch_actor import SketchActor  # noqa: PLC0415 (brings VTK along)
 
@@ -87,7 +88,7 @@ class DrawingBase(QObject):
         there = [scene.carried_points(part) if len(part) else part for part in (curve, path, points)]
         self._sketch.show(there[0], there[1], there[2], colour)
         self._sketch.look_from(scene.view)
-        self._context.view.viewport.request_draw()
+        self._viewport.request_draw()
 
     def laid(self, corners: Points) -> Points:
         """Return the way through control points, shape (c, 3), on the skin at rest, shape (k, 3) [mm]."""
@@ -106,7 +107,7 @@ class DrawingBase(QObject):
 
         Points behind the body are not seen.
         """
-        scene, overlay = self._context.view.viewport.scene, self._context.view.viewport.overlay
+        scene, overlay = self._viewport.scene, self._viewport.overlay
         shown = scene.carried_points(points)
         spots = scene.view.to_picture(shown, overlay.width(), overlay.height())
         away = np.hypot(spots[:, 0] - at.x(), spots[:, 1] - at.y())
@@ -119,7 +120,7 @@ class DrawingBase(QObject):
 
     def _look(self) -> None:
         if self.at_work and self._sketch is not None:
-            self._sketch.look_from(self._context.view.viewport.scene.view)
+            self._sketch.look_from(self._viewport.view)
 
     def _check(self, _: object) -> None:
         """Let go once the control mesh is another: there its points have other numbers and places."""

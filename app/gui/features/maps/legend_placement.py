@@ -92,7 +92,7 @@ class LegendPlacement(QObject):
             bands, origin = viewport.scene.bands, viewport.mapTo(self._view, QRect().topLeft())
             for name in set(bands.names) - body.hidden_lines if viewport.isVisible() else ():
                 spine, _ = bands.spine(name)
-                spots = viewport.scene.view.to_picture(spine, viewport.width(), viewport.height())
+                spots = viewport.view.to_picture(spine, viewport.width(), viewport.height())
                 found.append(spots[:, :2] + (origin.x(), origin.y()))
         return np.concatenate(found)
 

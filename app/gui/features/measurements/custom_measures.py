@@ -38,6 +38,7 @@ class CustomMeasuresController(QObject):
     def __init__(self, context: AppContext, panel: MeasurementsPanel) -> None:
         super().__init__(context.session)
         self._context, self._panel, self._form = context, panel, panel.editor
+        self._viewport = context.view.viewport
         viewport = context.view.viewport
         canvas = viewport.overlay.parentWidget()
         assert canvas is not None
@@ -85,7 +86,7 @@ class CustomMeasuresController(QObject):
         self._asked = None
         self._panel.unmark()
         if not self.at_work:
-            self._banded = self._context.view.viewport.scene.is_visible("bands")
+            self._banded = self._viewport.scene.is_visible("bands")
             self._context.view.set_layer("bands", False)  # they would cover what is shown
         self._panel.set_editing(True)
         self._hand.begin()
@@ -128,12 +129,12 @@ class CustomMeasuresController(QObject):
 
     def _grab(self, at: QPointF) -> bool:
         """Hold a pin rather than let the view carry it off; where it is let go it is chosen."""
-        self._held = self._context.view.viewport.overlay.chosen_at(at)
+        self._held = self._viewport.overlay.chosen_at(at)
         return bool(self._held)
 
     def _click(self, at: QPointF) -> None:
         """Take the height of the skin that is clicked."""
-        frame, place = self._context.session.frame, self._context.view.viewport.skin_at(at)
+        frame, place = self._context.session.frame, self._viewport.skin_at(at)
         if frame is not None and place is not None and self._form.draft.kind == "girth":
             self._form.set_height(round(float(place[2]) - float(frame.stages.body.mesh.vertices[:, 2].min())))
 

@@ -34,6 +34,7 @@ class ProfileTool(QObject):
     def __init__(self, context: AppContext, controller: TargetShapeController) -> None:
         super().__init__(controller)
         self._context, self._controller = context, controller
+        self._viewport = context.view.viewport
 
     def choose(self, kind: str) -> None:
         """Let the handles be those of the "bust" points, of the foremost places ("apex"), or of a "profile".
@@ -124,7 +125,7 @@ class ProfileTool(QObject):
 
     def is_from_side(self, section: str) -> bool:
         """Return whether a profile is viewed about from its side, so that up and out can be dragged."""
-        across = self._context.view.viewport.view.axes[2][0]
+        across = self._viewport.view.axes[2][0]
         return bool((across if self._controller.drawn[section].section == "left" else -across) > _SIDEWAYS)
 
     def hint(self) -> str:
@@ -147,13 +148,13 @@ class ProfileTool(QObject):
         self._controller.steps.note()
 
     def _side(self) -> str:
-        return "right" if self._context.view.viewport.view.axes[2][0] < -_LEVEL else "left"
+        return "right" if self._viewport.view.axes[2][0] < -_LEVEL else "left"
 
     def look_at(self, profile: ProfileCurve) -> None:
         """Show a profile from its side, and beside the tools."""
         from core.analysis.inverse_design.profile_curve import section_to_space  # noqa: PLC0415
 
-        view, viewport, frame = self._context.view, self._context.view.viewport, self._context.session.frame
+        view, viewport, frame = self._context.view, self._viewport, self._context.session.frame
         if frame is None:
             return
         room, tools = max(viewport.height(), 1), view.floating.seen(view.tools).top()

@@ -22,6 +22,7 @@ class ViewState(QObject):
     def __init__(self, context: AppContext, controller: TargetShapeController) -> None:
         super().__init__(controller)
         self._context, self._controller = context, controller
+        self._viewport = context.view.viewport
         self._keyboard: QWidget | None = None
         self._own: View | None = None  # the view that somebody chose
         self._led: View | None = None  # the one that was led to from there
@@ -33,17 +34,17 @@ class ViewState(QObject):
 
     def look(self, view: View) -> None:
         """Move the camera to a view."""
-        heading = self._context.view.viewport.heading
+        heading = self._viewport.heading
         if self._led is None:
             self._parallel = heading.parallel
         if heading != self._led:
             self._own = heading
         self._led = view
-        self._context.view.viewport.glide_to(view)
+        self._viewport.glide_to(view)
 
     def go(self) -> None:
         """Restore camera and keyboard focus, before the card closes."""
-        own, led, viewport = self._own, self._led, self._context.view.viewport
+        own, led, viewport = self._own, self._led, self._viewport
         self._own = self._led = None
         if own is not None and led is not None:
             here = viewport.heading
