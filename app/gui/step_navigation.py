@@ -96,13 +96,13 @@ class StepButton(QAbstractButton):
             raise ValueError(state)
         changed = (state, count) != (self._state, self._count)
         self._state, self._count = state, count
-        text = {
+        texts = {
             "done": tr("done"),
             "look": tr("needs review"),
             "bad": tr("not valid"),
             "missing": tr("not available yet"),
         }
-        self.setAccessibleDescription(text.get(state, ""))
+        self.setAccessibleDescription(texts.get(state, ""))
         if changed:
             self.update()
 

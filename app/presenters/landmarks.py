@@ -159,6 +159,6 @@ class LandmarkView:
         grey = tr("Low confidence; not used by the model.")
         sure = tr("High confidence: {least} % or more needs no review.")
         doubtful = tr("Low confidence: below {least} % the landmark needs review.")
-        text = {"certain": sure, "doubtful": "" if self.by_hand else doubtful, "unneeded": grey}
-        told = text.get(self.sureness, "").format(least=f"{CERTAIN * 100:.0f}")
+        texts = {"certain": sure, "doubtful": "" if self.by_hand else doubtful, "unneeded": grey}
+        told = texts.get(self.sureness, "").format(least=f"{CERTAIN * 100:.0f}")
         return "\n".join([self.rule, *[read] * self.traced, *[told] * bool(told)])

@@ -98,13 +98,13 @@ def _cut_row(view: CutRowText, colour: str) -> Block:
 
 def _legend() -> Block:
     """Return what the lights say, on one line."""
-    text = pressure_legend()
+    legend = pressure_legend()
     before = tr("Tension and contact pressure are estimates. Maximum pressure:")
 
     def paint(paper: PagePainter, x: float, y: float) -> None:
         paper.text(x, y + 2.6, before, "small")
         x += text_width(before, "small") + 3.5
-        for light, words in text:
+        for light, words in legend:
             paint_light(paper, x, y + 1.8, light)
             paper.text(x + 2.2, y + 2.6, words, "small")
             x += text_width(words, "small") + 7.5

@@ -116,7 +116,7 @@ def _three_percent(study: Study) -> Claim:
         for control in (*CONTROLS.values(), "exact")
     }
     error = {key: abs(100.0 * run.last.error) for key, run in runs.items()}
-    text = {
+    texts = {
         body: ", ".join(
             f"{control} {error[body, control]:.2g} %" for control in (*CONTROLS.values(), "exact")
         )
@@ -126,7 +126,7 @@ def _three_percent(study: Study) -> Claim:
     return Claim(
         "4, Figs. 3, 4",
         "line about 3 % shorter, volume error below 0.1 %",
-        f"line at {lengths}; " + "; ".join(f"{body}: {words}" for body, words in text.items()),
+        f"line at {lengths}; " + "; ".join(f"{body}: {words}" for body, words in texts.items()),
         _verdict(*(error[body, "adaptive"] < 0.1 for body in BODIES.values())),
     )
 

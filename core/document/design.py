@@ -201,8 +201,13 @@ class Design:
             reduce(Design.with_line_settings, map(LineSettings.mechanical, each.traits), each)
             for each in (self, other)
         )
-        text: dict[str, Any] = {"own_measures": (), "customer": "", "worn_tight_mm": 0.0, "calibration": None}
-        return replace(mine, **text) == replace(others, **text)
+        neutral: dict[str, Any] = {
+            "own_measures": (),
+            "customer": "",
+            "worn_tight_mm": 0.0,
+            "calibration": None,
+        }
+        return replace(mine, **neutral) == replace(others, **neutral)
 
     def with_template(self, template: str) -> Design:
         """Return the design with another template. Raises LineError if there are own lines.

@@ -32,7 +32,9 @@ def edit_warnings(body: Body) -> list[Message]:
 def landmark_warnings(landmarks: Landmarks) -> list[Message]:
     """Return what should be looked at on the landmarks alone; a side without a breast is named once."""
     texts = [
-        sentence for kind in ESSENTIAL for sentence in _uncertain(kind, _untold(landmarks, kind), landmarks)
+        sentence
+        for kind in ESSENTIAL
+        for sentence in _uncertainty_messages(kind, _untold(landmarks, kind), landmarks)
     ]
     return [*texts, *landmarks.warnings]
 
@@ -58,7 +60,7 @@ def uncertain_sides(landmarks: Landmarks, kind: str) -> list[str]:
     return [side for side, mark in found.items() if mark and not mark.by_hand and mark.confidence < CERTAIN]
 
 
-def _uncertain(kind: str, sides: list[str], landmarks: Landmarks) -> list[Message]:
+def _uncertainty_messages(kind: str, sides: list[str], landmarks: Landmarks) -> list[Message]:
     if not sides:
         return []
     if kind == "fold":
@@ -75,7 +77,7 @@ def _uncertain(kind: str, sides: list[str], landmarks: Landmarks) -> list[Messag
             side=SideName(shown[0]),
         )
         two = Message("The nipples are not clearly visible. Check both bust points.")
-        rest = _uncertain(kind, [side for side in sides if side not in shown], landmarks)
+        rest = _uncertainty_messages(kind, [side for side in sides if side not in shown], landmarks)
         return [two if len(shown) == 2 else one, *rest]
     one = Message(
         "No nipple clearly detected on the {side} breast. Check its bust point.",

@@ -134,12 +134,12 @@ def _body_of(
 ) -> Body:
     scan = read_raw(name, data, progress)
     rebuilt = is_cloud(scan)
-    texts = scan.notes
+    notes = scan.notes
     shape = scan.vertices, scan.faces
     if rebuilt:
-        texts = (
+        notes = (
             Message("Reconstructed a surface from {count} points.", count=f"{len(scan.vertices):,}"),
-            *texts,
+            *notes,
         )
         shape = _surface(name, scan, progress)
     vertices, faces, repairs = repair(*shape, progress)
@@ -154,14 +154,14 @@ def _body_of(
         lies = raw_pose(vertices, unit)
         mesh = Mesh(vertices @ lies.file_to_mm[:3, :3].T, faces)
         raise ImplausibleScanError(
-            refusal, Body(mesh, lies, (*texts, *repairs), scan_name(name), rebuilt)
+            refusal, Body(mesh, lies, (*notes, *repairs), scan_name(name), rebuilt)
         ) from refusal
     progress(STANDING, 1.0)
     turn = pose.file_to_mm[:3, :3]
     skin, cut = _off_the_stand(EditableMesh(vertices @ turn.T, faces), pose.stand)
     mesh, mendings = fill_holes(Mesh(skin.vertices, skin.faces), progress)
     colours = _colours(mesh, scan, pose)
-    return Body(mesh, pose, (*texts, *repairs, *cut, *mendings), scan_name(name), rebuilt, colours=colours)
+    return Body(mesh, pose, (*notes, *repairs, *cut, *mendings), scan_name(name), rebuilt, colours=colours)
 
 
 def _colours(mesh: Mesh, scan: RawScan, pose: Pose) -> Colours | None:

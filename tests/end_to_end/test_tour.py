@@ -62,7 +62,7 @@ def test_the_tour_leads_from_the_lifted_bust_to_the_sheet() -> None:
 
 
 @pytest.mark.usefixtures("opened_as_in_the_program")
-def test_a_report_opened_meanwhile_is_what_the_tour_tells_of() -> None:
+def test_the_tour_goes_on_at_the_report_that_is_opened_meanwhile() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
         tour = window.start_controller.tour

@@ -38,8 +38,8 @@ def add_options(parser: ArgumentParser) -> None:
     parser.add_argument("input", metavar="PROJECT", help=project)
     formats = {each.what: ", ".join(f".{ending}" for ending in each.formats) for each in exports()}
     for kind, (option, output) in KINDS.items():
-        said = output.format(endings=formats[kind])
-        parser.add_argument(f"--{option}", dest=kind, default="", metavar="FILE", help=said)
+        text = output.format(endings=formats[kind])
+        parser.add_argument(f"--{option}", dest=kind, default="", metavar="FILE", help=text)
     unit = "mm, cm, m or in (default: m in .glb, cm in measurements, otherwise mm)"
     parser.add_argument("--unit", dest="file_unit", metavar="UNIT", help=unit)
     axes = "z-up (front -y), y-up (front z) or z-up-front-y (front y); default: y-up in .glb, otherwise z-up"

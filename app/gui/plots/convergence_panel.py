@@ -196,8 +196,8 @@ class ConvergencePanel(QWidget):
                 each.setText(text)
                 each.setVisible(bool(text))
         self.hint.setText(verdict.hint)
-        message = (f"{name} {value}" for name, value in pairs[:2])
-        self._said.show_parts((verdict.hint, *message, verdict.pace))  # what to do stands first
+        figures = (f"{name} {value}" for name, value in pairs[:2])
+        self._said.show_parts((verdict.hint, *figures, verdict.pace))  # what to do stands first
 
     def set_control(self, control: str) -> None:
         """Show which of the controls is on; nothing is emitted."""

@@ -119,5 +119,5 @@ class LandmarkPins:
             viewport.set_pins(pins if viewport is self._viewports[0] else (), chosen[-1] if chosen else "")
 
     def _pin(self, mark: Landmark) -> Pin:
-        text = landmark_view(mark.name, mark, self.accepted)
-        return Pin(mark.name, text.title, mark.position, text.tone, text.state)
+        view = landmark_view(mark.name, mark, self.accepted)
+        return Pin(mark.name, view.title, mark.position, view.tone, view.state)

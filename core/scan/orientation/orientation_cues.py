@@ -267,9 +267,9 @@ CUES = (
 def score(seen: TorsoFeatures) -> tuple[float, dict[Message, float]]:
     """Return how well this look is that of an upper body that stands, and what each cue adds to it [1]."""
     trunk = seen.trunk
-    text = {cue.words: cue.weight * _bounded(cue, seen) for cue in CUES}
-    total = sum(text.values()) + (0.5 if 1.05 < trunk.stoutness < 2.3 else -2.5)
-    return total - 3.0 * float(np.clip((SHORTEST - trunk.height[-1]) / 60.0, 0.0, 1.0)), text
+    signals = {cue.words: cue.weight * _bounded(cue, seen) for cue in CUES}
+    total = sum(signals.values()) + (0.5 if 1.05 < trunk.stoutness < 2.3 else -2.5)
+    return total - 3.0 * float(np.clip((SHORTEST - trunk.height[-1]) / 60.0, 0.0, 1.0)), signals
 
 
 def _bounded(cue: Cue, seen: TorsoFeatures) -> float:

@@ -38,13 +38,13 @@ class SafeMode(QObject):
             self._drawn = True
             self._clock.start()
             return
-        text = {
+        texts = {
             "asked": tr("Safe mode: the 3D view does not use the graphics driver."),
             "failed": tr("Safe mode: Busk failed to start the 3D view twice."),
         }
         hint = tr("All features work; the 3D view is slower.")
         act = (tr("Use normal mode at next start"), graphics_work) if self._why == "failed" else None
-        self._context.notifications.warn(text[self._why], hint, [act] if act else ())
+        self._context.notifications.warn(texts[self._why], hint, [act] if act else ())
 
     def _stop(self) -> None:
         if self._drawn:

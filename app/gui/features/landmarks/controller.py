@@ -101,12 +101,12 @@ class LandmarksController(QObject):
 
     def show_found(self, stages: Stages) -> None:
         """Show what was found on a body."""
-        context, sentence = self._context, landmark_warnings(stages.landmarks)
+        context, warnings = self._context, landmark_warnings(stages.landmarks)
         views = landmark_views(stages.landmarks.points, context.view.pins.accepted)
-        self._panel.set_landmarks(views, render_all(sentence))
+        self._panel.set_landmarks(views, render_all(warnings))
         weak = sum(view.weak for view in views)
-        context.navigation.mark_step("landmarks", "look" if weak or sentence else "done", weak)
-        if not (weak or sentence):
+        context.navigation.mark_step("landmarks", "look" if weak or warnings else "done", weak)
+        if not (weak or warnings):
             context.notifications.withdraw(_DOUBT)
 
     def show_unclear(self, stages: Stages) -> None:
@@ -116,7 +116,7 @@ class LandmarksController(QObject):
         marks = [mark for mark in stages.landmarks.points.values() if kind_of(mark.name) in ESSENTIAL]
         worst = min(marks, key=lambda mark: mark.confidence)
         if tone_of(worst.confidence) == "bad" or stages.landmarks.warnings:
-            sentence, *more = landmark_warnings(stages.landmarks)
+            first, *more = landmark_warnings(stages.landmarks)
             spoken_of = first_warning(stages.landmarks)
             actions = [(tr("Review"), lambda: self._look_at(spoken_of))]
             if stages.landmarks.size_doubted:
@@ -124,7 +124,7 @@ class LandmarksController(QObject):
             if up := stages.landmarks.upright:
                 actions.insert(0, (tr("Set upright"), lambda: self._stand_upright(up)))
             self._context.notifications.show(
-                "warn", sentence, joined(map(render, more)), actions, lasting=True, topic=_DOUBT
+                "warn", first, joined(map(render, more)), actions, lasting=True, topic=_DOUBT
             )
 
     def show_stuck(self, stuck: IncompleteBuildError) -> None:

@@ -90,8 +90,8 @@ class LandmarkRow(QAbstractButton):
         painter.setPen(QColor(tokens.text_quiet if self.view.absent else tokens.text))
         left = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft
         plain = self.view.by_hand or self.view.absent
-        text = QFontMetrics(font("secondary", tabular=True)).horizontalAdvance(state)
-        room = self.width() - 28 - (text + 18 if plain else 112)
+        extent = QFontMetrics(font("secondary", tabular=True)).horizontalAdvance(state)
+        room = self.width() - 28 - (extent + 18 if plain else 112)
         title = painter.fontMetrics().elidedText(self.text(), Qt.TextElideMode.ElideRight, room)
         painter.drawText(QRectF(28, 0, room, self.height()), left, title)
         painter.setFont(font("secondary", tabular=True))

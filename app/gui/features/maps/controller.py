@@ -269,9 +269,9 @@ class MapsController(QObject):
         """Show the values that are pinned, where there are any."""
         told = {each: self._told(each) for each in self.pinned} if self.name else {}
         self._flagged = tuple(each for each, texts in told.items() if texts is not None)
-        texts = [each for each in told.values() if each is not None]
-        self.flags.show_flags(flag for flag, _ in texts)
-        self.legend.show_value(texts[-1][1] if texts else None)
+        values = [each for each in told.values() if each is not None]
+        self.flags.show_flags(flag for flag, _ in values)
+        self.legend.show_value(values[-1][1] if values else None)
         self._place.consider()
 
     def _told(self, pinned: Pinned) -> tuple[ValueFlag, float] | None:

@@ -150,10 +150,10 @@ def paint_row(
     shown = painter.fontMetrics().elidedText(view.label, Qt.TextElideMode.ElideRight, int(name.width()))
     painter.drawText(name, LEFT, shown)
     if spot.mixed and view.known:
-        text = painter.fontMetrics().horizontalAdvance(view.label) + 6
+        extent = painter.fontMetrics().horizontalAdvance(view.label) + 6
         painter.setFont(font("caption"))
         painter.setPen(QColor(tokens.text_caption))
-        painter.drawText(name.adjusted(text, 1, 0, 1), LEFT, view.unit_shown)
+        painter.drawText(name.adjusted(extent, 1, 0, 1), LEFT, view.unit_shown)
     if view.known:
         _paint_figures(painter, tokens, spot, doubtful)
     for words, role, room in spot.texts:
@@ -350,10 +350,10 @@ class MeasurementsTable(QWidget):
             painter.setFont(font("title"))
             painter.setPen(QColor(tokens.text))
             painter.drawText(line, LEFT, title)
-            text = painter.fontMetrics().horizontalAdvance(title) + 6
+            extent = painter.fontMetrics().horizontalAdvance(title) + 6
             painter.setFont(font("caption"))
             painter.setPen(QColor(tokens.text_caption))
-            painter.drawText(line.adjusted(text, 1, 0, 1), LEFT, units)
+            painter.drawText(line.adjusted(extent, 1, 0, 1), LEFT, units)
         for spot in self._spots:
             if event.rect().intersects(QRect(0, spot.top, self.width(), spot.height)):
                 painter.setOpacity(0.45 if self.stale and spot.view.key else 1.0)

@@ -112,15 +112,15 @@ class TargetCard(QWidget):
         return more
 
     def _said(self) -> QVBoxLayout:
-        text = QVBoxLayout()
-        text.setSpacing(6)
+        column = QVBoxLayout()
+        column.setSpacing(6)
         self.hint = sentence("")
         self.answer, self.price = sentence("", "name"), sentence("")
         self.changes, self.note = sentence(""), sentence("", "caption")
         for part in (self.hint, self.answer, self.price, self.changes, self.note):
-            text.addWidget(part)
+            column.addWidget(part)
             part.hide()
-        return text
+        return column
 
     def _foot(self) -> QHBoxLayout:
         foot = QHBoxLayout()
