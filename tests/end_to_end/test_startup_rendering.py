@@ -15,6 +15,7 @@ START = """
 import sys
 import threading
 import time
+from importlib.machinery import PathFinder
 from PySide6.QtCore import QTimer
 import app.gui.startup
 from app.cli.main import main
@@ -23,8 +24,13 @@ faults, seen, began, go_on = [], [], time.monotonic(), app.gui.startup._go_on
 
 class Finder:
     def find_spec(self, name, path=None, target=None):
-        if name == "pyvista.plotting.plotter":
-            at_the_libraries()
+        if name != "pyvista.plotting.plotter":
+            return None
+        # Not here: while a module is searched for, no other thread can import anything.
+        spec = PathFinder.find_spec(name, path)
+        execute = spec.loader.exec_module
+        spec.loader.exec_module = lambda module: (at_the_libraries(), execute(module))
+        return spec
 
 def begin(window, what):
     hook = sys.excepthook
