@@ -26,15 +26,14 @@ from pages import put, table
 
 from app.presenters.samples import SAMPLES, sample_design
 from core.analysis.inverse_design.objective import INSIDE
-from core.analysis.inverse_design.profile_csv import profile_goals
+from core.analysis.inverse_design.profile_curve import profile_goals
 from core.analysis.inverse_design.quantities import GIRTH, NAMES, Goal, profile_name, reading
 from core.analysis.inverse_design.solve import solve_targets
 from core.document.design import Design, ScanSource
 from core.document.presets import built_in, with_preset
 from core.errors import UserError
 from core.garment.elastic_library import find_elastic
-from core.garment.pressure import pressures
-from core.garment.pressure_limits import pressure_limits
+from core.garment.pressure import pressure_limits, pressures
 from core.garment.tension import line_tensions
 from core.mechanics.mesh_quality import STRAINED_RANGE, MeshQuality
 from core.pipeline.active_lines import free_lines

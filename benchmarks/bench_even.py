@@ -25,9 +25,8 @@ import numpy as np
 from bench_ask import bodies
 from pages import put, table
 
-from core.analysis.symmetry.balance import BalanceResult, balance_sides
+from core.analysis.symmetry.balance import ENOUGH, BalanceResult, balance_sides
 from core.analysis.symmetry.compare import SideDifference, compare_sides
-from core.analysis.symmetry.split_sides import ENOUGH
 from core.control_mesh.template import read_template
 from core.deformation.incremental_normals import volume_change
 from core.document.design import ScanSource

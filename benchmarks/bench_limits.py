@@ -35,8 +35,7 @@ from core.document.presets import built_in, with_preset
 from core.errors import UserError
 from core.garment.cut_list import is_strap
 from core.garment.elastic_library import find_elastic
-from core.garment.pressure import pressures
-from core.garment.pressure_limits import pressure_limits
+from core.garment.pressure import pressure_limits, pressures
 from core.mechanics.constraint_lines import RATIO_LIMITS
 from core.mechanics.exact_solution import solve_exact
 from core.mechanics.iteration import LineTargets, initial_state, step

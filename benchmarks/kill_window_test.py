@@ -32,7 +32,7 @@ from app.gui.application import application  # noqa: E402
 from app.gui.main_window import MainWindow  # noqa: E402
 from app.gui.viewport.opengl import is_safe_mode  # noqa: E402
 from core.document.document import Document  # noqa: E402
-from core.document.document_text import to_texts  # noqa: E402
+from core.document.serialization import to_texts  # noqa: E402
 from core.document.storage.project_file import open_project, with_scan  # noqa: E402
 
 SAMPLE = ROOT / "resources" / "samples" / "mannequin.ply"

@@ -8,9 +8,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from app.cli.parser import COMMANDS, command_parser
 from core.measurements.definitions import DEFINITIONS
-from core.measurements.size_explanation import short
 from core.measurements.size_table import Scale
-from core.measurements.sizes import built_in, sizes
+from core.measurements.sizes import built_in, short, sizes
 
 SHARED = 4
 """Options of at least so many commands are listed once, for all of them."""

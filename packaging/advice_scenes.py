@@ -13,7 +13,7 @@ from core.analysis.inverse_design.quantities import Goal, skin_of
 from core.deformation.tffd import deform
 from core.export.mesh import write_mesh
 from core.pipeline.build import Stages, build
-from core.pipeline.exact import exact_solution
+from core.pipeline.solve import exact_solution
 
 _NOISE = 1.0  # of the made scan [mm]
 

@@ -21,7 +21,7 @@ from core.landmarks.manual import placed_mark
 from core.mechanics.constraint_lines import Line, length_ratio
 from core.messages import Message
 from core.pipeline.build import Stages, build
-from core.scan.edits import ScanEdits, hole_centre
+from core.scan.source import ScanEdits, hole_centre
 
 _ON = dict.fromkeys(("yes", "on", "true", "1"), True) | dict.fromkeys(("no", "off", "false", "0"), False)
 _FIRM = {"yes": 0.1, "on": 0.1, "firm": 0.1, "no": 0.0, "off": 0.0, "free": 0.0}

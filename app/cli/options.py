@@ -12,8 +12,8 @@ from core.document.line_notation import HELP as LINE_HELP
 from core.landmarks.manual import HELP as LANDMARK_HELP
 from core.mechanics.options import CHOICES, RANGES
 from core.mechanics.volume import CONTROLS
-from core.scan.edits import SIDES
 from core.scan.orientation.pose import MILLIMETRES
+from core.scan.source import SIDES
 
 WORDS = {**CHOICES, "weights": WEIGHTS, "template": TEMPLATES}
 """Settings that are a word, and the words that each allows."""

@@ -19,8 +19,7 @@ from core.garment.match_shape import match_lengths
 from core.garment.tension import divergence_error
 from core.messages import Message, join
 from core.pipeline.build import Stages, build
-from core.pipeline.exact import NoEquilibriumError
-from core.pipeline.solve import Solution, solve
+from core.pipeline.solve import NoEquilibriumError, Solution, solve
 from core.pipeline.warnings import shape_warnings
 
 

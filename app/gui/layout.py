@@ -1,5 +1,7 @@
 """Layout of the window: splitters, collapsed panes, and sizes kept between sessions."""
 
+# ruff: noqa: N802 - Qt names its events
+
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
@@ -9,16 +11,113 @@ from PySide6.QtCore import QEvent, QObject, QSettings, Qt, QTimer
 from PySide6.QtWidgets import QApplication, QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
 
 from app.gui.context import Navigation
-from app.gui.notification_area import NotificationArea
-from app.gui.widgets.accessibility import announce
-from app.gui.widgets.basic import OverlayCard
+from app.gui.widgets.basic import OverlayCard, Segment, announce
 from app.gui.widgets.focus_chain import FocusRing, next_stop, stops
+from app.gui.widgets.overlay_layout import APART, GAP
 from app.gui.widgets.splitter import Splitter
+from app.gui.widgets.tooltip import set_tip
 from app.gui.widgets.window_geometry import put_as_last
 from app.i18n.catalog import language, tr
 
 if TYPE_CHECKING:
     from app.gui.main_window import MainWindow
+
+
+class Inspector(QWidget):
+    """Holds the panels by name; ``tabs`` are offered at the head while one of them is shown."""
+
+    LEAST, MOST = 330, 480
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setMinimumWidth(self.LEAST)
+        self.setMaximumWidth(self.MOST)
+        self._panels: dict[str, QWidget] = {}
+        self._titled: set[str] = set()
+        self.tabs = Segment((), wide=True)
+        set_tip(self.tabs, tr("Lengths, measurements, elastics and cut list, variants, history"))
+        self._head = QWidget()
+        row = QHBoxLayout(self._head)
+        row.setContentsMargins(8, 10, 8, 0)
+        row.addWidget(self.tabs)
+        self._stack = QStackedWidget()
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addWidget(self._head)
+        column.addWidget(self._stack, 1)
+
+    def add(self, name: str, panel: QWidget, tab: str = "") -> None:
+        """Take a panel in; one with the title of a ``tab`` is offered beside the others that have one."""
+        self._panels[name] = panel
+        self._stack.addWidget(panel)
+        if tab:
+            self._titled.add(name)
+            self.tabs.add(name, tab)
+        if len(self._panels) == 1:
+            self.open(name)
+
+    def open(self, name: str) -> None:
+        """Show the panel of this name; the keyboard goes over to it, and not to a button of it."""
+        has, former = QApplication.focusWidget(), self._stack.currentWidget()
+        goes_over = has is not None and former is not None and former.isAncestorOf(has)
+        self._stack.setCurrentWidget(self._panels[name])
+        self._head.setVisible(name in self._titled)
+        self.tabs.set_choice(name)
+        if goes_over:
+            self._panels[name].setFocus(Qt.FocusReason.OtherFocusReason)
+
+    def panel(self) -> QWidget | None:
+        """Return the panel that is shown."""
+        return self._stack.currentWidget()
+
+
+_LEAST = 440
+"""Width that notices need beside the tools at the upper edge of the view [px]."""
+
+
+class NotificationArea(QObject):
+    """Keeps the notices on what is shown; on the view they never change its size."""
+
+    def __init__(self, window: MainWindow, pages: QStackedWidget, work: QWidget, head: QVBoxLayout) -> None:
+        super().__init__(window)
+        self._window, self._pages, self._work, self._head = window, pages, work, head
+        self._on_view = False
+        window.view.installEventFilter(self)
+        window.view.compare.installEventFilter(self)
+        pages.currentChanged.connect(self.carry)
+
+    def carry(self) -> None:
+        """Place the notices on the view, or above the page that is shown in the place of the work."""
+        view, notices = self._window.view, self._window.notices
+        on_view = self._pages.currentWidget() is self._work
+        if on_view == self._on_view:
+            return
+        self._on_view, shown = on_view, not notices.isHidden()
+        if on_view:
+            self._head.removeWidget(notices)
+            self._fit()
+            view.place(notices, "top")
+        else:
+            view.floating.remove(notices)
+            notices.set_room(None, self._window.height())
+            self._head.insertWidget(0, notices)
+        notices.setVisible(shown)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Handle the size of the view and of the tools beside the notices."""
+        if event.type() in (QEvent.Type.Resize, QEvent.Type.Show, QEvent.Type.Hide):
+            self._fit()
+        return False
+
+    def _fit(self) -> None:
+        if not self._on_view:
+            return
+        view = self._window.view
+        whole = view.width() - 2 * GAP
+        beside = whole - view.compare.sizeHint().width() if not view.compare.isHidden() else whole
+        self._window.notices.set_room(beside - APART if beside >= _LEAST else whole, view.height())
+
 
 NARROW, WIDE = 340, 364
 """First width of the inspector in windows narrower and wider than 1400 pixels."""
@@ -246,7 +345,7 @@ class Layout(QObject):
         if not self._window.strip.is_folded():
             self._height = self._window.strip.height()
 
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Handle the size of the window; a low one opens with collapsed plots."""
         if watched is self._window and event.type() in (QEvent.Type.Resize, QEvent.Type.Move):
             # Not at the end alone: a window that does not close in order has a place too.

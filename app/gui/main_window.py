@@ -59,15 +59,13 @@ from app.gui.features.symmetry.controller import SymmetryController
 from app.gui.features.target_shape.controller import TargetShapeController
 from app.gui.features.uncertainty.controller import UncertaintyController
 from app.gui.features.variants.controller import VariantsController
-from app.gui.features.variants.history_controller import HistoryController
-from app.gui.features.variants.history_panel import HistoryPanel
+from app.gui.features.variants.history import HistoryController, HistoryPanel
 from app.gui.features.variants.panel import VariantsPanel
 from app.gui.features.variants.table import VariantTableController
 from app.gui.features.view.controller import ViewController
 from app.gui.features.view.image_export import ImageExportController
 from app.gui.frame_dispatch import FrameDispatch, ThrottledDispatch
-from app.gui.inspector import Inspector
-from app.gui.layout import Layout
+from app.gui.layout import Inspector, Layout
 from app.gui.plots.convergence_panel import ConvergencePanel
 from app.gui.progress_controller import ProgressController
 from app.gui.session.gc_control import GarbageCollection
@@ -83,9 +81,9 @@ from app.gui.viewport.view_area import ViewArea
 from app.gui.widgets.basic import OverlayCard
 from app.gui.widgets.coach_mark import CoachMark
 from app.gui.widgets.first_paint import lay_out
-from app.gui.widgets.inline_edit import forget_refused
 from app.gui.widgets.navigation_row import NavigationRow
 from app.gui.widgets.notification_bar import NotificationBar
+from app.gui.widgets.value_edit import forget_refused
 from app.i18n.catalog import tr
 from app.presenters.status import facts
 from core.document.design import Design

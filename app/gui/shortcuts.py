@@ -13,8 +13,8 @@ from app.gui.plots import canvas as plot_canvas
 from app.gui.viewport import drawing_tool as hand
 from app.gui.viewport import split_view as wipe
 from app.gui.viewport.mouse_bindings import chosen_gestures, gestures_in_words
-from app.gui.widgets import inline_edit as typed_field
 from app.gui.widgets import splitter as divider
+from app.gui.widgets import value_edit as typed_field
 from app.i18n.catalog import in_all_languages, tr
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from app.i18n.catalog import number, tr
 from core.analysis.length_limits.zones import AMBER, GREEN, RED, SLACK, LengthLimits, Reason, Zone
-from core.garment.pressure_limits import pressure_limits
+from core.garment.pressure import pressure_limits
 from core.mechanics.constraint_lines import RATIO_LIMITS
 
 KEY_ORDER = GREEN, AMBER, RED, SLACK

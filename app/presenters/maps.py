@@ -22,8 +22,7 @@ from app.presenters.bust_shift import (
 from app.presenters.pressure import limit_marks
 from app.rendering.palette import MAP_AMOUNT, MAP_LESS, MAP_MORE
 from app.rendering.vertex_colors import Ramp
-from core.garment.pressure import mmhg
-from core.garment.pressure_limits import pressure_limits
+from core.garment.pressure import mmhg, pressure_limits
 from core.garment.pressure_list import PressureList
 from core.geometry.mesh import Floats, Indices, Mesh, Points
 from core.geometry.mirror_plane import SideComparison, mirror_plane

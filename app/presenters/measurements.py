@@ -12,9 +12,8 @@ from app.presenters.messages import line_title, render
 from core.document.custom_measures import LONGEST_NAME, CustomMeasurement
 from core.errors import UserError
 from core.landmarks.types import CERTAIN
-from core.measurements.custom import OWN
 from core.measurements.definitions import Measure, definition_of
-from core.measurements.table import Measures, measure_rows
+from core.measurements.table import OWN, Measures, measure_rows
 from core.measurements.uncertain_value import LIFT, OUT, round_uncertainty, uncertainty_digits
 from core.mechanics.iteration import Observables
 from core.messages import Message

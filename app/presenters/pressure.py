@@ -10,8 +10,7 @@ from app.presenters.lines import LineView, line_colours
 from app.presenters.messages import line_title, render, render_all
 from core.document.design import Design
 from core.garment.assessment import UNKNOWN_PRESSURE
-from core.garment.pressure import LEFT_OUT, NOT_FOR_STRAPS, mmhg
-from core.garment.pressure_limits import AMBER, GREEN, RED, pressure_limits
+from core.garment.pressure import AMBER, GREEN, LEFT_OUT, NOT_FOR_STRAPS, RED, mmhg, pressure_limits
 from core.garment.pressure_list import PressureList, PressureRow
 
 

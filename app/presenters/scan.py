@@ -12,10 +12,10 @@ from core.geometry.mesh import Points
 from core.landmarks.types import Landmarks
 from core.landmarks.warnings import edit_warnings
 from core.scan.body import Body
-from core.scan.edits import ScanEdits
 from core.scan.orientation.lean_angles import lean_angles
 from core.scan.readers.registry import FORMATS
 from core.scan.repair.holes import NAMED, hole_sentence, hole_sentences
+from core.scan.source import ScanEdits
 
 PACKED = ".gz"
 """Any scan may be packed."""

@@ -9,8 +9,7 @@ from html import escape
 from app.i18n.catalog import colon, joined, language, listed, tr
 from app.i18n.lengths import length
 from app.presenters.messages import render
-from core.measurements.letter_sizes import letter_sizes
-from core.measurements.sizes import GIRTHS_OF_SIZES, Neighbour, SizeAnswer, neighbours_of, sizes
+from core.measurements.sizes import GIRTHS_OF_SIZES, Neighbour, SizeAnswer, letter_sizes, neighbours_of, sizes
 from core.measurements.table import Measures
 from core.measurements.uncertain_value import BEFORE, OutputUncertainties
 

@@ -13,8 +13,8 @@ from app.presenters.measurements import length_uncertainty, plus_minus
 from app.presenters.messages import render
 from app.presenters.target_shape import is_met, is_signed, reasons_text, target_title
 from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER, LIFT, OUT, Goal, section_of
+from core.analysis.symmetry.balance import ENOUGH, moves_one_side, splittable_lines
 from core.analysis.symmetry.compare import BeforeAfter, SideDifference, SymmetryRow, symmetry_rows
-from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, splittable_lines
 from core.control_mesh.template import read_template
 from core.document.design import Design
 from core.landmarks.warnings import edit_warnings

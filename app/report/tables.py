@@ -11,9 +11,8 @@ from app.rendering.palette import LIGHT
 from app.report.cut_rows import line_notes
 from app.report.document import ReportDocument
 from app.report.layout import Block, Paint
-from app.report.notes import note_groups
 from app.report.painter import PagePainter, elide, fitting_font, line_height, text_width, wrap
-from app.report.text import MeasureRow, key_measures, measure_rows
+from app.report.text import MeasureRow, key_measures, measure_rows, note_groups
 from core.export.report_data import Report
 
 Edges = tuple[float, float, float]

@@ -16,9 +16,9 @@ from damaged_files import damaged_file
 from core.document.custom_measures import CustomMeasurement
 from core.document.design import Design, ScanSource
 from core.document.document import Document
-from core.document.document_text import DESIGN, VARIANTS, to_texts
 from core.document.elastic import Elastic
 from core.document.lines import CustomLine, LineSettings
+from core.document.serialization import DESIGN, VARIANTS, to_texts
 from core.document.storage.project_file import ScanFile, open_project, read_scan_file, save_project
 from core.errors import UserError
 from core.landmarks.manual import PlacedMark

@@ -16,11 +16,13 @@ from core.document.document_limits import (
     MOST_POINTS,
     MOST_ROWS,
     check_counts,
+    check_flags,
+    check_numbers,
+    check_words,
 )
 from core.document.elastic import TISSUE_LIMITS, TISSUE_STIFFNESS, Elastic, check_elastics
 from core.document.lines import ActiveLine, CustomLine, LineSettings, partner_of
 from core.document.printable_name import repeated
-from core.document.validation import check_flags, check_numbers, check_words
 from core.errors import LandmarkError, LineError, UserError
 from core.landmarks.manual import PlacedMark
 from core.mechanics.constraint_lines import RATIO_LIMITS

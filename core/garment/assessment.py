@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from core.garment.cut_list import CutList, CutRow, cut_list
-from core.garment.pressure_limits import AMBER, GREEN, pressure_limits
+from core.garment.pressure import AMBER, GREEN, pressure_limits
 from core.garment.pressure_list import PressureList, PressureRow, pressure_list
 from core.landmarks.warnings import collect_warnings
 from core.mechanics.convergence import Convergence

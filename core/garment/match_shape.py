@@ -16,7 +16,7 @@ from core.mechanics.constraint_lines import RATIO_LIMITS, Line
 from core.mechanics.force_units import newtons_per_unit
 from core.messages import ElasticName, Length, LineName, Message
 from core.pipeline.build import Stages, build
-from core.pipeline.exact import NoEquilibriumError, exact_equilibrium
+from core.pipeline.solve import NoEquilibriumError, exact_equilibrium
 
 PRECISION = 1e-5
 """By how much the lengths may differ that are reached before and after, in parts."""

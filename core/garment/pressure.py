@@ -6,10 +6,13 @@ The full law has a second term for the pull across the band; bands have none, it
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
+from importlib import resources
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
@@ -17,11 +20,55 @@ from core.garment.band_contact import STANDS_OFF, Bridge, bridge_between, bridge
 from core.garment.band_path import BandPath, band_paths
 from core.garment.curve_smoothing import USUAL_WIDTH
 from core.garment.cut_list import is_strap
-from core.garment.pressure_limits import pressure_limits
 from core.garment.tension import LineTension, line_tensions
 from core.geometry.mesh import Flags, Floats, Points
+from core.measurements.size_table import LocalizedText, Source
 from core.messages import Length, Message
 from core.pipeline.build import Stages
+
+GREEN, AMBER, RED = "green", "amber", "red"
+
+
+@dataclass(frozen=True)
+class PressureLimits:
+    """From which pressure [kPa] the light is amber and red, what each light says, and how sure that is.
+
+    ``beyond`` are pressures [kPa] above which more has to be said than the red light does, the lowest first.
+    The limits are an estimate of ours between the figures of the ``sources``: guidance, nothing medical.
+    """
+
+    amber_kpa: float
+    red_kpa: float
+    lights: Mapping[str, LocalizedText]
+    beyond: tuple[tuple[float, LocalizedText], ...]
+    sources: tuple[Source, ...]
+    doubts: tuple[LocalizedText, ...]
+
+    def rating(self, kpa: float) -> str:
+        """Return "green", "amber" or "red" for a pressure [kPa]."""
+        return RED if kpa >= self.red_kpa else AMBER if kpa >= self.amber_kpa else GREEN
+
+    def description(self, kpa: float) -> LocalizedText:
+        """Return what is said of a pressure [kPa]."""
+        above = [words for limit, words in self.beyond if kpa >= limit]
+        return above[-1] if above else self.lights[self.rating(kpa)]
+
+
+@cache
+def pressure_limits() -> PressureLimits:
+    """Return the limits that come with Busk."""
+    values = json.loads((resources.files("resources") / "pressure.json").read_text(encoding="utf-8"))
+    lights = {name: _words(values["lights"][name]) for name in (GREEN, AMBER, RED)}
+    beyond = tuple((each["from_kpa"], _words(each)) for each in values["beyond"])
+    sources = tuple(Source(each["name"], _words(each), each.get("name_ja", "")) for each in values["sources"])
+    doubts = tuple(_words(each) for each in values["doubts"])
+    amber, red = values["amber_kpa"], values["red_kpa"]
+    return PressureLimits(amber, red, MappingProxyType(lights), beyond, sources, doubts)
+
+
+def _words(values: Mapping[str, Any]) -> LocalizedText:
+    return LocalizedText(values["en"], values["ja"])
+
 
 MMHG = 0.133322
 """One mmHg [kPa]."""
@@ -146,7 +193,7 @@ class LinePressure:
 
     @property
     def rating(self) -> str:
-        """ "green", "amber" or "red" for the largest pressure; see ``core.garment.pressure_limits``."""
+        """ "green", "amber" or "red" for the largest pressure; see ``core.garment.pressure``."""
         return pressure_limits().rating(self.largest)
 
     @property

@@ -8,8 +8,7 @@ from typing import Any
 
 from core.deformation.tffd import deform
 from core.garment.body_location import body_location
-from core.garment.pressure import LEFT_OUT, LinePressure, mmhg, pressures
-from core.garment.pressure_limits import pressure_limits
+from core.garment.pressure import LEFT_OUT, LinePressure, mmhg, pressure_limits, pressures
 from core.garment.tension import LineTension, line_tensions
 from core.geometry.mesh import Mesh, Points
 from core.mechanics.constraint_lines import Line

@@ -10,23 +10,52 @@ import numpy as np
 
 from core.geometry.mesh import Mesh, Points
 from core.landmarks.anchor import find_anchor
-from core.landmarks.body_build import measure_build
+from core.landmarks.body_scale import measure_build
 from core.landmarks.breast_root import breast_root_landmarks
 from core.landmarks.bust_point import bust_points, missing_sides
 from core.landmarks.chest import find_poles
 from core.landmarks.lower_breast import ABOVE, folds_and_lowest
 from core.landmarks.manual import project_to_skin, reconcile_with_detected
 from core.landmarks.plausibility import confidence_limit, hints, require_not_angular
-from core.landmarks.resolution import coarse_warning, confidence_factor, spacing
 from core.landmarks.torso.cross_sections import scan_torso
 from core.landmarks.torso_landmarks import torso_landmarks
 from core.landmarks.types import SIDES, Landmark, Landmarks
 from core.landmarks.validation import check, check_anchor, check_placed, placed_warnings
-from core.messages import Message
+from core.messages import Length, Message
 from core.progress import Progress, quiet
 from core.scan.body import Body
 from core.scan.edited_body import is_estimated
 from core.scan.repair.inner_surfaces import BURIED
+
+NEAR = 40.0
+"""The points of the scan are counted so far round a place [mm]."""
+
+FINE, COARSER = 9.0, 8.0
+"""Points so far apart show a fold [mm]; each ``COARSER`` [mm] more divide the confidence by e."""
+
+
+def spacing(mesh: Mesh, places: Sequence[Points]) -> float:
+    """Return how far apart the vertices lie round ``places``, each (3,) [mm], their median [mm]."""
+    counts = [int((((mesh.vertices - place) ** 2).sum(axis=1) < NEAR**2).sum()) for place in places]
+    return float(np.median(NEAR * np.sqrt(np.pi / np.maximum(counts, 1))))
+
+
+def confidence_factor(apart: float) -> float:
+    """Return how much (0..1) of a confidence holds where the points of the scan lie ``apart`` [mm]. Ours."""
+    return float(np.exp(-max(apart - FINE, 0.0) / COARSER))
+
+
+def coarse_warning(apart: float) -> tuple[Message, ...]:
+    """Return one sentence if the points of the scan lie too far ``apart`` [mm] for sure landmarks."""
+    if apart <= FINE + 1.0:
+        return ()
+    return (
+        Message(
+            "The scan is coarse (point spacing about {apart}). Landmarks and girths are less accurate.",
+            apart=Length(apart),
+        ),
+    )
+
 
 NOTHING: Mapping[str, Points] = MappingProxyType({})
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -10,17 +11,155 @@ from itertools import product
 from math import isfinite
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import platformdirs
 
 from core.document.custom_measures import WORN_TIGHT
 from core.errors import SizeError
-from core.measurements.size_explanation import allowance_sentence, band_sentences, cup_sentences
-from core.measurements.size_table import BAND, LocalizedText, Scale, SizeTable
-from core.measurements.size_table_file import read_table, table_of
+from core.measurements.size_table import (
+    BAND,
+    UNDERBUST,
+    LocalizedText,
+    Scale,
+    SizeTable,
+    Source,
+    Step,
+    read_table,
+    table_of,
+)
 from core.messages import Message, length_of
+
+
+@dataclass(frozen=True)
+class LetterTable:
+    """What a letter stands for: ``steps`` [cm] of the measure ``girth``; where two overlap, both fit."""
+
+    key: str
+    title: LocalizedText
+    girth: str
+    steps: tuple[Step, ...]
+
+    def sizes(self, girth_mm: float) -> tuple[str, ...]:
+        """Return the letters that a girth [mm] may have, that with the nearest middle first."""
+        girth = round(girth_mm / 10.0, 6)
+        fitting = [step for step in self.steps if step.is_listed(girth)]
+        return tuple(step.name for step in sorted(fitting, key=lambda step: abs(step.middle - girth)))
+
+
+@dataclass(frozen=True)
+class LetterSizes:
+    """All such tables, where they come from and what in them is uncertain."""
+
+    tables: tuple[LetterTable, ...]
+    sources: tuple[Source, ...]
+    doubts: tuple[LocalizedText, ...]
+
+
+@cache
+def letter_sizes() -> LetterSizes:
+    """Return the tables that come with Busk, those of Japan."""
+    text = (resources.files("resources") / "letter_sizes.json").read_text(encoding="utf-8")
+    values = json.loads(text)
+    return LetterSizes(
+        tuple(_table(each) for each in values["tables"]),
+        tuple(Source(each["name"], _words(each)) for each in values["sources"]),
+        tuple(_words(each) for each in values["doubts"]),
+    )
+
+
+def _table(values: Mapping[str, Any]) -> LetterTable:
+    steps = tuple(Step(*each) for each in values["steps"])
+    return LetterTable(values["key"], _words(values["names"]), values["girth"], steps)
+
+
+def _words(values: Mapping[str, Any]) -> LocalizedText:
+    return LocalizedText(values["en"], values["ja"])
+
+
+class _Words(NamedTuple):
+    inside: Message
+    below: Message
+    above: Message
+
+
+_BAND_WORDS = _Words(
+    Message("Under-bust {value}: band {name} ({low} to {high})."),
+    Message("Under-bust {value} is below the smallest band, {name} (from {low})."),
+    Message("Under-bust {value} is above the largest band, {name} (up to {high})."),
+)
+_CUP_WORDS = {
+    UNDERBUST: _Words(
+        Message("Bust minus under-bust {value}: cup {name} ({low} to {high})."),
+        Message("Bust minus under-bust {value} is below the smallest cup, {name} (from {low})."),
+        Message("Bust minus under-bust {value} is above the largest cup, {name} (up to {high})."),
+    ),
+    BAND: _Words(
+        Message("Bust minus band {value}: cup {name} ({low} to {high})."),
+        Message("Bust minus band {value} is below the smallest cup, {name} (from {low})."),
+        Message("Bust minus band {value} is above the largest cup, {name} (up to {high})."),
+    ),
+}
+
+
+def short(value: float) -> str:
+    """Return a number as short as it can be written, to a hundredth."""
+    return f"{round(value, 2) + 0.0:.2f}".rstrip("0").rstrip(".")
+
+
+def allowance_sentence(table: SizeTable, underbust: float, allowance: float) -> Message:
+    """Return the sentence on the tape tension allowance of the under-bust girth; both [unit of the table]."""
+    value, taken, left = (
+        f"{short(each)} {table.unit}" for each in (underbust, allowance, underbust - allowance)
+    )
+    return Message(
+        "Under-bust {value} minus tape tension allowance {allowance}: {left}.",
+        value=value,
+        allowance=taken,
+        left=left,
+    )
+
+
+def band_sentences(table: SizeTable, value: float) -> tuple[Message, ...]:
+    """Return which band an under-bust girth [unit of the table] gives, and why."""
+    return _sentences(_BAND_WORDS, table.bands, value, table.unit)
+
+
+def cup_sentences(table: SizeTable, value: float) -> tuple[Message, ...]:
+    """Return which cup a difference of girths [unit of the table] gives, and why."""
+    return _sentences(_CUP_WORDS[table.cup_from], table.cups, value, table.unit)
+
+
+def _sentences(words: _Words, scale: Scale, value: float, unit: str) -> tuple[Message, ...]:
+    place, told = scale.place(value), f"{short(value)} {unit}"
+    step = scale.step(place)
+    if step is None:
+        if place < 0:
+            first = scale.steps[0].name
+            return (words.below.fill(value=told, name=first, low=short(scale.borders[0])),)
+        return (words.above.fill(value=told, name=scale.steps[-1].name, high=short(scale.borders[-1])),)
+    # The borders that decide, in gaps of the source too: how far the next step is counts from them.
+    low, high = map(short, scale.ends(place))
+    rule = words.inside.fill(value=told, name=step.name, low=low, high=high)
+    return (rule,) if step.is_listed(value) else (rule, _gap(step.name, short(step.least), short(step.most)))
+
+
+def _gap(name: str, least: str, most: str) -> Message:
+    """Say that a value lies in no range of the source, but next to this one, which may be a single number."""
+    if least == most:
+        return Message(
+            "The size chart lists {value} for {name}; intermediate values use the nearest step.",
+            value=least,
+            name=name,
+        )
+    return Message(
+        "The size chart lists {low} to {high} for {name}; intermediate values use the nearest step.",
+        low=least,
+        high=most,
+        name=name,
+    )
+
 
 ALLOWANCE = WORN_TIGHT
 """What may be taken off the under-bust girth for a tape that is worn tight [mm]: an estimate, not a norm."""

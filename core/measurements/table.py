@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
@@ -13,15 +14,49 @@ from scipy.spatial import cKDTree
 from core.deformation.tffd import deform
 from core.document.custom_measures import CustomMeasurement
 from core.geometry.mesh import Mesh, Points
+from core.landmarks.torso.cross_sections import trunk_levels
 from core.landmarks.types import Landmarks
-from core.measurements.bust import NO_ROOT, apexes, cup_measures
-from core.measurements.custom import OWN, measure_custom
+from core.measurements.bust import NO_MARK, NO_ROOT, apexes, cup_measures, over_skin, straight
 from core.measurements.definitions import KEYS, Measure, definition_of, missing
-from core.measurements.girths import girth_measures
+from core.measurements.girths import girth_measures, over_gaps, tape_ring
 from core.measurements.subject import Subject, subject_of
 from core.messages import Message
 from core.pipeline.build import Stages
 from core.scan.body import Body
+
+OWN = "own:"
+"""The keys of the designer's own measures are this and their name."""
+
+NO_TRUNK = Message("The scan has no trunk at that height.")
+
+
+def measure_custom(subject: Subject, own: Iterable[CustomMeasurement]) -> Iterator[Measure]:
+    """Yield the measures of the designer's own."""
+    for each in own:
+        yield replace(_measured(subject, each), text=each.text)
+
+
+def _measured(subject: Subject, own: CustomMeasurement) -> Measure:
+    key = f"{OWN}{own.name}"
+    if own.kind == "girth":
+        return _girth(key, subject, own)
+    marks = [subject.mark(name) for name in own.marks]
+    return straight(key, marks) if own.kind == "straight" else over_skin(key, subject, marks)
+
+
+def _girth(key: str, subject: Subject, own: CustomMeasurement) -> Measure:
+    marks = [subject.mark(name) for name in own.marks]
+    at = marks[0] if marks else None
+    if marks and at is None:
+        return Measure(key, None, "mm", confidence=0.0, note=NO_MARK)
+    ground = float(at.position[2] if at else subject.mesh.vertices[:, 2].min())
+    level = trunk_levels(subject.mesh, [ground + own.level])[0]
+    if level.tape == 0.0:
+        return Measure(key, None, "mm", confidence=0.0, note=NO_TRUNK)
+    bridged, note = over_gaps(level)
+    measure = Measure(key, level.tape, "mm", (tape_ring(level),), estimate=bridged, note=note)
+    return replace(measure, confidence=at.confidence) if at else measure
+
 
 Measures = Mapping[str, Measure]
 """Measures by their keys, in the order of the table of definitions; own ones come last, as "own:NAME"."""

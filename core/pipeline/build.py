@@ -30,14 +30,37 @@ from core.mechanics.iteration import LineTargets, Observables
 from core.mechanics.model import ConstrainedModel, constrained_model
 from core.mechanics.options import ModelOptions
 from core.messages import LineName, Message
-from core.pipeline.build_shares import PARTS, SHARES, UNKNOWN
 from core.pipeline.elastic_model import solve_elastic_model
 from core.pipeline.line_routes import LineRoute, line_routes, strap_tails
 from core.pipeline.observables import BodyObservables
 from core.progress import Progress, quiet
 from core.scan.body import Body, ImplausibleScanError, body_of
 from core.scan.edited_body import KEEP_MORE, NO_BUST, apply_edits
-from core.scan.edits import UNEDITED
+from core.scan.source import UNEDITED
+
+SHARES = {
+    "read scan": 0.46,
+    "edit scan": 0.04,
+    "find landmarks": 0.1,
+    "fit control mesh": 0.1,
+    "bind body": 0.1,
+}
+"""What part of the time of a build the slow stages take, roughly."""
+
+PARTS = {
+    "reading": (0.0, 0.15),
+    "rebuilding the surface": (0.15, 0.3),
+    "repairing": (0.3, 0.4),
+    "finding up and front": (0.4, 0.45),
+    "closing holes": (0.45, 0.46),
+    "calming the skin": (0.46, 0.5),
+    "find landmarks": (0.5, 0.6),
+}
+"""Where each part of the first stages begins and ends, as shares of the time of a build, roughly."""
+
+UNKNOWN = (0.0, 0.5)
+"""The same for any other part of reading and editing a scan."""
+
 
 GAIN_SHARE = 0.97
 """The default conventional gain in parts of the limit at rest: just calm, so that excess makes it vibrate."""

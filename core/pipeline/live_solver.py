@@ -20,8 +20,8 @@ from core.errors import UserError, as_exception
 from core.geometry import kernels
 from core.mechanics.solver_comparison import SolverComparison
 from core.pipeline.build import IncompleteBuildError, Stages, build, line_targets
-from core.pipeline.exact import NoEquilibriumError
 from core.pipeline.frame import Failure, Frame, make_frame
+from core.pipeline.solve import NoEquilibriumError
 from core.progress import Cancelled, Progress, quiet
 
 __all__ = ["Failure", "Frame", "LiveSolver"]

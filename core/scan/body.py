@@ -12,7 +12,6 @@ from core.errors import ScanError
 from core.geometry.mesh import Faces, Indices, Mesh, Points
 from core.messages import Message
 from core.progress import Progress, quiet
-from core.scan.edits import UNEDITED, ScanEdits
 from core.scan.orientation.pose import STANDING, Pose, estimate_pose
 from core.scan.orientation.unit_detection import MILLIMETRES
 from core.scan.readers.colors import is_plain, transfer_colors
@@ -21,9 +20,9 @@ from core.scan.readers.registry import no_memory, read_raw, scan_bytes
 from core.scan.reconstruction.point_cloud import FEWEST_POINTS, is_cloud, reconstruct_surface
 from core.scan.repair.denoise import denoise, estimate_noise
 from core.scan.repair.editable_mesh import EditableMesh
-from core.scan.repair.hole_filling import fill_holes
-from core.scan.repair.holes import Hole, find_holes
+from core.scan.repair.holes import Hole, fill_holes, find_holes
 from core.scan.repair.repair import repair
+from core.scan.source import UNEDITED, ScanEdits
 
 TORSO = 600.0
 """About how high the scan of a torso is [mm]."""

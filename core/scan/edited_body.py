@@ -13,13 +13,12 @@ from core.geometry.mesh import Flags, Mesh, Points
 from core.messages import Message
 from core.progress import Progress, quiet
 from core.scan.body import Body
-from core.scan.edits import LEAST_HEIGHT, UNEDITED, ScanEdits
 from core.scan.orientation.symmetry_planes import middle_of, sample_uniformly
 from core.scan.readers.colors import transfer_colors, without_colors
 from core.scan.repair.clipping import clip_above, mirrored_half
-from core.scan.repair.holes import Hole, hole_sentences
-from core.scan.repair.large_holes import fill_large_holes
+from core.scan.repair.holes import Hole, fill_large_holes, hole_sentences
 from core.scan.repair.repair import hole_count
+from core.scan.source import LEAST_HEIGHT, UNEDITED, ScanEdits
 
 NEAR = 25.0
 """The centre of a hole is recognised within this distance, or half the hole's length [mm]."""

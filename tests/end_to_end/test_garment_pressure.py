@@ -16,8 +16,7 @@ from app.gui.features.maps.band_coloring import BandValues
 from app.gui.main_window import MainWindow
 from app.presenters.maps import pressure_note
 from core.garment.elastic_library import find_elastic
-from core.garment.pressure import LEFT_OUT
-from core.garment.pressure_limits import pressure_limits
+from core.garment.pressure import LEFT_OUT, pressure_limits
 from core.garment.pressure_list import PressureList, pressure_list
 
 pytestmark = pytest.mark.usefixtures("empty_house")

@@ -13,8 +13,7 @@ from window_tools import PATIENCE, Script, run_main, settled
 
 import app.gui.features.lines.limits_controller
 from app.gui.features.lines.limits_legend import LimitsLegend
-from app.gui.features.lines.slider import LengthSlider
-from app.gui.features.lines.slider_groove import _zones, wall_of
+from app.gui.features.lines.slider import LengthSlider, _zones, wall_of
 from app.gui.main_window import MainWindow
 from app.gui.widgets.tooltip import set_tip, shown_tip
 from app.presenters.length_limits import hint, legend_entries, resistance_reason, short_reason, tone_at

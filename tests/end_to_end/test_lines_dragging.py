@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QWidget
 from window_tools import Script, points, run_main, settled, undrawn
 
 from app.gui.features.lines.band_drag import STEP
-from app.gui.features.lines.slider_groove import RESISTANCE
+from app.gui.features.lines.slider import RESISTANCE
 from app.gui.main_window import MainWindow
 from app.gui.widgets.tooltip import shown_tip
 from core.analysis.length_limits.zones import LengthLimits, Reason, Zone

@@ -15,8 +15,7 @@ from app.gui.features.measurements.table import MeasurementsTable
 from app.gui.main_window import MainWindow
 from app.gui.session.settings import get_setting
 from app.presenters.measurements import as_table
-from core.measurements.letter_sizes import letter_sizes
-from core.measurements.sizes import sizes
+from core.measurements.sizes import letter_sizes, sizes
 from core.measurements.table import before_after
 
 TOPS = letter_sizes().tables[0]

@@ -22,7 +22,7 @@ from core.document.design import ScanSource
 from core.document.storage.project_file import open_project
 from core.garment.cut_list import cut_list
 from core.garment.match_shape import reached_points
-from core.garment.pressure_limits import pressure_limits
+from core.garment.pressure import pressure_limits
 from core.garment.pressure_list import pressure_list
 from core.pipeline.build import Stages, build
 from tests.end_to_end.test_model_options import choose

@@ -15,7 +15,7 @@ from window_tools import Script, run_undrawn, settled
 from app.gui.main_window import MainWindow
 from core.document.storage.project_file import open_project
 from core.scan.body import read_scan
-from core.scan.edits import UNEDITED, ScanEdits
+from core.scan.source import UNEDITED, ScanEdits
 from tests.core.scan.test_hole_filling import pierced
 
 pytestmark = pytest.mark.usefixtures("empty_house")

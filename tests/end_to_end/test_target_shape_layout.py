@@ -10,7 +10,7 @@ from PySide6.QtCore import QCoreApplication, QEvent, QPoint
 from window_tools import Script, run_main, settled, undrawn
 
 from app.gui.main_window import MainWindow
-from core.garment.pressure_limits import pressure_limits
+from core.garment.pressure import pressure_limits
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -18,7 +18,7 @@ from worn_pair import released_design
 
 import app.gui.features.uncertainty.controller
 from app.gui.main_window import MainWindow
-from app.gui.widgets.inline_edit import InlineEdit
+from app.gui.widgets.value_edit import InlineEdit
 from app.i18n.catalog import LANGUAGES
 from core.analysis.uncertainty.input_uncertainty import origins
 from core.document.custom_measures import CustomMeasurement

@@ -16,7 +16,7 @@ from app.presenters.messages import line_title
 from core.analysis.length_limits.limits import Length, Limits, all_limits
 from core.analysis.length_limits.zones import LengthLimits, to_length_limits
 from core.garment.assessment import Assessment, assess
-from core.garment.pressure_limits import pressure_limits
+from core.garment.pressure import pressure_limits
 from core.messages import plain
 from core.pipeline.build import Stages
 from core.pipeline.solve import solve

@@ -16,8 +16,7 @@ from app.presenters.assessment import assessment_lines
 from core.export.solution_report import write_solution
 from core.garment.assessment import assess
 from core.landmarks.warnings import collect_warnings
-from core.pipeline.exact import NoEquilibriumError
-from core.pipeline.solve import Solution, solve
+from core.pipeline.solve import NoEquilibriumError, Solution, solve
 from core.pipeline.warnings import immovable_lines, shape_warnings
 
 DIVERGED = (

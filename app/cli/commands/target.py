@@ -32,7 +32,7 @@ from app.presenters.target_shape import (
 from core import __version__
 from core.analysis.inverse_design.conflicts import Conflict
 from core.analysis.inverse_design.line_selection import LineSelection, activated, optional_lines
-from core.analysis.inverse_design.profile_csv import profile_goals, read_profile
+from core.analysis.inverse_design.profile_curve import profile_goals, read_profile
 from core.analysis.inverse_design.quantities import NAMES, Goal, section_of
 from core.analysis.inverse_design.search import Bounds
 from core.analysis.inverse_design.solve import InverseResult

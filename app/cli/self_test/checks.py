@@ -55,9 +55,9 @@ def shipped_files(bench: SelfTestFixture) -> str:
     from core.control_mesh.template import TEMPLATES, read_template  # noqa: PLC0415
     from core.document import presets  # noqa: PLC0415
     from core.garment.elastic_library import built_in as elastics  # noqa: PLC0415
-    from core.garment.pressure_limits import pressure_limits  # noqa: PLC0415
-    from core.measurements.letter_sizes import letter_sizes  # noqa: PLC0415
+    from core.garment.pressure import pressure_limits  # noqa: PLC0415
     from core.measurements.sizes import built_in as sizes  # noqa: PLC0415
+    from core.measurements.sizes import letter_sizes  # noqa: PLC0415
 
     counts = {
         "templates": _count("templates", lambda: [read_template(name) for name in TEMPLATES], 2),

@@ -26,7 +26,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.gui.plots.painting import curve_path
 from app.gui.theme.stylesheet import font, tokens_of
-from app.gui.widgets.accessibility import speak_value
+from app.gui.widgets.basic import speak_value
 from app.i18n.catalog import tr
 from app.i18n.lengths import length_number, length_unit
 from core.geometry.mesh import Floats

@@ -25,7 +25,7 @@ from PySide6.QtWidgets import QAbstractSlider, QWidget
 from app.gui.theme.icons import pixmap
 from app.gui.theme.stylesheet import font, tokens_of
 from app.gui.viewport.viewport import Viewport
-from app.gui.widgets.accessibility import speak_value
+from app.gui.widgets.basic import speak_value
 from app.gui.widgets.overlay_layout import GAP
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr

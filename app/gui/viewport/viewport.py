@@ -6,12 +6,11 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, QObject, QPointF, Qt, QTimer, Signal
+from PySide6.QtCore import QEasingCurve, QEvent, QObject, QPointF, Qt, QTimer, QVariantAnimation, Signal
 from PySide6.QtGui import QImage, QResizeEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.gui.theme.stylesheet import tokens_of
-from app.gui.viewport.camera_animation import CameraAnimation
 from app.gui.viewport.canvas import Canvas
 from app.gui.viewport.interaction import PointerInteraction
 from app.gui.viewport.labels import Labels
@@ -22,6 +21,41 @@ from core.geometry.mesh import Floats, Points
 
 if TYPE_CHECKING:
     from app.rendering.scene import Scene
+
+
+GLIDE = 220
+"""Duration of a move to another view [ms]."""
+
+
+class CameraAnimation(QVariantAnimation):
+    """Says by ``passed`` which views are seen on the way."""
+
+    passed = Signal(View)
+
+    def __init__(self, parent: QObject) -> None:
+        super().__init__(parent)
+        self.setDuration(GLIDE)
+        self.setEasingCurve(QEasingCurve.Type.OutCubic)
+        self.setStartValue(0.0)
+        self.setEndValue(1.0)
+        self._ends = (View(), View())
+        self.valueChanged.connect(lambda part: self.passed.emit(self._ends[0].towards(self._ends[1], part)))
+
+    def go(self, start: View, end: View) -> None:
+        """Start an animation."""
+        self._ends = start, end
+        self.start()
+
+    @property
+    def end(self) -> View:
+        """Return the view that the last way leads to."""
+        return self._ends[1]
+
+    @property
+    def running(self) -> bool:
+        """Return whether the camera is on its way."""
+        return self.state() == QVariantAnimation.State.Running
+
 
 REST = 250
 """Stillness after which the picture is drawn smooth [ms]."""

@@ -1,12 +1,24 @@
 """Small widgets that every panel is put together from."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
+
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
-from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QAction, QColor, QFont, QKeyEvent, QKeySequence, QPainter, QPaintEvent, QPen
+from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, QSize, Qt, Signal, SignalInstance
+from PySide6.QtGui import (
+    QAccessible,
+    QAccessibleAnnouncementEvent,
+    QAction,
+    QColor,
+    QFont,
+    QKeyEvent,
+    QKeySequence,
+    QPainter,
+    QPaintEvent,
+    QPen,
+)
 from PySide6.QtWidgets import (
     QAbstractButton,
     QButtonGroup,
@@ -25,6 +37,23 @@ from app.gui.theme.icons import icon, pixmap
 from app.gui.theme.shadow import MARGINS, RADIUS, floating_ground
 from app.gui.theme.stylesheet import Sentence, font, label, set_tag, tokens_of
 from app.gui.widgets.tooltip import set_tip, watch_tip
+
+
+def announce(widget: QWidget, words: str) -> None:
+    """Announce a text to screen readers: the response to an action at ``widget``."""
+    if QAccessible.isActive():
+        QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(widget, words))
+
+
+def speak_value(widget: QWidget, words: str) -> None:
+    """Let a slider be heard as people write its value: its own number counts steps.
+
+    The words are spoken at once while the keyboard is there.
+    """
+    if words != widget.accessibleDescription():
+        widget.setAccessibleDescription(words)
+        if widget.hasFocus():
+            announce(widget, words)
 
 
 def button(text: str, kind: str = "secondary") -> QPushButton:
@@ -330,3 +359,29 @@ class EmptyState(QFrame):
         """Set the text."""
         self._missing.setText(missing)
         self._hint.setText(hint)
+
+
+def folded_list(column: QVBoxLayout, title: str, sentences: Sequence[str]) -> Disclosure:
+    """Add ``sentences`` to a column, folded under a ``title``; returns what unfolds them."""
+    fold, words = Disclosure(title), sentence("\n".join(f"• {each}" for each in sentences), "caption")
+    words.setContentsMargins(28, 0, 0, 4)
+    words.hide()
+    fold.toggled.connect(words.setVisible)
+    column.addWidget(fold)
+    column.addWidget(words)
+    return fold
+
+
+def button_row(choices: Iterable[tuple[str, str, SignalInstance]], top: int = 0) -> QWidget:
+    """Return buttons from the left: text, tip and what is emitted; ``top`` is the room over them [px]."""
+    holder = QWidget()
+    row = QHBoxLayout(holder)
+    row.setContentsMargins(0, top, 0, 0)
+    row.setSpacing(6)
+    for text, tip, signal in choices:
+        press = button(text)
+        set_tip(press, tip)
+        press.clicked.connect(signal)
+        row.addWidget(press)
+    row.addStretch(1)
+    return holder

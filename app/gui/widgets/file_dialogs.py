@@ -10,7 +10,7 @@ from pathlib import Path
 from PySide6.QtCore import QSettings, QStandardPaths
 from PySide6.QtWidgets import QFileDialog, QWidget
 
-from app.gui.widgets.message_box import ask
+from app.gui.widgets.dialog import ask
 from app.i18n.catalog import tr
 from app.presenters.scan import PATTERNS
 

@@ -14,9 +14,9 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSizePolicy, QWidget
 from app.gui.theme.icons import paint_icon
 from app.gui.theme.stylesheet import font, tokens_of
 from app.gui.widgets.basic import Segment
-from app.gui.widgets.inline_edit import InlineEdit, read_number
 from app.gui.widgets.menu import Menu, pull_down
 from app.gui.widgets.tooltip import set_tip
+from app.gui.widgets.value_edit import InlineEdit, read_number
 from app.i18n.catalog import number, tr
 from app.presenters.model_options import Amount, Choice, Setting
 

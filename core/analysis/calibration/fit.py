@@ -30,7 +30,7 @@ from core.mechanics.newton import Equilibrium
 from core.mechanics.sensitivity import Sensitivities
 from core.messages import Message
 from core.pipeline.build import Stages, build
-from core.pipeline.exact import NoEquilibriumError, exact_solution
+from core.pipeline.solve import NoEquilibriumError, exact_solution
 from core.progress import Progress
 
 BESIDE = 7

@@ -19,7 +19,7 @@ from core.mechanics.stiffness_sensitivity import Changes, d_ground, d_prestress,
 from core.mechanics.tensegrity import firm_ground
 from core.pipeline.active_lines import active_line_groups
 from core.pipeline.build import Stages
-from core.pipeline.exact import body_volume_rates
+from core.pipeline.solve import body_volume_rates
 
 LINE_STIFFNESS, FIRM_CHEST, PRESTRESS, TISSUE = (
     "line_stiffness",

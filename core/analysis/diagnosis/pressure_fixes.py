@@ -20,7 +20,7 @@ from core.analysis.diagnosis.candidate_changes import (
 from core.analysis.diagnosis.search import Search
 from core.garment.assessment import BAD, CAUTION, GOOD, Finding
 from core.garment.curve_smoothing import USUAL_WIDTH
-from core.garment.pressure_limits import pressure_limits
+from core.garment.pressure import pressure_limits
 from core.pipeline.build import Stages
 
 MOST = 3

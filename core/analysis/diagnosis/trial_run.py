@@ -13,8 +13,7 @@ from core.mechanics.convergence import CONVERGED_STEP, Convergence
 from core.mechanics.iteration import SolverState, initial_state, step
 from core.mechanics.solver_comparison import ITERATIVE_CONTROLS, MOST_TURNS, ControlRun, carried, shape_of
 from core.pipeline.build import Stages, line_targets
-from core.pipeline.exact import exact_equilibrium
-from core.pipeline.solve import solve
+from core.pipeline.solve import exact_equilibrium, solve
 from core.progress import Progress, quiet
 
 PROBLEMS = ("strained", "settling", "overstrained", "folded", "vibrating", "diverging", "unreachable")

@@ -9,8 +9,7 @@ import numpy as np
 from core.analysis.inverse_design.sensitivities import LinearizedSolution
 from core.document.design import Design
 from core.garment.cut_list import is_strap
-from core.garment.pressure import pressures
-from core.garment.pressure_limits import pressure_limits
+from core.garment.pressure import pressure_limits, pressures
 from core.garment.tension import line_tensions
 from core.geometry.mesh import Points
 from core.pipeline.build import Stages

@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 from scipy.optimize import minimize
 
-from core.analysis.inverse_design.candidate import Candidate
 from core.analysis.inverse_design.objective import Objective, Slopes, goal_weights, total_tension
 from core.analysis.inverse_design.quadratic_model import next_trust_radius, updated_curvature
 from core.analysis.inverse_design.quantities import Goal, QuantityReaders, ReadMany
@@ -30,8 +29,29 @@ from core.mechanics.force_units import newtons_per_unit
 from core.messages import Message
 from core.pipeline.active_lines import free_lines
 from core.pipeline.build import Stages
-from core.pipeline.exact import NoEquilibriumError
+from core.pipeline.solve import NoEquilibriumError
 from core.progress import Progress, quiet
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A design with the ``lengths`` that were found [%], the exact answer there, and what keeps it there.
+
+    ``reached`` tells whether the answer is what was asked for. ``at_limit`` names the lines as short or as
+    long
+    as they may be, ``most_tensioned`` those with the most tension they may have, ``slack`` those that would
+    push if they were longer; ``strained`` tells that the shape would strain beyond what looks natural.
+    """
+
+    design: Design
+    lengths: Floats
+    solution: LinearizedSolution
+    reached: bool
+    at_limit: tuple[str, ...]
+    most_tensioned: tuple[str, ...]
+    slack: tuple[str, ...]
+    strained: bool
+
 
 LOOSEST = 1.0
 """A line is not asked to be longer than at rest: it would push [1]."""

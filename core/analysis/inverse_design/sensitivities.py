@@ -15,7 +15,7 @@ from core.mechanics.newton import Equilibrium
 from core.mechanics.sensitivity import Rates, Sensitivities
 from core.mechanics.solver_comparison import shape_of
 from core.pipeline.build import Stages, line_targets
-from core.pipeline.exact import NoEquilibriumError, body_volume_rates, exact_solution
+from core.pipeline.solve import NoEquilibriumError, body_volume_rates, exact_solution
 
 PERCENT = 0.01
 """Lengths are sought in percent of those at rest: figures then change by about a millimetre [1]."""

@@ -13,19 +13,18 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from core.analysis.inverse_design.candidate import Candidate
 from core.analysis.inverse_design.conflicts import Conflict, conflicts_of
 from core.analysis.inverse_design.objective import NEAR, goal_weights
 from core.analysis.inverse_design.pressure_limit import PressureLimit, largest_pressures
 from core.analysis.inverse_design.quantities import Goal, QuantityReaders
-from core.analysis.inverse_design.search import LOOSEST, Bounds, Search
+from core.analysis.inverse_design.search import LOOSEST, Bounds, Candidate, Search
 from core.analysis.inverse_design.sensitivities import exact_points
 from core.document.design import Design
 from core.errors import LineError
 from core.geometry.mesh import Floats, Points
 from core.mechanics.force_units import newtons_per_unit
 from core.pipeline.build import Stages, build
-from core.pipeline.exact import NoEquilibriumError
+from core.pipeline.solve import NoEquilibriumError
 from core.progress import Progress, quiet
 
 _LIMIT_ROUNDS, _FIRM_FROM = (

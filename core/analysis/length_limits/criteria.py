@@ -12,8 +12,7 @@ from core.document.elastic import Elastic
 from core.document.lines import ActiveLine
 from core.garment.band_path import band_paths
 from core.garment.cut_list import is_strap
-from core.garment.pressure import band_pressure
-from core.garment.pressure_limits import pressure_limits
+from core.garment.pressure import band_pressure, pressure_limits
 from core.garment.tension import line_tensions
 from core.mechanics.gain_limit import OscillationLimit, gain_limit
 from core.mechanics.iteration import initial_state

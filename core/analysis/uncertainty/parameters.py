@@ -15,7 +15,7 @@ from core.document.elastic import TISSUE_LIMITS, Elastic
 from core.geometry.mesh import Points, unit
 from core.landmarks.manual import in_file
 from core.landmarks.types import SIDES
-from core.measurements.custom import OWN
+from core.measurements.table import OWN
 from core.measurements.uncertain_value import ELASTIC, LANDMARKS, LINE, SCAN, TAPE, TISSUE
 from core.mechanics.constraint_lines import RATIO_LIMITS, Line
 from core.mechanics.options import RANGES

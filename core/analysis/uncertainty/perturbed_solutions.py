@@ -30,7 +30,7 @@ from core.measurements.table import original_subject, reshaped_subject
 from core.mechanics.potential import Potential
 from core.mechanics.sensitivity import Rates, Sensitivities
 from core.pipeline.build import Stages, build, detect_landmarks, line_targets
-from core.pipeline.exact import NoEquilibriumError, body_volume_rates, exact_solution
+from core.pipeline.solve import NoEquilibriumError, body_volume_rates, exact_solution
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,7 @@ from pathlib import Path
 from core.document.design import ScanSource
 from core.document.document import Document
 from core.document.document_limits import LARGEST_PICTURE, LARGEST_SCAN, LARGEST_TEXT, check_size
-from core.document.document_text import DESIGN, VARIANTS, from_texts, to_texts
+from core.document.serialization import DESIGN, VARIANTS, from_texts, to_texts
 from core.document.storage.archive import member_bytes, project_archive
 from core.errors import ProjectError, ScanError, UserError
 from core.files.atomic_write import atomic_path

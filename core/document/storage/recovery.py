@@ -18,8 +18,8 @@ import platformdirs
 
 from core.document.document import Document
 from core.document.document_limits import LARGEST_PICTURE, LARGEST_TEXT
-from core.document.document_text import from_texts, to_texts
 from core.document.json_values import parsed, value_of
+from core.document.serialization import from_texts, to_texts
 from core.document.storage.file_lock import FolderLock
 from core.document.storage.project_file import ScanFile, Stamp, safe_name, with_scan
 from core.errors import ProjectError, UserError, reason_of

@@ -16,8 +16,7 @@ from core.files.regular_file import open_regular
 from core.geometry.mesh import Faces, Points
 from core.messages import Message
 from core.progress import Cancelled, Progress, quiet
-from core.scan.readers.gltf import read_gltf
-from core.scan.readers.gltf_buffers import with_buffers
+from core.scan.readers.gltf import read_gltf, with_buffers
 from core.scan.readers.obj import read_obj, with_texture
 from core.scan.readers.off import begins_with_points, read_off, read_points
 from core.scan.readers.ply import read_ply

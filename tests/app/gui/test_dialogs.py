@@ -14,7 +14,7 @@ from pytestqt.qtbot import QtBot
 from app.gui.application import application
 from app.gui.features.help import system_info as machine
 from app.gui.session.app_folders import shown_folder
-from app.gui.widgets.dialog import Dialog
+from app.gui.widgets.dialog import Dialog, ask, ask_name
 from app.gui.widgets.file_dialogs import (
     ask_about_changes,
     ask_open,
@@ -23,7 +23,6 @@ from app.gui.widgets.file_dialogs import (
     last_folder,
     remember_folder,
 )
-from app.gui.widgets.message_box import ask, ask_name
 
 KINDS = "PLY (*.ply);;OBJ (*.obj);;STL (*.stl)"
 

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QPushButton, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.gui.features.garment.panel import GarmentPanel
-from app.gui.inspector import Inspector
+from app.gui.layout import Inspector
 from app.i18n.catalog import LANGUAGES, tr, use_language
 from app.presenters.cut_list import CutListView, CutView
 from app.presenters.pressure import PressureView

@@ -12,7 +12,7 @@ from app.gui.features.maps.color_bar import BAR
 from app.gui.features.maps.legend import Legend
 from app.gui.features.sections.panel import STEPS, SectionPanel
 from app.gui.plots.section_plot import SectionDrawing, SectionPlot, grid_step
-from app.gui.widgets.inline_edit import read_number
+from app.gui.widgets.value_edit import read_number
 from app.presenters.bust_shift import BustShift, BustStep
 from app.presenters.maps import MAPS, automatic_range, map_kinds, ramp_of, section_text, sides_text
 from app.rendering.appearance import rgb

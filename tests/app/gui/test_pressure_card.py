@@ -18,7 +18,7 @@ from app.presenters.maps import map_kinds, ramp_of
 from app.presenters.pressure import pressure_summary, pressure_views, rating_limits, side_text
 from core.document.design import Design, ScanSource
 from core.garment.body_location import SHOULDERS, SIDES
-from core.garment.pressure_limits import AMBER, GREEN, RED, pressure_limits
+from core.garment.pressure import AMBER, GREEN, RED, pressure_limits
 from core.garment.pressure_list import PressureList, PressureRow
 from core.messages import Message
 

@@ -8,10 +8,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
-from app.gui.widgets.inline_edit import Refusal
-from app.gui.widgets.length_edit import LengthEdit
 from app.gui.widgets.line_widgets import StiffnessField
-from app.gui.widgets.value_edit import ValueEdit
+from app.gui.widgets.value_edit import LengthEdit, Refusal, ValueEdit
 
 pytestmark = pytest.mark.usefixtures("qapp")
 

@@ -14,8 +14,7 @@ from pytestqt.qtbot import QtBot
 
 from app.gui.features.lines.panel import LinesPanel
 from app.gui.features.lines.row import LineView
-from app.gui.features.lines.slider import LengthSlider
-from app.gui.features.lines.slider_groove import LONGEST, SHORTEST
+from app.gui.features.lines.slider import LONGEST, SHORTEST, LengthSlider
 from app.i18n.catalog import use_language
 from core.analysis.length_limits.zones import LengthLimits, Reason, Zone
 

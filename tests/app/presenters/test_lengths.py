@@ -6,8 +6,7 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.gui.features.lines.row import LineRow, LineView
-from app.gui.widgets.length_edit import LengthEdit
-from app.gui.widgets.value_edit import ValueEdit
+from app.gui.widgets.value_edit import LengthEdit, ValueEdit
 from app.i18n.lengths import length, read_length, use_unit
 from app.presenters.bust_shift import up_text
 from app.presenters.measurements import MeasureView, as_table, length_uncertainty

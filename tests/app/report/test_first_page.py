@@ -13,8 +13,7 @@ from PySide6.QtGui import QImage
 from app.gui.theme.stylesheet import load_fonts
 from app.report.cut_rows import line_notes
 from app.report.document import SHOTS, ReportDocument
-from app.report.pages import pages_of
-from app.report.pdf import write_pdf
+from app.report.pages import pages_of, write_pdf
 from core.document.lines import LineSettings
 from core.document.presets import built_in, with_preset
 from core.export.report_data import Heading, Report, make_report

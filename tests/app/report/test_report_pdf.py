@@ -19,9 +19,8 @@ from app.gui.theme.stylesheet import load_fonts
 from app.i18n.catalog import language, number, use_language
 from app.presenters.lines import line_colours
 from app.report.document import SHOT_SIZES, SHOTS, ReportDocument
-from app.report.pages import pages_of
+from app.report.pages import pages_of, write_pdf
 from app.report.painter import A4, MARGIN, TYPES
-from app.report.pdf import write_pdf
 from core.document.lines import LineSettings
 from core.errors import UserError
 from core.export.report_data import Heading, Report, make_report

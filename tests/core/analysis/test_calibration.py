@@ -12,8 +12,8 @@ from worn_pair import released_design
 from app.presenters.scan_comparison import improvement_text
 from benchmarks.worn_pairs import scanned, worn_mesh, written
 from core.analysis.calibration.api import CalibrationResult, FittingScan, calibrate, read_fitting_scan
+from core.analysis.calibration.calibrate import unidentifiable
 from core.analysis.calibration.fit import solve_from
-from core.analysis.calibration.identifiability import unidentifiable
 from core.analysis.calibration.parameters import (
     MOST,
     Parameter,

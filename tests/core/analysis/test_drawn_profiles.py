@@ -18,7 +18,7 @@ from core.analysis.inverse_design.profile_curve import (
 from core.analysis.inverse_design.quantities import profile_name, reading
 from core.document.presets import built_in, with_preset
 from core.pipeline.build import Stages, build
-from core.pipeline.exact import exact_solution
+from core.pipeline.solve import exact_solution
 
 
 def body(name: str) -> Stages:

@@ -16,7 +16,7 @@ from core.analysis.length_limits.limits import limits_of
 from core.errors import UserError
 from core.garment.assessment import BAD, assess
 from core.garment.elastic_library import find_elastic
-from core.garment.pressure_limits import pressure_limits
+from core.garment.pressure import pressure_limits
 from core.garment.tension import line_tensions
 from core.mechanics.force_units import newtons_per_unit
 from core.mechanics.mesh_quality import STRAINED_RANGE

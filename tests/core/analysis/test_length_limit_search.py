@@ -14,7 +14,7 @@ from core.document.lines import ActiveLine
 from core.garment.elastic_library import find_elastic
 from core.mechanics.solver_comparison import shape_of
 from core.pipeline.build import build
-from core.pipeline.exact import exact_equilibrium
+from core.pipeline.solve import exact_equilibrium
 
 
 def stops_with(margin, ratios):

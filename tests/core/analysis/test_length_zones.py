@@ -10,8 +10,7 @@ from core.analysis.length_limits.limits import Length, Limits, Span, limits_of
 from core.analysis.length_limits.zones import LengthLimits, Reason, length_limits_of, to_length_limits
 from core.document.lines import ActiveLine
 from core.garment.elastic_library import find_elastic
-from core.garment.pressure import pressures
-from core.garment.pressure_limits import pressure_limits
+from core.garment.pressure import pressure_limits, pressures
 from core.garment.tension import line_tensions
 from core.mechanics.constraint_lines import RATIO_LIMITS
 from core.mechanics.exact_solution import solve_exact

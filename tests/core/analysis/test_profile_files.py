@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.presenters.samples import sample_design
-from core.analysis.inverse_design.profile_csv import profile_goals, read_profile
+from core.analysis.inverse_design.profile_curve import profile_goals, read_profile
 from core.analysis.inverse_design.quantities import reading, section_at
 from core.deformation.tffd import deform
 from core.errors import UserError

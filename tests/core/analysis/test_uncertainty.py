@@ -42,8 +42,7 @@ from core.measurements.uncertain_value import (
     uncertainty_digits,
 )
 from core.pipeline.build import Stages, build
-from core.pipeline.exact import exact_solution
-from core.pipeline.solve import solve
+from core.pipeline.solve import exact_solution, solve
 from core.progress import Cancelled
 
 SURE = replace(default_uncertainty(), unsure_landmark_mm=0.0)

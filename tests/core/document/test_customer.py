@@ -11,8 +11,7 @@ import pytest
 from core.document.custom_measures import CustomMeasurement
 from core.document.design import Design, ScanSource
 from core.document.document import Document
-from core.document.document_text import from_texts, to_texts
-from core.document.serialization import from_json, to_json
+from core.document.serialization import from_json, from_texts, to_json, to_texts
 from core.document.storage.project_file import ScanFile, open_project, save_project
 from core.errors import ProjectError, UserError
 from tests.core.document.test_custom_measures import _Editing

@@ -13,7 +13,7 @@ from core.document.design import Design, ScanSource
 from core.document.lines import CustomLine, LineSettings
 from core.document.serialization import FORMAT, from_json, to_json
 from core.errors import LineError, ProjectError, UserError
-from core.pipeline.exact import NoEquilibriumError
+from core.pipeline.solve import NoEquilibriumError
 
 
 @settings(deadline=None, max_examples=50)

@@ -27,10 +27,9 @@ from core.document.document_limits import (
 from core.document.document_limits import (
     MOST_POINTS as MOST_POINTS_OF_LINES,
 )
-from core.document.document_text import from_texts, to_texts
 from core.document.elastic import MOST_POINTS, Elastic
 from core.document.lines import ActiveLine, CustomLine, LineSettings
-from core.document.serialization import from_json, to_json
+from core.document.serialization import from_json, from_texts, to_json, to_texts
 from core.document.storage.project_file import open_project, save_project
 from core.errors import ProjectError, UserError
 

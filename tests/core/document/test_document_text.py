@@ -7,8 +7,7 @@ from dataclasses import replace
 
 from core.document.design import Design, ScanSource
 from core.document.document import Document
-from core.document.document_text import DESIGN, from_texts, to_texts
-from core.document.serialization import WITH_ELASTICS, WITH_VARIANTS
+from core.document.serialization import DESIGN, WITH_ELASTICS, WITH_VARIANTS, from_texts, to_texts
 from core.garment.elastic_library import find_elastic
 
 PLAIN = Design(ScanSource("anna.ply")).with_line("mid-bust", 0.9)

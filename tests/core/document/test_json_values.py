@@ -16,11 +16,10 @@ from core.document.calibration_record import Calibration, FittedParameter
 from core.document.custom_measures import CustomMeasurement
 from core.document.design import Design, ScanSource
 from core.document.document import Document
-from core.document.document_text import from_texts, to_texts
 from core.document.elastic import Elastic
 from core.document.json_values import parsed, value_of
 from core.document.lines import ActiveLine, CustomLine, LineSettings
-from core.document.serialization import from_json, to_json
+from core.document.serialization import from_json, from_texts, to_json, to_texts
 from core.errors import ProjectError, UserError
 from core.landmarks.manual import PlacedMark
 

@@ -20,8 +20,8 @@ from app.gui.theme.stylesheet import load_fonts
 from app.presenters.samples import sample_design
 from app.report.cut_rows import force_range_warning, line_notes
 from app.report.document import SHOTS, ReportDocument
-from app.report.notes import note_groups
 from app.report.pages import pages_of
+from app.report.text import note_groups
 from core.document.presets import built_in, with_preset
 from core.export.report_data import Heading, Report, make_report, with_uncertainty
 from core.export.report_data_file import report_csv, report_json

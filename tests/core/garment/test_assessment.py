@@ -16,8 +16,7 @@ from core.document.elastic import Elastic
 from core.export.report_data import Heading, make_report
 from core.garment.assessment import BAD, CAUTION, GOOD, PENDING, PUSHES, Assessment, assess, assess_with
 from core.garment.cut_list import CutList, CutRow, cut_list
-from core.garment.pressure import mmhg
-from core.garment.pressure_limits import pressure_limits
+from core.garment.pressure import mmhg, pressure_limits
 from core.garment.pressure_list import PressureList, PressureRow, pressure_list
 from core.garment.tension import line_tensions
 from core.mechanics.convergence import Convergence

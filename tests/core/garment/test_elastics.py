@@ -7,10 +7,9 @@ import pytest
 
 from core.document.design import Design, ScanSource
 from core.document.document import Document
-from core.document.document_text import DESIGN, VARIANTS, from_texts, to_texts
 from core.document.elastic import Elastic
 from core.document.lines import LineSettings
-from core.document.serialization import from_json, to_json
+from core.document.serialization import DESIGN, VARIANTS, from_json, from_texts, to_json, to_texts
 from core.errors import LineError, UserError
 from core.garment.elastic_csv import TEMPLATE, csv_of, elastic_from_csv
 from core.garment.elastic_library import (

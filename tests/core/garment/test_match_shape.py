@@ -18,7 +18,7 @@ from core.garment.match_shape import match_lengths, reached_points
 from core.garment.tension import line_tensions
 from core.mechanics.exact_solution import solve_exact
 from core.pipeline.build import build, line_targets
-from core.pipeline.exact import exact_equilibrium
+from core.pipeline.solve import exact_equilibrium
 
 STRAP, BAND = find_elastic("strap 15"), find_elastic("plush 12")
 

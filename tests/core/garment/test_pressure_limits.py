@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from band_courses import ellipse
 
-from core.garment.pressure import LEFT_OUT, band_pressure
-from core.garment.pressure_limits import AMBER, GREEN, RED, pressure_limits
+from core.garment.pressure import AMBER, GREEN, LEFT_OUT, RED, band_pressure, pressure_limits
 
 WIDTH = 15.0
 

@@ -21,8 +21,7 @@ from core.document.presets import built_in, with_preset
 from core.document.storage.project_file import read_scan_file, save_project
 from core.garment.body_location import SHOULDERS, SIDES, body_location
 from core.garment.elastic_library import find_elastic
-from core.garment.pressure import LEFT_OUT, pressures
-from core.garment.pressure_limits import pressure_limits
+from core.garment.pressure import LEFT_OUT, pressure_limits, pressures
 from core.garment.pressure_list import pressure_list
 from core.garment.tension import line_tensions
 from core.pipeline.build import Stages, build

@@ -15,11 +15,9 @@ from app.cli.commands.detect import landmarks_text
 from core.errors import LandmarkError
 from core.geometry.mesh import Mesh, Points
 from core.landmarks.as_dict import detection
-from core.landmarks.body_build import Build, measure_build
-from core.landmarks.body_scale import size_hint, whole_figure
+from core.landmarks.body_scale import Build, measure_build, size_hint, whole_figure
 from core.landmarks.detect import find_landmarks
-from core.landmarks.lean import lean_hint
-from core.landmarks.plausibility import SMALL, clothes_hint, flat_hint, require_not_angular
+from core.landmarks.plausibility import SMALL, clothes_hint, flat_hint, lean_hint, require_not_angular
 from core.landmarks.torso.cross_sections import stable_level, trunk_levels
 from core.landmarks.types import CERTAIN, Hint, Landmarks
 from core.messages import EMPTY, Message

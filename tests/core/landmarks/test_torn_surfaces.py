@@ -18,7 +18,7 @@ from core.landmarks.nipple import breast_patch
 from core.landmarks.torso.arm_removal import necks
 from core.landmarks.torso.contour_classification import GAP, _linked, limbs
 from core.landmarks.torso.cross_sections import Level, scan_torso
-from core.measurements.tape import skin_ring, tape_ring
+from core.measurements.girths import skin_ring, tape_ring
 from core.scan.body import body_of, read_scan
 from core.scan.reconstruction.isosurface import distinct
 from core.scan.repair.holes import MOST, find_holes, frame_of

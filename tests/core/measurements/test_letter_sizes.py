@@ -3,7 +3,7 @@
 import pytest
 
 from core.measurements.definitions import DEFINITIONS
-from core.measurements.letter_sizes import letter_sizes
+from core.measurements.sizes import letter_sizes
 
 TABLES = {table.key: table for table in letter_sizes().tables}
 

@@ -10,7 +10,7 @@ import pytest
 from app.i18n.catalog import use_language
 from app.presenters.messages import render
 from core.errors import SizeError
-from core.measurements.size_table_file import read_table, table_of
+from core.measurements.size_table import read_table, table_of
 from core.measurements.sizes import built_in, sizes, user_folder, user_tables
 
 ROOT = Path(__file__).parents[3]

@@ -13,8 +13,7 @@ from core.geometry.triangulate import triangulate
 from core.progress import Cancelled
 from core.scan.body import read_scan
 from core.scan.repair.editable_mesh import EditableMesh
-from core.scan.repair.hole_filling import fill_holes, fill_small_holes
-from core.scan.repair.holes import find_holes, hole_sentences
+from core.scan.repair.holes import fill_holes, fill_small_holes, find_holes, hole_sentences
 from core.scan.repair.repair import repair
 
 CENTRES = {"back": (0.0, 30.0, 260.0), "belly": (10.0, -170.0, 60.0), "side": (140.0, -80.0, 180.0)}

@@ -9,7 +9,7 @@ from scan_files import VOLUME, gltf
 from core.geometry.mesh import Mesh
 from core.scan.orientation.unit_detection import estimate_unit
 from core.scan.readers.registry import read_triangles
-from core.scan.repair.hole_filling import fill_small_holes
+from core.scan.repair.holes import fill_small_holes
 
 
 @pytest.mark.parametrize(

@@ -30,10 +30,10 @@ from core.errors import ScanError
 from core.pipeline.build import read_body
 from core.scan.body import body_of, read_scan
 from core.scan.edited_body import apply_edits
-from core.scan.edits import ScanEdits
 from core.scan.readers.colors import UNREADABLE, texture
 from core.scan.readers.raw_scan import RawScan
 from core.scan.readers.registry import read_raw, scan_bytes
+from core.scan.source import ScanEdits
 
 
 def check(scan: RawScan, off: int = 1) -> None:

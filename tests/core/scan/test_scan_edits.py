@@ -23,11 +23,10 @@ from core.landmarks.warnings import collect_warnings
 from core.pipeline.build import IncompleteBuildError, build
 from core.scan.body import read_scan
 from core.scan.edited_body import apply_edits, is_estimated, mirror_sentence
-from core.scan.edits import ScanEdits
 from core.scan.orientation.symmetry_planes import middle_of, sample_uniformly
 from core.scan.repair.clipping import clip_above, mirrored_half
-from core.scan.repair.holes import find_holes
-from core.scan.repair.large_holes import fill_large_holes
+from core.scan.repair.holes import fill_large_holes, find_holes
+from core.scan.source import ScanEdits
 from tests.core.scan.test_hole_filling import is_sound, pierced
 
 

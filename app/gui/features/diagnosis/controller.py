@@ -22,8 +22,8 @@ from core.document.design import Design
 from core.errors import UserError
 from core.garment.assessment import BAD, CAUTION, GOOD, LEVELS, PENDING, Assessment
 from core.pipeline.build import build
-from core.pipeline.exact import NoEquilibriumError
 from core.pipeline.live_solver import Frame
+from core.pipeline.solve import NoEquilibriumError
 from core.progress import Progress
 
 if TYPE_CHECKING:

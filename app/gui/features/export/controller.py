@@ -14,8 +14,8 @@ from app.gui.features.export.dialog import ExportDialog
 from app.gui.features.export.worker import ExportWorker
 from app.gui.session.jobs import Job
 from app.gui.session.settings import get_setting, set_setting
+from app.gui.widgets.dialog import ask
 from app.gui.widgets.file_dialogs import ask_save, free_name, last_folder
-from app.gui.widgets.message_box import ask
 from app.i18n.catalog import colon, tr
 from app.presenters.assessment import AssessmentView
 from app.presenters.export import ExportOptions, ExportSettings, ExportSource, exports, format_title

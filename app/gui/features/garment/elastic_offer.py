@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, cast
@@ -10,20 +10,47 @@ from typing import TYPE_CHECKING, cast
 from PySide6.QtCore import QObject, Signal
 
 from app.gui.features.garment.elastic_chooser import ElasticChooser
-from app.gui.features.garment.elastic_list import Entry, elastic_entries
 from app.gui.session.jobs import Job
 from app.i18n.catalog import joined, tr
 from app.presenters.elastics import ChoiceView, advice_view, choice_view, mode_text, mode_titles
 from app.presenters.lines import row_title
-from app.presenters.messages import render
+from app.presenters.messages import elastic_title, render
 from core.document.design import Design
 from core.document.elastic import Elastic
+from core.errors import LineError
+from core.garment.elastic_library import built_in, user_elastics
 from core.garment.elastic_options import KEEP_FIT, ElasticOption, Outcome, elastic_option, outcome_of
 from core.pipeline.build import Stages, build
 from core.pipeline.live_solver import Frame
 
 if TYPE_CHECKING:
     from app.gui.context import AppContext
+
+
+Entry = tuple[str, Elastic | None]
+"""What an elastic is called in the list, and the elastic; None is no elastic."""
+
+
+def elastic_entries(kept: Iterable[Elastic]) -> tuple[list[Entry], list[LineError]]:
+    """Return the elastics, with why some tables of one's own cannot be read.
+
+    ``kept`` are those that the project brings along. An elastic of one's own takes the place of one of the
+    library of the same name.
+    """
+    own, problems = user_elastics()
+    known = {each.name: each for each in (*built_in(), *own)}
+    brought = [each for each in kept if known.get(each.name) != each]
+    here, twice = tr("{name}, in this project"), tr("{name}, from this project")
+    return [
+        (tr("No elastic"), None),
+        *((each.name, each) for each in own),
+        *(
+            ((twice if each.name in known else here).format(name=elastic_title(each.name)), each)
+            for each in brought
+        ),
+        *((elastic_title(each.name), each) for each in built_in() if known[each.name] == each),
+    ], problems
+
 
 Use = Callable[["ElasticRequest", Outcome, Elastic | None], None]
 """Takes an outcome for the lines that it was asked for."""

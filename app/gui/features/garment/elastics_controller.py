@@ -11,8 +11,8 @@ from PySide6.QtCore import QObject
 
 from app.gui.features.garment.elastics_dialog import ElasticsDialog
 from app.gui.features.garment.panel import GarmentPanel
+from app.gui.widgets.dialog import ask
 from app.gui.widgets.file_dialogs import ask_save, ask_table
-from app.gui.widgets.message_box import ask
 from app.i18n.catalog import tr
 from app.i18n.lengths import length
 from app.presenters.elastics import elastic_views

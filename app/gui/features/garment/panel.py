@@ -20,8 +20,15 @@ from PySide6.QtWidgets import (
 )
 
 from app.gui.theme.stylesheet import font, label, set_tag, tokens_of
-from app.gui.widgets.basic import ElidedLabel, EmptyState, ScrollColumn, button, hairline, sentence
-from app.gui.widgets.button_row import button_row
+from app.gui.widgets.basic import (
+    ElidedLabel,
+    EmptyState,
+    ScrollColumn,
+    button,
+    button_row,
+    hairline,
+    sentence,
+)
 from app.gui.widgets.line_widgets import ElasticButton, LineChip
 from app.gui.widgets.tooltip import set_tip
 from app.gui.widgets.value_edit import ValueEdit

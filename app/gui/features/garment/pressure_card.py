@@ -10,8 +10,7 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from app.gui.theme.stylesheet import font, label, set_tag, tokens_of
-from app.gui.widgets.basic import ToolButton, button, hairline, sentence
-from app.gui.widgets.folded_list import folded_list
+from app.gui.widgets.basic import ToolButton, button, folded_list, hairline, sentence
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr
 from app.presenters.pressure import TONES, PressureSummary, RatingLimits

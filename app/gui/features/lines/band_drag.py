@@ -10,7 +10,7 @@ from PySide6.QtGui import QCursor, QHelpEvent
 
 from app.gui.features.lines.panel import LinesPanel
 from app.gui.features.lines.row import LineRow, locked_tip
-from app.gui.features.lines.slider_groove import LONGEST, RESISTANCE, SHORTEST, resisted_ratio, wall_of
+from app.gui.features.lines.slider import LONGEST, RESISTANCE, SHORTEST, resisted_ratio, wall_of
 from app.gui.viewport.interaction import BandHandle
 from app.gui.widgets.tooltip import hide_tip, show_tip
 from app.i18n.catalog import tr

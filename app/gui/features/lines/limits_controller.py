@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.gui.features.lines.panel import LinesPanel
-from app.gui.features.lines.slider_groove import SHORTEST
+from app.gui.features.lines.slider import SHORTEST
 from app.gui.session.jobs import Job
 from app.i18n.catalog import tr
 from app.presenters.lines import Shown

@@ -7,7 +7,7 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QPainter, QPaintEvent
 from PySide6.QtWidgets import QGridLayout, QLabel, QWidget
 
-from app.gui.features.lines.slider_groove import GROOVE_HEIGHT, STALE, paint_zone
+from app.gui.features.lines.slider import GROOVE_HEIGHT, STALE, paint_zone
 from app.gui.theme.stylesheet import set_tag, tokens_of
 from app.gui.widgets.basic import sentence
 from app.i18n.catalog import tr

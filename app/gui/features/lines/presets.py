@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject
 
 from app.gui.features.lines.panel import LinesPanel
+from app.gui.widgets.dialog import ask, ask_name
 from app.gui.widgets.menu import pull_down
-from app.gui.widgets.message_box import ask, ask_name
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import listed, tr
 from app.presenters.lines import row_title

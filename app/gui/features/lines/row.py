@@ -10,11 +10,10 @@ from PySide6.QtWidgets import QApplication, QFrame, QHBoxLayout, QVBoxLayout, QW
 from app.gui.features.lines.details import LineDetails
 from app.gui.features.lines.slider import LengthSlider
 from app.gui.theme.stylesheet import label, set_tag, tokens_of
-from app.gui.widgets.accessibility import speak_value
-from app.gui.widgets.basic import ToolButton, sentence
-from app.gui.widgets.length_edit import LengthEdit
+from app.gui.widgets.basic import ToolButton, sentence, speak_value
 from app.gui.widgets.line_widgets import LEAST, LineChip, LineTitle, SideMark
 from app.gui.widgets.tooltip import set_tip
+from app.gui.widgets.value_edit import LengthEdit
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length
 from app.presenters.length_limits import length_tip

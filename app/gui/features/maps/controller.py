@@ -10,8 +10,7 @@ import numpy as np
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.gui.features.maps.band_coloring import BandPainter, BandValues
-from app.gui.features.maps.legend import Legend
-from app.gui.features.maps.legend_placement import LegendPlacement
+from app.gui.features.maps.legend import Legend, LegendPlacement
 from app.gui.features.maps.values import MapValues, PressureSource, SymmetrySource, WornSource
 from app.gui.viewport.body_view import BodyView
 from app.gui.viewport.value_labels import ValueFlag, ValueFlags

@@ -18,9 +18,8 @@ from app.presenters.messages import render
 from core.document.custom_measures import CustomMeasurement
 from core.errors import UserError
 from core.landmarks.types import NAMES
-from core.measurements.custom import OWN
 from core.measurements.definitions import Measure
-from core.measurements.table import custom_before_after
+from core.measurements.table import OWN, custom_before_after
 from core.pipeline.live_solver import Frame
 
 if TYPE_CHECKING:

@@ -13,8 +13,7 @@ from app.gui.features.measurements.custom_measure_editor import MeasurementEdito
 from app.gui.features.measurements.size_card import SizeCard
 from app.gui.features.measurements.table import MeasurementsTable
 from app.gui.theme.stylesheet import font, set_tag
-from app.gui.widgets.basic import EmptyState, ScrollColumn, button, sentence
-from app.gui.widgets.button_row import button_row
+from app.gui.widgets.basic import EmptyState, ScrollColumn, button, button_row, sentence
 from app.i18n.catalog import tr
 from app.presenters.measurements import MeasureView
 

@@ -14,8 +14,7 @@ from PySide6.QtGui import QColor, QFontMetrics, QKeyEvent, QMouseEvent, QPainter
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.gui.theme.stylesheet import faded, font, tokens_of
-from app.gui.widgets.accessibility import announce
-from app.gui.widgets.button_row import button_row
+from app.gui.widgets.basic import announce, button_row
 from app.i18n.catalog import tr
 from app.presenters.measurements import MeasureView
 from app.rendering.palette import Tokens

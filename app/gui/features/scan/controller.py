@@ -24,8 +24,8 @@ from core.pipeline.build import IncompleteBuildError, Stages
 from core.pipeline.live_solver import Frame
 from core.pipeline.warnings import warnings
 from core.scan.body import Body
-from core.scan.edits import ScanEdits
 from core.scan.orientation.lean_angles import corrected_up
+from core.scan.source import ScanEdits
 
 if TYPE_CHECKING:
     from app.gui.context import AppContext

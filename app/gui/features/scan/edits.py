@@ -17,7 +17,7 @@ from app.i18n.lengths import length
 from app.presenters.messages import render
 from app.presenters.scan import EditsView, HoleView
 from core.errors import UserError
-from core.scan.edits import UNEDITED, ScanEdits
+from core.scan.source import UNEDITED, ScanEdits
 
 
 class LevelField(ValueEdit):

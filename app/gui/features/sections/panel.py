@@ -13,8 +13,7 @@ from app.gui.plots.live_plot import QuantityTitle
 from app.gui.plots.section_plot import SectionDrawing, SectionPlot, paint_band
 from app.gui.session.settings import get_setting, set_setting
 from app.gui.theme.stylesheet import font, label, tokens_of
-from app.gui.widgets.accessibility import speak_value
-from app.gui.widgets.basic import FloatingPanel, ToolButton
+from app.gui.widgets.basic import FloatingPanel, ToolButton, speak_value
 from app.gui.widgets.tooltip import set_tip
 from app.gui.widgets.value_edit import ValueEdit
 from app.i18n.catalog import tr

@@ -19,11 +19,10 @@ from app.gui.features.target_shape.menu import TargetMenu
 from app.gui.features.target_shape.presenter import meets_targets, show_result, target_views
 from app.gui.features.target_shape.profile_tool import ProfileTool
 from app.gui.features.target_shape.surroundings import TargetOptions
-from app.gui.features.target_shape.targets import Targets
-from app.gui.features.target_shape.targets_undo import TargetUndo
+from app.gui.features.target_shape.targets import Targets, TargetUndo
 from app.gui.features.target_shape.view_state import ViewState
 from app.gui.features.target_shape.worker import TargetAnswer, TargetQuery, TargetWorker
-from app.gui.widgets.accessibility import announce
+from app.gui.widgets.basic import announce
 from app.i18n.catalog import tr
 from app.presenters.messages import render
 from app.presenters.target_shape import inactive_text, step_text

@@ -32,7 +32,7 @@ from app.presenters.target_shape import (
 )
 from core.analysis.inverse_design.quantities import Goal
 from core.document.design import Design
-from core.garment.pressure_limits import pressure_limits
+from core.garment.pressure import pressure_limits
 
 if TYPE_CHECKING:
     from core.analysis.inverse_design.solve import InverseResult

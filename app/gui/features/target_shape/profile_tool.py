@@ -78,8 +78,7 @@ class ProfileTool(QObject):
 
     def take_table(self, side: str, path: str) -> None:
         """Set the profile of a table as target, through the bust point of a side."""
-        from core.analysis.inverse_design.profile_csv import read_profile  # noqa: PLC0415 (few ever ask)
-        from core.analysis.inverse_design.profile_curve import profile_from_table  # noqa: PLC0415
+        from core.analysis.inverse_design.profile_curve import profile_from_table, read_profile  # noqa: PLC0415
 
         frame = self._context.session.frame
         if frame is None:

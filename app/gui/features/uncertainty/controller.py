@@ -7,14 +7,20 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
-from PySide6.QtWidgets import QWidget
+from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from app.gui.features.uncertainty.card import UncertaintyCard
 from app.gui.session.frame_cache import FrameCache
+from app.gui.theme.stylesheet import label, set_tag
+from app.gui.widgets.basic import folded_list, hairline, sentence
 from app.i18n.catalog import joined, tr
 from app.presenters.messages import render
 from app.presenters.status import invalid_reason, not_computed
-from app.presenters.uncertainty import limitation_sentences, source_sentences, uncertainty_view
+from app.presenters.uncertainty import (
+    UncertaintyView,
+    limitation_sentences,
+    source_sentences,
+    uncertainty_view,
+)
 from core.analysis.uncertainty.estimate import UncertaintyEstimator
 from core.analysis.uncertainty.perturbed_solutions import PerturbedSolutions
 from core.errors import UserError
@@ -25,6 +31,34 @@ from core.progress import Progress
 
 if TYPE_CHECKING:
     from app.gui.context import AppContext
+
+
+class UncertaintyCard(QWidget):
+    """What ± means, what another choice of the model makes, and two folds."""
+
+    def __init__(self, sources: tuple[str, ...], left_out: tuple[str, ...]) -> None:
+        super().__init__()
+        self.meaning, self.contact = sentence("", "caption"), sentence("", "caption")
+        column = QVBoxLayout(self)
+        column.setContentsMargins(4, 4, 4, 4)
+        column.setSpacing(4)
+        column.addWidget(hairline())
+        column.addWidget(label(tr("Uncertainties"), "heading"))
+        column.addWidget(self.meaning)
+        column.addWidget(self.contact)
+        self.folds = [
+            folded_list(column, tr("Sources of uncertainty"), sources),
+            folded_list(column, tr("Not included"), left_out),
+        ]
+        self.show_view(UncertaintyView(""))
+
+    def show_view(self, view: UncertaintyView) -> None:
+        """Show what is known of the ±."""
+        for words, text in ((self.meaning, view.meaning), (self.contact, view.contact)):
+            words.setText(text)
+            words.setVisible(bool(text))
+            set_tag(words, "tone", "faint" if view.faint else "")
+
 
 PAUSE = 600
 """Time without a new frame before the job begins: it shares the processor with the solver [ms]."""

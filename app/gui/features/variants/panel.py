@@ -10,8 +10,7 @@ from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPaintEvent, QShowEve
 from PySide6.QtWidgets import QFrame, QScrollArea, QVBoxLayout, QWidget
 
 from app.gui.theme.stylesheet import font, tokens_of
-from app.gui.widgets.basic import EmptyState, sentence
-from app.gui.widgets.button_row import button_row
+from app.gui.widgets.basic import EmptyState, button_row, sentence
 from app.i18n.catalog import number, tr
 from app.presenters.status import TONES
 from app.presenters.variants import VariantRow, VariantsView, VariantTexts, VariantValues
