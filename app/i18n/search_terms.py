@@ -7,7 +7,7 @@ SYNONYMS = {
     "Export body…": "mesh model stl obj ply cad 3d 書き出し メッシュ モデル 出力",
     "Open backup…": "restore recover version former 復元 バックアップ 履歴",
     "Start page": "home recent welcome ホーム 最近",
-    "Save image": "picture image photo screenshot png report 写真 スクリーンショット 報告 レポート",
+    "Export image": "picture image photo screenshot png report 写真 スクリーンショット 報告 レポート",
     "Copy image": "picture image photo clipboard report 写真 クリップボード レポート",
     "Print image…": "picture paper page report hand out 紙 プリント 報告 レポート",
     "Report…": "fitting sheet paper pdf customer fitter sizes cut list print 報告 シート 紙 印刷 お客様 裁断",
@@ -45,7 +45,7 @@ SYNONYMS = {
     "Elastics…": "tape rubber csv import library measured force ゴム テープ 取り込み 測定",
     "Lock or unlock": "fix hold keep waist 固定 ウエスト",
     "Link or unlink": "left right set apart symmetric mirror pair both sides 対称 左右",
-    "Save lines as preset…": "template style set テンプレート スタイル",
+    "Save as preset…": "template style set テンプレート スタイル",
     "Adaptive volume control": "control vibration calm 振動 制御",
     "Conventional volume control": "control vibration 振動 制御",
     "Model options…": "how the model works bonded sliding elastic implicit explicit モデルの仕組み "

@@ -39,7 +39,7 @@ def sentence(found: Diagnosis, swing: float) -> str:
             "{one} and {other} conflict: the volume oscillates by ±{percent} % (period {period} iterations)."
         ),
         "diverging": tr("{one} and {other} conflict: the solver diverged."),
-        "folded": tr("{one} and {other} conflict: the skin is folded."),
+        "folded": tr("{one} and {other} conflict: the mesh is folded."),
         "overstrained": tr("{one} and {other} conflict: skin is compressed or stretched by over 30 %."),
         "strained": tr("{one} and {other} conflict: skin is compressed or stretched by over 20 %."),
         "settling": tr("{one} and {other} conflict: the solver does not converge."),
@@ -117,8 +117,8 @@ def _topic(finding: Finding) -> str:
 def change_text(found: Diagnosis, change: Change) -> str:
     """Return what a change does, as an undo step is called."""
     choice = {
-        ("volume", "adaptive"): tr("Use Adaptive"),
-        ("volume", "exact"): tr("Use Exact"),
+        ("volume", "adaptive"): tr("Adaptive control"),
+        ("volume", "exact"): tr("Solve exactly"),
         ("line_force", "implicit"): tr("Use implicit line force"),
         ("line_hold", "spring"): tr("Use elastic lines"),
     }.get(change.setting, "")
@@ -252,7 +252,7 @@ def _parts(cure: Fix) -> str:
         "line_hold": tr("Elastic lines"),
     }[cure.change.setting[0]]
     length = tr("the lengths") if cure.change.kind == "together" else tr("the length")
-    words = tr("{choice} fixes {one}, {length} {other}")
+    words = tr("{choice} resolves {one}; {length} resolves {other}")
     troubles = {"one": _trouble(cure.option_result), "other": _trouble(cure.lengths_result)}
     return words.format(choice=choice, length=length, **troubles)
 

@@ -176,7 +176,7 @@ def advice_view(
     lines, offers = [render(option.reason, design)], []
     if option.closest is not None:
         lines = [joined((*lines, effect_text(option.closest, rigid) if rigid is not None else ""))]
-        offers.append((tr("Use at limit"), place, True))
+        offers.append((tr("Use maximum extension"), place, True))
     other = _other(option, options, titles, names)
     if other is not None:
         at, limited = other
@@ -219,7 +219,7 @@ def _other(
 
 
 def _offer(title: str, limited: bool) -> str:
-    words = tr("Use {elastic} at limit") if limited else tr("Use {elastic}")
+    words = tr("Use {elastic} at maximum extension") if limited else tr("Use {elastic}")
     return words.format(elastic=title)
 
 

@@ -134,7 +134,7 @@ def _measure_formats(table: str) -> dict[str, str]:
         "smis": tr("SeamlyMe and Seamly2D; lengths only."),
         "vit": tr("Valentina and Tape; lengths only."),
         "csv": table,
-        "json": tr("For your own programs."),
+        "json": tr("For scripts and other programs."),
     }
 
 

@@ -98,7 +98,7 @@ def _picture_kind(path: str, manner: ExportOptions) -> None:
 def _table_kind(path: str, manner: ExportOptions) -> None:
     if not path.lower().endswith(".csv"):
         raise UserError(
-            Message("Tables are saved as .csv files."), Message("Choose a name that ends in .csv.")
+            Message("Tables are exported as .csv files."), Message("Choose a name that ends in .csv.")
         )
 
 

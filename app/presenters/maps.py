@@ -79,7 +79,7 @@ def _comparison_maps() -> list[MapKind]:
             tr("Symmetry"),
             "mm",
             tr(
-                "Shows the protrusion of each side beyond the other, mirrored. The mirror plane "
+                "Shows the protrusion of each side beyond the mirrored other side. The symmetry plane "
                 "best matches the trunk without the breasts."
             ),
             tr("+ protrudes beyond the other side"),

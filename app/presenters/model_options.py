@@ -161,7 +161,7 @@ def _law() -> Choice:
 
 
 def _prestress() -> Amount:
-    tip = tr("Set the initial elongation of prestressed springs, from 10 to 100 %; not given in the paper.")
+    tip = tr("Set the initial elongation of prestressed springs, 10 to 100 % (no value in the paper).")
     return Amount("prestress", tr("Spring prestress"), tip, "%", 100.0, 0, RANGES["prestress"])
 
 
@@ -200,7 +200,7 @@ def _control() -> Choice:
         ("none", tr("None")),
         ("exact", tr("Exact")),
     )
-    return Choice("volume", tr("Control"), tip, options)
+    return Choice("volume", tr("Volume control"), tip, options)
 
 
 def _volume_of() -> Choice:

@@ -13,8 +13,8 @@ from app.presenters.measurements import length_uncertainty, plus_minus
 from app.presenters.messages import render
 from app.presenters.target_shape import is_met, is_signed, reasons_text, target_title
 from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER, LIFT, OUT, Goal, section_of
-from core.analysis.symmetry.balance import ENOUGH, moves_one_side, splittable_lines
 from core.analysis.symmetry.compare import BeforeAfter, SideDifference, SymmetryRow, symmetry_rows
+from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, splittable_lines
 from core.control_mesh.template import read_template
 from core.document.design import Design
 from core.landmarks.warnings import edit_warnings
@@ -131,19 +131,19 @@ def _titles() -> dict[str, tuple[str, str]]:
         "further_out": (tr("Protrusion"), tr("Difference in forward position of the bust points.")),
         "in_all": (
             tr("Excess volume"),
-            tr("Volume by which one breast protrudes beyond the other, mirrored; net, in ml."),
+            tr("Volume by which one breast protrudes beyond the mirrored other; net, in ml."),
         ),
         "mean": (
             tr("Mean distance"),
-            tr("Distance between the skin of one breast and that of the other, mirrored; mean of both."),
+            tr("Distance between the skin of one breast and that of the mirrored other; mean of both."),
         ),
         "further_aside": (
             tr("Lateral offset"),
-            tr("Difference in distance of the bust points from the mirror plane."),
+            tr("Difference in distance of the bust points from the symmetry plane."),
         ),
         "largest": (
             tr("Max. distance"),
-            tr("Place where one side protrudes most beyond the other, mirrored."),
+            tr("Location of the largest difference between one side and the mirrored other side."),
         ),
         "left_more": (tr("Left excess"), tr("Volume between both skins where the left side protrudes.")),
         "right_more": (tr("Right excess"), tr("Volume between both skins where the right side protrudes.")),
@@ -153,7 +153,7 @@ def _titles() -> dict[str, tuple[str, str]]:
 def _rests_on() -> tuple[str, ...]:
     return (
         tr("L, R: side with the larger value. Tick in the bar: value of the original body."),
-        tr("The mirror plane best matches the trunk without the breasts."),
+        tr("The symmetry plane best matches the trunk without the breasts."),
         tr("Lines move tissue at constant volume: they do not reduce the volume difference of the breasts."),
     )
 
@@ -170,7 +170,7 @@ def _hint(stages: Stages, now: SideDifference) -> tuple[str, bool]:
         return tr(
             "To balance the sides, activate a line on one side, or an unlocked line across both."
         ), False
-    return tr("Balancing separates left and right: {lines}.").format(
+    return tr("Balancing unlinks left and right: {lines}.").format(
         lines=listed(split_titles(design, names))
     ), True
 

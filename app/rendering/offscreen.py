@@ -151,7 +151,7 @@ def picture_kind(path: str | os.PathLike[str]) -> str:
     kind = Path(path).suffix.lower().lstrip(".")
     if kind != "png":
         raise UserError(
-            Message("Pictures cannot be saved as .{kind}.", kind=kind),
+            Message("Images cannot be exported as .{kind}.", kind=kind),
             Message("Choose a name ending in .png."),
         )
     return kind

@@ -66,7 +66,7 @@ def turntable_kind(path: str | os.PathLike[str]) -> str:
     kind = Path(path).suffix.lower().lstrip(".")
     if kind not in FORMATS:
         raise UserError(
-            Message("Turntables cannot be saved as .{kind}.", kind=kind),
+            Message("Turntables cannot be exported as .{kind}.", kind=kind),
             Message("Choose one of: {choices}.", choices=", ".join(FORMATS)),
         )
     return kind

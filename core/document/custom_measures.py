@@ -134,7 +134,7 @@ def parse_measurement(text: str) -> CustomMeasurement:
     if told is None:
         raise UserError(
             Message("'{text}' is not a measurement.", text=text),
-            Message("Enter NAME=KIND:PLACES, see 'busk measure --help'."),
+            Message("Enter NAME=KIND:PLACES. See 'busk measure --help'."),
         )
     name, kind, places = (part.strip() for part in told.groups())
     if kind != "girth":

@@ -33,7 +33,7 @@ DECIMALS = 4
 
 _NUMBER = r"\d+(?:\.\d+)?"
 _PLACE = re.compile(rf"r({_NUMBER})c([+-]?{_NUMBER})")
-_ASK = Message("Enter NAME=r2c-3,r3c0,r2c3 or NAME=28,45,34, with ,closed at the end for a closed line.")
+_ASK = Message('Enter NAME=r2c-3,r3c0,r2c3 or NAME=28,45,34. Append ",closed" for a closed line.')
 _ENDINGS = ("closed", "shoulder")
 
 

@@ -186,7 +186,7 @@ def _held(row: CutRow, elastic: Elastic) -> CutRow:
     if row.tension_n is None:
         return _noted(
             row,
-            Message("Located on fixed points, so its tension is unknown: make lines elastic to compute it."),
+            Message("Tension of a line on fixed points is unknown: make lines elastic to compute it."),
         )
     if row.tension_n > elastic.max_force:
         return _refused(row, elastic.overload_error(row.tension_n, LineName(row.line, row.title)).text)

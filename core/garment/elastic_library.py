@@ -138,7 +138,7 @@ def _text_of(path: Path) -> str:
     if b"\0" in data:
         raise LineError(
             Message("The file {name} is not a text file.", name=path.name),
-            Message("Save the table as CSV and import that file."),
+            Message("Export the table as CSV and import that file."),
         )
     try:
         return data.decode("utf-8-sig")

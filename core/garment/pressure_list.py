@@ -131,7 +131,5 @@ def _row(
 
 def _unknown(held: bool) -> Message:
     if held:
-        return Message(
-            "Located on fixed points, so its tension is unknown: make lines elastic to compute it."
-        )
-    return Message("Located on fixed points: choose an elastic to compute its tension.")
+        return Message("Tension of a line on fixed points is unknown: make lines elastic to compute it.")
+    return Message("Line on fixed points: choose an elastic to compute the tension.")

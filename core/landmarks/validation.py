@@ -77,7 +77,7 @@ def check_anchor(anchor: Anchor) -> None:
     spanned = abs(anchor.ridge) <= RIDGE and anchor.middle_kink < SPANNED
     one_bump = anchor.middle_kink > ONE_BUMP * anchor.kink and not spanned
     if anchor.kink < least or one_bump:
-        raise refusal(Message("no inframammary folds below a left and a right breast"))
+        raise refusal(Message("left and right inframammary folds not detected"))
 
 
 def check_placed(landmarks: Landmarks) -> None:

@@ -55,5 +55,5 @@ def _no_agreement(fitted: FittedModel) -> LineError:
     """Return what to say when the body and the elastics do not come to rest together."""
     return LineError(
         Message("No equilibrium found with elastics for {lines}.", lines=", ".join(fitted.elongations)),
-        Message("Set the lines closer to 100 %, or choose no elastic."),
+        Message("Set the line lengths closer to 100 %, or remove the elastic."),
     )

@@ -69,7 +69,7 @@ def test_what_is_stopped_says_so_and_is_worked_out_when_it_is_looked_at_again(ga
         window.report_controller.open()
         stop(window, "Creating report…")
         state = window.report_controller.page.state
-        assert state.text() == "Stopped. Open the report again to create it."
+        assert state.text() == "Report stopped. Return to the report page to create it."
         window.report_controller.leave()
         window.navigation.show_panel("garment")
         stop(window, "Computing contact pressure…")

@@ -151,7 +151,7 @@ def makes_even(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
         window.target_shape_controller,
         window.session.design,
     )
-    assert card.hint.text() == "Balancing separates left and right: Full bust, Mid-bust."
+    assert card.hint.text() == "Balancing unlinks left and right: Full bust, Mid-bust."
     count = window.session.undo_stack.count()
     for end in (desk.leave, desk.apply):
         card.make.click()

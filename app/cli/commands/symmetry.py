@@ -17,8 +17,9 @@ from app.presenters.symmetry import balance_result_texts, not_balanced_reason, s
 from app.presenters.target_shape import change_text, reasons
 from core import __version__
 from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER
-from core.analysis.symmetry.balance import ENOUGH, EVEN, BalanceResult, balance_sides, split_sides
+from core.analysis.symmetry.balance import EVEN, BalanceResult, balance_sides
 from core.analysis.symmetry.compare import BeforeAfter, SideDifference, compare_sides, symmetry_rows
+from core.analysis.symmetry.split_sides import ENOUGH, split_sides
 from core.control_mesh.template import read_template
 from core.document.design import Design
 from core.errors import UserError

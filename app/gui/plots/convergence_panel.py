@@ -245,7 +245,7 @@ class ConvergencePanel(QWidget):
         self.tools.setSpacing(2)
         fold = ToolButton("caret-down", tr("Collapse plots (Ctrl+J)"), size=14, room=26)
         fold.clicked.connect(lambda: self.set_folded(True))
-        self.save = ToolButton("export", tr("Save plots or their values"), size=16, room=26)
+        self.save = ToolButton("export", tr("Export plots or their values"), size=16, room=26)
         self.save.clicked.connect(lambda: self._show_menu(self.save.mapToGlobal(self.save.rect().topLeft())))
         for each in (fold, self.save):
             self.tools.addWidget(each)
@@ -258,9 +258,9 @@ class ConvergencePanel(QWidget):
     def _build_menu(self) -> None:
         self.menu = Menu(self)
         for kind, text in (
-            ("csv", tr("Save iterations as CSV…")),
-            ("png", tr("Save plots as PNG…")),
-            ("svg", tr("Save plots as SVG…")),
+            ("csv", tr("Export iterations as CSV…")),
+            ("png", tr("Export plots as PNG…")),
+            ("svg", tr("Export plots as SVG…")),
         ):
             self.menu.addAction(text, partial(self.export_requested.emit, kind))
         self.menu.addSeparator()

@@ -96,7 +96,7 @@ class ViewTools(Toolbar):
         colours.setCheckable(True)
         colours.setEnabled(False)
         colours.triggered.connect(lambda on: self.toggled.emit("colours", on))
-        self._add("picture", "camera", tr("Save image"), "Ctrl+Shift+P")
+        self._add("picture", "camera", tr("Export image"), "Ctrl+Shift+P")
         self.actions_by_name["picture"].triggered.connect(self.picture_requested)
 
     def set_view(self, name: str | None) -> None:

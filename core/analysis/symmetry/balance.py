@@ -4,62 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
-from functools import reduce
 from math import hypot
 
 from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER, LIFT, OUT, Goal, reading
 from core.analysis.inverse_design.solve import InverseResult, solve_targets
 from core.analysis.symmetry.compare import NO_BREAST, SideDifference, compare_sides
-from core.control_mesh.template import Template, read_template
-from core.document.design import Design
-from core.document.split_lines import can_split, split
+from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, split_sides, splittable_lines
+from core.control_mesh.template import read_template
 from core.errors import UserError
 from core.geometry.mesh import Points
 from core.landmarks.types import SIDES
 from core.measurements.subject import shows_breast
 from core.messages import Message
-from core.pipeline.active_lines import free_lines
 from core.pipeline.build import Stages, build
 from core.pipeline.solve import solve
 from core.progress import Progress, quiet
-
-ENOUGH = 0.5
-"""Bust points that differ by less count as even: they ride on the nearest vertex of the skin [mm]."""
-
-
-def moves_one_side(stages: Stages) -> bool:
-    """Return whether an active line or its linked lines may change and act on one side alone."""
-    return any(_one_sided(stages, group) for group in free_lines(stages))
-
-
-def _one_sided(stages: Stages, group: tuple[str, ...]) -> bool:
-    control = stages.control
-    touched = [line.weights.nonzero()[1] for line in stages.model.lines if line.name in group]
-    pulled = {int(point) for points in touched for point in points if not control.fixed[point]}
-    sides = {int(control.column[point]) for point in pulled} - {0}
-    return bool(sides) and (min(sides) > 0 or max(sides) < 0)
-
-
-def splittable_lines(design: Design, template: Template) -> tuple[str, ...]:
-    """Return the worn lines that can be set apart or split so that left and right change each by itself."""
-    free = [name for name in sorted(design.active_lines()) if not design.line_settings(name).locked]
-    return tuple(
-        name for name in free if len(design.linked_pair(name)) > 1 or can_split(design, template, name)
-    )
-
-
-def split_sides(design: Design, template: Template) -> Design:
-    """Return the design with linked pairs set apart and lines across both sides split; locked ones stay."""
-    return reduce(
-        lambda after, name: _parted(after, template, name), splittable_lines(design, template), design
-    )
-
-
-def _parted(design: Design, template: Template, name: str) -> Design:
-    if len(design.linked_pair(name)) > 1:
-        return design.with_line_settings(replace(design.line_settings(name), linked=False))
-    return split(design, template, name) if can_split(design, template, name) else design
-
 
 EVEN = (Goal(HIGHER, 0.0), Goal(FURTHER_OUT, 0.0))
 """Both bust points equally high and equally far out."""

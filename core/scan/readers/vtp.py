@@ -38,7 +38,7 @@ _DEEPEST = 20
 _MOST_PARTS = 1000
 _MOST_ARRAYS, _MOST_BLOCKS = 10_000, 100_000
 _LONGEST_TAG = 1 << 24
-_PLAIN = Message("Save the scan without compression in the original program, or as PLY.")
+_PLAIN = Message("Export the scan again from the scanning program, without compression or as PLY.")
 
 
 @dataclass(eq=False)

@@ -55,7 +55,7 @@ def repair(
         (_drop_spikes, Message("Removed {count} shaped like a spike."), vertex_count),
         (_wind_outward, Message("Reversed {count} to face outward."), face_count),
         (remove_inner, Message("Removed {count} inside the body or duplicating its surface."), piece_count),
-        (remove_occluded, Message("Removed {count} of parts that extend into the body."), face_count),
+        (remove_occluded, Message("Removed {count} from parts that extend into the body."), face_count),
     )
     skin, sentences = EditableMesh(vertices, faces), []
     for done, (step, sentence, counted) in enumerate(steps):

@@ -91,7 +91,7 @@ def test_a_scan_is_exported_with_the_given_lines(tmp_path, capsys):
         (["--strips", "x.pdf"], "Lines cannot be exported as .pdf"),
         (["--measurements", "x.xls"], "Measurements cannot be exported as .xls"),
         (["--measurements", "x.vit", "--unit", "m"], ".vit files do not support the unit m."),
-        (["--turntable", "x.mp4"], "Turntables cannot be saved as .mp4"),
+        (["--turntable", "x.mp4"], "Turntables cannot be exported as .mp4"),
         (["--turntable", "x.gif", "--frames", "1"], "turntable frames 1 is out of range"),
         (["--body", "x.ply", "--unit", "ell"], "There is no unit 'ell'"),
         (["--body", "x.ply", "--axes", "x-up"], "There is no axis convention 'x-up'"),

@@ -112,9 +112,9 @@ def test_dialogs_begin_where_files_of_their_kind_were_last(
     ask_save(parent, "Save as", "anna.busk", "Projects (*.busk)", ".busk")
     ask_open(parent)
     choose(gone / "anna.png")
-    ask_save(parent, "Save image", "anna.png", "PNG (*.png)", ".png")
+    ask_save(parent, "Export image", "anna.png", "PNG (*.png)", ".png")
     (projects / "anna.png").touch()
-    ask_save(parent, "Save image", "anna.png", "PNG (*.png)", ".png")
+    ask_save(parent, "Export image", "anna.png", "PNG (*.png)", ".png")
     assert last_folder("written") == projects, "what is gone is no place to begin"
     ask_save(parent, "Save as", str(scans / "anna.busk"), "Projects (*.busk)", ".busk")
     assert [Path(at) for at in offered] == [

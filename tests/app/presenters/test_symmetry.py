@@ -96,7 +96,7 @@ def test_the_hint_says_what_is_parted_first_or_what_is_lacking(person: Stages, t
     for line in ready_made_lines(TEMPLATE)["straps"]:
         design = design.with_custom_line(line).with_line(line.name, 0.95)
     summary = symmetry_view(told, build(design, person))
-    assert summary.hint == "Balancing separates left and right: Mid-bust, Straps."
+    assert summary.hint == "Balancing unlinks left and right: Mid-bust, Straps."
     assert summary.possible
     halves = symmetry_view(told, build(split(person.design, TEMPLATE, "mid-bust"), person))
     assert (halves.hint, halves.possible) == ("", True)

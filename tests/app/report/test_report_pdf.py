@@ -17,6 +17,7 @@ from PySide6.QtWidgets import QApplication
 
 from app.gui.theme.stylesheet import load_fonts
 from app.i18n.catalog import language, number, use_language
+from app.i18n.lengths import length_number
 from app.presenters.lines import line_colours
 from app.report.document import SHOT_SIZES, SHOTS, ReportDocument
 from app.report.pages import pages_of, write_pdf
@@ -191,7 +192,10 @@ def test_a_shape_that_is_no_result_tells_no_figure_of_it(sheet: Report, tmp_path
     text = written(handout(folded), tmp_path / "folded.pdf").text()
     assert text.count("No value: the shape is not valid.") == 3 + len(sheet.cuts.rows)
     assert text.count("DO NOT CUT") == len(sheet.cuts.rows)
-    assert "Bust point lift, mm" not in text
+    assert sheet.lift is not None
+    lift = length_number(sheet.lift.up, signed=True)
+    assert lift in written(handout(sheet), tmp_path / "valid.pdf").text()
+    assert lift not in text
     for cut in sheet.cuts.rows:
         assert cut.cut_mm is None or f" {cut.cut_mm:,.0f} " not in text
     measured = [row for row in sheet.measures if row["before"] is not None and row["unit"] == "mm"]

@@ -8,16 +8,9 @@ import pytest
 
 from app.presenters.samples import sample_design
 from core.analysis.inverse_design.quantities import reading
-from core.analysis.symmetry.balance import (
-    ENOUGH,
-    EVEN,
-    balance_goals,
-    balance_sides,
-    moves_one_side,
-    split_sides,
-    splittable_lines,
-)
+from core.analysis.symmetry.balance import EVEN, balance_goals, balance_sides
 from core.analysis.symmetry.compare import NO_BREAST, compare_sides
+from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, split_sides, splittable_lines
 from core.control_mesh.template import read_template
 from core.document.line_notation import ready_made_lines
 from core.document.lines import LineSettings

@@ -85,9 +85,9 @@ class ConvergenceController(QObject):
         if frame is None:
             return
         title, kinds = {
-            "csv": (tr("Save iterations"), "CSV (*.csv)"),
-            "png": (tr("Save image"), "PNG (*.png)"),
-            "svg": (tr("Save drawing"), "SVG (*.svg)"),
+            "csv": (tr("Export iterations"), "CSV (*.csv)"),
+            "png": (tr("Export image"), "PNG (*.png)"),
+            "svg": (tr("Export drawing"), "SVG (*.svg)"),
         }[kind]
         name = f"{context.session.name}-turns.{kind}"
         path = ask_save(context.window, title, name, kinds, f".{kind}")

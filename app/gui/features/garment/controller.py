@@ -38,7 +38,7 @@ class GarmentController(QObject):
         panel.tissue.entered.connect(self._set_tissue)
         panel.copy_requested.connect(lambda: copy_table(context, self._as_table()))
         panel.table_requested.connect(
-            lambda: save_table(context, self._as_table(), tr("Save cut list"), "cut-list")
+            lambda: save_table(context, self._as_table(), tr("Export cut list"), "cut-list")
         )
 
     def follow(self, frame: Frame) -> None:

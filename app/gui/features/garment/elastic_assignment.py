@@ -153,7 +153,7 @@ def _is_made(asked: ElasticRequest, outcome: Outcome, elastic: Elastic | None) -
 def _told(before: float, after: float, cut: bool) -> str:
     """Return in a sentence what stayed and what did not."""
     if abs(after - before) < LIFT_TOLD:
-        same = tr("Cut length adapted; length on body and lift unchanged.")
-        return same if cut else tr("Set length adapted; length on body and lift unchanged.")
+        same = tr("Cut length adjusted; length on body and lift unchanged.")
+        return same if cut else tr("Set length adjusted; length on body and lift unchanged.")
     words = tr("Bust point height changed from {before} to {after}; adjust the length if needed.")
     return words.format(before=up_text(before), after=up_text(after))

@@ -434,7 +434,7 @@ class GarmentPanel(QWidget):
                     tr("Copy the cut list for a spreadsheet or document"),
                     self.copy_requested,
                 ),
-                (tr("CSV…"), tr("Save the cut list as CSV"), self.table_requested),
+                (tr("CSV…"), tr("Export the cut list as CSV"), self.table_requested),
                 (tr("Elastics…"), tr("View, import and export elastics"), self.elastics_requested),
             ),
             top=4,

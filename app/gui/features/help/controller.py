@@ -52,7 +52,7 @@ class HelpController(QObject):
         add(
             "help",
             tr("Diagnostics"),
-            tip=tr("Show versions, graphics and folders to copy"),
+            tip=tr("Show system information for bug reports"),
             do=self.show_machine,
         )
         context.actions.guide.triggered.connect(self.show_guide)

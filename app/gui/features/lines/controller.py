@@ -179,7 +179,7 @@ class LinesController(QObject):
             (tr("Split into left and right"), None, "split"),
         ):
             do.add("lines", text, key, do=partial(self._row_asked, act), of_document=True)
-        sentence = tr("Built-in lines cannot be removed: at 100 % they are inactive")
+        sentence = tr("Built-in lines cannot be removed. Set a line to 100 % to deactivate it.")
         remove = do.add("lines", tr("Remove line"), "Del", sentence, do=partial(self._row_asked, "remove"))
         # Elsewhere the key takes other things away.
         remove.setShortcutContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)

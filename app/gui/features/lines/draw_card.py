@@ -38,7 +38,7 @@ class DrawCard(FloatingPanel):
             words.setFixedWidth(WIDTH)
         self.both = QCheckBox(tr("Mirror the line to the other side and link both"))
         self.snap = QCheckBox(tr("Snap to control points"))
-        set_tip(self.snap, tr("Move the line to the nearest control points instead of keeping the curve"))
+        set_tip(self.snap, tr("Snap the line to the nearest control points instead of keeping its curve"))
         for choice in (self.both, self.snap):
             choice.setFont(font("body"))
             choice.setFocusPolicy(Qt.FocusPolicy.TabFocus)

@@ -64,7 +64,7 @@ class PresetsController(QObject):
             action = menu.addAction(render(problem.message))
             set_tip(action, render(problem.hint))
             action.setEnabled(False)
-        menu.addAction(tr("Save lines as preset…"), self.ask).setEnabled(opened)
+        menu.addAction(tr("Save as preset…"), self.ask).setEnabled(opened)
 
     def show_menu(self) -> None:
         """Show the menu of presets above the list of lines."""

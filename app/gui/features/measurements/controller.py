@@ -57,7 +57,7 @@ class MeasurementsController(QObject):
         context.view.compared.connect(self._show_mark)
         panel.copy_requested.connect(lambda: copy_table(context, self._as_table()))
         panel.table_requested.connect(
-            lambda: save_table(context, self._as_table(), tr("Save table of measurements"), "measures")
+            lambda: save_table(context, self._as_table(), tr("Export table of measurements"), "measures")
         )
         panel.sizes.chosen.connect(self._choose)
         panel.sizes.allowed.connect(self._allow)
@@ -135,7 +135,7 @@ class MeasurementsController(QObject):
 
     def _leave_off(self) -> None:
         self._context.notifications.stopped(tr("Measuring body…"))
-        self._give_up(tr("Stopped. Open this list again to measure the body."))
+        self._give_up(tr("Measuring stopped. Open this list again to measure the body."))
 
     def _give_up(self, why: str) -> None:
         """Be ready to be asked again; what was measured before stays, as of a former shape."""

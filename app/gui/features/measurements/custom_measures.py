@@ -174,7 +174,7 @@ class CustomMeasuresController(QObject):
             lambda progress: custom_before_after(frame.stages, frame.control_points, wished),
             lambda found: self._show(cast(tuple[Measure, Measure], found)),
             self._fail,
-            left=lambda: self._show(None, tr("Stopped. Change the measurement to compute it again.")),
+            left=lambda: self._show(None, tr("Computation stopped. Change the measurement to restart it.")),
         )
 
     def _fail(self, error: Exception) -> None:

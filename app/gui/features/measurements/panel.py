@@ -193,7 +193,7 @@ class MeasurementsPanel(QStackedWidget):
 
     def _make_buttons(self) -> QWidget:
         copied = tr("Copy the table for a spreadsheet or document")
-        written = tr("Save the table as CSV")
+        written = tr("Export the table as CSV")
         choices = (
             (tr("Add measurement…"), tr("Measure between two landmarks, or a girth"), self.adding),
             (tr("Copy"), copied, self.copy_requested),

@@ -186,7 +186,7 @@ class ReportController(QObject):
 
     def _leave_off(self) -> None:
         self._job = self._asked = None
-        self._refused = tr("Stopped. Open the report again to create it.")
+        self._refused = tr("Report stopped. Return to the report page to create it.")
         self._show()
 
     def _fail(self, error: Exception) -> None:
@@ -255,10 +255,10 @@ class ReportController(QObject):
             self._write(path, lambda: write_pdf(path, pages, self._context.session.name))
 
     def _save_data(self) -> None:
-        self._save_text(tr("Save report data"), ".json", "JSON (*.json)")
+        self._save_text(tr("Export report data"), ".json", "JSON (*.json)")
 
     def _save_table(self) -> None:
-        self._save_text(tr("Save report values"), ".csv", "CSV (*.csv)")
+        self._save_text(tr("Export report values"), ".csv", "CSV (*.csv)")
 
     def _save_text(self, title: str, ending: str, kinds: str) -> None:
         path = self._asked_for(title, ending, kinds)

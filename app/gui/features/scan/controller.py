@@ -143,7 +143,10 @@ class ScanController(QObject):
             return
         scan = design.scan
         if not key:
-            text, scan = tr("Unit, up and front reset"), scan.set_up(unit=None, up=None, front=None)
+            text, scan = (
+                tr("Unit and directions reset"),
+                scan.set_up(unit=None, up=None, front=None),
+            )
         elif key == "unit":
             text, scan = tr("Scan in {unit}").format(unit=value), scan.set_up(unit=value)
         elif key == "up":

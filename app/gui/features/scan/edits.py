@@ -53,7 +53,7 @@ class ScanEditor(QWidget):
         self.high.entered.connect(lambda value: self._emit(self._with_high(value), tr("Crop scan")))
         self._extent = label("", "secondary")
         self.sides = Segment(
-            [("", tr("Off")), ("left", tr("Keep left")), ("right", tr("Keep right"))], small=True
+            [("", tr("Off")), ("left", tr("Keep left side")), ("right", tr("Keep right side"))], small=True
         )
         set_tip(self.sides, tr("Replace the other half of the body with a mirror image of this half"))
         self.sides.chosen.connect(

@@ -139,7 +139,7 @@ class SectionsController(QObject):
         path = ask_save(self._context.window, tr("Export curves as CSV…"), name, "CSV (*.csv)", ".csv")
         if not path or self._slicer is None:
             return
-        plane, curves, text = self._slicer.plane, self.curves, tr("Curves saved to {name}.")
+        plane, curves, text = self._slicer.plane, self.curves, tr("Curves exported to {name}.")
         write_file(
             self._context.notifications, "curves", path, lambda to: write_profile(to, plane, curves), text
         )

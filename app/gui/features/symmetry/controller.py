@@ -15,8 +15,8 @@ from app.gui.session.jobs import Job
 from app.i18n.catalog import listed, tr
 from app.presenters.status import invalid_reason
 from app.presenters.symmetry import map_note, not_balanced_reason, split_titles, symmetry_view
-from core.analysis.symmetry.balance import split_sides
 from core.analysis.symmetry.compare import BeforeAfter, compare_sides
+from core.analysis.symmetry.split_sides import split_sides
 from core.control_mesh.template import read_template
 from core.document.design import Design
 from core.measurements.uncertain_value import OutputUncertainties

@@ -45,7 +45,7 @@ class VariantsPanel(QWidget):
         column.addWidget(self._area, 1)
         beside = tr("Show all variants side by side with linked cameras")
         copied = tr("Copy the table for a spreadsheet or document")
-        written = tr("Save the table as CSV")
+        written = tr("Export the table as CSV")
         self._buttons = button_row(
             (
                 (tr("Side by side"), beside, self.beside_requested),

@@ -79,5 +79,5 @@ class VariantTableController(QObject):
     def export(self) -> None:
         """Prompt for a file and write the table."""
         if self._panel.view is not None:
-            title = tr("Save table of variants")
+            title = tr("Export table of variants")
             save_table(self._context, as_table(self._panel.view), title, "variants")

@@ -39,7 +39,7 @@ class ImageExportController(QObject):
     def save(self) -> None:
         """Prompt for a file and write the view."""
         name = f"{self._context.session.name}.png"
-        path = ask_save(self._context.window, tr("Save image"), name, "PNG (*.png)", ".png")
+        path = ask_save(self._context.window, tr("Export image"), name, "PNG (*.png)", ".png")
         if path:
             write_file(self._context.notifications, "picture", path, write_whole(png_of(self._picture())))
 
