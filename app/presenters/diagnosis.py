@@ -138,7 +138,7 @@ def change_text(found: Diagnosis, change: Change) -> str:
             what = tr("Set {line} to {percent} %")
         what = what.format(**values)
     elif change.kind == "together":
-        what = tr("Move all lines up to {length} closer to 100 %")
+        what = tr("All lines up to {length} closer to 100 %")
         what = what.format(length=length(found.moves_mm(change), 0))
     elif change.kind == "width":
         what = tr("Widen {line} to {length}")

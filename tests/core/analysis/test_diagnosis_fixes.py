@@ -120,7 +120,7 @@ def test_all_lines_together_are_told_with_how_far_they_go() -> None:
     change = replace(found.best_fix.change, kind="together", design=after, lines=lines, setting=("", None))
     most = 0.1 * found.line("mid-bust").rest_length
     assert found.moves_mm(change) == pytest.approx(most)
-    assert change_text(found, change) == f"Move all lines up to {most:.0f} mm closer to 100 %"
+    assert change_text(found, change) == f"All lines up to {most:.0f} mm closer to 100 %"
 
 
 def test_forces_are_told_as_sums_over_points() -> None:
