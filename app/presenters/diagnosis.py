@@ -117,8 +117,8 @@ def _topic(finding: Finding) -> str:
 def change_text(found: Diagnosis, change: Change) -> str:
     """Return what a change does, as an undo step is called."""
     choice = {
-        ("volume", "adaptive"): tr("Adaptive control"),
-        ("volume", "exact"): tr("Solve exactly"),
+        ("volume", "adaptive"): tr("Use adaptive"),
+        ("volume", "exact"): tr("Use exact"),
         ("line_force", "implicit"): tr("Use implicit line force"),
         ("line_hold", "spring"): tr("Use elastic lines"),
     }.get(change.setting, "")

@@ -49,7 +49,7 @@ def test_a_vibration_is_told_at_once_and_ended_by_one_button() -> None:
         notice = notice_of(window)
         assert notice.sentence.startswith("Mid-bust and the volume conflict: the bust point oscillates")
         assert notice.sentence.endswith("(period 2 iterations).")
-        assert words(window)[0].startswith("Adaptive control"), "only the conventional control vibrates"
+        assert words(window)[0].startswith("Use adaptive"), "only the conventional control vibrates"
         assert len(words(window)) == 2
         assert "Reduce gain to " in notice.details
         assert "for this shape" in notice.details
@@ -60,12 +60,12 @@ def test_a_vibration_is_told_at_once_and_ended_by_one_button() -> None:
         assert frame is not None
         assert frame.verdict.display_state == "settled"
         assert window.session.undo_stack.count() == steps + 1
-        assert window.session.undo_stack.undoText() == "Adaptive control"
+        assert window.session.undo_stack.undoText() == "Use adaptive"
         assert window.notices.notice() is None
         window.actions_.undo.trigger()
         yield settled(window)
         yield lambda: told(window)
-        assert words(window)[0].startswith("Adaptive control")
+        assert words(window)[0].startswith("Use adaptive")
 
     run_main([], script)
 

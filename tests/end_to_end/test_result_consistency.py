@@ -159,7 +159,7 @@ def test_a_run_that_never_rests_is_no_result_and_has_a_way_out() -> None:
         assert kept(window).mark == ("bad", "warning-octagon")
 
         offered = [button.text() for button in window.notices.buttons]
-        assert "Adaptive control" not in offered, "it would lead to a fold"
+        assert "Use adaptive" not in offered, "it would lead to a fold"
         window.session.choose_control("adaptive")
         yield settled(window)
         assert frame_of(window).verdict.motion == "settled"

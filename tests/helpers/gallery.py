@@ -116,7 +116,7 @@ class Mock(QWidget):
                 "warn",
                 tr("This design vibrates with the conventional force."),
                 tr("Mid-bust line and volume pull against each other."),
-                [(tr("Adaptive control"), self.notice.clear), (tr("Why?"), self.notice.clear)],
+                [(tr("Use adaptive"), self.notice.clear), (tr("Why?"), self.notice.clear)],
                 lasting=True,
             )
 
