@@ -17,6 +17,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from coarse_bodies import coarse_mannequin
 from dead_process import pytest_testnodedown  # noqa: F401 (pytest finds it here)
 from PySide6.QtCore import QSettings
 from PySide6.QtWidgets import QApplication
@@ -223,6 +224,11 @@ def opened_as_in_the_program() -> None:
 
 
 @pytest.fixture
+def fine_mannequin() -> None:
+    """A first start opens the mannequin on all its vertices."""
+
+
+@pytest.fixture
 def spared_as_in_the_program() -> Iterator[None]:
     """What a window spares the search for garbage it gives back when it is closed, with all libraries."""
     yield
@@ -230,14 +236,22 @@ def spared_as_in_the_program() -> Iterator[None]:
     gc.freeze()  # as each file begins
 
 
+@pytest.fixture(scope="session")
+def coarse_sample(tmp_path_factory: pytest.TempPathFactory) -> Design:
+    """The design on the mannequin with which the windows of tests begin, on a fifth of its vertices."""
+    design = sample_design()
+    file = coarse_mannequin(tmp_path_factory.mktemp("coarse"))
+    return replace(design, scan=replace(design.scan, path=str(file)))
+
+
 @pytest.fixture
 def empty_house(
-    request: pytest.FixtureRequest, qapp: QApplication, monkeypatch: pytest.MonkeyPatch
+    request: pytest.FixtureRequest, qapp: QApplication, monkeypatch: pytest.MonkeyPatch, coarse_sample: Design
 ) -> Iterator[None]:
     """Nothing of a window lives on after a test: no thread of ours, no window; its settings are fresh.
 
-    A first start opens the mannequin with a short glued line, which most tests are about; with
-    ``opened_as_in_the_program`` it opens what the user sees.
+    A first start opens the mannequin with a short glued line, which most tests are about, on a fifth of its
+    vertices: with ``fine_mannequin`` on all, with ``opened_as_in_the_program`` as the user sees it.
     How sure figures are is not worked out where a test does not ask: it takes half a minute of a processor.
     Frames come seldom, as on a slow machine: most of a test's time would go into ones that nobody looks at.
     """
@@ -245,7 +259,8 @@ def empty_house(
         # Else all libraries would be looked through three times after each window, and not only what it left.
         monkeypatch.setattr("app.gui.session.gc_control.gc", SPARING_NOTHING)
     if "opened_as_in_the_program" not in request.fixturenames:
-        monkeypatch.setattr("app.gui.startup.lifted_sample", sample_design)
+        opened = sample_design() if "fine_mannequin" in request.fixturenames else coarse_sample
+        monkeypatch.setattr("app.gui.startup.lifted_sample", lambda: opened)
     monkeypatch.setattr("app.gui.features.uncertainty.controller.PAUSE", 10**8)
     monkeypatch.setattr("core.pipeline.live_solver._SLICE", 0.1)
     QSettings().clear()

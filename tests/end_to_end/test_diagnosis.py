@@ -70,6 +70,7 @@ def test_a_vibration_is_told_at_once_and_ended_by_one_button() -> None:
     run_main([], script)
 
 
+@pytest.mark.usefixtures("fine_mannequin")
 def test_strain_is_told_calmly_once_and_never_again() -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
@@ -243,6 +244,7 @@ def test_what_was_edited_meanwhile_is_not_told_of() -> None:
     run_main([], script)
 
 
+@pytest.mark.usefixtures("fine_mannequin")
 def test_the_pill_opens_what_the_button_ends_and_what_will_still_be_strained() -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)

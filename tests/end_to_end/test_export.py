@@ -24,6 +24,7 @@ from app.presenters.export import exports
 pytestmark = pytest.mark.usefixtures("empty_house")
 
 
+@pytest.mark.usefixtures("fine_mannequin")
 def test_a_body_is_exported_by_keys_alone_in_the_unit_that_was_chosen(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -70,6 +71,7 @@ def test_a_body_is_exported_by_keys_alone_in_the_unit_that_was_chosen(
     assert set(kinds) == {f"{kind} (*.{kind.lower()})" for kind in ("GLB", "OBJ", "PLY", "STL")}
 
 
+@pytest.mark.usefixtures("fine_mannequin")
 def test_choices_are_remembered_for_each_thing_and_each_format(tmp_path: Path) -> None:
     def first(window: MainWindow) -> Script:
         undrawn(window)

@@ -41,7 +41,7 @@ def test_an_elastic_that_cannot_be_used_is_grey_and_the_nearest_that_can_is_one_
         assert view.note in chooser.advice.text()
         assert not chooser.use.isEnabled()
         assert window.session.design is before
-        nearest = next(each for each in chooser.offers() if "limit" not in each).removeprefix("Use ")
+        nearest = next(each for each in chooser.offers() if "extension" not in each).removeprefix("Use ")
         assert next(each for each in chooser.views() if each.title == nearest).usable
         chooser.press_offer(chooser.offers().index(f"Use {nearest}"))
         yield made_of(window, "mid-bust")

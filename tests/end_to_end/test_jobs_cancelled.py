@@ -79,7 +79,7 @@ def test_what_is_stopped_says_so_and_is_worked_out_when_it_is_looked_at_again(ga
         assert "was not computed" in window.pressure_controller.card.says.text()
         window.navigation.show_step("result")
         stop(window, "Measuring body…")
-        assert window.result._waiting.text().startswith("Stopped")
+        assert window.result._waiting.text().startswith("Measuring stopped")
         gate.set()
         window.navigation.show_step("lines")
         window.navigation.show_panel("garment")
@@ -102,7 +102,7 @@ def test_a_measure_of_ones_own_that_is_stopped_is_measured_at_the_next_change(ga
         for name in ("bust_point_left", "front_centre"):
             form.show_draft(form.draft.picked(name))
         stop(window, "Measuring body…")
-        assert form.doubt.text().startswith("Stopped")
+        assert form.doubt.text().startswith("Computation stopped")
         gate.set()
         form.show_draft(form.draft)
         window.custom_measures_controller._follow()

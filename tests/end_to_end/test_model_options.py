@@ -49,6 +49,7 @@ def bust_points(window: MainWindow) -> float:
     )
 
 
+@pytest.mark.usefixtures("fine_mannequin")
 def test_a_sliding_line_lifts_the_bust_points_and_undo_brings_the_old_result_back() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)

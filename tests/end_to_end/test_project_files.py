@@ -84,6 +84,7 @@ def test_a_project_behind_a_link_is_saved_where_it_lies(tmp_path: Path) -> None:
     assert len(set(lengths)) == 3, "as it is, as it was saved before, and as it was opened"
 
 
+@pytest.mark.usefixtures("fine_mannequin")
 def test_the_shown_body_is_exported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -237,6 +238,7 @@ def test_a_project_that_cannot_be_opened_at_start_is_told(tmp_path: Path) -> Non
     run_undrawn([str(tmp_path / "broken.busk")], script)
 
 
+@pytest.mark.usefixtures("fine_mannequin")
 def test_an_edit_while_another_scan_is_read_does_not_mix_the_two(person: Path) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)

@@ -80,6 +80,7 @@ def test_a_crash_loses_nothing_and_the_next_start_offers_it(
     assert list(recovery_folder().iterdir()) == []
 
 
+@pytest.mark.usefixtures("fine_mannequin")
 def test_what_is_not_restored_stays_until_it_is_discarded(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(app.gui.features.project.recovery, "may_discard", lambda *_: True)
 

@@ -95,6 +95,7 @@ def row_of(window: MainWindow, label: str) -> float | None:
     return next(row.change for row in window.result.rows if row.label == label)
 
 
+@pytest.mark.usefixtures("fine_mannequin")
 def test_a_settled_body_that_is_strained_says_so_in_one_voice() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -127,6 +128,7 @@ def test_a_settled_body_that_is_strained_says_so_in_one_voice() -> None:
     run_main([], script)
 
 
+@pytest.mark.usefixtures("fine_mannequin")
 def test_a_run_that_never_rests_is_no_result_and_has_a_way_out() -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)

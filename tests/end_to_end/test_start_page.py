@@ -37,6 +37,7 @@ def at_start(window: MainWindow) -> bool:
     return window.start_controller.page.isVisible()
 
 
+@pytest.mark.usefixtures("fine_mannequin")
 def test_the_first_start_leads_through_the_sample_and_later_ones_go_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, person: Path
 ) -> None:
