@@ -95,10 +95,19 @@ def make_window() -> MainWindow:
     """Return a window on nothing."""
     # While the solver is at work, the window gets the interpreter lock sooner than after Python's usual 5 ms.
     sys.setswitchinterval(0.001)
+    from PySide6.QtWidgets import QApplication
+
     from app.gui.main_window import MainWindow
     from app.gui.session.session import Session
 
-    return MainWindow(Session())
+    app = QApplication.instance()
+    assert isinstance(app, QApplication)
+    style = app.styleSheet()
+    app.setStyleSheet("")  # Else every part is styled once more whenever it is put into another.
+    try:
+        return MainWindow(Session())
+    finally:
+        app.setStyleSheet(style)
 
 
 def _open(window: MainWindow, what: str | Design | None) -> None:
