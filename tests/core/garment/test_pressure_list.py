@@ -92,7 +92,7 @@ def test_a_line_whose_tension_is_not_known_says_why_and_has_no_figures(
         None,
         (),
     )
-    assert "choose an elastic to compute its tension" in str(row.notes[0])
+    assert "choose an elastic to compute the tension" in str(row.notes[0])
 
 
 def test_a_slack_line_presses_nowhere(built: Callable[[str], Stages]) -> None:
