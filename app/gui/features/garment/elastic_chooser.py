@@ -185,8 +185,12 @@ class _Table(ElasticTable):
         tokens = tokens_of(self)
         tones = {NOTE: tokens.text_quiet, STRETCH: tokens.warn if view.far else tokens.text}
         texts = (view.title, view.stretch, view.cut, view.reached, view.lift, view.note)
+        model = self.model()
+        model.blockSignals(True)  # Else all columns are measured anew for each cell.
         for column, text in enumerate(texts):
             item.setText(column, text)
             tone = tones.get(column, tokens.text) if view.usable else tokens.text_caption
             item.setForeground(column, QColor(tone))
         item.setFont(NOTE, font("secondary"))
+        model.blockSignals(False)
+        model.dataChanged.emit(model.index(row, 0), model.index(row, self.columnCount() - 1))
