@@ -200,5 +200,5 @@ def _refuse_bad_pair() -> None:
             Message(
                 "PySide6 6.12.0 crashes on Python {python_version}.", python_version=platform.python_version()
             ),
-            Message("Run 'make setup' again to install compatible versions."),
+            Message("Install compatible versions: run 'make setup' again."),
         )

@@ -159,7 +159,7 @@ class Tour(QObject):
                 tr(
                     "Overall verdict of all checks: convergence, skin strain, contact pressure "
                     "and fit. Click it for reasons and fixes. Contact pressures are estimates, "
-                    "rather too high: check them on a sample garment."
+                    "probably too high: check them on a sample garment."
                 ),
                 self._verdict_place,
             ),

@@ -141,7 +141,7 @@ def change_text(found: Diagnosis, change: Change) -> str:
         what = tr("All lines up to {length} closer to 100 %")
         what = what.format(length=length(found.moves_mm(change), 0))
     elif change.kind == "width":
-        what = tr("Widen {line} to {length}")
+        what = tr("Widen elastic of {line} to {length}")
         width = change.design.line_settings(change.lines[0]).width
         what = what.format(line=row_title(change.lines[0], design), length=length(width or 0.0, 0))
     elif change.kind == "off":

@@ -187,9 +187,9 @@ def _unit(units: tuple[str, ...] = tuple(UNITS)) -> Choice:
 
 def _axes() -> Choice:
     words = {
-        "z-up": tr("z up, face to −y: Blender, CAD"),
-        "y-up": tr("y up, face to z: CLO, Maya"),
-        "z-up-front-y": tr("z up, face to y: some CAD"),
+        "z-up": tr("z-up, front to −y: Blender, CAD"),
+        "y-up": tr("y-up, front to z: CLO, Maya"),
+        "z-up-front-y": tr("z-up, front to y: some CAD"),
     }
     sentence = tr("Up and front directions in the file.")
     return Choice("axes", tr("Axes"), sentence, tuple((axes, words[axes]) for axes in AXES))

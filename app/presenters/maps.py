@@ -117,7 +117,7 @@ def _line_maps() -> list[MapKind]:
             tr("Contact pressure"),
             "kPa",
             _pressure_tip(),
-            tr("Estimate, rather too high. Dashed: over hollows."),
+            tr("Upper estimate. Dashed: across hollows."),
             marks=limit_marks(),
         ),
     ]

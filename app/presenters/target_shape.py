@@ -192,7 +192,7 @@ def deviation_text(goals: Sequence[Goal], reached: Mapping[str, float], section:
     off = profile_deviations(goals, reached).get(section)
     if off is None:
         return ""
-    return tr("deviation {mean}, at most {most}").format(**_mean_and_most(off))
+    return tr("mean deviation {mean}, maximum {most}").format(**_mean_and_most(off))
 
 
 def is_met(reply: InverseResult, goals: Sequence[Goal]) -> bool:

@@ -128,7 +128,7 @@ def _fence(graph: sparse.csr_array, tree: cKDTree, stops: Indices, corners: Poin
         while step != at:
             step = int(before[step])
             if step < 0:
-                raise _FenceError(Message("The border of the blend region meets a hole of the scan."))
+                raise _FenceError(Message("The border of the blend region crosses a hole in the scan."))
             vertices.add(int(members[step]))
     return np.array(sorted(vertices), dtype=np.int64)
 

@@ -81,7 +81,7 @@ def check_nesting(value: Any, most: int = MOST_NESTED) -> None:
         if not level:
             return
     raise ProjectError(
-        Message("The project's design is nested too deeply."),
+        Message("The project file contains too many nested levels."),
         Message("Open a backup or start from the scan."),
     )
 

@@ -81,7 +81,7 @@ def _read(kind: Any, value: Any, place: str) -> Any:
 def _tuple(kinds: tuple[Any, ...], value: Any, place: str) -> tuple[Any, ...]:
     given = _list(value, place)
     if kinds[-1] is not Ellipsis and len(given) != len(kinds):
-        raise _wrong(place, Message("a list of {count}", count=len(kinds)))
+        raise _wrong(place, Message("a list of {count} values", count=len(kinds)))
     of_each = [kinds[0]] * len(given) if kinds[-1] is Ellipsis else kinds
     return tuple(
         _read(kind, each, f"{place}[{k}]") for k, (kind, each) in enumerate(zip(of_each, given, strict=True))

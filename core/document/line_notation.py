@@ -173,7 +173,7 @@ def _walk(word: str, template: Template) -> list[int]:
     )
     if len(ends) != 2 or (row == to_row) == (column == to_column):
         raise LineError(
-            Message("'{word}' does not follow a row or a column.", word=word),
+            Message("'{word}' is not along a row or a column of the control mesh.", word=word),
             Message("List the points of the line one by one."),
         )
     rows, columns = _steps(row, to_row), _steps(column, to_column)

@@ -18,7 +18,7 @@ FRONT_UNDER = Message("On the front centre line, midway between the bust points,
 BACK = Message("In the spinal groove at bust level.")
 BACK_UNDER = Message("In the spinal groove at under-bust level.")
 FLAT_BACK = Message("Midway between the sides of the back: no spinal groove detected.")
-SIDE = Message("Outermost point of the trunk at the side, on the level of the under-bust girth.")
+SIDE = Message("Outermost point of the trunk at the side, at the height of the under-bust girth.")
 ARMPIT = Message("At the side of the trunk, on the highest level with a separate arm.")
 WAIST = Message(
     "On the front centre line, at the narrowest trunk below the bust. The anatomical waist "

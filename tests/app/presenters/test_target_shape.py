@@ -147,7 +147,7 @@ def test_a_profile_that_is_nearly_met_is_reached_within_so_much() -> None:
     names = [goal.name for goal in goals]
     near = reply(reached=dict(zip(names, (200.2, 199.6), strict=True)))
     assert result_text(near, goals) == "Reached within 0.4 mm."
-    assert deviation_text(goals, near.reached, "profile left") == "deviation 0.3 mm, at most 0.4 mm"
+    assert deviation_text(goals, near.reached, "profile left") == "mean deviation 0.3 mm, maximum 0.4 mm"
     assert is_met(near, goals)
     assert not is_met(near, [*goals[:1], Goal(names[1], 201.0)])
     both = replace(near, reached={**near.reached, "lift": 4.0})

@@ -131,7 +131,10 @@ def test_fields_take_their_types_and_their_defaults() -> None:
         ({"parts": {}}, "'whole.parts' in this file is not a list."),
         ({"parts": ["a"]}, r"'whole.parts[0]' in this file is not an object."),
         ({"parts": [{"name": 3}]}, "'whole.parts[0].name' in this file is not a text."),
-        ({"parts": [{"name": "a", "at": [1]}]}, "'whole.parts[0].at' in this file is not a list of 2."),
+        (
+            {"parts": [{"name": "a", "at": [1]}]},
+            "'whole.parts[0].at' in this file is not a list of 2 values.",
+        ),
         ({"parts": [{"name": "a", "at": [1, True]}]}, "'whole.parts[0].at[1]' in this file is not a number."),
         ({"parts": [], "count": 1.0}, "'whole.count' in this file is not a whole number."),
         ({"parts": [], "level": "high"}, "'whole.level' in this file is not a number."),

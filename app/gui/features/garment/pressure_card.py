@@ -125,9 +125,7 @@ class PressureCard(QWidget):
             ),
             "caption",
         )
-        self.sure = sentence(
-            tr("Estimate, rather too high: use it to compare designs on one body."), "caption"
-        )
+        self.sure = sentence(tr("Upper estimate: use it to compare designs on one body."), "caption")
         column = QVBoxLayout(self)
         column.setContentsMargins(8, 2, 8, 2)
         column.setSpacing(3)
