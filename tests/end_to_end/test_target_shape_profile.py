@@ -68,7 +68,7 @@ def wishes_what_is_dragged(window: MainWindow) -> Script:
     words = desk.card.wishes["profile left"].now.text()
     assert words.startswith("deviation ")
     off = np.array([desk.answer.reply.reached[goal.name] - goal.value for goal in desk.goals()])
-    assert words == f"deviation {np.abs(off).mean():.1f} mm, at most {np.abs(off).max():.1f} mm"
+    assert words == f"mean deviation {np.abs(off).mean():.1f} mm, maximum {np.abs(off).max():.1f} mm"
     # Esc gives the curve back while it is in the hand.
     drag(handles[0], 30, 0, drop=False)
     assert desk.drawn["profile left"] is not drawn
