@@ -66,7 +66,7 @@ def wishes_what_is_dragged(window: MainWindow) -> Script:
     assert not desk.answer.question.hurried
     assert "Also changes: Bust point" in desk.card.price.text(), "what is free may move as well"
     words = desk.card.wishes["profile left"].now.text()
-    assert words.startswith("deviation ")
+    assert words.startswith("mean deviation ")
     off = np.array([desk.answer.reply.reached[goal.name] - goal.value for goal in desk.goals()])
     assert words == f"mean deviation {np.abs(off).mean():.1f} mm, maximum {np.abs(off).max():.1f} mm"
     # Esc gives the curve back while it is in the hand.
