@@ -1,4 +1,4 @@
-"""Layout of the window: splitters, collapsed panes, and sizes kept between sessions."""
+"""Layout of the window: inspector, notifications, splitters and sizes kept between sessions."""
 
 # ruff: noqa: N802 - Qt names its events
 
@@ -21,6 +21,22 @@ from app.i18n.catalog import language, tr
 
 if TYPE_CHECKING:
     from app.gui.main_window import MainWindow
+
+
+_LEAST = 440
+"""Width that notices need beside the tools at the upper edge of the view [px]."""
+
+NARROW, WIDE = 340, 364
+"""First width of the inspector in windows narrower and wider than 1400 pixels."""
+
+KEPT_AFTER = 1000
+"""Stillness after which the place of the window is remembered [ms]."""
+
+LOW, HIGH = 190, 184
+"""First height of the strip in windows lower and higher than 850 pixels."""
+
+TALLER = {"ja": 14}
+"""How much higher the strip is where the lines of a language are taller [px]."""
 
 
 class Inspector(QWidget):
@@ -72,10 +88,6 @@ class Inspector(QWidget):
         return self._stack.currentWidget()
 
 
-_LEAST = 440
-"""Width that notices need beside the tools at the upper edge of the view [px]."""
-
-
 class NotificationArea(QObject):
     """Keeps the notices on what is shown; on the view they never change its size."""
 
@@ -117,19 +129,6 @@ class NotificationArea(QObject):
         whole = view.width() - 2 * GAP
         beside = whole - view.compare.sizeHint().width() if not view.compare.isHidden() else whole
         self._window.notices.set_room(beside - APART if beside >= _LEAST else whole, view.height())
-
-
-NARROW, WIDE = 340, 364
-"""First width of the inspector in windows narrower and wider than 1400 pixels."""
-
-KEPT_AFTER = 1000
-"""Stillness after which the place of the window is remembered [ms]."""
-
-LOW, HIGH = 190, 184
-"""First height of the strip in windows lower and higher than 850 pixels."""
-
-TALLER = {"ja": 14}
-"""How much higher the strip is where the lines of a language are taller [px]."""
 
 
 class Layout(QObject):

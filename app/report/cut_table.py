@@ -42,7 +42,7 @@ def cut_blocks(handout: ReportDocument) -> list[Block]:
 def _cut_head() -> Block:
     titles = (
         tr("width {unit}").format(unit=length_unit()),
-        tr("cut, {unit}").format(unit=length_unit()),
+        tr("cut {unit}").format(unit=length_unit()),
         tr("seams"),
         tr("elong. %"),
         tr("worn {unit}").format(unit=length_unit()),

@@ -1,4 +1,4 @@
-"""The pages of a sheet: what stands where, painted on whatever has a painter."""
+"""Pages of a report: layout of their blocks, painted on paper, screen or PDF."""
 
 from __future__ import annotations
 
@@ -39,6 +39,9 @@ BOTTOM = A4[1] - MARGIN - 6.0
 _GAP = 5.0  # over the key measures, and under the curves [mm]
 _SMALLER = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5)  # of the height of the pictures, until the first page holds all
 _CURVES = (100.0, 84.0, 70.0, 60.0, 50.0, 42.0)  # heights of the curves at the head of the appendix [mm]
+
+
+_DOTS = 1200  # of the writer to an inch
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,9 +134,6 @@ def _halves(page: int, top: float) -> Iterator[Column]:
         yield Column(page, MARGIN, top, BOTTOM)
         yield Column(page, MARGIN + WIDE - HALF, top, BOTTOM)
         page, top = page + 1, MARGIN
-
-
-_DOTS = 1200  # of the writer to an inch
 
 
 def write_pdf(path: str | Path, pages: Pages, title: str) -> None:

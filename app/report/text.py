@@ -1,4 +1,4 @@
-"""Texts of a report in the language in use: plain values for the painter."""
+"""Texts of a report in the language in use, as plain values for the painter."""
 
 from __future__ import annotations
 
@@ -24,6 +24,13 @@ from core.measurements.uncertain_value import AFTER, BEFORE, CHANGE
 
 NOTHING = "\N{EN DASH}"
 """What stands in a table where nothing is known."""
+
+
+REASONS = 4
+"""How many reasons of the overall verdict stand at the head of a sheet."""
+
+KEY_MEASURES = ("bust_girth", "underbust_girth", "bust_point_distance", "bust_point_to_fold", "cup_depth")
+"""What a bra is made to, first of all."""
 
 
 @dataclass(frozen=True)
@@ -75,13 +82,6 @@ def other_sizes(sheet: Report) -> str:
     )
     # What belongs together is not parted at the end of a line, nor does a line begin with a dot.
     return "\N{NO-BREAK SPACE}· ".join(each.replace(" ", "\N{NO-BREAK SPACE}") for each in text)
-
-
-REASONS = 4
-"""How many reasons of the overall verdict stand at the head of a sheet."""
-
-KEY_MEASURES = ("bust_girth", "underbust_girth", "bust_point_distance", "bust_point_to_fold", "cup_depth")
-"""What a bra is made to, first of all."""
 
 
 def key_measures(sheet: Report) -> tuple[dict[str, Any], ...]:

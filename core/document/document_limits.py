@@ -1,4 +1,4 @@
-"""Limits of what a document may hold: the same for what is made, saved and opened, so all of it fits."""
+"""Limits of the contents of a document, the same for edits, saving and opening."""
 
 from __future__ import annotations
 

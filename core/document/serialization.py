@@ -1,4 +1,4 @@
-"""Design and document as text, as projects and recovery folders keep them; keys of later versions stay."""
+"""Design and document as text for projects and recovery folders; keys of later versions are kept."""
 
 from __future__ import annotations
 
@@ -25,6 +25,10 @@ WITH_VARIANTS, WITH_ELASTICS, WITH_FREE_LINES, WITH_EDITS = 2, 3, 4, 5
 """All else is written as 1."""
 
 _KNOWN = frozenset(field.name for field in fields(Design)) - {"unknown"}
+
+
+DESIGN, VARIANTS = "design.json", "variants.json"
+"""The name of the text of the design that is shown, and of that of its variants, if there are any."""
 
 
 def to_json(design: Design, written: int = 1) -> str:
@@ -110,10 +114,6 @@ def _fits(others: Mapping[str, Any]) -> bool:
         if left < 0:
             return False
     return True
-
-
-DESIGN, VARIANTS = "design.json", "variants.json"
-"""The name of the text of the design that is shown, and of that of its variants, if there are any."""
 
 
 def to_texts(document: Document) -> dict[str, str]:

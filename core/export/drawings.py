@@ -1,4 +1,4 @@
-"""Drawings for pattern programs: curves in space as DXF or OBJ, strips at their size as SVG or DXF."""
+"""Drawings for pattern programs: curves in space as DXF or OBJ, strips at full size as SVG or DXF."""
 
 from __future__ import annotations
 
@@ -23,6 +23,25 @@ from core.messages import Length, Message, length_of
 
 UNIT_NUMBERS = {"mm": 4, "cm": 5, "m": 6, "in": 1}
 """The units of a drawing as DXF numbers them."""
+
+
+Say = Callable[[Message], str]
+"""Returns a message as it is to be written."""
+
+CURVE_FORMATS = ("dxf", "obj")
+
+STRIP_FORMATS = ("svg", "dxf")
+
+SCALE_BAR = 100.0
+"""Length of the bar that tells whether a drawing was printed at its size [mm]."""
+
+_MARGIN, _HEAD, _LETTER = 10.0, 24.0, 4.0  # round the drawing, for the scale bar, of the text [mm]
+
+_APART = 120.0  # between two words across a strip that is not to be cut [mm]
+
+_LAYER = re.compile(r'[<>/\\":;?*|=`,\x00-\x1f]')
+
+_INK = ("#111111", "#777777")  # of what is cut, and of what is only told
 
 
 def new_dxf(unit: str) -> Any:
@@ -56,21 +75,6 @@ def _without_fonts() -> Iterator[None]:
             del os.environ[variable]
             if before is not None:
                 os.environ[variable] = before
-
-
-Say = Callable[[Message], str]
-"""Returns a message as it is to be written."""
-
-CURVE_FORMATS = ("dxf", "obj")
-STRIP_FORMATS = ("svg", "dxf")
-
-SCALE_BAR = 100.0
-"""Length of the bar that tells whether a drawing was printed at its size [mm]."""
-
-_MARGIN, _HEAD, _LETTER = 10.0, 24.0, 4.0  # round the drawing, for the scale bar, of the text [mm]
-_APART = 120.0  # between two words across a strip that is not to be cut [mm]
-_LAYER = re.compile(r'[<>/\\":;?*|=`,\x00-\x1f]')
-_INK = ("#111111", "#777777")  # of what is cut, and of what is only told
 
 
 def write_curves(path: str | os.PathLike[str], curves: Sequence[LineCurve], space: FileSpace) -> None:

@@ -1,4 +1,4 @@
-"""Contact pressure along bands: what a taut band presses the skin with, after Laplace's law.
+"""Contact pressure under bands by Laplace's law, and its limits.
 
 p = T / (w R): tension T over width w and the radius R of the band's path in the plane of the skin's normal.
 The full law has a second term for the pull across the band; bands have none, it is left out.
@@ -27,6 +27,36 @@ from core.messages import Length, Message
 from core.pipeline.build import Stages
 
 GREEN, AMBER, RED = "green", "amber", "red"
+
+
+MMHG = 0.133322
+"""One mmHg [kPa]."""
+
+LEAST_OVER = 20.0
+"""The radius is never taken over less than this length [mm]: a scan does not show more."""
+
+LEFT_OUT = (
+    Message("Estimate, probably too high: tissue yields under a band, and sensors measured up to 42 % less."),
+    Message("Friction is not included, such as that which keeps a band from slipping."),
+    Message(
+        "Only the tension along the band is included: fabric stretched in both directions has a "
+        "higher contact pressure."
+    ),
+    Message(
+        "The radius of curvature is averaged over about the band width: the pressure at the edge "
+        "of a bone is higher."
+    ),
+    Message("Valid for standing and quiet breathing: sitting and breathing in can double the pressure."),
+)
+"""What the figures leave out."""
+
+SLACK_NOTE = Message("Slack: no contact pressure.")
+"""What is said of a line without tension."""
+
+NOT_FOR_STRAPS = Message(
+    "The pressure limits apply to soft tissue around the trunk, not to bands over the shoulders."
+)
+"""What is said of a line that goes on beyond the control mesh, as straps do."""
 
 
 @dataclass(frozen=True)
@@ -68,36 +98,6 @@ def pressure_limits() -> PressureLimits:
 
 def _words(values: Mapping[str, Any]) -> LocalizedText:
     return LocalizedText(values["en"], values["ja"])
-
-
-MMHG = 0.133322
-"""One mmHg [kPa]."""
-
-LEAST_OVER = 20.0
-"""The radius is never taken over less than this length [mm]: a scan does not show more."""
-
-LEFT_OUT = (
-    Message("Estimate, probably too high: tissue yields under a band, and sensors measured up to 42 % less."),
-    Message("Friction is not included, such as that which keeps a band from slipping."),
-    Message(
-        "Only the tension along the band is included: fabric stretched in both directions has a "
-        "higher contact pressure."
-    ),
-    Message(
-        "The radius of curvature is averaged over about the band width: the pressure at the edge "
-        "of a bone is higher."
-    ),
-    Message("Valid for standing and quiet breathing: sitting and breathing in can double the pressure."),
-)
-"""What the figures leave out."""
-
-SLACK_NOTE = Message("Slack: no contact pressure.")
-"""What is said of a line without tension."""
-
-NOT_FOR_STRAPS = Message(
-    "The pressure limits apply to soft tissue around the trunk, not to bands over the shoulders."
-)
-"""What is said of a line that goes on beyond the control mesh, as straps do."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,26 +16,6 @@ from core.messages import Length, Message
 from core.scan.orientation.pose import Pose
 from core.scan.orientation.unit_detection import MILLIMETRES
 
-
-@dataclass(frozen=True, eq=False)
-class Build:
-    """A trunk from below the waist to the arm-pits [mm]: its ``levels``, ascending, and those heights."""
-
-    mesh: Mesh
-    levels: list[Level]
-    armpit: float
-
-
-def measure_build(mesh: Mesh, landmarks: Landmarks) -> Build:
-    """Measure the trunk around the landmarks of the bust."""
-    pits = [mark.position[2] for name, mark in landmarks.points.items() if name.startswith("armpit")]
-    armpit = float(np.mean(pits)) if pits else landmarks.bust_level + 60.0
-    low = max(float(mesh.vertices[:, 2].min()) + 5.0, armpit - 260.0)
-    heights = np.linspace(low, armpit - 15.0, 24) if armpit - low > 80.0 else np.empty(0)
-    levels = [level for level in trunk_levels(mesh, heights) if len(level.points) > 20]
-    return Build(mesh, levels, armpit)
-
-
 TYPICAL = {"neck": 96.0, "length": 316.0, "waist": 696.0}
 """Width of the neck, height from waist to foot of the neck, girth of the waist of women [mm], medians."""
 
@@ -57,6 +37,25 @@ STATURES = 1400.0, 1880.0
 
 HEAD, LEGS = 1.4, (2.4, 3.8)
 """A head is so much wider than the neck; from foot to arm-pit is so many times from there to the top [1]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Build:
+    """A trunk from below the waist to the arm-pits [mm]: its ``levels``, ascending, and those heights."""
+
+    mesh: Mesh
+    levels: list[Level]
+    armpit: float
+
+
+def measure_build(mesh: Mesh, landmarks: Landmarks) -> Build:
+    """Measure the trunk around the landmarks of the bust."""
+    pits = [mark.position[2] for name, mark in landmarks.points.items() if name.startswith("armpit")]
+    armpit = float(np.mean(pits)) if pits else landmarks.bust_level + 60.0
+    low = max(float(mesh.vertices[:, 2].min()) + 5.0, armpit - 260.0)
+    heights = np.linspace(low, armpit - 15.0, 24) if armpit - low > 80.0 else np.empty(0)
+    levels = [level for level in trunk_levels(mesh, heights) if len(level.points) > 20]
+    return Build(mesh, levels, armpit)
 
 
 def size_hint(build: Build, pose: Pose) -> tuple[Hint, ...]:

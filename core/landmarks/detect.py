@@ -1,4 +1,4 @@
-"""The landmarks of the bust: bust points, under-bust folds, lowest points of the breasts, and two levels."""
+"""Bust landmarks: bust points, inframammary folds, lowest points of the breasts, and two levels."""
 
 from __future__ import annotations
 
@@ -34,6 +34,20 @@ FINE, COARSER = 9.0, 8.0
 """Points so far apart show a fold [mm]; each ``COARSER`` [mm] more divide the confidence by e."""
 
 
+NOTHING: Mapping[str, Points] = MappingProxyType({})
+
+FINDING = "find landmarks"
+"""The name of this work."""
+
+UNMEASURED = 0.55
+"""Landmarks that were never held against a known answer claim this part of their confidence: below 0.5."""
+
+ESTIMATED = 0.3
+"""The most confidence [1] in a landmark on skin that fills a hole: no more than in one that a hole hides."""
+
+FILLED = Message("Detected on skin that fills a hole (estimate).")
+
+
 def spacing(mesh: Mesh, places: Sequence[Points]) -> float:
     """Return how far apart the vertices lie round ``places``, each (3,) [mm], their median [mm]."""
     counts = [int((((mesh.vertices - place) ** 2).sum(axis=1) < NEAR**2).sum()) for place in places]
@@ -55,21 +69,6 @@ def coarse_warning(apart: float) -> tuple[Message, ...]:
             apart=Length(apart),
         ),
     )
-
-
-NOTHING: Mapping[str, Points] = MappingProxyType({})
-
-FINDING = "find landmarks"
-"""The name of this work."""
-
-UNMEASURED = 0.55
-"""Landmarks that were never held against a known answer claim this part of their confidence: below 0.5."""
-
-
-ESTIMATED = 0.3
-"""The most confidence [1] in a landmark on skin that fills a hole: no more than in one that a hole hides."""
-
-FILLED = Message("Detected on skin that fills a hole (estimate).")
 
 
 def find_landmarks(

@@ -22,39 +22,6 @@ BACK, UPRIGHT, LEANS = 190.0, 9.0, 11.5
 much more or less leans."""
 
 
-def lean_hint(build: Build, pose: Pose) -> tuple[Hint, ...]:
-    """Return a hint where the trunk leans in a file that is level, and the up that would correct it."""
-    levels = [level for level in build.levels if level.z > build.armpit - BACK]
-    if len(levels) < 8 or pose.tilt > 0.0:
-        return ()
-    slope = np.polyfit([level.z for level in levels], [_back(level) for level in levels], 1)[0]
-    lean = UPRIGHT - float(np.degrees(np.arctan(slope)))
-    if abs(lean) < LEANS:
-        return ()
-    up = corrected_up(pose, lean, 0.0)
-    forward, lean = lean > 0.0, abs(lean)
-    if forward:
-        sentence = Message(
-            "The trunk leans forward by about {lean} degrees, and girths are measured "
-            "horizontally. Set it upright at the Scan step.",
-            lean=f"{lean:.0f}",
-        )
-    else:
-        sentence = Message(
-            "The trunk leans backward by about {lean} degrees, and girths are measured "
-            "horizontally. Set it upright at the Scan step.",
-            lean=f"{lean:.0f}",
-        )
-    return (Hint("lean", sentence, up),)
-
-
-def _back(level: Level) -> float:
-    """Return how far back a level reaches near its middle [mm]."""
-    x, y = level.points[:, 0], level.points[:, 1]
-    low, high = x.min(), x.max()
-    return float(y[np.abs(x - 0.5 * (low + high)) < 0.25 * (high - low)].max(initial=y.min()))
-
-
 ANGULAR = 0.91
 """A section fills this share of the rectangle around it [1] if it is angular: those of bodies fill 0.89."""
 
@@ -94,6 +61,39 @@ DOUBTED = 0.45
 
 UNCLEAR = ("flat", "clothes")
 """The kinds of hints that make landmarks of the bust doubtful."""
+
+
+def lean_hint(build: Build, pose: Pose) -> tuple[Hint, ...]:
+    """Return a hint where the trunk leans in a file that is level, and the up that would correct it."""
+    levels = [level for level in build.levels if level.z > build.armpit - BACK]
+    if len(levels) < 8 or pose.tilt > 0.0:
+        return ()
+    slope = np.polyfit([level.z for level in levels], [_back(level) for level in levels], 1)[0]
+    lean = UPRIGHT - float(np.degrees(np.arctan(slope)))
+    if abs(lean) < LEANS:
+        return ()
+    up = corrected_up(pose, lean, 0.0)
+    forward, lean = lean > 0.0, abs(lean)
+    if forward:
+        sentence = Message(
+            "The trunk leans forward by about {lean} degrees, and girths are measured "
+            "horizontally. Set it upright at the Scan step.",
+            lean=f"{lean:.0f}",
+        )
+    else:
+        sentence = Message(
+            "The trunk leans backward by about {lean} degrees, and girths are measured "
+            "horizontally. Set it upright at the Scan step.",
+            lean=f"{lean:.0f}",
+        )
+    return (Hint("lean", sentence, up),)
+
+
+def _back(level: Level) -> float:
+    """Return how far back a level reaches near its middle [mm]."""
+    x, y = level.points[:, 0], level.points[:, 1]
+    low, high = x.min(), x.max()
+    return float(y[np.abs(x - 0.5 * (low + high)) < 0.25 * (high - low)].max(initial=y.min()))
 
 
 def require_not_angular(build: Build, landmarks: Landmarks) -> None:

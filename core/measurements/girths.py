@@ -1,4 +1,4 @@
-"""Girths as a tape and as the skin runs, and the areas of sections."""
+"""Girths along the tape and along the skin, and areas of sections."""
 
 from __future__ import annotations
 
@@ -17,6 +17,28 @@ from core.messages import EMPTY, Message
 
 ROUNDED = 4
 """Ends of segments that agree to so many decimals [mm] are one place."""
+
+
+NAMES = ("bust", "underbust", "high_bust", "waist", "hip")
+
+WHY = {
+    "bust": Message("The scan has no trunk at the level of the bust points."),
+    "underbust": Message("The scan has no trunk below the breasts."),
+    "high_bust": Message("The scan does not include both armpits, or the arms are too close to the body."),
+    "waist": Message("No waist detected: the scan ends too high, or the trunk has no narrowest level."),
+    "hip": Message("No hip detected: the scan ends above it, or the trunk does not widen."),
+}
+"""Why a girth may be missing."""
+
+UNSURE_LEVEL = Message("The inframammary fold is uncertain: estimate.")
+
+NARROWEST = Message(
+    "At the narrowest level: the anatomical waist between lowest rib and hip bone is not "
+    "visible, and its girth may differ by several centimetres, which ± does not include."
+)
+"""What is said of the girth of the waist."""
+
+OVER_GAPS = Message("Crosses a hole of the scan or a merged arm: estimate.")
 
 
 def tape_ring(level: Level) -> Points:
@@ -56,28 +78,6 @@ def enclosed(ring: Points) -> float:
         return 0.0
     x, y = (ring[:, :2] - ring[0, :2]).T
     return 0.5 * abs(float((x[:-1] * y[1:] - x[1:] * y[:-1]).sum()))
-
-
-NAMES = ("bust", "underbust", "high_bust", "waist", "hip")
-
-WHY = {
-    "bust": Message("The scan has no trunk at the level of the bust points."),
-    "underbust": Message("The scan has no trunk below the breasts."),
-    "high_bust": Message("The scan does not include both armpits, or the arms are too close to the body."),
-    "waist": Message("No waist detected: the scan ends too high, or the trunk has no narrowest level."),
-    "hip": Message("No hip detected: the scan ends above it, or the trunk does not widen."),
-}
-"""Why a girth may be missing."""
-
-UNSURE_LEVEL = Message("The inframammary fold is uncertain: estimate.")
-
-NARROWEST = Message(
-    "At the narrowest level: the anatomical waist between lowest rib and hip bone is not "
-    "visible, and its girth may differ by several centimetres, which ± does not include."
-)
-"""What is said of the girth of the waist."""
-
-OVER_GAPS = Message("Crosses a hole of the scan or a merged arm: estimate.")
 
 
 def girth_measures(subject: Subject) -> Iterator[Measure]:

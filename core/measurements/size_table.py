@@ -23,6 +23,25 @@ UNDERBUST, BAND = "underbust", "band"
 """What a cup is counted from: the under-bust girth itself, or the middle of its band."""
 
 
+FORMAT = 1
+"""The newest format of a table of sizes that is read."""
+
+_LARGEST = 1_000_000  # bytes
+
+_LONGEST = 10_000  # letters of a text in it
+
+_KEYS: tuple[str, ...] = ("format", "system", "names", "unit", "label", "cup_from", "borders")
+
+_MAY = ("caution",)
+
+_MOST = 10_000.0
+"""No number of a table is larger [unit]."""
+
+_SIDES = {"up": True, "down": False}
+
+T = TypeVar("T")
+
+
 @dataclass(frozen=True)
 class LocalizedText:
     """A text of a table in English, and in Japanese where somebody wrote it."""
@@ -163,20 +182,7 @@ class SizeTable:
         return self.label.format(band=band.name, cup=cup.name) if band and cup else ""
 
 
-FORMAT = 1
-"""The newest format of a table of sizes that is read."""
-
-_LARGEST = 1_000_000  # bytes
-_LONGEST = 10_000  # letters of a text in it
-_KEYS: tuple[str, ...] = ("format", "system", "names", "unit", "label", "cup_from", "borders")
 _KEYS += ("bands", "cups", "sources", "doubts", "examples")
-_MAY = ("caution",)
-_MOST = 10_000.0
-"""No number of a table is larger [unit]."""
-
-_SIDES = {"up": True, "down": False}
-
-T = TypeVar("T")
 
 
 def read_table(path: Path) -> SizeTable:

@@ -1,4 +1,4 @@
-"""Sizes: band and cup from two girths, in every system that is told as data, with the way there."""
+"""Sizes: band and cup from two girths in every size system, with the calculation."""
 
 from __future__ import annotations
 
@@ -30,6 +30,18 @@ from core.measurements.size_table import (
     table_of,
 )
 from core.messages import Message, length_of
+
+ALLOWANCE = WORN_TIGHT
+"""What may be taken off the under-bust girth for a tape that is worn tight [mm]: an estimate, not a norm."""
+
+GIRTHS_OF_SIZES = ("underbust_girth", "bust_girth")
+"""The measures that a size is made of."""
+
+_ORDER = ("jp", "eu", "uk", "us", "fr", "it", "au")
+
+_LONGEST = 5000.0  # mm; no girth of a body is longer
+
+_SHARES, _ROUND = (0.25, 0.5, 0.75, 1.0), 32  # of an ellipse that is looked at, and places round it
 
 
 @dataclass(frozen=True)
@@ -159,17 +171,6 @@ def _gap(name: str, least: str, most: str) -> Message:
         high=most,
         name=name,
     )
-
-
-ALLOWANCE = WORN_TIGHT
-"""What may be taken off the under-bust girth for a tape that is worn tight [mm]: an estimate, not a norm."""
-
-GIRTHS_OF_SIZES = ("underbust_girth", "bust_girth")
-"""The measures that a size is made of."""
-
-_ORDER = ("jp", "eu", "uk", "us", "fr", "it", "au")
-_LONGEST = 5000.0  # mm; no girth of a body is longer
-_SHARES, _ROUND = (0.25, 0.5, 0.75, 1.0), 32  # of an ellipse that is looked at, and places round it
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Measures: what a body measures, at rest and reshaped, for a pattern cutter."""
+"""Measurements of a body, original and reshaped, with those defined by the user."""
 
 from __future__ import annotations
 
@@ -30,6 +30,10 @@ OWN = "own:"
 NO_TRUNK = Message("The scan has no trunk at that height.")
 
 
+Measures = Mapping[str, Measure]
+"""Measures by their keys, in the order of the table of definitions; own ones come last, as "own:NAME"."""
+
+
 def measure_custom(subject: Subject, own: Iterable[CustomMeasurement]) -> Iterator[Measure]:
     """Yield the measures of the designer's own."""
     for each in own:
@@ -56,10 +60,6 @@ def _girth(key: str, subject: Subject, own: CustomMeasurement) -> Measure:
     bridged, note = over_gaps(level)
     measure = Measure(key, level.tape, "mm", (tape_ring(level),), estimate=bridged, note=note)
     return replace(measure, confidence=at.confidence) if at else measure
-
-
-Measures = Mapping[str, Measure]
-"""Measures by their keys, in the order of the table of definitions; own ones come last, as "own:NAME"."""
 
 
 def measures(mesh: Mesh, landmarks: Landmarks, own: Iterable[CustomMeasurement] = ()) -> Measures:

@@ -1,4 +1,4 @@
-"""From a design to everything that precedes solving; a stage whose inputs are equal is reused."""
+"""Stages from a design to a model that can be solved; a stage with equal inputs is reused."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A design solved to the end in one go, for the command line, pictures and tests."""
+"""Solution of a design in one call: iterations and exact solution, for commands, images and tests."""
 
 from __future__ import annotations
 
@@ -33,6 +33,14 @@ from core.messages import LineName, Message
 from core.pipeline.build import Stages, line_targets
 from core.progress import Progress, quiet
 
+_NOT_FOUND = (
+    Message("No equilibrium found for these line lengths."),
+    Message("Set the lengths closer to 100 %, or choose an iterative volume control."),
+)
+
+MOST_TURNS = 300
+"""Turns after which a run is left as it is, settled or not."""
+
 
 class NoEquilibriumError(LineError):
     """The lines of ``design`` find no balance at their lengths."""
@@ -40,12 +48,6 @@ class NoEquilibriumError(LineError):
     def __init__(self, design: Design) -> None:
         super().__init__(*(_cannot_hold(design) if design.line_hold == "held" else _NOT_FOUND))
         self.design = design
-
-
-_NOT_FOUND = (
-    Message("No equilibrium found for these line lengths."),
-    Message("Set the lengths closer to 100 %, or choose an iterative volume control."),
-)
 
 
 def _cannot_hold(design: Design) -> tuple[Message, Message]:
@@ -110,10 +112,6 @@ def body_volume_rates(stages: Stages, answer: Sensitivities) -> Callable[[Rates]
     slopes = np.stack([binding.gradient(points, side)[free].ravel() for side in sides])
     each = stages.model.options.volume_of == "each"
     return lambda rates: rates_at_body_volume(rates, answer.by_excess, slopes, each=each)
-
-
-MOST_TURNS = 300
-"""Turns after which a run is left as it is, settled or not."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,6 +22,9 @@ LEAST_HEIGHT = 100.0
 """A crop must leave at least this height [mm]."""
 
 
+_LONGEST_WORD = 100  # letters of a unit or an axis
+
+
 @dataclass(frozen=True)
 class ScanEdits:
     """The edits of a scan, applied in this order: crop, mirror, fill.
@@ -88,9 +91,6 @@ def hole_centre(text: str) -> tuple[float, float, float]:
             Message("The centre of a hole requires three numbers."), Message("Enter x, y and z in mm.")
         ) from None
     return x, y, z
-
-
-_LONGEST_WORD = 100  # letters of a unit or an axis
 
 
 @dataclass(frozen=True)

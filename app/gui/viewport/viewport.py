@@ -1,4 +1,4 @@
-"""The 3D view as a widget: it holds the scene, turns it with the pointer and draws when asked."""
+"""3D view as a widget: scene, camera moves by pointer and keys, rendering on demand."""
 
 from __future__ import annotations
 
@@ -25,6 +25,12 @@ if TYPE_CHECKING:
 
 GLIDE = 220
 """Duration of a move to another view [ms]."""
+
+
+REST = 250
+"""Stillness after which the picture is drawn smooth [ms]."""
+
+_HEARD = ("band_clicked", "band_hovered", "pin_pressed", "pin_moved", "pin_released", "pin_hovered")
 
 
 class CameraAnimation(QVariantAnimation):
@@ -55,12 +61,6 @@ class CameraAnimation(QVariantAnimation):
     def running(self) -> bool:
         """Return whether the camera is on its way."""
         return self.state() == QVariantAnimation.State.Running
-
-
-REST = 250
-"""Stillness after which the picture is drawn smooth [ms]."""
-
-_HEARD = ("band_clicked", "band_hovered", "pin_pressed", "pin_moved", "pin_released", "pin_hovered")
 
 
 class Viewport(QWidget):

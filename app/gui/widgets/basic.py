@@ -1,4 +1,4 @@
-"""Small widgets that every panel is put together from."""
+"""Basic widgets: buttons, labels, rows, folded lists, and their names for screen readers."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 

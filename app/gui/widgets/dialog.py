@@ -1,4 +1,4 @@
-"""The house's dialog: a heading, what it is about, and buttons at its foot."""
+"""Dialog with a heading, its content and buttons, and message boxes made of it."""
 
 from __future__ import annotations
 
@@ -22,6 +22,11 @@ from app.gui.theme.stylesheet import label
 from app.gui.widgets.basic import button, hairline, sentence
 from app.gui.widgets.focus_chain import next_stop, stops
 from app.i18n.catalog import tr
+
+LOSING = ("delete", "discard", "replace")
+"""Answers that nothing brings back: Enter does not give them."""
+
+_WIDTH = 460
 
 
 class Dialog(QDialog):
@@ -115,12 +120,6 @@ def text_viewer(text: str, name: str, *, code: bool = False) -> QPlainTextEdit:
         type_.setPixelSize(12)
         result.setFont(type_)
     return result
-
-
-LOSING = ("delete", "discard", "replace")
-"""Answers that nothing brings back: Enter does not give them."""
-
-_WIDTH = 460
 
 
 def ask(parent: QWidget | None, question: str, message: str, answers: Sequence[tuple[str, str]]) -> str:

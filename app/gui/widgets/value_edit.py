@@ -35,6 +35,11 @@ _FIGURE = re.compile(r"^\s*([+-]?\s*\d+(?:[.,]\d*)?)\s*[^\d\s]*\s*$")
 _RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 
 
+_FOCUS = Qt.FocusReason
+
+_BY_KEY = (_FOCUS.TabFocusReason, _FOCUS.BacktabFocusReason, _FOCUS.ShortcutFocusReason)
+
+
 def keys_in_words() -> list[tuple[str, str]]:
     """Return what the keys do in a field that is typed into, ready to read."""
     return [("Enter", tr("Apply value")), ("Esc", tr("Cancel"))]
@@ -202,10 +207,6 @@ class Refusal(QLabel):
         painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 7, 7)
         painter.end()
         super().paintEvent(event)
-
-
-_FOCUS = Qt.FocusReason
-_BY_KEY = (_FOCUS.TabFocusReason, _FOCUS.BacktabFocusReason, _FOCUS.ShortcutFocusReason)
 
 
 class LengthEdit(InlineEdit):

@@ -1,4 +1,4 @@
-"""The numbers of tissue and lines that predict a worn scan best, and how sure they are (ours).
+"""Calibration: stiffness of tissue and lines that predicts a fitting scan best, with uncertainties (ours).
 
 All that may be told is sought at once, each from what the design has, as far as such numbers differ at all.
 What the two scans do not tell stays there, and what that leaves open is in the ± of the others.
@@ -33,6 +33,16 @@ MOOT = 0.8
 _ALIKE = 0.7  # correlation from which on two numbers count as not told apart
 
 
+FEWEST = 200
+"""Points of the worn scan on the skin that moves that are needed for a fit."""
+
+SURE = 2.0
+"""A ± is so many standard deviations: 95 % of what chance makes [1]."""
+
+MUCH_LEFT = 0.5
+"""Where more than this of predicted less real remains something else made it: posture, breath, cloth [1]."""
+
+
 def singular_values(slopes: Floats, numbers: tuple[Parameter, ...]) -> tuple[float, ...]:
     """Return those of ``slopes`` (k, p) [mm], the largest first, in units of what is known before."""
     if not numbers:
@@ -59,17 +69,6 @@ def confounded_with(equations: NormalEquations, numbers: tuple[Parameter, ...], 
     alike[at] = 0.0
     other = int(alike.argmax())
     return numbers[other].name if alike[other] > _ALIKE else ""
-
-
-FEWEST = 200
-"""Points of the worn scan on the skin that moves that are needed for a fit."""
-
-SURE = 2.0
-"""A ± is so many standard deviations: 95 % of what chance makes [1]."""
-
-
-MUCH_LEFT = 0.5
-"""Where more than this of predicted less real remains something else made it: posture, breath, cloth [1]."""
 
 
 @dataclass(frozen=True, eq=False)

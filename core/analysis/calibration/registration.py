@@ -1,4 +1,4 @@
-"""A second scan is laid on the first by the skin that no line moves: back, ribs, shoulders, belly (ours).
+"""Registration of a second scan by the skin outside the reshaped region: back, ribs, shoulders, belly (ours).
 
 The two stand upright already, each by itself. Landmarks tell roughly how far apart they are; from a few
 starts round there the still skin of the first is laid on the second, coarsely, and from the best one finely:
@@ -29,6 +29,33 @@ _SAMPLE = 4000  # places at most that are strewn over it
 _BELOW, _ABOVE, _BESIDE = 160.0, 60.0, 15.0  # how far the still skin reaches beyond the control mesh [mm]
 
 
+MET = 5.0
+"""Still skin that is this near to the second scan is met [mm]."""
+
+LEAST_MET = 0.85
+"""Less of the still skin than this met is another person, or another posture [1]."""
+
+LEAST_SEEN = 0.4
+"""Less of the still skin than this to compare with is too little to tell [1]."""
+
+_COARSE = 700  # places that are laid on from every start
+
+_STILL = ("side_left", "side_right", "armpit_left", "armpit_right", "back_centre", "back_centre_underbust",
+          "front_centre_underbust", "waist_front", "hip_front", "neck_front", "neck_back")  # fmt: skip
+
+_HEIGHTS = (0.0, -25.0, 25.0, -50.0, 50.0)  # starts above and below what landmarks tell [mm]
+
+_TURNS = (0.0, -0.2, 0.2)  # and turned about the vertical [rad]
+
+_KEPT = 0.7  # of the still skin, the nearest: the rest may be arms, or not there
+
+_ROUNDS, _COARSE_ROUNDS, _POINT_ROUNDS, _STILL_STEP = 40, 7, 5, 1e-5
+
+_FEWEST, _MOST_POINTS = 50, 60_000  # places that tell anything; points of the second scan that are asked
+
+_SIZES = {"m": 1000.0, "inch": 25.4, "cm": 10.0, "mm": 1.0}
+
+
 def static_faces(stages: Stages) -> Faces:
     """Return the triangles (m, 3) of the trunk's skin that no line moves."""
     mesh, control = stages.body.mesh, stages.control.mesh.vertices
@@ -57,26 +84,6 @@ def static_surface(mesh: Mesh, faces: Faces) -> Surface:
     """Return the skin of ``faces`` (m, 3) of a mesh, for points to stand over."""
     used, corners = np.unique(faces, return_inverse=True)
     return Surface(mesh.vertices[used], mesh.vertex_normals[used], corners.reshape(-1, 3).T)
-
-
-MET = 5.0
-"""Still skin that is this near to the second scan is met [mm]."""
-
-LEAST_MET = 0.85
-"""Less of the still skin than this met is another person, or another posture [1]."""
-
-LEAST_SEEN = 0.4
-"""Less of the still skin than this to compare with is too little to tell [1]."""
-
-_COARSE = 700  # places that are laid on from every start
-_STILL = ("side_left", "side_right", "armpit_left", "armpit_right", "back_centre", "back_centre_underbust",
-          "front_centre_underbust", "waist_front", "hip_front", "neck_front", "neck_back")  # fmt: skip
-_HEIGHTS = (0.0, -25.0, 25.0, -50.0, 50.0)  # starts above and below what landmarks tell [mm]
-_TURNS = (0.0, -0.2, 0.2)  # and turned about the vertical [rad]
-_KEPT = 0.7  # of the still skin, the nearest: the rest may be arms, or not there
-_ROUNDS, _COARSE_ROUNDS, _POINT_ROUNDS, _STILL_STEP = 40, 7, 5, 1e-5
-_FEWEST, _MOST_POINTS = 50, 60_000  # places that tell anything; points of the second scan that are asked
-_SIZES = {"m": 1000.0, "inch": 25.4, "cm": 10.0, "mm": 1.0}
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""A profile that is drawn: the skin's outline as it stands, pulled by a few handles (ours)."""
+"""Drawn target profile: the outline of the skin moved by a few handles, and its table as CSV (ours)."""
 
 from __future__ import annotations
 
@@ -29,6 +29,18 @@ _FINE = 2.5  # heights at which the outline is read [mm]
 _ENOUGH = 8  # rows of a table on which handles are of use
 _APART = 20.0  # about as far are handles from each other [mm]
 _ALONG = 0.5  # of a step that the handles beside one take along with it [1]
+
+
+_MOST = 60
+"""Heights of a profile that are asked for; of more every so manieth is."""
+
+_STEEP = 3.0  # a skin that comes out so much faster than it rises hangs over [1]
+
+_STEP = 5.0  # of the heights at which an exported section is read [mm]
+
+_HEIGHT, _OUT = ("height_mm", "height"), ("out_mm", "out")
+
+_BYTES = 5_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,15 +168,6 @@ def _between(knots: Floats, ways: Floats, along: Floats) -> Floats:
     rest = 1.0 - part
     ends = rest**2 * (1.0 + 2.0 * part) * ways[piece] + part**2 * (1.0 + 2.0 * rest) * ways[piece + 1]
     return np.asarray(ends + part * rest * wide[piece] * (rest * slopes[piece] - part * slopes[piece + 1]))
-
-
-_MOST = 60
-"""Heights of a profile that are asked for; of more every so manieth is."""
-
-_STEEP = 3.0  # a skin that comes out so much faster than it rises hangs over [1]
-_STEP = 5.0  # of the heights at which an exported section is read [mm]
-_HEIGHT, _OUT = ("height_mm", "height"), ("out_mm", "out")
-_BYTES = 5_000_000
 
 
 def read_profile(path: str) -> Floats:

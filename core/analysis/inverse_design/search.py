@@ -1,4 +1,4 @@
-"""The search for the lengths of lines that lead to what is wished, with least tension (ours).
+"""Search for the line lengths that reach the targets with the least tension (ours).
 
 The exact answer tells how each figure moves with each length (``sensitivity``), so a few answers
 lead to the wished one. First the nearest that the lines can do is found; if that is what was wished, the
@@ -32,6 +32,35 @@ from core.pipeline.build import Stages
 from core.pipeline.solve import NoEquilibriumError
 from core.progress import Progress, quiet
 
+LOOSEST = 1.0
+"""A line is not asked to be longer than at rest: it would push [1]."""
+
+_PUSH = 0.5 * SLACK  # half of what counts as none: a run ends a hair beside its exact answer [N]
+
+_STEPS, _ELSEWHERE = 24, 12  # answers after which a search is given up, from the start and from elsewhere
+
+_HALFWAY = 0.9  # ratio at which a search begins anew
+
+_TRIES, _GOOD = 12, 1e-3  # steps to less tension, and a part of it that is not worth another
+
+_BOLD, _LAST = 8.0, 0.01  # the longest step tried at first, and one that can no longer be told [%]
+
+_SHORTEST = 1e-4  # a step to what is wanted [%]
+
+_EXACT = 1e-8  # [mm^2]
+
+_LITTLE = 1e-6  # a step that brings no more than this is the last one [mm^2]
+
+_TELLS = 0.002  # or one that brings no more than this nearer [mm]
+
+_QUICK = 16  # Newton steps after which a step was too bold
+
+_BESIDE = 0.5  # so near to where another start led, and no better, it leads there as well [%]
+
+_AT_LIMIT = 1e-3  # room to a limit [1]
+
+_AT_END = 0.01  # [%]
+
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
@@ -51,25 +80,6 @@ class Candidate:
     most_tensioned: tuple[str, ...]
     slack: tuple[str, ...]
     strained: bool
-
-
-LOOSEST = 1.0
-"""A line is not asked to be longer than at rest: it would push [1]."""
-
-_PUSH = 0.5 * SLACK  # half of what counts as none: a run ends a hair beside its exact answer [N]
-
-_STEPS, _ELSEWHERE = 24, 12  # answers after which a search is given up, from the start and from elsewhere
-_HALFWAY = 0.9  # ratio at which a search begins anew
-_TRIES, _GOOD = 12, 1e-3  # steps to less tension, and a part of it that is not worth another
-_BOLD, _LAST = 8.0, 0.01  # the longest step tried at first, and one that can no longer be told [%]
-_SHORTEST = 1e-4  # a step to what is wanted [%]
-_EXACT = 1e-8  # [mm^2]
-_LITTLE = 1e-6  # a step that brings no more than this is the last one [mm^2]
-_TELLS = 0.002  # or one that brings no more than this nearer [mm]
-_QUICK = 16  # Newton steps after which a step was too bold
-_BESIDE = 0.5  # so near to where another start led, and no better, it leads there as well [%]
-_AT_LIMIT = 1e-3  # room to a limit [1]
-_AT_END = 0.01  # [%]
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Make even: the lengths of left and right lines that bring both bust points alike, as a request (ours)."""
+"""Balance of left and right: line lengths with which both bust points are alike, as targets (ours)."""
 
 from __future__ import annotations
 

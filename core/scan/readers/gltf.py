@@ -1,4 +1,4 @@
-"""glTF files, as text or as GLB: the triangles of all meshes where their nodes put them."""
+"""glTF files, text or binary: the triangles of all meshes, placed by their nodes."""
 
 from __future__ import annotations
 
@@ -42,6 +42,21 @@ MOST_NODES, MOST_MARKS = 10_000, 500_000
 _MOST_IMAGES = 100
 _STEP = 1 << 20
 _OUTSIDE = re.compile(rb'"uri"\s*:\s*"(?!data:)')
+
+
+_KINDS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+
+_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
+
+_TRIANGLES, _STRIP, _FAN = 4, 5, 6
+
+_DEEPEST = 100
+
+_WHOLE = Message("Place that file in the same folder, or export everything as one GLB file.")
+
+Json = Any
+
+Matrix = Floats
 
 
 def with_buffers(path: Path, data: bytes, most: int, progress: Progress = quiet) -> bytes:
@@ -148,16 +163,6 @@ def cut_short(name: str) -> ScanError:
         Message("{file} is truncated: the header declares more data than the file contains.", file=name),
         AGAIN,
     )
-
-
-_KINDS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
-_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
-_TRIANGLES, _STRIP, _FAN = 4, 5, 6
-_DEEPEST = 100
-_WHOLE = Message("Place that file in the same folder, or export everything as one GLB file.")
-
-Json = Any
-Matrix = Floats
 
 
 def read_gltf(name: str, data: bytes, progress: Progress) -> RawScan:

@@ -1,4 +1,4 @@
-"""PLY files, text or binary, with whatever elements and lists."""
+"""PLY files, text or binary, with any elements and lists."""
 
 from __future__ import annotations
 
@@ -52,6 +52,15 @@ NEEDED = {
 """Elements that are read, and what the names of their properties begin with."""
 
 Kind = np.dtype[np.generic]
+
+
+_MOST_LISTS = 20_000_000
+"""Lists that are gone through one by one: two of the largest number of polygons need half as many."""
+
+Values = npt.NDArray[np.generic]
+
+Spots = range | Indices
+"""Where something stands, row after row: evenly spaced, or anywhere."""
 
 
 @dataclass(frozen=True)
@@ -122,16 +131,6 @@ def _elements(lines: list[str]) -> tuple[str, list[Element]]:
     if order is None or any(element.rows < 0 for element in elements):
         raise ValueError("no format, or a count below zero")
     return order, elements
-
-
-_MOST_LISTS = 20_000_000
-"""Lists that are gone through one by one: two of the largest number of polygons need half as many."""
-
-Values = npt.NDArray[np.generic]
-
-
-Spots = range | Indices
-"""Where something stands, row after row: evenly spaced, or anywhere."""
 
 
 class _Content:

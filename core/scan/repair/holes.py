@@ -1,4 +1,4 @@
-"""Holes of a skin: which are closed, and how."""
+"""Holes of a scan: which are closed, and with what surface."""
 
 from __future__ import annotations
 
@@ -39,6 +39,34 @@ AROUND = (
     context_message("on the body", "right side"),
     context_message("on the body", "front right"),
 )
+
+
+CLOSED = 30.0
+"""Holes up to this length are closed [mm]."""
+
+MOST_CORNERS = 1000
+"""Holes of more corners stay open: so small a one has at most 300 on a fine scan [1]."""
+
+SEAM = 2.0
+"""Borders of different parts nearer than this are sewn together [mm]."""
+
+CRACK = 30.0
+"""The two sides of one border are sewn to each other only where the way between them is longer [mm]."""
+
+MOST_STEPS = 100.0
+"""A patch has at most so many vertices from side to side [1]."""
+
+RIM_WIDTH = 30.0
+"""The skin within half a hole's length and this beyond its border tells how a patch bends [mm]."""
+
+MOST_AROUND = 20_000
+"""So many vertices round a hole are used for that."""
+
+FEW = 8
+"""A border of so few corners needs no vertex inside it [1]."""
+
+RINGS = 2
+"""So many rings of triangles round a hole give a patch its slope and curvature at the border."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,19 +197,6 @@ def hole_sentence(mesh: Mesh, hole: Hole) -> Message:
         wide=f"{hole.width / 10.0:.0f}",
         place=hole.place(mesh),
     )
-
-
-CLOSED = 30.0
-"""Holes up to this length are closed [mm]."""
-
-MOST_CORNERS = 1000
-"""Holes of more corners stay open: so small a one has at most 300 on a fine scan [1]."""
-
-SEAM = 2.0
-"""Borders of different parts nearer than this are sewn together [mm]."""
-
-CRACK = 30.0
-"""The two sides of one border are sewn to each other only where the way between them is longer [mm]."""
 
 
 def fill_holes(mesh: Mesh, progress: Progress = quiet) -> tuple[Mesh, tuple[Message, ...]]:
@@ -350,22 +365,6 @@ def quadric_height(places: Points, scale: float) -> Callable[[Floats], Floats]:
     basis = terms(places[:, :2]) * weight[:, None]
     solution = np.linalg.lstsq(basis, places[:, 2] * weight, rcond=1e-6)[0]
     return lambda flat: np.asarray(terms(flat) @ solution)
-
-
-MOST_STEPS = 100.0
-"""A patch has at most so many vertices from side to side [1]."""
-
-RIM_WIDTH = 30.0
-"""The skin within half a hole's length and this beyond its border tells how a patch bends [mm]."""
-
-MOST_AROUND = 20_000
-"""So many vertices round a hole are used for that."""
-
-FEW = 8
-"""A border of so few corners needs no vertex inside it [1]."""
-
-RINGS = 2
-"""So many rings of triangles round a hole give a patch its slope and curvature at the border."""
 
 
 def fill_large_holes(mesh: Mesh, holes: Sequence[Hole]) -> tuple[Mesh, Indices, int]:

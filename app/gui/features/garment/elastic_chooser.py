@@ -165,9 +165,9 @@ class _Table(ElasticTable):
         heads = (
             tr("Elastic"),
             tr("Elongation %"),
-            tr("cut, {unit}"),
-            tr("on body, {unit}"),
-            tr("lift, {unit}"),
+            tr("cut {unit}"),
+            tr("on body {unit}"),
+            tr("lift {unit}"),
             "",
         )
         super().__init__([each.format(unit=unit) for each in heads], NOTE)

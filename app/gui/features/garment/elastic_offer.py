@@ -1,4 +1,4 @@
-"""The offer of elastics for some lines: the effect of each is computed in jobs while the chooser is open."""
+"""Elastics offered for lines: the effect of each is computed in jobs while the chooser is open."""
 
 from __future__ import annotations
 
@@ -31,6 +31,10 @@ Entry = tuple[str, Elastic | None]
 """What an elastic is called in the list, and the elastic; None is no elastic."""
 
 
+Use = Callable[["ElasticRequest", Outcome, Elastic | None], None]
+"""Takes an outcome for the lines that it was asked for."""
+
+
 def elastic_entries(kept: Iterable[Elastic]) -> tuple[list[Entry], list[LineError]]:
     """Return the elastics, with why some tables of one's own cannot be read.
 
@@ -50,10 +54,6 @@ def elastic_entries(kept: Iterable[Elastic]) -> tuple[list[Entry], list[LineErro
         ),
         *((elastic_title(each.name), each) for each in built_in() if known[each.name] == each),
     ], problems
-
-
-Use = Callable[["ElasticRequest", Outcome, Elastic | None], None]
-"""Takes an outcome for the lines that it was asked for."""
 
 
 @dataclass

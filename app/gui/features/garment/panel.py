@@ -403,7 +403,7 @@ class GarmentPanel(QWidget):
         row.addWidget(label(tr("Cut list"), "heading"), 1)
         right = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignBottom
         for title, room in (
-            (tr("cut, {unit}").format(unit=length_unit()), CUT),
+            (tr("cut {unit}").format(unit=length_unit()), CUT),
             ("N", NEWTONS),
             ("kPa", PRESSURE),
         ):

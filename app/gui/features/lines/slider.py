@@ -1,4 +1,4 @@
-"""The slider that sets the length of a line, in percent of its length at rest."""
+"""Slider for the length of a line, in percent of its original length."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 
@@ -42,6 +42,13 @@ STALE = 0.2
 _BESIDE = 0.02  # room beside a typed length that widens the groove [1]
 _GAP = 1.5  # between two zones [px]
 _QUIET = 0.42  # of those of a line that is not in hand
+
+
+STEPS_TO_ONE = 100_000  # one step of the slider is 1/1000 %
+
+_END_ROOM, _HANDLE_RADIUS = 13.0, 8.0
+
+_SMALLEST_WEDGE = 0.0005  # a reached length nearer to the set one shows no wedge
 
 
 def ends_for(ratio: float) -> tuple[float, float]:
@@ -134,12 +141,6 @@ def _tick(painter: QPainter, x: float, colour: QColor) -> None:
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(colour)
     painter.drawRect(QRectF(x - 0.5, GROOVE_Y - GROOVE_HEIGHT / 2 - 3, 1, GROOVE_HEIGHT + 6))
-
-
-STEPS_TO_ONE = 100_000  # one step of the slider is 1/1000 %
-
-_END_ROOM, _HANDLE_RADIUS = 13.0, 8.0
-_SMALLEST_WEDGE = 0.0005  # a reached length nearer to the set one shows no wedge
 
 
 class LengthSlider(QAbstractSlider):

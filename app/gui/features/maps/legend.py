@@ -1,4 +1,4 @@
-"""The legend of a map: what is shown, its colours and its range, which can be set by hand."""
+"""Legend of a map: quantity, colours and a range that can be set, and its place in the view."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 # ruff: noqa: N802 - Qt names its events
@@ -29,6 +29,16 @@ WIDTH = 152
 
 SIZES = "full", "small", "folded"
 """How much room it takes, the usual first."""
+
+
+CORNERS = ("top-right", "bottom-right", "top-left", "bottom-left")
+"""Where it can be, the usual place first."""
+
+_REST = 200  # a view that has not moved for so long rests [ms]
+
+_WORD = 20  # a label that is covered is as bad as so many places of a band
+
+_AIR = 6  # least distance from what it must not cover [px]
 
 
 class Legend(FloatingPanel):
@@ -142,14 +152,6 @@ class Legend(FloatingPanel):
             self.range_set.emit(low, high)
         else:
             self.bar.show_ends()
-
-
-CORNERS = ("top-right", "bottom-right", "top-left", "bottom-left")
-"""Where it can be, the usual place first."""
-
-_REST = 200  # a view that has not moved for so long rests [ms]
-_WORD = 20  # a label that is covered is as bad as so many places of a band
-_AIR = 6  # least distance from what it must not cover [px]
 
 
 class LegendPlacement(QObject):

@@ -22,6 +22,13 @@ MOST = 45.0
 """The largest lean that can be typed [degrees]."""
 
 
+UNITS = ("mm", "cm", "m", "inch")
+"""Units that a scan can be in."""
+
+AXES = tuple(f"{sign}{name}" for name in "xyz" for sign in "+-")
+"""Axes of a file, as a scan is told them."""
+
+
 class AngleField(ValueEdit):
     """An angle within 45 degrees."""
 
@@ -73,13 +80,6 @@ class LeanEditor(QWidget):
         self.forward.show_value(view.forward)
         self.left.show_value(view.left)
         self.upright.setVisible(bool(view.upright))
-
-
-UNITS = ("mm", "cm", "m", "inch")
-"""Units that a scan can be in."""
-
-AXES = tuple(f"{sign}{name}" for name in "xyz" for sign in "+-")
-"""Axes of a file, as a scan is told them."""
 
 
 class ScanPanel(QWidget):

@@ -1,4 +1,4 @@
-"""The uncertainty of results: computed once a design has converged and is looked at."""
+"""Uncertainty of results, computed when a converged design is looked at, and its card."""
 
 from __future__ import annotations
 
@@ -33,6 +33,10 @@ if TYPE_CHECKING:
     from app.gui.context import AppContext
 
 
+PAUSE = 600
+"""Time without a new frame before the job begins: it shares the processor with the solver [ms]."""
+
+
 class UncertaintyCard(QWidget):
     """What ± means, what another choice of the model makes, and two folds."""
 
@@ -58,10 +62,6 @@ class UncertaintyCard(QWidget):
             words.setText(text)
             words.setVisible(bool(text))
             set_tag(words, "tone", "faint" if view.faint else "")
-
-
-PAUSE = 600
-"""Time without a new frame before the job begins: it shares the processor with the solver [ms]."""
 
 
 class UncertaintyController(QObject):

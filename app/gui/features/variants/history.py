@@ -1,4 +1,4 @@
-"""History of edits: the list, and the step that is gone back to."""
+"""History of edits: list with images, and the controller that goes back to a state."""
 
 from __future__ import annotations
 
@@ -27,6 +27,15 @@ from core.pipeline.warnings import controlled_volume
 
 if TYPE_CHECKING:
     from app.gui.context import AppContext
+
+
+MOST = 30
+"""Results that are kept, the oldest go first."""
+
+_CALM = 400
+"""Milliseconds that a result has stood when its picture is taken: nobody is waiting for the window then."""
+
+_PICTURE = 160
 
 
 class HistoryPanel(QWidget):
@@ -108,15 +117,6 @@ class _EditRow(RowPainter):
         self.write(
             painter, words, index.data(Qt.ItemDataRole.DisplayRole), "name" if ahead == 0 else "body", token
         )
-
-
-MOST = 30
-"""Results that are kept, the oldest go first."""
-
-_CALM = 400
-"""Milliseconds that a result has stood when its picture is taken: nobody is waiting for the window then."""
-
-_PICTURE = 160
 
 
 @dataclass(frozen=True, eq=False)
