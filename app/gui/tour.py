@@ -128,7 +128,7 @@ class Tour(QObject):
             TourStop(
                 tr("Before and after"),
                 tr(
-                    "The bust points moved by: {move}. Press Space, or click Before and After, "
+                    "Bust point displacement: {move}. Press Space, or click Before and After, "
                     "to switch between original and reshaped body."
                 ).format(move=up_text(bust_shift(frame).mean.up)),
                 lambda: self._place_of(window.view.compare),

@@ -81,11 +81,12 @@ def hint(found: Diagnosis) -> str:
 
 def _leading(found: Diagnosis) -> str:
     """Return what the changes on the buttons leave to be checked: all of them were tried."""
-    first, *others = (_left(cure) for cure in shown_fixes(found))
+    shown = shown_fixes(found)
+    first, *others = (_left(cure) for cure in shown)
+    if not any(cure.remains for cure in shown):
+        return tr("Verified fixes:") if others else tr("Verified fix:")
     if others:
         return tr("Verified fixes (remaining problem: {one}; {other}):").format(one=first, other=others[0])
-    if not found.fixes[0].remains:
-        return tr("Verified fix:")
     return tr("Verified fix (remaining problem: {what}):").format(what=first)
 
 

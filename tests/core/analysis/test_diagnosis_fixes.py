@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.presenters.diagnosis import change_text, details
+from app.presenters.diagnosis import change_text, details, hint, shown_fixes
 from app.presenters.samples import sample_design
 from core.analysis.diagnosis.candidate_changes import line_paths
 from core.analysis.diagnosis.diagnose import Diagnosis, diagnose
@@ -132,3 +132,11 @@ def test_a_line_at_its_rest_length_has_one_way_and_that_leads_away_from_it() -> 
     of_full = [way for way in ways if way.at(1).lines == ("full-bust",)]
     assert [round(way.at(1).design.ratio("full-bust"), 6) for way in of_full] == [1.001]
     assert all(way.most > 0 for way in ways)
+
+
+def test_fixes_that_leave_nothing_have_no_remaining_problem() -> None:
+    found = diagnose(made("mannequin", {"mid-bust": 0.97}, volume="conventional", gain=1.9))
+    clean = replace(found, fixes=tuple(replace(each, remains=()) for each in found.fixes))
+    assert hint(replace(clean, fixes=clean.fixes[:1])) == "Verified fix:"
+    assert len(shown_fixes(clean)) == 2
+    assert hint(clean) == "Verified fixes:"

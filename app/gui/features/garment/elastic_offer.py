@@ -80,10 +80,21 @@ class ElasticRequest:
         assert self.lift is not None  # here, and not in the window's thread
         return elastic_option(self.stages, self.names, elastic, mode)
 
+    def is_one(self) -> bool:
+        """Return whether it is one line, or a linked pair."""
+        return set(self.names) <= set(self.design.linked_pair(self.names[0]))
+
     def title(self) -> str:
-        """Return what the lines are called together."""
-        one = set(self.names) <= set(self.design.linked_pair(self.names[0]))
-        return row_title(self.names[0], self.design) if one else tr("All lines")
+        """Return the name of the line, or that all lines have together."""
+        return row_title(self.names[0], self.design) if self.is_one() else tr("All lines")
+
+    def heading(self) -> str:
+        """Return the title of the chooser."""
+        return (
+            tr("Elastic for {line}").format(line=self.title())
+            if self.is_one()
+            else tr("Elastic for all lines")
+        )
 
 
 @dataclass
@@ -124,8 +135,7 @@ class ElasticOffer(QObject):
         entries, problems = elastic_entries(design.elastics)
         self._offer = _Offer(asked, entries)
         modes = mode_titles() if design.line_hold == "spring" else []
-        title = tr("Elastic for {line}").format(line=asked.title())
-        chooser = self.chooser = ElasticChooser(self._context.window, title, modes)
+        chooser = self.chooser = ElasticChooser(self._context.window, asked.heading(), modes)
         chooser.mode_requested.connect(self.set_mode)
         chooser.marked.connect(lambda _: self._advise())
         chooser.chosen.connect(self._use)
