@@ -47,7 +47,7 @@ class SettingName(Name):
         "line_contact": "skin contact",
         "line_hold": "line length",
         "member_law": "cable force",
-        "firm_chest": "chest support",
+        "firm_chest": "rib-cage support",
         "scaled_normals": "scaling of the distance to the mesh",
         "dense_volume": "volume of the body",
     }

@@ -97,10 +97,11 @@ class Actions(Menus):
         self.add_lines = {name: self.add("lines", title, of_document=True) for name, title in titles.items()}
         self.rule("lines")
         text = tr(
-            "Click points on the body to draw a line. It keeps the drawn curve or snaps to control points."
+            "Click points on the body to draw a line. The line keeps the drawn curve or snaps to control "
+            "points."
         )
         self.draw_line = self.add("lines", tr("Draw line"), "N", text, of_document=True)
-        self.own_line = self.add("lines", tr("Line through control points…"), of_document=True)
+        self.own_line = self.add("lines", tr("Add line through points…"), of_document=True)
 
     def _fill_solve(self) -> None:
         titles = {
@@ -138,14 +139,14 @@ class Actions(Menus):
         self.alone.setShortcutContext(Qt.ShortcutContext.WidgetShortcut)
         self.full_screen = self.add("window", tr("Full screen"), "F11", checkable=True)
         self.next_pane = self.add("window", tr("Next pane"), "F6", tr("Move keyboard focus to the next pane"))
-        text = tr("Select menus with the arrow keys")
+        text = tr("Move keyboard focus to the menu bar")
         self.add("window", tr("Menu bar"), "F10", text, do=self.enter_bar)
         self.rule("window")
         text = tr("Restore default panel sizes")
         self.reset_layout = self.add("window", tr("Reset layout"), tip=text)
 
     def _fill_help(self) -> None:
-        text = tr("Open the page for the current task in the browser")
+        text = tr("Open the user guide page for the current task in the browser")
         self.guide = self.add("help", tr("User guide"), _KEYS.HelpContents, text)
         text = tr("From a scan to a cut list, click by click")
         self.first_steps = self.add("help", tr("Quick start"), tip=text)

@@ -144,9 +144,8 @@ class Tour(QObject):
             TourStop(
                 tr("Drag a line"),
                 tr(
-                    "Drag the round handle slightly to the left: the line becomes shorter and "
-                    "presses more. Bust movement is shown below the body. Ctrl+Z undoes the "
-                    "change."
+                    "Drag the round handle slightly to the left: the line becomes shorter and presses "
+                    "harder. Bust movement is shown below the body. Ctrl+Z undoes the change."
                 ),
                 lambda: self._place_of(window.lines.rows.get(window.view.selected_line, window.lines)),
             ),
@@ -157,9 +156,9 @@ class Tour(QObject):
             TourStop(
                 tr("Overall verdict"),
                 tr(
-                    "Overall verdict of all checks: convergence, skin strain, contact pressure "
-                    "and fit. Click it for reasons and fixes. Contact pressures are estimates, "
-                    "probably too high: check them on a sample garment."
+                    "Overall verdict of all checks: convergence, skin strain, contact pressure and fit. "
+                    "Click the verdict for reasons and fixes. Contact pressures are estimates, probably "
+                    "too high: check them on a sample garment."
                 ),
                 self._verdict_place,
             ),

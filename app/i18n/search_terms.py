@@ -36,7 +36,7 @@ SYNONYMS = {
     "Add oblique side lines": "side push-up gather 脇 寄せ",
     "Add rings around bust points": "cup circle カップ",
     "Draw line": "new add seam waist hip edge 新規 追加 縫い目 ウエスト ヒップ",
-    "Line through control points…": "new add path 新規 追加",
+    "Add line through points…": "new add path 新規 追加",
     "Cut list": "garment sew seam length tension newton stretch elastic tape 裁断 縫製 張力 伸び ゴム テープ",
     "Target shape…": "ask for the result goal wish inverse design position 目標 逆設計 希望",
     "Diagnose design…": "what is wrong doctor problem conflict oscillation fix 診断 問題 競合",

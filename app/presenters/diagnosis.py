@@ -72,7 +72,7 @@ def hint(found: Diagnosis) -> str:
     """Return what leads to the buttons, or what there is to do where there are none."""
     if found.fixes:
         return _leading(found)
-    texts = [tr("No fix found among changes of one line, of the gain or of the model.")]
+    texts = [tr("No fix found by changing one line, the gain or the model.")]
     if found.locked:
         titles = listed(line_title(name, found.stages.design) for name in found.locked)
         texts.append(tr("Locked lines were not changed: {lines}.").format(lines=titles))
@@ -86,7 +86,7 @@ def _leading(found: Diagnosis) -> str:
     if not any(cure.remains for cure in shown):
         return tr("Verified fixes:") if others else tr("Verified fix:")
     if others:
-        return tr("Verified fixes (remaining problem: {one}; {other}):").format(one=first, other=others[0])
+        return tr("Verified fixes (remaining problems: {one}; {other}):").format(one=first, other=others[0])
     return tr("Verified fix (remaining problem: {what}):").format(what=first)
 
 
@@ -110,7 +110,7 @@ def _topic(finding: Finding) -> str:
     return {
         "convergence": tr("no convergence"),
         "shape": tr("high skin strain"),
-        "band": tr("a slack or overstretched band"),
+        "band": tr("slack or overstretched band"),
         "pressure": tr("high contact pressure") if finding.level == BAD else tr("snug contact pressure"),
     }[finding.topic]
 
@@ -200,7 +200,7 @@ def _forces(found: Diagnosis) -> Iterator[str]:
         yield "  " + _force(found, pull)
     if fight.forces:
         yield "  " + tr("Skin: {newtons} N").format(newtons=number(fight.skin))
-        yield "  " + tr("Sum of the forces at all points. For tension along a line see Garment.")
+        yield "  " + tr("Sum of the forces at all points. For tension along a line, see the Garment tab.")
 
 
 def _force(found: Diagnosis, pull: ConstraintForce) -> str:
@@ -218,7 +218,7 @@ def _force(found: Diagnosis, pull: ConstraintForce) -> str:
 
 def _changes(found: Diagnosis) -> Iterator[str]:
     if found.fixes:
-        yield tr("Fixes, verified from the original and the current shape, best first:")
+        yield tr("Fixes, best first; each was verified from the original and the current shape:")
     for place, cure in enumerate(found.fixes, start=1):
         view = assessment_view(Assessment(cure.remains), cure.change.design)
         text = joined((tr("{headline}.").format(headline=view.headline), *(each for each, _ in view.reasons)))
@@ -236,7 +236,7 @@ def _changes(found: Diagnosis) -> Iterator[str]:
             )
             yield "     " + listed(lengths)
     if found.nearest is not None:
-        words = tr("Nearest: {change}; status “{state}”")
+        words = tr("Best change tried: {change}; status “{state}”")
         text = change_text(found, found.nearest.change)
         yield words.format(change=text, state=state_title(found.nearest.remaining_problem))
 
@@ -253,7 +253,7 @@ def _parts(cure: Fix) -> str:
         "line_hold": tr("Elastic lines"),
     }[cure.change.setting[0]]
     length = tr("the lengths") if cure.change.kind == "together" else tr("the length")
-    words = tr("{choice} resolves {one}; {length} resolves {other}")
+    words = tr("{choice} resolved {one}; {length} resolved {other}")
     troubles = {"one": _trouble(cure.option_result), "other": _trouble(cure.lengths_result)}
     return words.format(choice=choice, length=length, **troubles)
 

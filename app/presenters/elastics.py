@@ -100,7 +100,7 @@ def effect_text(outcome: Outcome, rigid: Outcome) -> str:
     """Return the lift with an elastic against that of a band that does not stretch."""
     with_it, without = (length(each.lift, signed=True) for each in (outcome, rigid))
     if kept := kept_text(outcome, rigid):
-        words = tr("Lift {lift}, {kept} of the lift of {rigid} with an inextensible band.")
+        words = tr("Lift {lift}: {kept} of the {rigid} obtained with an inextensible band.")
         return words.format(lift=with_it, kept=kept, rigid=without)
     return tr("Lift {lift}; with an inextensible band {rigid}.").format(lift=with_it, rigid=without)
 
@@ -176,7 +176,7 @@ def advice_view(
     lines, offers = [render(option.reason, design)], []
     if option.closest is not None:
         lines = [joined((*lines, effect_text(option.closest, rigid) if rigid is not None else ""))]
-        offers.append((tr("Use maximum extension"), place, True))
+        offers.append((tr("Use maximum elongation"), place, True))
     other = _other(option, options, titles, names)
     if other is not None:
         at, limited = other
@@ -219,7 +219,7 @@ def _other(
 
 
 def _offer(title: str, limited: bool) -> str:
-    words = tr("Use {elastic} at maximum extension") if limited else tr("Use {elastic}")
+    words = tr("Use {elastic} at maximum elongation") if limited else tr("Use {elastic}")
     return words.format(elastic=title)
 
 

@@ -44,7 +44,7 @@ def exports() -> tuple[Export, ...]:
 def _meshes() -> tuple[Export, ...]:
     meshes = {
         "glb": tr("glTF, always in metres with y up: Blender, viewers, web pages."),
-        "obj": tr("For most 3D programs, also CLO. Choose the unit on import."),
+        "obj": tr("For most 3D programs, including CLO. Choose the unit on import."),
         "ply": tr("Scanner format: MeshLab, CloudCompare, Blender. Choose the unit on import."),
         "stl": tr("For 3D printing and CAD. Choose the unit on import."),
     }
@@ -80,8 +80,8 @@ def _drawings() -> tuple[Export, ...]:
             tr("Band strips"),
             "strips",
             tr(
-                "Flat strip of each active line at full scale with marks; cut length where an "
-                "elastic is chosen. The cut list as CSV is in tab Garment."
+                "Flat strip of each active line at full scale with marks; cut length where an elastic is "
+                "chosen. The cut list as CSV is on the Garment tab."
             ),
             {
                 "svg": tr("For printing at full scale: Inkscape, Illustrator, cutters, browsers."),
@@ -103,7 +103,7 @@ def _pictures() -> tuple[Export, ...]:
             "picture",
             tr("Image"),
             "camera",
-            tr("Image of the body with its bands at any size."),
+            tr("Image of the body with its bands in a choice of sizes."),
             {"png": tr("For all programs.")},
         ),
         Export(
@@ -113,7 +113,7 @@ def _pictures() -> tuple[Export, ...]:
             tr("Animation of one full rotation of the body."),
             {
                 "webp": tr("Full colour, small files: browsers and most viewers."),
-                "gif": tr("For all programs, also e-mails and slides; 256 colours, large files."),
+                "gif": tr("For all programs, e-mails and slides; 256 colours, large files."),
                 "png": tr("Image sequence for video editors."),
             },
         ),
@@ -181,7 +181,7 @@ def _unit(units: tuple[str, ...] = tuple(UNITS)) -> Choice:
         "m": tr("Metres"),
         "in": tr("Inches"),
     }
-    sentence = tr("Unit of lengths in the file.")
+    sentence = tr("Length unit of the file.")
     return Choice("unit", tr("Unit"), sentence, tuple((unit, words[unit]) for unit in units))
 
 
@@ -239,7 +239,7 @@ def _frames() -> Choice:
 
 def _seconds() -> Choice:
     options = tuple((seconds, tr("{seconds} s").format(seconds=seconds)) for seconds in ("3", "6", "12"))
-    return Choice("seconds", tr("Time"), tr("Duration of one rotation."), options)
+    return Choice("seconds", tr("Duration"), tr("Duration of one rotation."), options)
 
 
 @dataclass(frozen=True)

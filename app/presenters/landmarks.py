@@ -149,7 +149,7 @@ class LandmarkView:
         if self.absent:
             return tr("not detected")
         if self.by_hand:
-            off = tr("manual, {length} off").format(length=length(self.off_mm, 0))
+            off = tr("manual, moved {length}").format(length=length(self.off_mm, 0))
             return off if self.off_mm else tr("manual")
         return f"{self.confidence * 100:.0f} %"
 

@@ -79,8 +79,8 @@ def _comparison_maps() -> list[MapKind]:
             tr("Symmetry"),
             "mm",
             tr(
-                "Shows the protrusion of each side beyond the mirrored other side. The symmetry plane "
-                "best matches the trunk without the breasts."
+                "Shows the protrusion of each side beyond the mirror image of the other side. The symmetry "
+                "plane is the best fit to the trunk without the breasts."
             ),
             tr("+ protrudes beyond the other side"),
             both_ways=True,

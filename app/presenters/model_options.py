@@ -130,9 +130,9 @@ def _height() -> Amount:
 
 def _force() -> Choice:
     tip = tr(
-        "Choose the iteration of line forces. Implicit: cables and lines are solved in the same "
-        "iteration. Explicit: line forces are one iteration late, as in the paper; only very "
-        "soft lines converge, so the stiffness changes too."
+        "Choose the iteration scheme for line forces. Implicit: cables and lines are solved in the same "
+        "iteration. Explicit: line forces lag by one iteration, as in the paper; only very soft lines "
+        "converge, so the stiffness changes too."
     )
     options = (("implicit", tr("Implicit")), ("explicit", tr("Explicit")))
     return Choice("line_force", tr("Line force"), tip, options)
@@ -149,7 +149,7 @@ def _chest() -> Choice:
 
 def _law() -> Choice:
     tip = tr(
-        "Choose the forces of the cables of the control mesh: constant per millimetre, "
+        "Choose the force law of the control mesh cables: constant force per millimetre of length, "
         "prestressed springs, or co-rotational. Not given in the paper."
     )
     options = (
@@ -176,8 +176,8 @@ def _weights() -> Choice:
 
 def _normals() -> Choice:
     tip = tr(
-        "Keep the distance between skin and control mesh constant (paper), or scale it with the "
-        "triangle below."
+        "Keep the distance between skin and control mesh constant (paper), or scale it with the triangle "
+        "size."
     )
     options = ((False, tr("Constant")), (True, tr("Scaled")))
     return Choice("scaled_normals", tr("Distance to mesh"), tip, options)
@@ -190,8 +190,8 @@ def control_text(control: str) -> str:
 
 def _control() -> Choice:
     tip = tr(
-        "Choose the volume control: the paper's conventional and adaptive forces (adaptive "
-        "formula: ours), integral control with half of every error, the exact solution, or none."
+        "Choose the volume control: the paper's conventional and adaptive forces (adaptive formula by "
+        "Busk), integral control that accumulates half of each error, the exact solution, or none."
     )
     options = (
         ("adaptive", tr("Adaptive")),
@@ -222,7 +222,7 @@ def _dense() -> Choice:
 
 def _gain() -> Amount:
     tip = tr(
-        "Set the volume force per volume error of conventional control, from 0 to 10. Leave "
-        "empty for 97 % of the gain limit for oscillation."
+        "Set the volume force per volume error of conventional control, from 0 to 10. Leave empty for 97 % "
+        "of the gain at which oscillation starts."
     )
     return Amount("gain", tr("Conventional gain"), tip, "", 1.0, 2, (0.0, 10.0))

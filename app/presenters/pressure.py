@@ -129,7 +129,7 @@ def pressure_summary(listed: PressureList | None, design: Design, doubt: str = "
         if row.max_kpa is not None
     )
     place = tr("{line}, {side}").format(line=line_title(most.line, design), side=side_text(most.where))
-    look = tr("Show on the map of contact pressure")
+    look = tr("Show location on the contact pressure map")
     return PressureSummary(
         kpa_text(most.max_kpa),
         most.light,
@@ -148,7 +148,7 @@ def total_text(listed: PressureList) -> str:
         return tr("Total force on the skin unknown")
     words = tr("Total force of all bands on the skin: {force} N")
     if not listed.complete:
-        words = tr("Total force on the skin of bands with known tension: {force} N")
+        words = tr("Total force of bands with known tension on the skin: {force} N")
     return words.format(force=number(listed.force_n, 1))
 
 

@@ -71,7 +71,7 @@ def _copy_notes(body: Body) -> tuple[str, ...]:
     if body.smoothed is body.mesh:
         return ()
     if len(body.smoothed.faces) != len(body.mesh.faces):
-        return (tr("Measured on a thinned copy: the scan is very fine."),)
+        return (tr("Measured on a simplified copy: the scan has very many triangles."),)
     return (tr("Measured on a smoothed copy: the scan noise is {noise}.").format(noise=length(body.noise)),)
 
 

@@ -182,7 +182,7 @@ def improvement_text(found: CalibrationResult, design: Design) -> str:
             before=before
         )
     nearer = tr("Residual: {before} → {after}.").format(before=before, after=after)
-    left = tr("Most of the residual remains. Posture, breathing or cloth thickness may affect the values.")
+    left = tr("Most of the residual remains. Posture, breathing or fabric thickness may affect the values.")
     weak = tr("No parameter is well determined. Treat the values as indicative.")
     return joined(
         [nearer, left if found.has_large_residual else "", weak if found.is_poorly_determined else ""]

@@ -177,7 +177,7 @@ def _figures(
         told.append((tr("Bust girth"), change))
     hardest = None if pressed is None else pressed.highest
     if hardest is not None and hardest.max_kpa is not None:
-        told.append((tr("Peak pressure"), f"{number(hardest.max_kpa)} kPa"))
+        told.append((tr("Max. pressure"), f"{number(hardest.max_kpa)} kPa"))
     elif move.differs:
         told.append((tr("Left · right"), " · ".join(sides_text(move))))
     return [*told, kept]

@@ -131,11 +131,14 @@ def _titles() -> dict[str, tuple[str, str]]:
         "further_out": (tr("Protrusion"), tr("Difference in forward position of the bust points.")),
         "in_all": (
             tr("Excess volume"),
-            tr("Volume by which one breast protrudes beyond the mirrored other; net, in ml."),
+            tr("Net volume by which one breast protrudes beyond the mirror image of the other, in ml."),
         ),
         "mean": (
             tr("Mean distance"),
-            tr("Distance between the skin of one breast and that of the mirrored other; mean of both."),
+            tr(
+                "Distance between the skin of one breast and the mirror image of the other; mean of both "
+                "sides."
+            ),
         ),
         "further_aside": (
             tr("Lateral offset"),
@@ -143,17 +146,23 @@ def _titles() -> dict[str, tuple[str, str]]:
         ),
         "largest": (
             tr("Max. distance"),
-            tr("Location of the largest difference between one side and the mirrored other side."),
+            tr("Largest distance between one side and the mirror image of the other side."),
         ),
-        "left_more": (tr("Left excess"), tr("Volume between both skins where the left side protrudes.")),
-        "right_more": (tr("Right excess"), tr("Volume between both skins where the right side protrudes.")),
+        "left_more": (
+            tr("Left excess"),
+            tr("Volume between the skin and its mirror image where the left side protrudes."),
+        ),
+        "right_more": (
+            tr("Right excess"),
+            tr("Volume between the skin and its mirror image where the right side protrudes."),
+        ),
     }
 
 
 def _rests_on() -> tuple[str, ...]:
     return (
         tr("L, R: side with the larger value. Tick in the bar: value of the original body."),
-        tr("The symmetry plane best matches the trunk without the breasts."),
+        tr("The symmetry plane is the best fit to the trunk without the breasts."),
         tr("Lines move tissue at constant volume: they do not reduce the volume difference of the breasts."),
     )
 
@@ -185,7 +194,7 @@ def not_balanced_reason(gained: float, lost: float) -> tuple[str, str]:
     text = tr(
         "The active lines cannot reduce the asymmetry further: {gained} gain would move both sides by {lost}."
     )
-    hint = tr("Add other lines: a strap lifts one side alone.")
+    hint = tr("Add other lines: a strap lifts one side only.")
     return text.format(gained=length(max(gained, 0.0)), lost=length(lost)), hint
 
 
@@ -221,9 +230,9 @@ def _by_turns(design: Design) -> str:
     if design.volume in ("exact", "none") or design.volume_of == "both":
         return ""
     return tr(
-        "Values of the exact solution, which conserves the volume of each breast. Iterations "
-        "conserve the combined volume: values in Measurements may differ by up to {length} and "
-        "10 to 20 ml."
+        "Values of the exact solution, which conserves the volume of each breast. Iterations conserve the "
+        "combined volume: in Measurements, lengths may differ by up to {length} and volumes by 10 to 20 "
+        "ml."
     ).format(length=length(1.0, 0))
 
 

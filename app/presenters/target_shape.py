@@ -123,9 +123,9 @@ def _near_text(reply: InverseResult, goals: Sequence[Goal], now: Mapping[str, fl
     section = max(offs, key=lambda each: float(np.abs(offs[each]).mean()))
     before = _off_before(goals, now, section)
     if before is None or float(np.abs(offs[section]).mean()) <= _MUCH * before:
-        text = tr("Reached with a deviation of {mean} on average, {most} maximum.")
+        text = tr("Reached with a mean deviation of {mean}, maximum {most}.")
     else:
-        text = tr("Closest result: deviation {mean} on average, {most} maximum (before: {before}).")
+        text = tr("Closest result: mean deviation {mean}, maximum {most} (before: {before}).")
     return text.format(**_mean_and_most(offs[section]), before=length(before or 0.0))
 
 
@@ -177,7 +177,7 @@ def bust_movement_text(goals: Sequence[Goal], now: Mapping[str, float], then: Ma
     asked = {goal.name.removesuffix(" left").removesuffix(" right") for goal in goals}
     free = [name for name in (LIFT, OUT) if name not in asked and name in now and name in then]
     moved = [_from_to(name, now[name], then[name]) for name in free if abs(then[name] - now[name]) > _MET]
-    return tr("Also changes: {values}").format(values=listed(moved)) if moved else ""
+    return tr("Other changes: {values}").format(values=listed(moved)) if moved else ""
 
 
 def _from_to(name: str, before: float, after: float) -> str:
@@ -332,7 +332,7 @@ def conflict_text(conflicts: Iterable[Conflict]) -> tuple[str, ...]:
 def _sentence(conflict: Conflict) -> str:
     name, alone = target_title(conflict.name), _value(conflict.name, conflict.alone)
     if not conflict.against:
-        return tr("{target}: {value} is the closest result even as the only target.").format(
+        return tr("{target}: the closest result is {value}, even with no other target.").format(
             target=name, value=alone
         )
     words = tr(

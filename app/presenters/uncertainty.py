@@ -71,7 +71,7 @@ def _keys(view: MeasureView) -> tuple[str | None, str | None, str | None]:
 
 def _without_off() -> str:
     """Return why the figures that come with every frame have no ±: for most none is worked out."""
-    return tr("Of the solver values, only the bust points have a ±.")
+    return tr("Of the solver values, only those of the bust points have an uncertainty (±).")
 
 
 def _shares(
@@ -100,7 +100,7 @@ def uncertainty_view(spread: OutputUncertainties | None, waiting: str, faint: bo
         return UncertaintyView(waiting, short=tr("No ± yet: details") if waiting else "")
     meaning = tr("± is twice the standard deviation: 95 % of cases if errors are normally distributed.")
     told = tr("± of the previous shape: details") if faint else tr("± covers 95 % of cases: details")
-    shares = tr("Point at a measurement for the share of each source.")
+    shares = tr("Point to a measurement to show the share of each source of uncertainty.")
     text = joined([meaning, shares, _without_off(), *map(render, spread.cautions)])
     return UncertaintyView(text, _contact(spread), faint, told)
 
@@ -113,7 +113,7 @@ def _contact(spread: OutputUncertainties) -> str:
         text = tr("With sliding lines: bust points {up} up, {out} forward.")
     else:
         text = tr("With bonded lines: bust points {up} up, {out} forward.")
-    between = tr("Real contact is between bonded and sliding; the ± does not include this.")
+    between = tr("Real contact is between bonded and sliding; the ± does not include this difference.")
     told = text.format(up=up, out=out)
     return f"{told} {between}" if language() == "en" else f"{told}{between}"
 

@@ -190,7 +190,10 @@ def note_groups(sheet: Report) -> Iterator[tuple[str, list[str]]]:
     if beyond := _beyond_the_head(sheet):
         yield tr("To review"), beyond
     told = tr("Before: measured on the scan. After: measured on the reshaped body of the model.")
-    taken = tr("Definitions of the measurements: user guide, Measurements, and the data file of this report.")
+    taken = tr(
+        "Definitions of the measurements: see Measurements in the user guide, and the data file of "
+        "this report."
+    )
     yield tr("Measured"), [each for each in (told, taken, size_rule(sheet), size_cautions(sheet)) if each]
     limits = _limits() if sheet.cuts.rows else []
     if estimated := [*_meaning(sheet), *limits, *_unsure(sheet)]:

@@ -233,7 +233,7 @@ def _refuse_holes(template: Template, holes: Flags) -> None:
                 all=holes.size,
             ),
             Message(
-                "Fill the holes of the scan, or open a scan that extends from the ribs to the collarbones."
+                "Fill the holes in the scan, or open a scan that extends from the ribs to the collarbones."
             ),
         )
 

@@ -59,7 +59,7 @@ def snap(control: ControlMesh, curve: Points, closed: bool = False, *, pulling: 
     if len(path) < (3 if closed else 2):
         raise LineError(
             Message("The line is too short for the control mesh."),
-            Message("Extend it to the next control points."),
+            Message("Extend the line to the next control points."),
         )
     off = max_deviation(samples, points[[*path, *path[:1]] if closed else list(path)])
     return Snapped(path, closed, off, not control.fixed[list(path)].all())

@@ -123,8 +123,8 @@ def _breast(landmarks: Landmarks, side: str, axis: Points) -> Breast:
     if not np.radians(10.0) < azimuth < np.radians(80.0):
         raise FitError(
             Message(
-                "The {side} bust point is {angle} degrees to its side of the centre, outside 10 "
-                "to 80 degrees.",
+                "The {side} bust point is at an angle of {angle} degrees to the front centre, outside the "
+                "range of 10 to 80 degrees.",
                 side=SideName(side),
                 angle=f"{np.degrees(azimuth):.0f}",
             ),

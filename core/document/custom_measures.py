@@ -66,7 +66,7 @@ class CustomMeasurement:
             )
         if self.kind != "girth" and (len(set(self.marks)) != 2 or len(self.marks) != 2 or self.level):
             raise UserError(
-                Message("The measurement {name} does not have two ends.", name=self.name),
+                Message("The measurement {name} does not have two end points.", name=self.name),
                 Message("Specify two different landmarks."),
             )
 

@@ -30,7 +30,7 @@ class Document:
         names = [name for name, _ in self.designs]
         if self.shown not in names or names != sorted(set(names) & set(VARIANTS)):
             raise UserError(
-                Message("The variants of this document are inconsistent."), Message("Open a backup.")
+                Message("The variants of this project are inconsistent."), Message("Open a backup.")
             )
 
     @classmethod

@@ -88,7 +88,7 @@ class Elastic:
         whole = all(math.isfinite(number) for row in rows for number in row)
         if not whole or not 2 <= len(rows) <= MOST_POINTS or tuple(rows[0]) != (0.0, 0.0):
             raise LineError(
-                Message("The table of {name} is not a curve.", name=self.name),
+                Message("The table of {name} is not valid.", name=self.name),
                 Message("The table must begin with zero force at zero elongation."),
             )
         for (before, weaker), (after, stronger) in pairwise(rows):
@@ -101,7 +101,8 @@ class Elastic:
                         force=f"{weaker:g}",
                     ),
                     Message(
-                        "Elongation and force must increase from row to row: remove the rows of unloading."
+                        "Elongation and force must increase from row to row: remove the rows measured "
+                        "during unloading."
                     ),
                 )
         if self.max_elongation > FURTHEST or self.max_force > STRONGEST:

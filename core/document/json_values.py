@@ -96,7 +96,7 @@ def _list(value: Any, place: str) -> list[Any]:
 
 def _text(value: Any, place: str) -> str:
     if not isinstance(value, str):
-        raise _wrong(place, Message("a text"))
+        raise _wrong(place, Message("text"))
     return value
 
 

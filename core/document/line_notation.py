@@ -110,7 +110,7 @@ def with_custom_lines(control: ControlMesh, own: tuple[CustomLine, ...]) -> Cont
             raise LineError(
                 Message("The line {line} leaves the control mesh.", line=LineName(line.name)),
                 Message(
-                    "Rows are 0 to {rows}, columns {low} to {high}.",
+                    "The control mesh has rows 0 to {rows} and columns {low} to {high}.",
                     rows=control.grid.top,
                     low=-control.grid.half,
                     high=control.grid.half,
@@ -173,7 +173,7 @@ def _walk(word: str, template: Template) -> list[int]:
     )
     if len(ends) != 2 or (row == to_row) == (column == to_column):
         raise LineError(
-            Message("'{word}' is not along a row or a column of the control mesh.", word=word),
+            Message("'{word}' does not follow a row or a column of the control mesh.", word=word),
             Message("List the points of the line one by one."),
         )
     rows, columns = _steps(row, to_row), _steps(column, to_column)
@@ -211,7 +211,7 @@ def _nowhere(word: str, template: Template) -> LineError:
     return LineError(
         Message("The template {template} has no position '{word}'.", template=template.name, word=word),
         Message(
-            "Rows are 0 to {rows}, columns {low} to {high}.",
+            "The control mesh has rows 0 to {rows} and columns {low} to {high}.",
             rows=len(template.rows) - 1,
             low=-template.half,
             high=template.half,

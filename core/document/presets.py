@@ -174,7 +174,7 @@ def preset_from(design: Design, title: str) -> Preset:
     if design.active_elastics():
         raise LineError(
             Message("Elastic lengths are specific to one body and cannot be saved in a preset."),
-            Message("Set the lines to no elastic first: the preset then contains lengths on the body."),
+            Message("Choose “No elastic” for all lines first: the preset then contains lengths on the body."),
         )
     names = sorted(design.active_lines() - own.keys()) + list(own)
     lines = tuple(_as_preset(name, design, own.get(name), template) for name in names)

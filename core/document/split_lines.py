@@ -27,7 +27,9 @@ def halves(name: str, path: Sequence[int], template: Template) -> tuple[CustomLi
     before, after = sides[:at], sides[at + 1 :]
     if path[0] == path[-1]:
         raise LineError(
-            Message("The line {name} is closed and has no two halves.", name=LineName(name)),
+            Message(
+                "The line {name} is closed and cannot be split into left and right.", name=LineName(name)
+            ),
             Message("Draw two lines instead."),
         )
     if at <= 0 or not (
@@ -43,7 +45,9 @@ def free_halves(line: CustomLine) -> tuple[CustomLine, CustomLine]:
     """Return the left and the right half of a free line; see ``halves``."""
     if line.closed:
         raise LineError(
-            Message("The line {name} is closed and has no two halves.", name=LineName(line.name)),
+            Message(
+                "The line {name} is closed and cannot be split into left and right.", name=LineName(line.name)
+            ),
             Message("Draw two lines instead."),
         )
     side = 1.0 if line.places[0][1] < 0.0 else -1.0

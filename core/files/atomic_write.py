@@ -30,8 +30,8 @@ _STEM = 40
 """Letters of a target's name in that of its partial file, so few that no system refuses its length."""
 
 _HINTS = {
-    errno.ENOSPC: Message("Choose another folder or free disk space."),
-    errno.EDQUOT: Message("Choose another folder or free disk space."),
+    errno.ENOSPC: Message("Choose another folder or free up disk space."),
+    errno.EDQUOT: Message("Choose another folder or free up disk space."),
     errno.ENAMETOOLONG: Message("Choose a shorter name."),
     errno.EINVAL: Message("Choose another name."),
 }

@@ -54,7 +54,7 @@ class Finding:
 
 UNKNOWN_PRESSURE = Finding(
     *("pressure", CAUTION, Message("The contact pressure was not computed.")),
-    Message("Change a line length to compute it."),
+    Message("Change a line length to start the computation."),
 )
 
 

@@ -255,7 +255,9 @@ def _notes(rows: tuple[CutRow, ...], tissue: float) -> tuple[Message, ...]:
         )
     if any(row.closed and row.cut_mm for row in rows):
         notes.append(Message("The back of a band is assumed to have the same elongation as its front."))
-        notes.append(Message("Lengths follow the line, which may not be horizontal: a tape girth differs."))
+        notes.append(
+            Message("Lengths follow the line, which may not be horizontal: a girth measured by tape differs.")
+        )
     allowances = {row.allowance_mm for row in rows if row.cut_mm}
     if len(allowances) == 1:
         notes.append(

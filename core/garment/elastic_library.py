@@ -182,7 +182,7 @@ def save_elastic(elastic: Elastic) -> Path:
     except OSError as problem:
         raise UserError(
             Message("The folder {folder} cannot be created.", folder=str(folder)),
-            Message("Free disk space, or create it manually."),
+            Message("Free up disk space, or create the folder manually."),
         ) from problem
     held = [path for path in _own_tables() if _holds(path, elastic.name)]
     # Of several the library has the last; names that differ may be one name for files.

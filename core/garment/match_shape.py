@@ -74,14 +74,14 @@ def too_weak_error(elastic: Elastic, ratio: float, excess: float, line: str) -> 
         limit = Message("at the shortest cut length, {ratio} %", ratio=f"{100.0 * RATIO_LIMITS[0]:g}")
     return ElasticError(
         Message(
-            "{name} is too weak for {line}: {excess} too long {limit}.",
+            "{name} is too weak for {line}: the line is {excess} too long {limit}.",
             name=ElasticName(elastic.name),
             line=LineName(line),
             excess=Length(excess, 1),
             limit=limit,
         ),
         Message("Make the line longer, or choose a stronger or wider elastic."),
-        Message("Too weak: {excess} too long {limit}.", excess=Length(excess, 1), limit=limit),
+        Message("Too weak: band {excess} too long {limit}.", excess=Length(excess, 1), limit=limit),
         LineName(line),
     )
 

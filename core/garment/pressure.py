@@ -37,16 +37,15 @@ LEAST_OVER = 20.0
 
 LEFT_OUT = (
     Message("Estimate, probably too high: tissue yields under a band, and sensors measured up to 42 % less."),
-    Message("Friction is not included, such as that which keeps a band from slipping."),
+    Message("Friction is not included, such as the friction that keeps a band from slipping."),
     Message(
         "Only the tension along the band is included: fabric stretched in both directions has a "
         "higher contact pressure."
     ),
     Message(
-        "The radius of curvature is averaged over about the band width: the pressure at the edge "
-        "of a bone is higher."
+        "The radius of curvature is averaged over about one band width: the pressure at bone edges is higher."
     ),
-    Message("Valid for standing and quiet breathing: sitting and breathing in can double the pressure."),
+    Message("Valid for standing and quiet breathing: sitting or breathing in can double the pressure."),
 )
 """What the figures leave out."""
 

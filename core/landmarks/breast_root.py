@@ -26,7 +26,7 @@ HOLLOW = 0.002
 
 INNER = Message("Deepest point of the contour at bust point height, between the bust point and the centre.")
 NO_INNER = Message("Midway between the centre and the bust point: no concavity between the breasts.")
-OUTER = Message("Deepest point of the contour at bust point height, lateral to the bust point (suggestion).")
+OUTER = Message("Deepest point of the contour at bust point height, lateral to the bust point (estimate).")
 NO_OUTER = Message("Typical outer end of the breast root: no concavity between breast and side.")
 
 

@@ -43,7 +43,8 @@ ESTIMATED = Message("Estimated from the surrounding skin: the scan has a hole th
 MIRRORED = Message("Estimated from the inframammary fold of the other breast: the scan has a hole there.")
 GUESSED = Message("Estimated from the height of the hole: no inframammary fold visible in the scan.")
 UNSEEN = Message(
-    "No inframammary fold detected: estimated slightly above the start of the body's forward slope."
+    "No inframammary fold detected: estimated slightly above the point where the body begins to slope "
+    "forward."
 )
 HIDDEN = (ESTIMATED, MIRRORED, GUESSED)
 """The rules of folds that a hole of the scan hides."""

@@ -58,7 +58,7 @@ def check_place(name: str, place: Sequence[float] | Points) -> None:
         )
     if np.shape(place) != (3,) or not (np.abs(place) < MAX_COORDINATE).all():
         raise LandmarkError(
-            Message("{name} requires a position of three numbers.", name=name), Message("Enter x, y and z.")
+            Message("The position of {name} requires three numbers.", name=name), Message("Enter x, y and z.")
         )
 
 

@@ -76,14 +76,14 @@ def lean_hint(build: Build, pose: Pose) -> tuple[Hint, ...]:
     forward, lean = lean > 0.0, abs(lean)
     if forward:
         sentence = Message(
-            "The trunk leans forward by about {lean} degrees, and girths are measured "
-            "horizontally. Set it upright at the Scan step.",
+            "The trunk leans forward by about {lean} degrees, and girths are measured horizontally. Set "
+            "the body upright at the Scan step.",
             lean=f"{lean:.0f}",
         )
     else:
         sentence = Message(
-            "The trunk leans backward by about {lean} degrees, and girths are measured "
-            "horizontally. Set it upright at the Scan step.",
+            "The trunk leans backward by about {lean} degrees, and girths are measured horizontally. Set "
+            "the body upright at the Scan step.",
             lean=f"{lean:.0f}",
         )
     return (Hint("lean", sentence, up),)
@@ -100,7 +100,7 @@ def require_not_angular(build: Build, landmarks: Landmarks) -> None:
     """Raise LandmarkError where the trunk is a block rather than a body."""
     under = [level for level in build.levels if level.z < landmarks.underbust_level - 5.0]
     if len(under) > 2 and np.median([_filling(level) for level in under[-4:]]) > ANGULAR:
-        raise refusal(Message("the trunk is angular like a block of stone or wood"))
+        raise refusal(Message("the cross-section of the trunk is rectangular, unlike that of a body"))
 
 
 def hints(build: Build, pose: Pose, landmarks: Landmarks) -> tuple[Hint, ...]:
@@ -147,9 +147,8 @@ def clothes_hint(build: Build, landmarks: Landmarks) -> tuple[Hint, ...]:
     if not (wrinkled or (around > CREASED and hidden)):
         return ()
     sentence = Message(
-        "The surface under the bust has wrinkles like loose clothes. Bust points and "
-        "inframammary folds under cloth are uncertain: scan the body in close-fitting underwear, "
-        "or check them."
+        "The surface under the bust has wrinkles like loose clothing. Bust points and inframammary folds "
+        "under clothing are uncertain: scan the body in close-fitting underwear, or check these landmarks."
     )
     return (Hint("clothes", sentence),)
 

@@ -19,10 +19,10 @@ BACK = Message("In the spinal groove at bust level.")
 BACK_UNDER = Message("In the spinal groove at under-bust level.")
 FLAT_BACK = Message("Midway between the sides of the back: no spinal groove detected.")
 SIDE = Message("Outermost point of the trunk at the side, at the height of the under-bust girth.")
-ARMPIT = Message("At the side of the trunk, on the highest level with a separate arm.")
+ARMPIT = Message("At the side of the trunk, at the highest level where the arm is separate from the trunk.")
 WAIST = Message(
-    "On the front centre line, at the narrowest trunk below the bust. The anatomical waist "
-    "between lowest rib and hip bone is not detectable and may be some cm lower."
+    "On the front centre line, at the narrowest level of the trunk below the bust. The anatomical waist "
+    "between lowest rib and hip bone is not detectable and may be a few cm lower."
 )
 HIP = Message("On the front centre line, at the largest trunk girth below the waist.")
 NECK_FRONT = Message("Deepest point of the front centre line between chest and neck.")

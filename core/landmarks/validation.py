@@ -151,7 +151,7 @@ def _rules(
     yield not ROUNDEST < wide / deep < FLATTEST, Message("the trunk depth is implausible for a body")
     yield from _rules_of_places(across, middle, trunk.middle, len(missing) > 0)
     yield max(pole.prominence for pole in poles) < FLAT, Message("the chest has no protrusion")
-    yield not 0.0 < depth < DEEPEST, Message("no inframammary fold at a plausible height below")
+    yield not 0.0 < depth < DEEPEST, Message("no inframammary fold at a plausible height below the breast")
     rules = {landmarks.points[f"fold_{side}"].rule for side in SIDES}
     yield rules == {NO_CREASE} and not (full and clear), Message("no crease below the breast")
 
@@ -178,7 +178,7 @@ def _warnings(side: str, rule: Message, missing: bool) -> list[Message]:
     if missing:
         return [
             Message(
-                "No breast protrusion on the {side} side: its points are uncertain.",
+                "No breast protrusion on the {side} side: landmarks there are uncertain.",
                 side=SideName(side),
             )
         ]

@@ -18,13 +18,15 @@ ESSENTIAL = ("bust_point", "fold")
 
 def collect_warnings(body: Body, landmarks: Landmarks) -> list[Message]:
     """Return one sentence for each thing that should be looked at. Source: ours."""
-    unsure = Message("The unit and orientation of this scan are uncertain. Check unit, up and front.")
+    unsure = Message(
+        "The unit and orientation of this scan are uncertain. Check the unit and the up and front axes."
+    )
     return [unsure] * (not body.pose.is_certain) + edit_warnings(body) + landmark_warnings(landmarks)
 
 
 def edit_warnings(body: Body) -> list[Message]:
     """Return what edits of the scan leave to be looked at."""
-    filled = Message("Holes of the scan were filled manually: measurements there are estimates.")
+    filled = Message("Holes in the scan were filled manually: measurements there are estimates.")
     mirrored = [mirror_sentence(body.edits.kept)] if body.edits.kept else []
     return mirrored + [filled] * (len(body.estimated) > 0)
 

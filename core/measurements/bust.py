@@ -22,12 +22,14 @@ from core.messages import EMPTY, Message
 NO_MARK = Message("The landmarks of this measurement are not in the scan.")
 NO_BREAST = Message("No breast protrusion on this side.")
 NO_FOLD = Message("The inframammary fold is not visible.")
-UNSURE_FOLD = Message("The inframammary fold and the volume are uncertain: estimate.")
+UNSURE_FOLD = Message("The inframammary fold is uncertain: the volume is an estimate.")
 NO_WAY = Message("No path over the skin connects the two points.")
 NO_ROOT = Message("The ends of the breast root were not detected.")
 OPEN_ROOT = Message("The skin around the breast root is incomplete in the scan.")
-UNSEEN_CHEST = Message("The chest behind the breast and the top of its root are not visible: estimate.")
-HOLED = Message("The path crosses a hole of the scan: estimate.")
+UNSEEN_CHEST = Message(
+    "The chest wall behind the breast and the top of the breast root are not visible: estimate."
+)
+HOLED = Message("The path crosses a hole in the scan: estimate.")
 
 
 OF_A_CUP = ("bust_point_to_fold", "cup_depth", "cup_width", "root_length")

@@ -67,7 +67,9 @@ _TABLE = (
         "mm",
         "Bust girth",
         Message(
-            "At the mean height of the bust points. {tape} The standard measures over a brassiere.", tape=TAPE
+            "At the mean height of the bust points. {tape} In the standard, the girth is measured over a "
+            "brassiere.",
+            tape=TAPE,
         ),
         GIRTHS,
     ),
@@ -120,7 +122,7 @@ _TABLE = (
         "mm",
         "Waist girth",
         Message(
-            "At the narrowest trunk. {tape} The standard uses the level midway between lowest "
+            "At the narrowest level of the trunk. {tape} The standard uses the level midway between lowest "
             "rib and hip bone, which a scan does not show.",
             tape=TAPE,
         ),
@@ -213,9 +215,9 @@ _TABLE = (
         "mm",
         "",
         Message(
-            "Defined by Busk: mean height of the bust points above under-bust level. That level "
-            "follows the skin and rises with the breast, so the value may decrease while the "
-            "bust points rise. The standard measures from the floor, which few scans include."
+            "Defined by Busk: mean height of the bust points above under-bust level. That level follows "
+            "the skin and rises with the breast, so the value may decrease while the bust points rise. In "
+            "the standard, the height is measured from the floor, which few scans include."
         ),
         BUST,
     ),
@@ -260,11 +262,11 @@ _TABLE = (
         "ml",
         "",
         Message(
-            "Defined by Busk, estimate: volume between the skin within the breast root and a "
-            "smooth chest wall extrapolated from the surrounding skin. This is the protruding "
-            "part only, less than the whole breast. The top of the breast root is not visible and "
-            "is assumed at half the root width above its ends; ± is the effect of a top {lower} "
-            "lower. After reshaping, the volume gained by the skin of that side is added.",
+            "Defined by Busk, estimate: volume between the skin within the breast root and a smooth chest "
+            "wall extrapolated from the surrounding skin. This is the protruding part only, less than the "
+            "whole breast. The top of the breast root is not visible and is assumed at half the root width "
+            "above its ends; ± is the effect of assuming the top {lower} lower. After reshaping, the "
+            "volume gained by the skin of that side is added.",
             lower=Length(15.0),
         ),
         AREAS,
@@ -292,8 +294,8 @@ _TABLE = (
         "ml",
         "",
         Message(
-            "Defined by Busk, estimate: volume of the left breast minus that of the right one. "
-            "The error is unknown; the values of Symmetry are more reliable."
+            "Defined by Busk, estimate: volume of the left breast minus that of the right one. The error "
+            "is unknown; the values under Symmetry are more reliable."
         ),
         BOTH,
     ),

@@ -25,7 +25,7 @@ WHY = {
     "bust": Message("The scan has no trunk at the level of the bust points."),
     "underbust": Message("The scan has no trunk below the breasts."),
     "high_bust": Message("The scan does not include both armpits, or the arms are too close to the body."),
-    "waist": Message("No waist detected: the scan ends too high, or the trunk has no narrowest level."),
+    "waist": Message("No waist detected: the scan ends too high, or the trunk does not narrow."),
     "hip": Message("No hip detected: the scan ends above it, or the trunk does not widen."),
 }
 """Why a girth may be missing."""
@@ -33,12 +33,12 @@ WHY = {
 UNSURE_LEVEL = Message("The inframammary fold is uncertain: estimate.")
 
 NARROWEST = Message(
-    "At the narrowest level: the anatomical waist between lowest rib and hip bone is not "
-    "visible, and its girth may differ by several centimetres, which ± does not include."
+    "At the narrowest level: the anatomical waist between lowest rib and hip bone is not visible, and its "
+    "girth may differ by several centimetres (not included in ±)."
 )
 """What is said of the girth of the waist."""
 
-OVER_GAPS = Message("Crosses a hole of the scan or a merged arm: estimate.")
+OVER_GAPS = Message("Crosses a hole in the scan or a merged arm: estimate.")
 
 
 def tape_ring(level: Level) -> Points:

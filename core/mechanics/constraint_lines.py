@@ -132,7 +132,7 @@ def _full_length_error(name: str, front: tuple[float, float], back: float, rest:
             short=f"{short + back:.0f}",
             long=Length(long + back),
         ),
-        Message("Enter a front length. For that full length, enter {length}mm.", length=f"{rest:.1f}"),
+        Message("Enter a front length: {length}mm gives the full length entered.", length=f"{rest:.1f}"),
     )
 
 

@@ -39,7 +39,9 @@ def strap_tails(
         if line.over_shoulder:
             end = control.upper_end(line.name)
             if end @ control.fixed < 1.0 - 1e-9:
-                problem = Message("The upper end can move: extend the line to the edge of the control mesh.")
+                problem = Message(
+                    "The upper end is not fixed: extend the line to the edge of the control mesh."
+                )
                 tails[line.name] = Tail(0.0, NO_TAIL, problem=problem)
             else:
                 tails[line.name] = strap_tail(skin, end @ control.mesh.vertices, backs[BAND].path)

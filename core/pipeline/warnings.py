@@ -92,6 +92,6 @@ def warnings(stages: Stages) -> list[Message]:
     faded = (
         []
         if patch.rule == "flood"
-        else [Message("The blend region is computed by distance: {why}", why=patch.reason)]
+        else [Message("The blend region is computed from distances to the border: {why}", why=patch.reason)]
     )
     return [*stages.control.warnings, *faded]

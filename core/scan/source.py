@@ -45,12 +45,12 @@ class ScanEdits:
         levels = [level for level in (self.low, self.high) if level is not None]
         if not all(0.0 <= level < MAX_COORDINATE for level in levels):
             raise UserError(
-                Message("The height of a crop is out of range."), Message("Enter a height of 0 mm or more.")
+                Message("The crop height is out of range."), Message("Enter a height of 0 mm or more.")
             )
         if len(levels) == 2 and levels[1] - levels[0] < LEAST_HEIGHT:
             raise UserError(
                 Message("The crop removes the whole body."),
-                Message("Keep a height of at least {least}.", least=Length(LEAST_HEIGHT)),
+                Message("Keep at least {least} of the body height.", least=Length(LEAST_HEIGHT)),
             )
         if self.kept not in ("", *SIDES):
             raise UserError(
@@ -59,14 +59,15 @@ class ScanEdits:
             )
         if len(self.filled) > MOST_FILLED:
             raise UserError(
-                Message("Too many holes selected one by one: {count}.", count=len(self.filled)),
+                Message("Too many holes selected individually: {count}.", count=len(self.filled)),
                 Message("Fill all holes at once."),
             )
         if not all(
             np.shape(place) == (3,) and (np.abs(place) < MAX_COORDINATE).all() for place in self.filled
         ):
             raise UserError(
-                Message("The centre of a hole requires three numbers."), Message("Enter x, y and z in mm.")
+                Message("The centre of a hole requires three coordinates."),
+                Message("Enter x, y and z in mm."),
             )
 
     def with_filled(self, centre: tuple[float, float, float]) -> ScanEdits:
@@ -88,7 +89,7 @@ def hole_centre(text: str) -> tuple[float, float, float]:
         x, y, z = map(float, text.replace("\N{MINUS SIGN}", "-").split(","))
     except ValueError:
         raise UserError(
-            Message("The centre of a hole requires three numbers."), Message("Enter x, y and z in mm.")
+            Message("The centre of a hole requires three coordinates."), Message("Enter x, y and z in mm.")
         ) from None
     return x, y, z
 
@@ -112,7 +113,7 @@ class ScanSource:
     def __post_init__(self) -> None:
         if any(len(word or "") > _LONGEST_WORD for word in (self.unit, self.up, self.front)):
             raise UserError(
-                Message("The unit, up or front of the scan is not valid."),
+                Message("The unit, up axis or front axis of the scan is not valid."),
                 Message("Choose the elastic again."),
             )
 

@@ -137,7 +137,7 @@ def test_a_full_disk_leaves_what_stood_there_and_is_told(
                 sheet.save.click()
                 yield written(window)
             notice = window.notices.notice()
-            assert (notice.tone, notice.hint) == ("bad", "Choose another folder or free disk space."), what
+            assert (notice.tone, notice.hint) == ("bad", "Choose another folder or free up disk space."), what
             stands = [(each.name, each.read_text()) for each in path.parent.iterdir()]
             assert stands == [(path.name, "what stood there")]
             window.notices.clear()

@@ -54,7 +54,7 @@ def test_an_elastic_that_cannot_be_used_is_grey_and_the_nearest_that_can_is_one_
         yield from mark(window, "weak")
         chooser = chooser_of(window)
         limited = chooser.views()[chooser.current]
-        chooser.press_offer(chooser.offers().index("Use maximum extension"))
+        chooser.press_offer(chooser.offers().index("Use maximum elongation"))
         yield made_of(window, "mid-bust")
         row = cut_rows(window)["mid-bust"]
         assert row.elastic == "weak"

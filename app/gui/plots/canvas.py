@@ -35,7 +35,7 @@ _ROW = 15.0
 def keys_in_words() -> list[tuple[str, str]]:
     """Return what the keys do in the plots, ready to read."""
     return [
-        ("← →", tr("Next or previous iteration (Shift: 10)")),
+        ("← →", tr("Previous or next iteration (Shift: 10)")),
         ("+ -", tr("Zoom")),
         ("Home", tr("Show all iterations")),
         ("Esc", tr("Hide iteration values")),

@@ -57,7 +57,7 @@ class SplitHandle(QAbstractSlider):
         self.setFixedWidth(2 * REACH)
         self.setCursor(Qt.CursorShape.SplitHCursor)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setAccessibleName(tr("Divider between before and after"))
+        self.setAccessibleName(tr("Divider between original and reshaped body"))
         set_tip(self, tr("Drag, or use the arrow keys. Double-click to centre."))
         self._room = parent
         self._grip = 0.0

@@ -76,7 +76,7 @@ class ViewTools(Toolbar):
             tr("Right view"),
             tr("Back view"),
             tr("Three-quarter view"),
-            tr("View from above"),
+            tr("Top view"),
         )
         for key, (name, title) in enumerate(zip(VIEWS, titles, strict=True), start=1):
             self._add(name, f"view-{name}", title, str(key), size=24, checkable=True)

@@ -115,7 +115,7 @@ def ask_overwrite(parent: QWidget, name: str, protected: bool = False) -> str:
     question = tr("{name} was changed outside this window.").format(name=name)
     if protected:
         question = tr("{name} is write-protected.").format(name=name)
-    text = tr("Saving overwrites that version. Busk tries to keep a copy under File, Open backup.")
+    text = tr("Saving overwrites the file. If possible, a copy is kept under File, Open backup.")
     answers = [("elsewhere", tr("Save as…")), ("overwrite", tr("Replace"))]
     return ask(parent, question, text, answers) or "stay"
 

@@ -226,7 +226,7 @@ class PaletteMenu(Menu):
         names = (
             tr("Plum"),
             tr("Rose"),
-            tr("Petrol"),
+            tr("Teal"),
             tr("Wine"),
             tr("Amber"),
             tr("Lavender"),

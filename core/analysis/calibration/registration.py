@@ -320,8 +320,8 @@ def _refuse_other_body(found: Alignment) -> None:
     if found.met < LEAST_MET:
         raise ScanError(
             Message(
-                "The fitting scan does not match the first scan: {met} % of the unaffected skin "
-                "is within {mm}, {least} % is required.",
+                "The fitting scan does not match the first scan: {met} % of the unaffected skin is within "
+                "{mm}; {least} % is required.",
                 met=f"{100.0 * found.met:.0f}",
                 mm=Length(MET),
                 least=f"{100.0 * LEAST_MET:.0f}",

@@ -204,8 +204,8 @@ def read_profile(path: str) -> Floats:
         raise UserError(
             Message("{path} has no columns height_mm and out_mm.", path=path),
             Message(
-                "Use these headings for two columns: the height on the body and the target depth "
-                "of the skin there."
+                "Use these headings for two columns: the height on the body and the target forward "
+                "position of the skin at that height."
             ),
         )
     found = np.array([[_number(path, row, column) for column in columns] for row in rows[1:]])
@@ -227,7 +227,7 @@ def profile_goals(stages: Stages, section: str, curve: Floats) -> tuple[Goal, ..
                 "All heights of the profile are outside the reshaped region, {range}.",
                 range=LengthRange(low, high),
             ),
-            Message("Use the heights of the body in Busk, in millimetres."),
+            Message("Use heights on the body as shown in Busk, in millimetres."),
         )
     chosen = inside[:: -(-len(inside) // _MOST)]
     return tuple(Goal(profile_name(section, height), out) for height, out in chosen.tolist())

@@ -304,7 +304,7 @@ def profile_reader(stages: Stages, names: Sequence[str]) -> ReadMany:
         if match is None:
             raise UserError(
                 Message("'{name}' is not a position on a profile.", name=name),
-                Message("Specify the section and a height: profile left 1150."),
+                Message("Specify the section and a height, such as 'profile left 1150'."),
             )
     known = [match for match in found if match is not None]
     at, heights = section_at(stages, known[0][1]), np.array([float(match[2]) for match in known])
@@ -320,7 +320,7 @@ def profile_reader(stages: Stages, names: Sequence[str]) -> ReadMany:
                     height=Length(height),
                     at=Length(at),
                 ),
-                Message("Use the heights of the body in Busk, in millimetres."),
+                Message("Use heights on the body as shown in Busk, in millimetres."),
             )
         return values, slopes
 

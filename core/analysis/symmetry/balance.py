@@ -104,8 +104,8 @@ def balance_sides(
         exact = build(split_sides(exact.design, template), exact, progress)
     if not moves_one_side(exact):
         raise UserError(
-            Message("No active line can move one side alone."),
-            Message("Activate an unlocked line: lines across both sides are split, pairs are unlinked."),
+            Message("No active line can move one side independently."),
+            Message("Activate an unlocked line. Busk splits lines across both sides and unlinks pairs."),
         )
     best = _best(exact, names, lambda goals: solve_targets(exact, goals, shortest, kept, progress))
     design = replace(best.result.design, volume=stages.design.volume)

@@ -42,13 +42,13 @@ from core.pipeline.build import Stages
 from core.progress import Progress, quiet
 
 SLIDING = Message(
-    "Sliding lines respond less smoothly than ± implies: on two bodies, ± contained nine of ten "
-    "samples of the lift in place of 95 %, and some samples were far outside."
+    "Sliding lines respond less smoothly than ± assumes: on two bodies, only nine of ten samples of the "
+    "lift were within ±, not 95 %, and some samples were far outside."
 )
 
 WAIST = Message(
-    "The waist girth is measured at the narrowest trunk. The girth of the anatomical waist may "
-    "differ by several centimetres, which ± does not include."
+    "The waist girth is measured at the narrowest level of the trunk. The girth of the anatomical waist "
+    "may differ by several centimetres, which ± does not include."
 )
 
 _UNTOLD = tuple(f"{kind}:asymmetry_volume" for kind in (BEFORE, AFTER))

@@ -23,7 +23,7 @@ _RATIO = 10
 
 _AT_ONCE = 1 << 20
 _BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError)
-_HINT = Message("Open a backup, or start again from the scan.")
+_HINT = Message("Open a backup or start from the scan.")
 
 
 class _Sparing(io.BufferedReader):
@@ -73,7 +73,7 @@ def member_bytes(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
     # Other ways of packing are not unpacked piece by piece.
     if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
         raise ProjectError(
-            Message("{name} of this project uses an unsupported compression.", name=name), _HINT
+            Message("{name} of this project uses an unsupported compression method.", name=name), _HINT
         )
     packed = min(member.compress_size, os.fstat(archive.fp.fileno()).st_size)  # type: ignore[union-attr]
     within, out = min(most, HEADROOM + _RATIO * packed), io.BytesIO()

@@ -79,7 +79,7 @@ def open_project(path: str | os.PathLike[str]) -> Document:
         if member not in archive.namelist():
             raise ProjectError(
                 Message("{file} contains no scan.", file=source.name),
-                Message("Open a backup, or start again from the scan."),
+                Message("Open a backup or start from the scan."),
             )
     return with_scan(document, str(source.absolute()), member)
 

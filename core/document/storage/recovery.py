@@ -207,7 +207,7 @@ def _unkept(folder: Path, problem: Exception) -> ProjectError:
             folder=str(folder),
             reason=reason_of(cause),
         ),
-        Message("Free disk space, or save often."),
+        Message("Free up disk space, or save often."),
     )
 
 

@@ -23,8 +23,8 @@ MUCH = 50.0
 """Over more than this of an outline that is no skin a girth is an estimate [mm]."""
 
 ESTIMATES = {
-    "bust": Message("The bust girth crosses a hole of the scan or a merged arm: estimate."),
-    "underbust": Message("The under-bust girth crosses a hole of the scan or a merged arm: estimate."),
+    "bust": Message("The bust girth crosses a hole in the scan or a merged arm: estimate."),
+    "underbust": Message("The under-bust girth crosses a hole in the scan or a merged arm: estimate."),
 }
 UNCERTAIN = Message(
     "The under-bust girth is uncertain because the heights of the inframammary folds are uncertain."

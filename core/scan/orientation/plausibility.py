@@ -57,7 +57,10 @@ def require_plausible(cloud: Cloud, readings: Sequence[PoseCandidate]) -> None:
         )
     if trunk.height[-1] < SHORT and (best.evidence < LEAST or best.seen.fold.strength < FAINT):
         raise ScanError(
-            Message("The scan is too short for an upper body: no bust detected on the trunk section."), WHOLE
+            Message(
+                "The scan is too short for an upper body: no bust detected on the scanned part of the trunk."
+            ),
+            WHOLE,
         )
     if best.evidence < LEAST or not STOUTNESS[0] < trunk.stoutness < STOUTNESS[1]:
         raise ScanError(

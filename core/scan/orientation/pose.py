@@ -211,7 +211,7 @@ def _reason(best: PoseCandidate, axes: tuple[str, str], told: bool, sure: bool) 
         words = Message("Up {up} and front {front} were set manually.", up=up, front=front)
         return words if sure else join((words, Message("This contradicts the detected shape. Please check.")))
     if not sure:
-        return Message("Up {up} and front {front} are uncertain. Please check.", up=up, front=front)
+        return Message("Up {up} and front {front} are uncertain. Check the orientation.", up=up, front=front)
     first, second, third = sorted(best.cue_scores, key=lambda words: -best.cue_scores[words])[:3]
     return Message(
         "Up {up} and front {front} were detected from {first}, {second} and {third}.",

@@ -188,7 +188,7 @@ def read_gltf(name: str, data: bytes, progress: Progress) -> RawScan:
 
 def _packed(name: str) -> ScanError:
     return ScanError(
-        Message("{file} uses an unsupported compression.", file=name),
+        Message("{file} uses an unsupported compression method.", file=name),
         Message("Export the scan without mesh compression."),
     )
 

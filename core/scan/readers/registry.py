@@ -128,7 +128,7 @@ def no_memory(name: str) -> ScanError:
     """Return the refusal of a scan that needs more memory than there is."""
     return ScanError(
         Message("Not enough memory to open {file}.", file=name),
-        Message("Close other programs, or reduce the points of the scan before opening it."),
+        Message("Close other programs, or reduce the number of points of the scan before opening it."),
     )
 
 

@@ -158,7 +158,7 @@ class _Values:
         self._compressed = "compressor" in head
         self._name, self._data, self._start, self._raw = name, data, start, raw
         if head.get("compressor", "vtkZLibDataCompressor") != "vtkZLibDataCompressor":
-            raise ScanError(Message("{file} uses an unsupported compression.", file=name), _PLAIN)
+            raise ScanError(Message("{file} uses an unsupported compression method.", file=name), _PLAIN)
 
     def of(self, array: _Array, count: int) -> Values:
         """Return the ``count`` numbers of an array, shape (count,)."""

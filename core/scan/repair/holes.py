@@ -186,7 +186,7 @@ def hole_sentences(mesh: Mesh, holes: tuple[Hole, ...]) -> tuple[Message, ...]:
     open_ones = [hole for hole in holes if not hole.opening]
     named = [hole_sentence(mesh, hole) for hole in open_ones[:NAMED]]
     more = len(open_ones) - NAMED
-    return tuple(named) + ((Message("{count} more holes are unfilled.", count=more),) if more > 0 else ())
+    return tuple(named) + ((Message("Further unfilled holes: {count}.", count=more),) if more > 0 else ())
 
 
 def hole_sentence(mesh: Mesh, hole: Hole) -> Message:

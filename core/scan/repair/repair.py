@@ -44,15 +44,15 @@ def repair(
     """
     steps: tuple[tuple[Step, Message, Callable[[int], Message]], ...] = (
         (_drop_positionless, Message("Removed {count} without a position."), vertex_count),
-        (_drop_unused, Message("Removed {count} outside any face."), vertex_count),
+        (_drop_unused, Message("Removed {count} not belonging to any face."), vertex_count),
         (_drop_far, Message("Removed {count} far from all others."), vertex_count),
         (_merge_equal, Message("Merged {count} with others at the same position."), vertex_count),
         (_drop_empty_faces, Message("Removed {count} with zero area or listed twice."), face_count),
-        (remove_fins, Message("Removed {count} shaped like a fin."), face_count),
+        (remove_fins, Message("Removed {count} from fin-shaped parts."), face_count),
         (_part_sheets, Message("Separated two touching layers of the surface at {count}."), vertex_count),
         (remove_scan_stand, Message("Removed {count} shaped like a floor, a wall or a stand."), piece_count),
         (remove_small_components, Message("Removed {count} separate from the body."), speck_count),
-        (_drop_spikes, Message("Removed {count} shaped like a spike."), vertex_count),
+        (_drop_spikes, Message("Removed {count} from spike-shaped parts."), vertex_count),
         (_wind_outward, Message("Reversed {count} to face outward."), face_count),
         (remove_inner, Message("Removed {count} inside the body or duplicating its surface."), piece_count),
         (remove_occluded, Message("Removed {count} from parts that extend into the body."), face_count),

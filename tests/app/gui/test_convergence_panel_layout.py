@@ -17,7 +17,7 @@ NUMBERS = {
     "en": [
         ("Bust point", "0.2 mm up, 1.2 mm back"),
         ("Bust girth", "895.4 mm"),
-        ("Peak pressure", "12.8 kPa"),
+        ("Max. pressure", "12.8 kPa"),
     ],
     "ja": [("BP", "上へ 0.2 mm、後ろへ 1.2 mm"), ("バスト囲", "895.4 mm"), ("最大接触圧", "12.8 kPa")],
 }

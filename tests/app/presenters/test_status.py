@@ -67,7 +67,7 @@ def test_what_a_designer_asks_first_stands_first(built: Callable[[str], Stages])
     assert [name for name, _ in shown] == [
         "Bust point",
         "Bust girth",
-        "Peak pressure",
+        "Max. pressure",
         "Volume error",
     ]
     assert shown[1][1] == f"{before:.1f} → {after:.1f} mm"

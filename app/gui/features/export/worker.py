@@ -49,7 +49,7 @@ class ExportWorker:
         if ready.draw is None:
             self._done(ready, files)
             return
-        words, jobs = tr("Drawing {name}…").format(name=self.path.name), self._context.jobs
+        words, jobs = tr("Rendering {name}…").format(name=self.path.name), self._context.jobs
         self._job = jobs.run_pieces(
             words, ready.draw(), partial(self._drawn, ready), self._failed, waited=True
         )

@@ -115,8 +115,8 @@ class ElasticsController(QObject):
         sheet = self.sheet
         question = tr("Delete elastic {name}?").format(name=name)
         text = tr(
-            "The table of the elastic is deleted from your folder. Projects that use the elastic "
-            "keep the curve."
+            "The table of the elastic will be deleted from your folder. Projects that use the elastic keep "
+            "the curve."
         )
         if sheet is None or ask(sheet, question, text, [("delete", tr("Delete"))]) != "delete":
             return

@@ -86,7 +86,7 @@ class ElasticsDialog(Dialog):
         template = self.add_button(tr("Save template…"), self.template_requested.emit, "quiet")
         set_tip(template, tr("Save an empty table (CSV) for your measurements"))
         self.delete = self.add_button(tr("Delete…"), lambda: self.delete_requested.emit(self.marked), "quiet")
-        set_tip(self.delete, tr("Delete a custom elastic; projects that use it keep it"))
+        set_tip(self.delete, tr("Delete a custom elastic; projects that use it keep a copy"))
         for place, each in enumerate((brought, handed_on, template, self.delete)):
             self.foot.removeWidget(each)
             self.foot.insertWidget(place, each)

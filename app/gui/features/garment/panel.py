@@ -83,7 +83,7 @@ class _TissueField(ValueEdit):
     def _read(self, text: str) -> float:
         value, (low, high) = super()._read(text.replace("N/m", "")), TISSUE_LIMITS
         if not low <= value <= high:
-            words = tr("Enter {low} to {high} N/m. Measured values of skin alone are 160 to 1150.")
+            words = tr("Enter {low} to {high} N/m. Measured values of skin alone are 160 to 1150 N/m.")
             raise ValueError(words.format(low=number(low, 0), high=f"{high:g}"))
         return value
 
@@ -383,14 +383,14 @@ class GarmentPanel(QWidget):
             "bands",
             tr("No elastic chosen"),
             tr("Cut lengths depend on the elastic. Choose one for all lines or for each line below."),
-            tr("Choose for all…"),
+            tr("Choose elastic for all…"),
         )
         card.requested.connect(self.all_requested)
         return card
 
     def _make_again(self) -> QPushButton:
         """Make what stands under the list once a line is made of an elastic: all can be changed at once."""
-        again = button(tr("Choose for all…"), "quiet")
+        again = button(tr("Choose elastic for all…"), "quiet")
         again.clicked.connect(self.all_requested)
         return again
 

@@ -120,7 +120,7 @@ class PressureCard(QWidget):
         self.place.clicked.connect(self.place_requested)
         self.scale = PressureScale(limits)
         self.limits = sentence(
-            tr("The limits are our estimate, interpolated between measured values such as {source}.").format(
+            tr("The limits are estimates, interpolated between measured values such as {source}.").format(
                 source=limits.source
             ),
             "caption",
@@ -160,7 +160,7 @@ class PressureCard(QWidget):
 
     def _where(self) -> QHBoxLayout:
         self._most = label(tr("Maximum:"), "secondary")
-        self.eye = ToolButton("eye", tr("Show on the map of contact pressure"), size=14, room=24)
+        self.eye = ToolButton("eye", tr("Show location on the contact pressure map"), size=14, room=24)
         self.eye.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # the words beside it do the same by keyboard
         self.eye.clicked.connect(self.place_requested)
         row = QHBoxLayout()

@@ -18,22 +18,21 @@ def explain(parts: Mapping[str, QWidget]) -> None:
 def _work() -> dict[str, str]:
     return {
         "steps": tr(
-            "Steps from scan to result. All steps can be opened at any time. A green tick marks "
-            "a finished step, an amber badge marks items to review."
+            "Steps from scan to result. All steps can be opened at any time. A green tick marks a finished "
+            "step; an amber badge marks items to review."
         ),
         "view": tr(
-            "Reshaped body as computed by the model. It follows at once while you drag a line; "
-            "the result is final when the status below is Converged. The agreement with a real "
-            "garment has not been measured. Drag the selected band up to shorten its line, down "
-            "to lengthen it."
+            "Reshaped body as computed by the model, updated while you drag a line. The result is final "
+            "when the status below is Converged. The agreement with a real garment has not been measured. "
+            "Drag the selected band up to shorten its line, down to lengthen it."
         ),
         "section": tr(
             "Section of the body before and after. Move the plane with its handle in the 3D "
             "view, with the slider, or by entering a position."
         ),
         "report": tr(
-            "Report as printed: size, cut lengths, measurements, contact pressures and images. "
-            "It follows changes of the design. The customer's name is saved with the project."
+            "Report as printed: size, cut lengths, measurements, contact pressures and images. The report "
+            "is updated when the design changes. The customer's name is saved with the project."
         ),
         "convergence": tr(
             "Convergence of the solver over the iterations. Do not use the shape while the "
@@ -46,8 +45,8 @@ def _work() -> dict[str, str]:
 def _panels() -> dict[str, str]:
     return {
         "scan": tr(
-            "Detected unit, up and front of the scan. All lengths depend on the unit: check it "
-            "with a new scanner."
+            "Detected unit, up and front of the scan. All lengths depend on the unit: check it when using "
+            "a new scanner."
         ),
         "landmarks": tr(
             "Landmarks are the basis of the control mesh. Where a landmark is unclear on the "

@@ -296,7 +296,7 @@ def _fit_words(found: Snapped | FreeCurve) -> list[str]:
     else:
         what = tr("Snapped to the control mesh; maximum deviation {length}.")
         if found.deviation > _WIDE:
-            what = tr("Restricted to the control mesh; maximum deviation {length}.")
+            what = tr("Lines run only on the control mesh; maximum deviation {length}.")
         texts = [what.format(length=length(found.deviation, 0))]
     if not found.is_movable:
         texts.append(tr("All points are fixed: the line is measured only and does not reshape the body."))

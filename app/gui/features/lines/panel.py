@@ -93,7 +93,7 @@ class _PullDown(QPushButton):
         self.setFont(font("name"))
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setCursor(Qt.CursorShape.PointingHandCursor)
-        set_tip(self, tr("Load or save sets of lines"))
+        set_tip(self, tr("Load or save presets"))
 
     def setText(self, text: str) -> None:
         """Show a title, shortened where there is no room for it."""

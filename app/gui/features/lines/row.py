@@ -268,13 +268,13 @@ def _still_words(view: LineView) -> str:
     """Return what a line on points that do not move is good for."""
     if view.elastic:
         words = tr(
-            "Elastic: {elastic}. The line does not move the body but has contact pressure and a "
-            "cut length: see tab Garment."
+            "Elastic: {elastic}. The line does not move the body but has contact pressure and a cut "
+            "length: see the Garment tab."
         )
         return words.format(elastic=view.elastic)
     if view.own:
         return tr("On fixed points: measured only.")
-    return tr("On the rib cage: measured only. To cut a band, choose an elastic in tab Garment.")
+    return tr("On the rib cage: measured only. To cut a band, choose an elastic on the Garment tab.")
 
 
 def _tip(view: LineView) -> str:

@@ -90,7 +90,7 @@ class MeasurementEditor(QWidget):
         self.level.set_unit("mm", 0 if draft.level.is_integer() else 1, bool(draft.at))
         self.level.show_value(draft.level)
         ends = tr("Click two landmarks on the body, or choose them below.")
-        level = tr("Click a landmark or any point of the skin: the girth is horizontal at this height.")
+        level = tr("Click a landmark or any point on the skin: the girth is horizontal at this height.")
         self._hint.setText(level if girth else ends)
         self.changed.emit()
 

@@ -61,7 +61,7 @@ class CustomMeasuresController(QObject):
         panel.removing.connect(self.remove)
         context.session.frame_ready.connect(self._follow)
         context.session.opened.connect(lambda *_: self.leave())
-        sentence = tr("Measure between two landmarks, or a girth at a height")
+        sentence = tr("Measure a distance between two landmarks, or a girth at a height")
         do = context.actions
         do.rule("edit")
         self.action = do.add("edit", tr("Add measurement…"), tip=sentence, do=self.begin, of_document=True)

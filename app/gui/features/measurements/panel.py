@@ -195,7 +195,7 @@ class MeasurementsPanel(QStackedWidget):
         copied = tr("Copy the table for a spreadsheet or document")
         written = tr("Export the table as CSV")
         choices = (
-            (tr("Add measurement…"), tr("Measure between two landmarks, or a girth"), self.adding),
+            (tr("Add measurement…"), tr("Measure a distance between two landmarks, or a girth"), self.adding),
             (tr("Copy"), copied, self.copy_requested),
             (tr("CSV…"), written, self.table_requested),
         )

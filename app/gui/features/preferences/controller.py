@@ -38,7 +38,12 @@ class PreferencesController(QObject):
         self.open.setMenuRole(QAction.MenuRole.PreferencesRole)
         self.open.triggered.connect(self.show)
         do.end("edit", 2)
-        do.add("help", tr("Open log folder"), tip=tr("Show the folder of error logs"), do=self.open_log)
+        do.add(
+            "help",
+            tr("Open log folder"),
+            tip=tr("Show the folder that contains the error logs"),
+            do=self.open_log,
+        )
         for key, actions in (("theme", do.themes), ("language", do.languages)):
             for value, action in actions.items():
                 action.triggered.connect(lambda _=False, key=key, value=value: self.choose(key, value))
@@ -61,7 +66,7 @@ class PreferencesController(QObject):
         elif key in ("language", "unit"):
             text = tr("The language changes when Busk restarts.")
             if key == "unit":
-                text = tr("The unit of lengths changes when Busk restarts.")
+                text = tr("The length unit changes when Busk restarts.")
             self._context.notifications.info(text, "", [(tr("Restart now"), self.restart)])
         elif key == "motion":
             self.set_motion()

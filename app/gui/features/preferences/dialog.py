@@ -41,7 +41,7 @@ class PreferencesDialog(Dialog):
         self.body.addLayout(grid)
         self.body.addStretch(1)
         log = self.add_button(tr("Open log folder"), self.log_requested.emit, "quiet")
-        set_tip(log, tr("Show the error logs. They contain no scans or measurements"))
+        set_tip(log, tr("Show the error logs, which contain no scans or measurements"))
         self.foot.removeWidget(log)
         self.foot.insertWidget(0, log)
         self.add_close()
@@ -73,7 +73,7 @@ class PreferencesDialog(Dialog):
 
 
 def _autosave() -> Amount:
-    every = tr("Interval of autosave for unsaved changes, {least} to {most} s.")
+    every = tr("Autosave interval for unsaved changes, {least} to {most} s.")
     least, most = AUTOSAVE
     unit = tr("{seconds} s").format(seconds="").strip()
     text = every.format(least=least, most=most)
@@ -97,7 +97,7 @@ def _groups() -> tuple[tuple[str, tuple[Setting, ...]], ...]:
                 Choice("language", tr("Language"), again, tuple(LANGUAGES.items())),
                 Choice("unit", tr("Lengths"), lengths, units),
                 Choice("theme", tr("Theme"), tr("Light or dark colours of the window."), themes),
-                Choice("start", tr("On start"), tr("First page shown in the window."), starts),
+                Choice("start", tr("At startup"), tr("First page shown in the window."), starts),
             ),
         ),
         (

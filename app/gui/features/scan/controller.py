@@ -103,7 +103,7 @@ class ScanController(QObject):
         if pose.is_certain:
             return
         if source.up and source.front:
-            unsure = tr("Unit, up or front of this scan is ambiguous.")
+            unsure = tr("The unit, up or front axis of this scan is ambiguous.")
             self._context.notifications.warn(unsure, pose.reason, topic=_QUESTION)
         else:
             self._ask(stages.body, None)

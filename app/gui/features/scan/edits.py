@@ -119,7 +119,7 @@ class ScanEditor(QWidget):
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(8)
         fill = button(tr("Fill"))
-        set_tip(fill, tr("Fill this hole along the curvature of the surrounding skin"))
+        set_tip(fill, tr("Fill this hole following the curvature of the surrounding skin"))
         fill.setAccessibleDescription(hole.text)
         fill.clicked.connect(lambda: self._emit(self._view.edits.with_filled(hole.centre), tr("Fill hole")))
         row.addWidget(sentence(hole.text), 1)
@@ -132,7 +132,7 @@ class ScanEditor(QWidget):
         row.setContentsMargins(0, 3, 0, 0)
         row.setSpacing(6)
         self.fill_all, self.reopen = button(tr("Fill all")), button(tr("Reopen holes"), "quiet")
-        set_tip(self.fill_all, tr("Fill all holes of the scan"))
+        set_tip(self.fill_all, tr("Fill all holes in the scan"))
         set_tip(self.reopen, tr("Reopen all holes that were filled manually"))
         self.fill_all.clicked.connect(
             lambda: self._emit(replace(self._view.edits, filled=(), fill_all=True), tr("Fill all holes"))

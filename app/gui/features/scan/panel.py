@@ -51,8 +51,8 @@ class LeanEditor(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self._view = LeanView(0.0, 0.0)
-        self.forward = AngleField(tr("Lean of the body in the file, forward; negative: backward"))
-        self.left = AngleField(tr("Lean of the body in the file, to its left; negative: to its right"))
+        self.forward = AngleField(tr("Forward lean of the body in the file (negative: backward)"))
+        self.left = AngleField(tr("Lean of the body in the file to its left (negative: to its right)"))
         self.forward.entered.connect(lambda value: self.leaned.emit(value, self._view.left))
         self.left.entered.connect(lambda value: self.leaned.emit(self._view.forward, value))
         self.upright = button(tr("Set upright"))
@@ -188,7 +188,7 @@ class ScanPanel(QWidget):
         self.pictures = button(tr("Choose from images…"))
         self.pictures.clicked.connect(self.front_requested)
         self._forget = button(tr("Reset"), "quiet")
-        set_tip(self._forget, tr("Reset unit, up and front to the detected values"))
+        set_tip(self._forget, tr("Reset unit and up and front axes to the detected values"))
         self._forget.clicked.connect(lambda: self.value_set.emit("", ""))
         for each in (self.pictures, self._forget):
             row.addWidget(each)

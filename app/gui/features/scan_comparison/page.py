@@ -72,7 +72,7 @@ class ScanComparisonPage(QWidget):
             wide=True,
         )
         self.unit.set_choice("")
-        self.thickness = ValueEdit("mm", tr("Cloth thickness"), widest="20.0")
+        self.thickness = ValueEdit("mm", tr("Fabric thickness"), widest="20.0")
         self.thickness.show_value(0.0)
         self.look = button(tr("Show on body"))
         self.calibrate, self.apply = button(tr("Calibrate")), button(tr("Apply"), "primary")
@@ -105,7 +105,7 @@ class ScanComparisonPage(QWidget):
         column.addWidget(self.choose, 0, Qt.AlignmentFlag.AlignLeft)
         column.addWidget(label(tr("Unit of the scan"), "secondary"))
         column.addWidget(self.unit)  # under its title: beside it the page is wider than the inspector
-        column.addLayout(_row(tr("Cloth thickness"), self.thickness))
+        column.addLayout(_row(tr("Fabric thickness"), self.thickness))
         self._compared, self._found = QWidget(), QWidget()
         self._lay_compared(QVBoxLayout(self._compared))
         self._lay_found(QVBoxLayout(self._found))
@@ -163,7 +163,7 @@ class ScanComparisonPage(QWidget):
         for part, text in (*texts, *others, (self.surely, view.surely)):
             part.setText(text)
             part.setVisible(bool(text))
-        self.choose.setText(tr("Choose another…") if view.file else tr("Choose fitting scan…"))
+        self.choose.setText(tr("Choose another scan…") if view.file else tr("Choose fitting scan…"))
         self._compared.setVisible(bool(view.rows))
         self._found.setVisible(bool(view.better))
         self.calibrate.setEnabled(view.ready)

@@ -139,7 +139,7 @@ class SectionPanel(FloatingPanel):
         head = QHBoxLayout()
         head.setSpacing(2)
         self.title = QuantityTitle(list(self._axes.values()))
-        set_tip(self.title, tr("Choose the plane or export its curves"))
+        set_tip(self.title, tr("Choose the section plane or export the curves"))
         self.title.chosen.connect(self.axis_chosen)
         menu = self.title.menu
         menu.addSeparator()

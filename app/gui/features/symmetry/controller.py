@@ -147,7 +147,7 @@ class SymmetryController(QObject):
             return
         template = read_template(design.template)
         titles = listed(split_titles(design, made.split))
-        text = tr("Left and right separated: {lines}").format(lines=titles)
+        text = tr("Left and right unlinked: {lines}").format(lines=titles)
         self.targets_proposed.emit(made.goals, lambda before: split_sides(before, template), text, limit)
 
 

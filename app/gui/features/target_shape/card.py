@@ -101,7 +101,7 @@ class TargetCard(QWidget):
         more, row = QVBoxLayout(), QHBoxLayout()
         self.add = button(tr("Add target…"), "quiet")
         self.add.clicked.connect(self._ask_more)
-        self.optional = QCheckBox(tr("Use inactive lines"))
+        self.optional = QCheckBox(tr("Include inactive lines"))
         self.optional.clicked.connect(self.optional_chosen)
         row.addWidget(self.add)
         row.addStretch(1)

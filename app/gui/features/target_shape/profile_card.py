@@ -71,7 +71,7 @@ class ProfileHandles(QObject):
         self._curves[section] = TargetCurve(self._viewport, side)
         self.handles[section] = []
         for number in range(len(profile.handles)):
-            name = tr("Profile handle {number}, from below").format(number=number + 1)
+            name = tr("Profile handle {number} from the bottom").format(number=number + 1)
             handle = TargetHandle(self._viewport, side, name, small=True)
             handle.taken.connect(partial(self.taken.emit, section))
             handle.dragged.connect(partial(self.dragged.emit, section, number))

@@ -161,7 +161,7 @@ class TargetRow(QWidget):
         self.priority, self._titles = OptionCombo(), priority_titles()
         self.priority.setFont(font("caption"))
         self.priority.setProperty("kind", "choice")
-        set_tip(self.priority, tr("Set the priority of this target where not all can be reached"))
+        set_tip(self.priority, tr("Set the priority of this target if not all targets can be reached"))
         menu = Menu(self)
         for name, title in self._titles.items():
             menu.addAction(title, partial(self.prioritized.emit, name))

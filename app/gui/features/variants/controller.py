@@ -95,7 +95,7 @@ class VariantsController(QObject):
             else:
                 texts = (
                     tr("Only one variant."),
-                    tr("Choose B or C at the top to start a copy."),
+                    tr("Choose B or C at the top to create a copy."),
                 )
                 self._context.notifications.info(*texts)
             return

@@ -33,7 +33,7 @@ class VariantsPanel(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(14, 8, 14, 12)
         column.setSpacing(8)
-        hint = tr("Choose B or C at the top to start a copy.")
+        hint = tr("Choose B or C at the top to create a copy.")
         self._empty = EmptyState("columns", tr("Only one variant."), hint)
         self._table, self._note = _Table(), sentence("", "caption")
         self._area = QScrollArea()
@@ -65,7 +65,9 @@ class VariantsPanel(QWidget):
         self._buttons.setVisible(view is not None)
         if view is not None:
             self._table.set_view(view)
-            self._note.setText(tr("Small signed values: difference from {name}.").format(name=view.names[0]))
+            self._note.setText(
+                tr("Signed values in small type: difference from {name}.").format(name=view.names[0])
+            )
 
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
