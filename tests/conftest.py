@@ -17,7 +17,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from coarse_bodies import coarse_mannequin
+from coarse_bodies import coarse_body
 from dead_process import pytest_testnodedown  # noqa: F401 (pytest finds it here)
 from PySide6.QtCore import QSettings
 from PySide6.QtWidgets import QApplication
@@ -240,7 +240,7 @@ def spared_as_in_the_program() -> Iterator[None]:
 def coarse_sample(tmp_path_factory: pytest.TempPathFactory) -> Design:
     """The design on the mannequin with which the windows of tests begin, on a fifth of its vertices."""
     design = sample_design()
-    file = coarse_mannequin(tmp_path_factory.mktemp("coarse"))
+    file = coarse_body("mannequin", tmp_path_factory.mktemp("coarse"))
     return replace(design, scan=replace(design.scan, path=str(file)))
 
 

@@ -269,7 +269,7 @@ def test_the_pill_opens_what_the_button_ends_and_what_will_still_be_strained() -
         assert (notice.tone, notice.lasting) == (tone(level), True), "who asks is not hurried"
         assert "conflict: skin is compressed" in notice.sentence
         assert "forces on the skin" in notice.details.splitlines()[0]
-        assert "Fixes, verified from the original and the current shape" in notice.details.splitlines()[1]
+        assert "each was verified from the original and the current shape" in notice.details.splitlines()[1]
         window.notices.unfold.click()
         yield window.notices.details.isVisible
         text = window.notices.details

@@ -51,7 +51,7 @@ def test_a_turntable_is_drawn_between_events_and_can_be_left(
         yield told(sheet)
         sheet.save.click()
         assert QApplication.activeModalWidget() is None, "the work in hand is seen, and its way out"
-        yield lambda: window.status._job_name.text() == "Drawing anna.gif…"
+        yield lambda: window.status._job_name.text() == "Rendering anna.gif…"
         shares: list[float] = []
         for _ in range(4):  # the window answers between the pieces
             job = window.progress_controller._shown_job()
@@ -83,7 +83,7 @@ def test_a_window_is_closed_while_a_turntable_is_drawn(
         undrawn(window)
         yield settled(window)
         opened(window, "turntable").save.click()
-        yield lambda: window.status._job_name.text() == "Drawing anna.webp…"
+        yield lambda: window.status._job_name.text() == "Rendering anna.webp…"
 
     assert run_main([], script) == 0
     assert list(tmp_path.iterdir()) == []
@@ -171,7 +171,7 @@ def test_a_series_does_not_take_the_place_of_another_unasked(
 
 
 def test_a_body_is_written_as_it_is_when_the_dialog_closes(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    mannequin: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "anna.ply"
     said: list[str] = []
@@ -202,10 +202,12 @@ def test_a_body_is_written_as_it_is_when_the_dialog_closes(
         assert abs(away).max() < 0.01
         assert said == ["anna.ply saved, in mm, z-up."], "nothing is under way any more"
 
-    run_main(["resources/samples/mannequin.ply"], script)
+    run_main([str(mannequin)], script)
 
 
-def test_two_exports_do_not_share_a_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_two_exports_do_not_share_a_name(
+    mannequin: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     path = tmp_path / "anna.obj"
     saved_as(monkeypatch, path)
 
@@ -222,4 +224,4 @@ def test_two_exports_do_not_share_a_name(tmp_path: Path, monkeypatch: pytest.Mon
         yield lambda: not window.jobs.at_work()
         assert len(pv.read(path).points) == len(window.session.frame.stages.control.mesh.vertices)
 
-    run_main(["resources/samples/mannequin.ply"], script)
+    run_main([str(mannequin)], script)

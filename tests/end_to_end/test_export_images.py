@@ -131,7 +131,9 @@ def test_a_wiped_picture_has_the_border_and_no_knob(qtbot: QtBot) -> None:
     assert widths() == with_knob != line
 
 
-def test_the_knob_of_a_wipe_is_out_while_a_picture_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_knob_of_a_wipe_is_out_while_a_picture_is_made(
+    mannequin: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     said: list[bool] = []
     monkeypatch.setattr(SplitHandle, "set_bare", lambda _, bare: said.append(bare))
 
@@ -141,4 +143,4 @@ def test_the_knob_of_a_wipe_is_out_while_a_picture_is_made(monkeypatch: pytest.M
         window.view.picture()
         assert said == [True, False]
 
-    run_main(["resources/samples/mannequin.ply"], script)
+    run_main([str(mannequin)], script)

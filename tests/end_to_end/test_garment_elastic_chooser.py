@@ -37,11 +37,11 @@ def test_an_elastic_that_cannot_be_used_is_grey_and_the_nearest_that_can_is_one_
         yield from mark(window, "weak")
         view = chooser.views()[chooser.current]
         assert not view.usable
-        assert re.fullmatch(r"Too weak: [\d.]+ mm too long at the maximum elongation, 30 %\.", view.note)
+        assert re.fullmatch(r"Too weak: band [\d.]+ mm too long at the maximum elongation, 30 %\.", view.note)
         assert view.note in chooser.advice.text()
         assert not chooser.use.isEnabled()
         assert window.session.design is before
-        nearest = next(each for each in chooser.offers() if "extension" not in each).removeprefix("Use ")
+        nearest = next(each for each in chooser.offers() if "maximum" not in each).removeprefix("Use ")
         assert next(each for each in chooser.views() if each.title == nearest).usable
         chooser.press_offer(chooser.offers().index(f"Use {nearest}"))
         yield made_of(window, "mid-bust")

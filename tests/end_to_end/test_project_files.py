@@ -107,7 +107,7 @@ def test_the_shown_body_is_exported(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 
 def test_an_export_that_failed_is_told_until_it_succeeds(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    person: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     nowhere, project, body = tmp_path / "nowhere" / "a.ply", tmp_path / "a.busk", tmp_path / "a.ply"
 
@@ -132,7 +132,7 @@ def test_an_export_that_failed_is_told_until_it_succeeds(
         yield lambda: tone() == "ok"
         window.notices.close_notice()
         assert tone() in ("", "warn"), "no failure waits behind it"
-        window.session.open("resources/samples/person.ply")
+        window.session.open(str(person))
         yield lambda: window.session.name == "person"
         assert window.status._saved.text() == "", "this one was never saved"
 

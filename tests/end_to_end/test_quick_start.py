@@ -17,7 +17,7 @@ from window_tools import Script, drag, run_main, settled, undrawn
 from app.gui.main_window import MainWindow
 from app.gui.widgets.line_widgets import ElasticButton
 from app.presenters.bust_shift import bust_shift, shift_between
-from app.presenters.samples import lifted_sample
+from app.presenters.samples import lifted_sample, sample_path
 from core.document.design import ScanSource
 from core.document.storage.project_file import open_project
 from core.garment.cut_list import cut_list
@@ -180,9 +180,9 @@ def kept(window: MainWindow, folder: Path) -> Script:
     assert window.session.document.customer == "Anna 0412"
 
 
-def test_the_figures_of_the_guide_are_those_of_its_steps(person: Path) -> None:
+def test_the_figures_of_the_guide_are_those_of_its_steps() -> None:
     """Of steps 1 and 8 to 14, on the sample as the pictures show it."""
-    design = replace(lifted_sample("person"), scan=ScanSource(str(person)))
+    design = replace(lifted_sample("person"), scan=ScanSource(str(sample_path("person"))))
     band = build(design)
     (row,) = cut_list(band, reached_points(band)).rows
     shorter = build(design.with_line("mid-bust", 0.6), band)

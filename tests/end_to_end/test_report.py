@@ -30,7 +30,7 @@ def made(window: MainWindow) -> Callable[[], bool]:
     return window.report_controller.page.does["pdf"].isEnabled
 
 
-def test_the_sheet_takes_the_place_of_the_work_and_gives_it_back() -> None:
+def test_the_sheet_takes_the_place_of_the_work_and_gives_it_back(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         assert not window.top.primary.isEnabled(), "no body is open yet"
@@ -64,10 +64,10 @@ def test_the_sheet_takes_the_place_of_the_work_and_gives_it_back() -> None:
         desk.page.back.click()
         assert window.pages.currentWidget() is work
 
-    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+    assert run_main([str(mannequin)], script) == 0
 
 
-def test_the_sheet_follows_and_a_former_one_is_not_given_away() -> None:
+def test_the_sheet_follows_and_a_former_one_is_not_given_away(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
@@ -103,10 +103,10 @@ def test_the_sheet_follows_and_a_former_one_is_not_given_away() -> None:
         yield made(window)
         assert window.report_controller.handout.report.cuts.rows == ()
 
-    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+    assert run_main([str(mannequin)], script) == 0
 
 
-def test_what_came_of_an_edit_on_the_sheet_is_kept_with_its_picture() -> None:
+def test_what_came_of_an_edit_on_the_sheet_is_kept_with_its_picture(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
         window.report_controller.open()
@@ -118,10 +118,12 @@ def test_what_came_of_an_edit_on_the_sheet_is_kept_with_its_picture() -> None:
         yield lambda: kept.count() == 1
         assert kept.item(0).data(VIEW).picture is not None
 
-    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+    assert run_main([str(mannequin)], script) == 0
 
 
-def test_the_customer_is_one_step_and_measures_nothing_again(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_customer_is_one_step_and_measures_nothing_again(
+    mannequin: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     measured = []
     real = before_after
     monkeypatch.setattr(
@@ -150,11 +152,11 @@ def test_the_customer_is_one_step_and_measures_nothing_again(monkeypatch: pytest
         assert page.customer.text() == ""
         assert len(measured) == 1
 
-    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+    assert run_main([str(mannequin)], script) == 0
 
 
 def test_a_name_that_is_typed_goes_out_with_the_next_press(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    mannequin: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def place(parent: object, title: str, name: str, kinds: str, ending: str) -> str:
         return str(tmp_path / f"sheet{ending}")
@@ -184,10 +186,12 @@ def test_a_name_that_is_typed_goes_out_with_the_next_press(
         assert window.session.design is not None
         assert window.session.design.customer == "Berta"
 
-    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+    assert run_main([str(mannequin)], script) == 0
 
 
-def test_the_sheet_is_saved_in_another_language(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_sheet_is_saved_in_another_language(
+    mannequin: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def place(parent: object, title: str, name: str, kinds: str, ending: str) -> str:
         return str(tmp_path / f"sheet{ending}")
 
@@ -212,10 +216,12 @@ def test_the_sheet_is_saved_in_another_language(tmp_path: Path, monkeypatch: pyt
         assert f"{bust:.1f}" in pdf.text()
         assert (tmp_path / "sheet.csv").read_text("utf-8-sig").startswith("section,key,title")
 
-    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+    assert run_main([str(mannequin)], script) == 0
 
 
-def test_the_printer_gets_the_same_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_printer_gets_the_same_pages(
+    mannequin: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     class Dialog:
         def __init__(self, printer: QPrinter, parent: object) -> None:
             printer.setOutputFormat(QPrinter.OutputFormat.PdfFormat)
@@ -241,10 +247,12 @@ def test_the_printer_gets_the_same_pages(tmp_path: Path, monkeypatch: pytest.Mon
         assert abs(first.left - other.left) < 0.3
         assert abs(first.top - other.top) < 0.3
 
-    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+    assert run_main([str(mannequin)], script) == 0
 
 
-def test_only_the_pages_that_were_chosen_are_printed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_the_pages_that_were_chosen_are_printed(
+    mannequin: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     class Dialog:
         def __init__(self, printer: QPrinter, parent: object) -> None:
             printer.setOutputFormat(QPrinter.OutputFormat.PdfFormat)
@@ -269,10 +277,12 @@ def test_only_the_pages_that_were_chosen_are_printed(tmp_path: Path, monkeypatch
         second = [piece.text for piece in Pdf(tmp_path / "written.pdf").pieces(1)]
         assert [piece.text for piece in printed.pieces(0)] == second
 
-    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+    assert run_main([str(mannequin)], script) == 0
 
 
-def test_the_sheet_comes_without_pictures_where_they_cannot_be_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_sheet_comes_without_pictures_where_they_cannot_be_drawn(
+    mannequin: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def fails(*_: object, **__: object) -> None:
         raise RuntimeError("no graphics")
 
@@ -286,14 +296,14 @@ def test_the_sheet_comes_without_pictures_where_they_cannot_be_drawn(monkeypatch
         assert window.report_controller.handout is not None
         assert window.report_controller.handout.pictures == {}
 
-    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+    assert run_main([str(mannequin)], script) == 0
 
 
-def test_the_window_closes_while_the_sheet_is_being_made() -> None:
+def test_the_window_closes_while_the_sheet_is_being_made(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
         window.report_controller.open()
         yield lambda: bool(window.jobs.at_work())
 
-    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+    assert run_main([str(mannequin)], script) == 0

@@ -21,7 +21,7 @@ def typed(window: MainWindow, name: str) -> None:
     QTest.keyClicks(window.report_controller.page.customer, name)
 
 
-def test_a_typed_name_does_not_go_to_the_next_document() -> None:
+def test_a_typed_name_does_not_go_to_the_next_document(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
@@ -29,17 +29,17 @@ def test_a_typed_name_does_not_go_to_the_next_document() -> None:
         typed(window, "Clara")
         opened = []
         window.session.opened.connect(opened.append)
-        window.session.open(str(Path("resources/samples/mannequin.ply").absolute()))
+        window.session.open(str(mannequin))
         yield lambda: bool(opened)
         assert window.session.document.customer == ""
         assert not window.session.unsaved
         assert desk.page.customer.text() == ""
         assert not desk.is_open
 
-    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+    assert run_main([str(mannequin)], script) == 0
 
 
-def test_nothing_of_a_former_document_is_kept_or_shown() -> None:
+def test_nothing_of_a_former_document_is_kept_or_shown(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
@@ -50,17 +50,17 @@ def test_nothing_of_a_former_document_is_kept_or_shown() -> None:
         desk.leave()
         opened = []
         window.session.opened.connect(opened.append)
-        window.session.open(str(Path("resources/samples/mannequin.ply").absolute()))
+        window.session.open(str(mannequin))
         yield lambda: bool(opened)
         assert (desk.handout, desk.pages, desk._occlusion, desk._frame) == (None, None, None, None)
         desk.open()
         assert not desk.page.paper.leaves, "no sheet of a former customer stands there, however faint"
         yield desk.page.does["pdf"].isEnabled
 
-    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+    assert run_main([str(mannequin)], script) == 0
 
 
-def test_no_piece_of_a_former_document_is_listed() -> None:
+def test_no_piece_of_a_former_document_is_listed(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
@@ -75,14 +75,16 @@ def test_no_piece_of_a_former_document_is_listed() -> None:
             """Hear what is listed with each frame of the next document, after the desks."""
             listed.append(window.garment.view.worn)
 
-        window.session.open(str(Path("resources/samples/mannequin.ply").absolute()))
+        window.session.open(str(mannequin))
         yield lambda: bool(listed) and settled(window)()
         assert not any(listed)
 
-    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+    assert run_main([str(mannequin)], script) == 0
 
 
-def test_a_typed_name_is_saved_and_asked_about(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_typed_name_is_saved_and_asked_about(
+    mannequin: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     path = tmp_path / "dora.busk"
     asked = []
     monkeypatch.setattr("app.gui.features.project.controller.ask_save", lambda *_: str(path))
@@ -103,4 +105,4 @@ def test_a_typed_name_is_saved_and_asked_about(tmp_path: Path, monkeypatch: pyte
         assert window.project_controller.may_leave()
         assert asked == [1], "what is typed is a change that would be lost"
 
-    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+    assert run_main([str(mannequin)], script) == 0

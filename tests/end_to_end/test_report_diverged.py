@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from window_tools import Script, run_main, settled, undrawn
 
@@ -11,7 +13,7 @@ from core.garment.elastic_library import find_elastic
 pytestmark = pytest.mark.usefixtures("empty_house")
 
 
-def test_of_a_run_that_ran_away_there_is_no_sheet_and_no_light() -> None:
+def test_of_a_run_that_ran_away_there_is_no_sheet_and_no_light(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
@@ -40,4 +42,4 @@ def test_of_a_run_that_ran_away_there_is_no_sheet_and_no_light() -> None:
         yield desk.page.does["pdf"].isEnabled
         assert desk.page.state.text() == ""
 
-    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+    assert run_main([str(mannequin)], script) == 0

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hand_tools import PLAIN, SHIFT, move, press, release
@@ -145,7 +147,7 @@ def a_picture_is_saved_without_the_handle(window: MainWindow) -> None:
     assert shown == [True, False, True]
 
 
-def test_a_panel_that_was_folded_is_folded_at_the_next_start() -> None:
+def test_a_panel_that_was_folded_is_folded_at_the_next_start(mannequin: Path) -> None:
     def fold(window: MainWindow) -> Script:
         yield settled(window)
         undrawn(window)
@@ -167,7 +169,7 @@ def test_a_panel_that_was_folded_is_folded_at_the_next_start() -> None:
         assert not window.sections_controller.panel.is_folded
 
     for script in (fold, unfold, look):
-        run_main(["resources/samples/mannequin.ply"], script)
+        run_main([str(mannequin)], script)
 
 
 class Heard(QObject):

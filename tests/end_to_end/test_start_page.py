@@ -23,6 +23,7 @@ from app.gui.features.project.recent_files import (
     remember_file,
 )
 from app.gui.main_window import MainWindow
+from app.presenters.samples import sample_path
 from core.garment.assessment import LEVELS
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -39,7 +40,7 @@ def at_start(window: MainWindow) -> bool:
 
 @pytest.mark.usefixtures("fine_mannequin")
 def test_the_first_start_leads_through_the_sample_and_later_ones_go_on(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, person: Path
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     saved, gone = tmp_path / "customer 0412.busk", tmp_path / "customer 0340.busk"
     answers = iter(["", str(saved)])
@@ -74,7 +75,7 @@ def test_the_first_start_leads_through_the_sample_and_later_ones_go_on(
         assert not at_start(window)
         assert window.session.path == saved
         assert window.rail.current() == "lines", "a project was looked at when it was a scan"
-        window.project_controller.open_file(str(person))
+        window.project_controller.open_file(str(sample_path("person")))
         yield lambda: window.session.name == "person"
         assert recent_files() == [str(saved)], "samples can always be had"
         window.start_controller.show_page()

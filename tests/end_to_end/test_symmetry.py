@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from shapes import SAMPLES
 from window_tools import Script, run_main, settled, undrawn
 
 import app.gui.features.symmetry.controller as desk_module
@@ -20,7 +20,6 @@ from core.control_mesh.template import read_template
 from core.document.split_lines import split
 
 pytestmark = pytest.mark.usefixtures("empty_house")
-PERSON = [str(SAMPLES / "person.ply")]
 SIDES = ("left", "right")
 
 
@@ -59,7 +58,9 @@ def told(window: MainWindow) -> BeforeAfter:
     return compare_sides(frame.stages, frame.control_points)
 
 
-def test_the_card_tells_what_differs_shows_where_and_makes_it_even(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_card_tells_what_differs_shows_where_and_makes_it_even(
+    person: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def script(window: MainWindow) -> Script:
         yield from opened(window)
         shows_the_map(window)
@@ -68,7 +69,7 @@ def test_the_card_tells_what_differs_shows_where_and_makes_it_even(monkeypatch: 
         yield from leaves_what_is_not_worth_it(window)
         yield from makes_even(window, monkeypatch)
 
-    run_main(PERSON, script)
+    run_main([str(person)], script)
 
 
 def tells_and_fades(window: MainWindow) -> Script:
@@ -152,7 +153,7 @@ def makes_even(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
         window.session.design,
     )
     assert card.hint.text() == "Balancing unlinks left and right: Full bust, Mid-bust."
-    count = window.session.undo_stack.count()
+    count, uneven = window.session.undo_stack.count(), -told(window).after.higher
     for end in (desk.leave, desk.apply):
         card.make.click()
         yield lambda: desk.is_tried_on and not desk.work.at_work
@@ -161,10 +162,10 @@ def makes_even(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
             ("left further out", 0.0),
         ]
         assert {"lift", "out"} <= set(desk.card.wishes), "what moves besides is seen"
-        assert desk.card.note.text() == "Left and right separated: Full bust, Mid-bust"
+        assert desk.card.note.text() == "Left and right unlinked: Full bust, Mid-bust"
         first, *nearer = desk.card.answer.text().splitlines()
         assert first in ("All targets reached.", "Not reachable. Closest result:")
-        assert nearer[0].startswith("Right higher: 11.8 → "), "from where to where, with no sign"
+        assert nearer[0].startswith(f"Right higher: {uneven:.1f} → "), "from where to where, with no sign"
         assert "Mid-bust (left) 95.0 → " in desk.card.changes.text()
         assert desk.card.price.text().startswith("Trade-off: ") != desk.card.price.isHidden()
         assert window.session.design is before, "seen, not taken"
@@ -179,7 +180,7 @@ def makes_even(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
     assert after is not None
     assert after.active_lines() == {f"{line} {side}" for line in ("mid-bust", "full-bust") for side in SIDES}
     assert window.session.undo_stack.count() == count + 1
-    asked = "Left and right separated: Full bust, Mid-bust · Targets: Left higher than right 0.0 mm"
+    asked = "Left and right unlinked: Full bust, Mid-bust · Targets: Left higher than right 0.0 mm"
     assert window.session.undo_stack.undoText().startswith(asked)
     window.actions_.undo.trigger()
     yield settled(window)
@@ -253,6 +254,7 @@ def parted_elsewhere(window: MainWindow) -> Script:
 
 
 def test_an_even_body_has_nothing_to_be_made_even_and_a_line_is_split_all_the_same(
+    mannequin: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     asked: list[object] = []
@@ -272,4 +274,4 @@ def test_an_even_body_has_nothing_to_be_made_even_and_a_line_is_split_all_the_sa
         assert len(asked) == 1
         yield from splits(window)
 
-    run_main([str(SAMPLES / "mannequin.ply")], script)
+    run_main([str(mannequin)], script)

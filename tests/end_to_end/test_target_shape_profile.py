@@ -64,7 +64,7 @@ def wishes_what_is_dragged(window: MainWindow) -> Script:
     assert drawn.steps[middle] == pytest.approx([0.0, -12.0 * scale], abs=0.2 * 12.0 * scale)
     assert desk.answer.reply is not None
     assert not desk.answer.question.hurried
-    assert "Also changes: Bust point" in desk.card.price.text(), "what is free may move as well"
+    assert "Other changes: Bust point" in desk.card.price.text(), "what is free may move as well"
     words = desk.card.wishes["profile left"].now.text()
     assert words.startswith("mean deviation ")
     off = np.array([desk.answer.reply.reached[goal.name] - goal.value for goal in desk.goals()])

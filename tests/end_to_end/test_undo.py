@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from window_tools import Script, points, run_main, settled, undrawn
@@ -11,7 +13,7 @@ from app.gui.main_window import MainWindow
 pytestmark = pytest.mark.usefixtures("empty_house")
 
 
-def test_an_undo_before_the_answer_waits_for_its_own() -> None:
+def test_an_undo_before_the_answer_waits_for_its_own(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
         undrawn(window)
@@ -26,4 +28,4 @@ def test_an_undo_before_the_answer_waits_for_its_own() -> None:
         assert np.allclose(points(window), before)
         assert session.frame.stages.design is session.design
 
-    run_main(["resources/samples/mannequin.ply"], script)
+    run_main([str(mannequin)], script)

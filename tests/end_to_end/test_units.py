@@ -27,7 +27,7 @@ from core.document.storage.project_file import save_project
 from core.garment.elastic_library import built_in
 from core.pipeline.build import build
 
-pytestmark = pytest.mark.usefixtures("empty_house", "landmarks_known")
+pytestmark = pytest.mark.usefixtures("empty_house", "landmarks_known", "few_elastics")
 
 WRITTEN = ("text", "toolTip", "accessibleName", "accessibleDescription", "whatsThis", "statusTip")
 IN_MM = re.compile(r"(?<![A-Za-z])mm(?![A-Za-z])|millimetre|ミリ", re.IGNORECASE)
@@ -36,7 +36,7 @@ MEANT = re.compile(
     r"|in mm, z-up|mm、z が上|In mm, the trunk girth|mm では胴まわり"  # as files hold it
     r"|points in mm|制御点の表（mm）|in millimetres\.|プロッター用（mm）"
     r"|−20mm, 440mm|−20mm、440mm"  # what can be typed, whatever unit is shown
-    r"|constant per millimetre|1 ミリごとに"  # how cables answer
+    r"|constant force per millimetre|1 ミリごとに"  # how cables answer
 )
 
 

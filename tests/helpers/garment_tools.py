@@ -25,8 +25,10 @@ def choose(window: MainWindow, line: str, elastic: str) -> Script:
 
 def pick(window: MainWindow, elastic: str) -> Script:
     """Choose in the chooser that is open, once the effect is computed."""
-    yield from mark(window, elastic)
-    chooser_of(window).use.click()
+    chooser = chooser_of(window)
+    chooser.set_current([view.title for view in chooser.views()].index(elastic))
+    yield chooser.use.isEnabled
+    chooser.use.click()
 
 
 def mark(window: MainWindow, elastic: str) -> Script:

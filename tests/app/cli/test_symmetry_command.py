@@ -84,5 +84,5 @@ def test_invalid_options_are_refused(tmp_path: Path, capsys: pytest.CaptureFixtu
         assert sentence in capsys.readouterr().err
     still = (*PERSON[:-1], "under-bust=95%")
     assert main(["symmetry", *still, "--balance"]) == BAD_INPUT
-    assert "one side alone" in capsys.readouterr().err
+    assert "one side independently" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())

@@ -10,7 +10,7 @@ import re
 from pathlib import Path
 
 import pytest
-from coarse_bodies import coarse_mannequin
+from coarse_bodies import coarse_body
 
 from app.cli.main import main
 
@@ -20,7 +20,7 @@ WORN = ("--line", "mid-bust=70%", "--elastic", "mid-bust=picot 10")
 
 @pytest.fixture(scope="module")
 def mannequin(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return coarse_mannequin(tmp_path_factory.mktemp("coarse"))
+    return coarse_body("mannequin", tmp_path_factory.mktemp("coarse"))
 
 
 def test_values_are_printed_with_their_uncertainty(

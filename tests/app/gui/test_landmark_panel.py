@@ -105,7 +105,7 @@ def test_a_point_by_hand_far_from_a_sure_rule_says_so_and_a_near_one_does_not() 
     assert mark.off == pytest.approx(np.linalg.norm(mark.position - place))
     assert str(mark.rule) == f"Placed manually, {mark.off:.0f} mm from the detected position."
     said = landmark_view(mark.name, mark)
-    assert (said.tone, said.state, said.weak) == ("warn", f"manual, {mark.off:.0f} mm off", True)
+    assert (said.tone, said.state, said.weak) == ("warn", f"manual, moved {mark.off:.0f} mm", True)
     again = landmark_view(mark.name, mark, {spot_of(mark)})
     assert (again.tone, again.weak) == ("accent", False), "the designer has said that it is right"
     assert near.points["bust_point_left"].off == 0.0

@@ -67,6 +67,6 @@ def test_a_length_says_that_no_plus_minus_is_worked_out() -> None:
     known = OutputUncertainties(doubts, np.zeros(1), 0.2, 2.0, SOURCES, {}, "sliding")
     girth, line = with_uncertainty([GIRTH, LINE], known, faint=False)
     assert line.off == ()
-    assert "only the bust points have a ±" in line.told()
+    assert "only those of the bust points have an uncertainty" in line.told()
     assert girth.off[1] is not None
     assert "lengths of lines" not in girth.told()

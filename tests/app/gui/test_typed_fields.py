@@ -40,7 +40,7 @@ def test_what_is_no_length_is_refused(text: str) -> None:
     with pytest.raises(
         ValueError,
         match=r"is not a valid length|of its original length"
-        r"|Enter a length from|For that full length, enter 380.0mm",
+        r"|Enter a length from|Enter a front length: 380.0mm",
     ):
         number_field("%")._read(text)
 

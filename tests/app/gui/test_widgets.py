@@ -242,7 +242,7 @@ def test_a_measured_line_has_no_slider(lines: LinesPanel) -> None:
     assert row.slider.isHidden()
     assert row.percent.isHidden()
     said = [label.text() for label in row.findChildren(QLabel) if label.isVisible()]
-    assert any("tab Garment" in each for each in said)
+    assert any("Garment tab" in each for each in said)
     assert "390.0 mm" in said
 
 

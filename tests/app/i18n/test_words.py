@@ -106,9 +106,9 @@ def test_words_of_the_window_name_millimetres_only_where_they_are_meant() -> Non
     in_files |= {each for each in shown if "width_mm" in each or "height_mm" in each or "{number} mm" in each}
     chosen = {"Millimetres", "{line}: length in millimetres"}
     typed = {each for each in shown if each.startswith(TYPED)}
-    typed |= {each for each in shown if re.search(r"a height in mm|0 mm or more|\}mm\.", each)}
-    in_the_model = {each for each in shown if "constant per millimetre" in each}
-    in_the_model |= {each for each in shown if each.startswith("Use the heights of the body in Busk")}
+    typed |= {each for each in shown if re.search(r"a height in mm|0 mm or more|\}mm gives", each)}
+    in_the_model = {each for each in shown if "constant force per millimetre" in each}
+    in_the_model |= {each for each in shown if each.startswith("Use heights on the body as shown in Busk")}
     named = {each for each in shown if re.search(r"(?<![A-Za-z{])mm(?![A-Za-z])|[Mm]illimetre", each)}
     assert sorted(named - in_files - chosen - typed - in_the_model) == []
 

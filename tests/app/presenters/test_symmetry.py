@@ -134,7 +134,7 @@ def evened(**changes: object) -> InverseResult:
 EVEN = (Goal("left higher", 0.0), Goal("left further out", 0.0), Goal("lift", 6.9))
 BY_TURNS = (
     "Values of the exact solution, which conserves the volume of each breast. Iterations conserve "
-    "the combined volume: values in Measurements may differ by up to 1 mm and 10 to 20 ml."
+    "the combined volume: in Measurements, lengths may differ by up to 1 mm and volumes by 10 to 20 ml."
 )
 NOW = {"left higher": -11.5, "left further out": -0.1, "lift": 6.9, "out": 1.2}
 

@@ -162,17 +162,14 @@ def test_what_a_hand_draws_is_met_on_average() -> None:
         return reply(reached=reached)
 
     near = off_by(-0.1, 3.0)
-    assert result_text(near, goals) == "Reached with a deviation of 0.4 mm on average, 3.0 mm maximum."
+    assert result_text(near, goals) == "Reached with a mean deviation of 0.4 mm, maximum 3.0 mm."
     assert (is_near(near, goals), is_met(near, goals)) == (True, False)
     with using_language("ja"):
         assert result_text(near, goals) == "平均 0.4 mm、最大 3.0 mm のずれで到達できます。"
     now = {goal.name: 200.9 for goal in goals}
-    assert (
-        result_text(near, goals, None, now)
-        == "Reached with a deviation of 0.4 mm on average, 3.0 mm maximum."
-    )
+    assert result_text(near, goals, None, now) == "Reached with a mean deviation of 0.4 mm, maximum 3.0 mm."
     now = {goal.name: 200.5 for goal in goals}
-    said = "Closest result: deviation 0.4 mm on average, 3.0 mm maximum (before: 0.5 mm)."
+    said = "Closest result: mean deviation 0.4 mm, maximum 3.0 mm (before: 0.5 mm)."
     assert result_text(near, goals, None, now) == said, "what hardly comes nearer is not met"
     assert not is_near(off_by(1.1, 1.0), goals), "a millimetre is seen"
     assert not is_near(off_by(0.1, 5.2), goals), "nor is one place far off"
@@ -193,7 +190,7 @@ def test_of_a_drawn_profile_it_is_told_what_it_was_off_and_how_the_bust_point_mo
     assert said.startswith(
         "Not reachable. Closest result: profile deviation 3.5 mm on average (6.0 mm maximum), 2.0 mm before. "
     )
-    assert bust_movement_text(goals, now, then) == "Also changes: Bust point lift +7.3 → +6.5 mm"
+    assert bust_movement_text(goals, now, then) == "Other changes: Bust point lift +7.3 → +6.5 mm"
     with using_language("ja"):
         assert "（変更前 2.0 mm）。理由：" in result_text(off, goals, None, now)
         assert bust_movement_text(goals, now, then) == "あわせて変わる値：BPの上昇 +7.3 → +6.5 mm"

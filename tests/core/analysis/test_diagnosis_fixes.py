@@ -107,7 +107,7 @@ def test_of_a_double_change_it_is_known_what_each_part_ends() -> None:
     assert found.best_fix.change.setting[0] == "gain"
     assert found.stages.design.volume == found.best_fix.change.design.volume == "conventional"
     assert (found.best_fix.option_result, found.best_fix.lengths_result) == ("vibrating", "folded")
-    assert "The gain resolves the oscillation; the length resolves the fold" in details(found)
+    assert "The gain resolved the oscillation; the length resolved the fold" in details(found)
     alike = replace(found, fixes=(replace(found.best_fix, lengths_result="vibrating"),))
     assert "One change alone is not enough: status “Oscillating”" in details(alike)
 

@@ -137,7 +137,7 @@ def test_without_a_line_for_one_side_it_is_refused(plain: Stages) -> None:
         plain.design.with_line("under-bust", 0.95),
         plain.design.with_line("mid-bust", 0.95).with_line_settings(LineSettings("mid-bust", locked=True)),
     ):
-        with pytest.raises(UserError, match="one side alone"):
+        with pytest.raises(UserError, match="one side independently"):
             balance_sides(build(design, plain))
 
 

@@ -9,7 +9,7 @@ from math import hypot, tau
 
 import numpy as np
 import pytest
-from coarse_bodies import coarse_mannequin
+from coarse_bodies import coarse_body
 
 from app.presenters.samples import sample_design
 from core.analysis.uncertainty.estimate import SLIDING, WAIST, UncertaintyEstimator, cautions
@@ -51,7 +51,7 @@ SURE = replace(default_uncertainty(), unsure_landmark_mm=0.0)
 
 @pytest.fixture(scope="module")
 def plain(tmp_path_factory: pytest.TempPathFactory) -> Stages:
-    file, design = coarse_mannequin(tmp_path_factory.mktemp("coarse")), sample_design()
+    file, design = coarse_body("mannequin", tmp_path_factory.mktemp("coarse")), sample_design()
     return build(replace(design, scan=replace(design.scan, path=str(file))).with_line("mid-bust", 0.95))
 
 

@@ -130,7 +130,7 @@ def test_fields_take_their_types_and_their_defaults() -> None:
         ({}, "'whole.parts' is missing in this file."),
         ({"parts": {}}, "'whole.parts' in this file is not a list."),
         ({"parts": ["a"]}, r"'whole.parts[0]' in this file is not an object."),
-        ({"parts": [{"name": 3}]}, "'whole.parts[0].name' in this file is not a text."),
+        ({"parts": [{"name": 3}]}, "'whole.parts[0].name' in this file is not text."),
         (
             {"parts": [{"name": "a", "at": [1]}]},
             "'whole.parts[0].at' in this file is not a list of 2 values.",

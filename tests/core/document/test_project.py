@@ -129,7 +129,7 @@ def test_a_disk_that_fills_up_leaves_the_old_file_whole(project, monkeypatch, me
         write(archive, name, data)
 
     monkeypatch.setattr(zipfile.ZipFile, "writestr", full)
-    with pytest.raises(ProjectError, match=r"No space left.*free disk space"):
+    with pytest.raises(ProjectError, match=r"No space left.*free up disk space"):
         save_project(project, Document.single(DESIGN), SCAN, PICTURE)
     assert project.read_bytes() == before
     assert left_over(project.parent) == ["anna.busk"]

@@ -54,7 +54,7 @@ def test_one_file_is_not_written_by_two_at_once(tmp_path: Path) -> None:
 def test_a_really_full_device(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(core.files.atomic_write, "_new_partial", lambda *_: Path("/dev/full"))
     monkeypatch.setattr(Path, "unlink", lambda self, missing_ok: None)
-    with pytest.raises(ProjectError, match=r"No space left.*free disk space"):
+    with pytest.raises(ProjectError, match=r"No space left.*free up disk space"):
         write(tmp_path / "table.csv")
     assert left_over(tmp_path) == []
 

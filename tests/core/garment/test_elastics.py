@@ -57,9 +57,9 @@ def test_beyond_its_end_a_curve_goes_on_for_those_who_look_at_its_reach():
     [
         ({"curve": ((0.0, 0.0), (0.2, 1.0), (0.1, 2.0))}, "decreases after 20 % and 1 N"),
         ({"curve": ((0.0, 0.0), (0.2, 1.0), (0.3, 1.0))}, "decreases after 20 % and 1 N"),
-        ({"curve": ((0.0, 0.5), (0.2, 1.0))}, "is not a curve"),
-        ({"curve": ((0.0, 0.0),)}, "is not a curve"),
-        ({"curve": ((0.0, 0.0), (0.2, float("nan")))}, "is not a curve"),
+        ({"curve": ((0.0, 0.5), (0.2, 1.0))}, "is not valid"),
+        ({"curve": ((0.0, 0.0),)}, "is not valid"),
+        ({"curve": ((0.0, 0.0), (0.2, float("nan")))}, "is not valid"),
         ({"curve": ((0.0, 0.0), (20.0, 1.0))}, "ends at 2000 %.*units"),
         ({"width_mm": 0.0}, "width 0 mm of roll 7 is out of range"),
         ({"allowance_mm": -1.0}, "allowance -1 mm"),

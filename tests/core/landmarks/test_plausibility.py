@@ -188,5 +188,5 @@ def test_an_angular_trunk_is_refused():
     middle, half = np.array([0.0, -90.0]), np.array([150.0, 100.0])
     flat = (v[:, :2] - middle) / half
     v[:, :2] = middle + flat / np.abs(flat).max(axis=1, keepdims=True).clip(1e-9) * half
-    with pytest.raises(LandmarkError, match="block"):
+    with pytest.raises(LandmarkError, match="rectangular"):
         require_not_angular(measure_build(sample().moved(v), marks), marks)

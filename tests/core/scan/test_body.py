@@ -69,7 +69,7 @@ def test_a_scan_in_metres_with_all_kinds_of_dirt_gives_the_clean_body(tmp_path):
     assert body.pose.unit == "m"
     assert tuple(map(str, body.repairs)) == (
         "Removed 1 vertex without a position.",
-        "Removed 1 vertex outside any face.",
+        "Removed 1 vertex not belonging to any face.",
         "Removed 8 faces with zero area or listed twice.",
         "Removed 1 small component separate from the body.",
         f"Reversed {flipped.sum():,} faces to face outward.",
@@ -143,7 +143,7 @@ def test_a_fin_goes_and_a_flap_at_the_border_stays():
     flap = [border[1], border[0], len(vertices) + 1]
     vertices = np.concatenate([vertices, 1.2 * vertices[inner[:1]], 1.1 * vertices[border[:1]]])
     _, mended, sentences = repair(vertices, np.concatenate([faces, [fin, flap]]))
-    assert "Removed 1 face shaped like a fin." in plain(sentences)
+    assert "Removed 1 face from fin-shaped parts." in plain(sentences)
     assert len(mended) == len(faces) + 1
 
 

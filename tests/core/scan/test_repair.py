@@ -202,7 +202,7 @@ def test_a_spike_and_a_vertex_far_away_go():
     vertices[90] = [4e5, 0.0, 0.0]
     kept, mended, sentences = repair(vertices, faces)
     assert str(sentences[0]) == "Removed 1 vertex far from all others."
-    assert "Removed 1 vertex shaped like a spike." in plain(sentences)
+    assert "Removed 1 vertex from spike-shaped parts." in plain(sentences)
     assert len(faces) - 12 <= len(mended) <= len(faces) - 10
     assert np.linalg.norm(kept, axis=1).max() < 100.01
 

@@ -108,9 +108,10 @@ class _Offer:
     def known_in(self, mode: str) -> dict[int, ElasticOption]:
         return self.known.setdefault(mode, {})
 
-    def missing(self, modes: tuple[str, ...]) -> tuple[str, int] | None:
-        """Return which mode and place is computed next."""
-        places = ((mode, at) for mode in modes for at in range(len(self.entries)))
+    def missing(self, modes: tuple[str, ...], marked: int) -> tuple[str, int] | None:
+        """Return which mode and place is computed next: no elastic, the ``marked`` one, and the others."""
+        order = sorted(range(len(self.entries)), key=lambda at: (at != 0, at != marked))
+        places = ((mode, at) for mode in modes for at in order)
         return next(((mode, at) for mode, at in places if at not in self.known_in(mode)), None)
 
 
@@ -179,10 +180,12 @@ class ElasticOffer(QObject):
 
     def _fill(self) -> None:
         """Compute what is not known yet, one elastic after the other; those of the mode shown come first."""
-        offer = self._offer
-        held = offer is not None and offer.asked.design.line_hold == "held"
-        missing = offer.missing((self.mode,) if held else _from(self.mode)) if offer is not None else None
-        if offer is None or missing is None:
+        offer, chooser = self._offer, self.chooser
+        if offer is None or chooser is None:
+            return
+        held = offer.asked.design.line_hold == "held"
+        missing = offer.missing((self.mode,) if held else _from(self.mode), chooser.current)
+        if missing is None:
             return
         (mode, at), asked = missing, offer.asked
         elastic = offer.entries[at][1]
