@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,15 +11,12 @@ from PySide6.QtGui import QGuiApplication
 from app.gui.widgets.file_dialogs import ask_save
 from app.i18n.catalog import tr
 from core.errors import UserError
-from core.export.csv_cells import ENCODING, cell
+from core.export.csv_cells import Table, cell, write_table
 from core.files.atomic_write import atomic_path
 
 if TYPE_CHECKING:
     from app.gui.context import AppContext
     from app.gui.session.notifications import Notifications
-
-Table = Sequence[Sequence[str]]
-"""Cells row by row, a heading first."""
 
 
 def write_file(
@@ -58,9 +54,4 @@ def save_table(context: AppContext, table: Table, title: str, ending: str) -> No
     name = f"{context.session.name}-{ending}.csv"
     path = ask_save(context.window, title, name, "CSV (*.csv)", ".csv")
     if path:
-        write_file(context.notifications, f"table of {ending}", path, lambda to: _write_table(to, table))
-
-
-def _write_table(path: Path, table: Table) -> None:
-    with atomic_path(path) as partial, open(partial, "w", newline="", encoding=ENCODING) as file:
-        csv.writer(file).writerows([cell(each) for each in row] for row in table)
+        write_file(context.notifications, f"table of {ending}", path, lambda to: write_table(to, table))

@@ -11,7 +11,6 @@ from core.geometry.mesh import Floats
 from core.measurements.uncertain_value import LIFT, OUT, OutputUncertainties
 from core.mechanics.iteration import Observables
 from core.pipeline.frame import Frame
-from core.pipeline.observables import Tapes
 
 APART = 1.0
 """Difference above which left and right are given separately [mm]."""
@@ -47,17 +46,6 @@ class BustShift:
 def bust_shift(frame: Frame) -> BustShift:
     """Return how far the bust points of a frame are from where they are on the body before."""
     return shift_between(frame.stages.rest_marks, frame.marks)
-
-
-def bust_girths(frame: Frame) -> tuple[float, float]:
-    """Return the girth at the level of the bust points on the original and on the reshaped body [mm]."""
-    stages, rest = frame.stages, frame.stages.rest_marks
-    binding, moving = stages.binding, stages.moving
-    height = 0.5 * (rest.bust_point_left_z + rest.bust_point_right_z)
-    places = binding.operator.apply(binding.change(frame.control_points), moving.rest)
-    (before,) = Tapes(moving, [height])(moving.rest)
-    (after,) = Tapes(moving, [height + bust_shift(frame).mean.up])(places)
-    return float(before), float(after)
 
 
 def shift_between(rest: Observables, now: Observables) -> BustShift:

@@ -81,12 +81,19 @@ def _drawings() -> tuple[Export, ...]:
             "strips",
             tr(
                 "Flat strip of each active line at full scale with marks; cut length where an elastic is "
-                "chosen. The cut list as CSV is on the Garment tab."
+                "chosen."
             ),
             {
                 "svg": tr("For printing at full scale: Inkscape, Illustrator, cutters, browsers."),
                 "dxf": tr("For CAD, pattern programs and plotters, in millimetres."),
             },
+        ),
+        Export(
+            "cut",
+            tr("Cut list"),
+            "bands",
+            tr("Elastic, cut length, tension and contact pressure of each active line."),
+            {"csv": _table()},
         ),
     )
 

@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 from app.i18n.catalog import listed, number, tr
 from app.i18n.lengths import length, using_unit
+from app.presenters.cut_list import as_table
 from app.presenters.export import ExportOptions, ExportSource
 from app.presenters.measurements import measure_title
 from app.presenters.messages import render
 from core import __version__
 from core.errors import UserError
 from core.export.band_geometry import line_curves, strips
+from core.export.csv_cells import write_table
 from core.export.drawings import CURVE_FORMATS, STRIP_FORMATS, drawing_kind, write_curves, write_strips
 from core.export.measurement_files import (
     LENGTHS_ALONE,
@@ -27,6 +29,8 @@ from core.export.measurement_files import (
 from core.export.mesh import kind_of, write_control_points, write_mesh
 from core.export.solution_report import write_iterations
 from core.export.units_and_axes import FileSpace, space_of
+from core.garment.cut_list import cut_list
+from core.garment.pressure_list import pressure_list
 from core.geometry.mesh import Mesh
 from core.messages import Message
 from core.progress import Pieces, Progress, part_of
@@ -154,6 +158,14 @@ def _strip_text(message: Message) -> str:
         return render(message)
 
 
+def _cut(path: str, outcome: ExportSource, manner: ExportOptions) -> ExportPreview:
+    stages, points = outcome.stages, outcome.control_points
+    cuts = cut_list(stages, points)
+    table = as_table(stages, cuts, pressure_list(stages, points))
+    told = listed(row[0] for row in table[1:]) or tr("No active lines")
+    return ExportPreview(told, tr("in {unit}").format(unit="mm"), lambda at, _, hear: write_table(at, table))
+
+
 def _measures(path: str, outcome: ExportSource, manner: ExportOptions) -> ExportPreview:
     when, unit = "before" if manner.before else "after", manner.unit or USUAL_UNIT
     rows = [row for row in outcome.measures if row[when] is not None]
@@ -258,6 +270,7 @@ WAYS: dict[
     "control": (_control_kind, _control),
     "lines": (lambda path, _: drawing_kind(path, CURVE_FORMATS), _lines),
     "flat": (lambda path, _: drawing_kind(path, STRIP_FORMATS), _flat),
+    "cut": (_table_kind, _cut),
     "measures": (lambda path, manner: measurement_file_kind(path, manner.unit or USUAL_UNIT), _measures),
     "picture": (_picture_kind, _picture),
     "turntable": (_turntable_kind, _turntable),

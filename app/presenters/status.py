@@ -152,7 +152,12 @@ def _effort(frame: Frame) -> str:
     exact, turns = frame.stages.design.volume == "exact", frame.verdict.iterations
     if exact and turns == 1:
         return tr("Solved in one Newton iteration")
-    text = tr("Solved in {count} Newton iterations") if exact else tr("Converged in {count} iterations")
+    if exact:
+        text = tr("Solved in {count} Newton iterations")
+    elif frame.verdict.motion == "settled":
+        text = tr("Converged in {count} iterations")
+    else:
+        text = tr("Not converged after {count} iterations")
     return text.format(count=number(turns, 0))
 
 

@@ -6,8 +6,13 @@ import csv
 import io
 import re
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 
 from core.document.printable_name import printable
+from core.files.atomic_write import atomic_path
+
+Table = Sequence[Sequence[str]]
+"""Cells row by row, a heading first."""
 
 ENCODING = "utf-8-sig"
 """With the mark that tells spreadsheets that letters beyond English follow."""
@@ -32,6 +37,12 @@ def cell(value: object) -> object:
     if isinstance(value, str):
         return f"'{printable(value)}" if _FORMULA.match(value) else printable(value)
     return value
+
+
+def write_table(path: Path, table: Table) -> None:
+    """Write a table as comma-separated values, all of it or nothing. Raises UserError."""
+    with atomic_path(path) as partial, open(partial, "w", newline="", encoding=ENCODING) as file:
+        csv.writer(file).writerows([cell(each) for each in row] for row in table)
 
 
 def csv_text(columns: Sequence[str], rows: Iterable[Iterable[object]]) -> str:

@@ -122,17 +122,20 @@ def _run(shown: ShownState, running: bool) -> Iterator[Finding]:
         )
     elif verdict.motion == "vibrating":
         message = Message("The solver does not converge: it oscillates.")
-        yield Finding("convergence", BAD, message, Message("Diagnose the design."))
+        yield Finding("convergence", BAD, message, Message("Use “Diagnose design” to find fixes."))
     elif verdict.motion == "settling" and not running:
         yield Finding(
-            "convergence", BAD, Message("The solver has not converged."), Message("Diagnose the design.")
+            "convergence",
+            BAD,
+            Message("The solver has not converged."),
+            Message("Use “Diagnose design” to find fixes."),
         )
     if verdict.motion not in ("diverging", "vibrating"):
         yield from _shape(verdict)
 
 
 def _shape(verdict: Convergence) -> Iterator[Finding]:
-    condition, action = verdict.condition, Message("Diagnose the design.")
+    condition, action = verdict.condition, Message("Use “Diagnose design” to find fixes.")
     if condition is None:
         return
     ends = (100.0 * (each - 1.0) for each in (condition.shortest, condition.longest))

@@ -92,6 +92,17 @@ def of_subject(
     return _with_own(_ordered(usual), subject, own)
 
 
+def bust_girths(stages: Stages, control_points: Points) -> tuple[float, float] | None:
+    """Return the bust girth of the original body and as ``control_points`` (n, 3) reshape it [mm].
+
+    It is that of ``before_after``, or None where the scan has no trunk at that level.
+    """
+    rest = original_subject(stages.body.smoothed, stages.landmarks)
+    levels = [each.levels.get("bust") for each in (rest, reshaped_subject(rest, stages, control_points))]
+    before, after = (level.tape if level else 0.0 for level in levels)
+    return (before, after) if before and after else None
+
+
 def custom_before_after(
     stages: Stages, control_points: Points, own: CustomMeasurement
 ) -> tuple[Measure, Measure]:

@@ -146,7 +146,7 @@ def test_everything_that_is_offered_is_written_in_every_format(
                 window.notices.clear()
 
     run_main([], script)
-    assert len(list(tmp_path.iterdir())) == 4 + 5 + 2 + 2 + 4 + 1
+    assert len(list(tmp_path.iterdir())) == 4 + 5 + 2 + 2 + 1 + 4 + 1
 
 
 def test_what_cannot_be_exported_says_why_and_is_not_offered(tmp_path: Path) -> None:

@@ -135,7 +135,7 @@ def test_what_fails_is_told_and_waits_no_longer(monkeypatch: pytest.MonkeyPatch)
 def test_the_bust_girth_of_the_strip_is_measured_beside_the_window(monkeypatch: pytest.MonkeyPatch) -> None:
     threads = []
 
-    def measured(_: object) -> tuple[float, float]:
+    def measured(*_: object) -> tuple[float, float]:
         threads.append(threading.current_thread())
         return 900.0, 880.0
 

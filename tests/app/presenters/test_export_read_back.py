@@ -227,6 +227,7 @@ def test_the_window_offers_what_can_be_written_and_nothing_else() -> None:
         "control": {*FORMATS, "csv"},
         "lines": set(CURVE_FORMATS),
         "flat": set(STRIP_FORMATS),
+        "cut": {"csv"},
         "measures": set(MEASURE_FORMATS),
         "picture": {"png"},
         "turntable": {"gif", "webp", "png"},

@@ -6,11 +6,11 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from app.presenters.assessment import assessment_view
-from app.presenters.bust_shift import bust_girths
 from app.presenters.status import ConvergenceView, convergence_view
 from core.garment.assessment import assess_with
 from core.garment.cut_list import cut_list
 from core.garment.pressure_list import pressure_list
+from core.measurements.table import before_after, bust_girths
 from core.mechanics.solver_comparison import SolverComparison
 from core.pipeline.build import Stages, build, line_targets
 from core.pipeline.live_solver import Frame, make_frame
@@ -62,7 +62,11 @@ def test_what_a_designer_asks_first_stands_first(built: Callable[[str], Stages])
     frame = make_frame(1, stages, comparison, 0.3)
     pressed = pressure_list(stages, frame.control_points)
     overall = assessment_view(assess_with(frame, cut_list(stages, frame.control_points), pressed))
-    before, after = bust_girths(frame)
+    girths = bust_girths(stages, frame.control_points)
+    assert girths is not None
+    before, after = girths
+    measured = [each["bust_girth"].value for each in before_after(stages, frame.control_points)]
+    assert measured == [before, after], "one girth, wherever it is shown"
     shown = convergence_view(frame, overall, (before, after), pressed).numbers
     assert [name for name, _ in shown] == [
         "Bust point",

@@ -10,11 +10,11 @@ from PySide6.QtCore import QObject, Signal
 from app.gui.session.frame_cache import FrameCache
 from app.i18n.catalog import tr
 from app.presenters.assessment import IDLE, AssessmentView, assessment_view
-from app.presenters.bust_shift import bust_girths
 from app.presenters.status import ConvergenceView, convergence_view, out_of_date
 from core.garment.assessment import BAD, CAUTION, GOOD, PENDING, assess_with
 from core.garment.cut_list import CutList, cut_list
 from core.garment.pressure_list import PressureList
+from core.measurements.table import bust_girths
 from core.pipeline.live_solver import Frame
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ class AssessmentController(QObject):
             context.session,
             context.jobs,
             tr("Measuring bust girth…"),
-            lambda frame, _: bust_girths(frame),
+            lambda frame, _: bust_girths(frame.stages, frame.control_points),
             failed=context.notifications.error,
         )
         self._girths.changed.connect(self.refresh)
