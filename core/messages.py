@@ -34,9 +34,17 @@ class LandmarkName(Name):
     """The name of a landmark."""
 
     context = "landmark"
+    titles: ClassVar[dict[str, str]] = {
+        "fold": "inframammary fold",
+        "lowest": "lowest point",
+        "root inner": "inner breast root",
+        "root outer": "outer breast root",
+    }
+    """English names of keys in project files that are no plain term, before their side."""
 
     def __str__(self) -> str:
-        return self.text.replace("_", " ")
+        stem, _, side = self.text.replace("_", " ").rpartition(" ")
+        return f"{self.titles.get(stem, stem)} {side}".strip()
 
 
 class SettingName(Name):
@@ -49,7 +57,8 @@ class SettingName(Name):
         "member_law": "cable force",
         "firm_chest": "rib-cage support",
         "scaled_normals": "scaling of the distance to the mesh",
-        "dense_volume": "volume of the body",
+        "dense_volume": "conservation of the body volume",
+        "volume_of": "conserved volume",
     }
     """English names of keys in project files that are no plain term."""
 

@@ -194,7 +194,7 @@ def not_balanced_reason(gained: float, lost: float) -> tuple[str, str]:
     text = tr(
         "The active lines cannot reduce the asymmetry further: {gained} gain would move both sides by {lost}."
     )
-    hint = tr("Add other lines: a strap lifts one side only.")
+    hint = tr("Add a line that acts on one side only, such as a strap.")
     return text.format(gained=length(max(gained, 0.0)), lost=length(lost)), hint
 
 

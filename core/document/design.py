@@ -146,7 +146,7 @@ class Design:
             (
                 (self.template, TEMPLATES, SettingName("template")),
                 (self.volume, CONTROLS, SettingName("volume control")),
-                (self.weights, WEIGHTS, SettingName("t-FFD weights")),
+                (self.weights, WEIGHTS, SettingName("t-FFD weighting")),
                 *((getattr(self, key), words, SettingName(key)) for key, words in CHOICES.items()),
             )
         )

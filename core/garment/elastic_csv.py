@@ -69,7 +69,7 @@ def elastic_from_csv(text: str, name: str, width_mm: float | None = None) -> Ela
     if width is None:
         raise LineError(
             Message("The table {name} does not specify the width of the elastic.", name=name),
-            Message("Add a line such as '# width_mm: 12' before the headings."),
+            Message("Add a line of text such as '# width_mm: 12' before the headings."),
         )
     allowance = ALLOWANCE
     if "allowance" in told:

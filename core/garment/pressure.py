@@ -37,7 +37,7 @@ LEAST_OVER = 20.0
 
 LEFT_OUT = (
     Message("Estimate, probably too high: tissue yields under a band, and sensors measured up to 42 % less."),
-    Message("Friction is not included, such as the friction that keeps a band from slipping."),
+    Message("Friction, such as the friction that keeps a band from slipping, is not included."),
     Message(
         "Only the tension along the band is included: fabric stretched in both directions has a "
         "higher contact pressure."

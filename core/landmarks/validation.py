@@ -185,14 +185,15 @@ def _warnings(side: str, rule: Message, missing: bool) -> list[Message]:
     if rule in HIDDEN:
         return [
             Message(
-                "The scan has a hole at the inframammary fold of the {side} breast: its height is estimated.",
+                "The scan has a hole at the inframammary fold of the {side} breast: the height of the fold "
+                "is estimated.",
                 side=SideName(side),
             )
         ]
     if rule == UNSEEN:
         return [
             Message(
-                "No inframammary fold detected under the {side} breast: its height is estimated.",
+                "No inframammary fold detected under the {side} breast: the height of the fold is estimated.",
                 side=SideName(side),
             )
         ]

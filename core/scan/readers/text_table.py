@@ -47,8 +47,8 @@ def blocks(name: str, data: bytes, progress: Progress) -> Iterator[bytes]:
         if end <= start:
             raise ScanError(
                 Message(
-                    "{file} contains a line of more than {count} MB. The file is not a scan, or "
-                    "it is damaged.",
+                    "{file} contains a line of text longer than {count} MB. The file is not a scan, or it "
+                    "is damaged.",
                     file=name,
                     count=BLOCK // 1_000_000,
                 ),

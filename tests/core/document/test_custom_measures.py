@@ -33,7 +33,7 @@ def test_own_measures_are_written_as_they_are_read() -> None:
 
 def test_each_says_how_it_is_taken() -> None:
     assert str(GORE.text) == "Custom: straight distance from bust point left to front centre."
-    assert str(RIBS.text) == "Custom: horizontal tape, 30 mm below fold left."
+    assert str(RIBS.text) == "Custom: horizontal tape, 30 mm below inframammary fold left."
     assert (
         str(parse_measurement("Ribs=girth:waist_front+60").text)
         == "Custom: horizontal tape, 60 mm above waist front."

@@ -119,4 +119,4 @@ def test_what_is_wrong_with_placed_points_is_said_in_words(
 
 def test_a_landmark_on_no_skin_is_refused(mannequin: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["detect", str(mannequin), "--landmark", "fold_left=900,0,0"]) == 2
-    assert "landmark fold left is more than 30 mm off the skin" in capsys.readouterr().err
+    assert "landmark inframammary fold left is more than 30 mm off the skin" in capsys.readouterr().err

@@ -36,7 +36,9 @@ class CrashDialog(Dialog):
         super().__init__(parent, tr("An internal error occurred in Busk"), (620, 0))
         self._trace, self._machine = trace, machine
         text = (
-            tr("A copy of your design is stored until you save or discard it: {place}").format(place=kept)
+            tr("A copy of your design is stored until the design is saved or discarded: {place}").format(
+                place=kept
+            )
             if kept
             else tr("Your design is still open. Save it under a new name.")
         )
