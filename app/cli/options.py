@@ -25,7 +25,7 @@ SWITCHES = ("scaled_normals", "dense_volume")
 """Settings that are on or off."""
 
 STORED = {"bonded": "glued", "elastic": "spring", "fixed": "held", "integral": "accumulating"}
-"""Values that project files store by another word; both words are accepted."""
+"""Values that project files and code name by another word than command line and window; both are accepted."""
 
 _SHOWN = {stored: shown for shown, stored in STORED.items()}
 LINE_LENGTH_HELP = (

@@ -10,9 +10,8 @@ from PySide6.QtWidgets import QWidget
 
 from app.gui.menus import Menus
 from app.i18n.catalog import LANGUAGES, tr, tr_context
+from app.presenters.model_options import control_texts
 from app.presenters.samples import SAMPLES
-
-CONTROLS = ("adaptive", "conventional", "accumulating", "exact", "none")
 
 _VIEW_MENUS = {
     "compare": ("ghost", "wipe", "side"),
@@ -104,14 +103,7 @@ class Actions(Menus):
         self.own_line = self.add("lines", tr("Add line through points…"), of_document=True)
 
     def _fill_solve(self) -> None:
-        titles = {
-            "adaptive": tr("Adaptive volume control"),
-            "conventional": tr("Conventional volume control"),
-            "accumulating": tr("Integral volume control"),
-            "exact": tr("Exact solution"),
-            "none": tr("No volume control"),
-        }
-        self.controls = self.group("solve", {name: titles[name] for name in CONTROLS})
+        self.controls = self.group("solve", {name: text.menu for name, text in control_texts().items()})
         self.rule("solve")
         self.submenu("solve", "templates", tr("Control mesh"))
         counts = {name: tr("{count} polygons").format(count=name) for name in ("168", "120")}

@@ -51,6 +51,20 @@ class Amount:
         return f"{number(self.scale * value, self.digits)} {self.unit}".strip()
 
 
+@dataclass(frozen=True)
+class ControlText:
+    """What a volume control is called: as an option, in the menu, and beside its curve in the plots.
+
+    ``button`` and ``tip`` are those under the verdict; a control without them is not offered there.
+    """
+
+    option: str
+    menu: str
+    curve: str
+    button: str = ""
+    tip: str = ""
+
+
 Setting = Choice | Amount
 Group = tuple[str, tuple[Setting, ...]]
 
@@ -188,18 +202,47 @@ def control_text(control: str) -> str:
     return tr("Volume control: {control}").format(control=_control().words(control))
 
 
+def control_texts() -> dict[str, ControlText]:
+    """Return the texts of every volume control in the order of lists; ``accumulating`` is called integral."""
+    return {
+        "adaptive": ControlText(
+            tr("Adaptive"),
+            tr("Adaptive volume control"),
+            tr("Adaptive"),
+            tr("Adaptive"),
+            tr("Adaptive: adjusts the volume force at every iteration"),
+        ),
+        "conventional": ControlText(
+            tr("Conventional"),
+            tr("Conventional volume control"),
+            tr("Conventional"),
+            tr("Conventional"),
+            tr("Conventional: volume force proportional to the volume error; may oscillate"),
+        ),
+        "accumulating": ControlText(tr("Integral"), tr("Integral volume control"), tr("Integral")),
+        "none": ControlText(
+            tr("None"),
+            tr("No volume control"),
+            tr("No volume control"),
+            tr("Off"),
+            tr("Volume is not conserved"),
+        ),
+        "exact": ControlText(
+            tr("Exact"),
+            tr("Exact solution"),
+            tr("Exact"),
+            tr("Exact"),
+            tr("Exact: conserves the volume in one direct solution"),
+        ),
+    }
+
+
 def _control() -> Choice:
     tip = tr(
         "Choose the volume control: the paper's conventional and adaptive forces (adaptive formula by "
         "Busk), integral control that accumulates half of each error, the exact solution, or none."
     )
-    options = (
-        ("adaptive", tr("Adaptive")),
-        ("conventional", tr("Conventional")),
-        ("accumulating", tr("Integral")),
-        ("none", tr("None")),
-        ("exact", tr("Exact")),
-    )
+    options = tuple((control, text.option) for control, text in control_texts().items())
     return Choice("volume", tr("Volume control"), tip, options)
 
 

@@ -26,7 +26,7 @@ BODIES = {"a": "mannequin", "b": "person"}
 TEMPLATE = {"mannequin": "120", "person": "168"}
 """Polygons of the control mesh of each body, as in the paper."""
 
-CONTROLS = {"1": "conventional", "2": "adaptive"}
+PAPER_CONTROLS = {"1": "conventional", "2": "adaptive"}
 """The paper's digits in the curves a1, a2, b1 and b2."""
 
 EXCESSIVE, MODEST = 0.5, 0.97

@@ -9,9 +9,9 @@ import numpy as np
 
 from app.research.cases import (
     BODIES,
-    CONTROLS,
     EXCESSIVE,
     MODEST,
+    PAPER_CONTROLS,
     TEMPLATE,
     TURNS,
     Study,
@@ -113,12 +113,12 @@ def _three_percent(study: Study) -> Claim:
     runs = {
         (body, control): study.solved(body, study.ratio_for(body, 0.97), control)
         for body in BODIES.values()
-        for control in (*CONTROLS.values(), "exact")
+        for control in (*PAPER_CONTROLS.values(), "exact")
     }
     error = {key: abs(100.0 * run.last.error) for key, run in runs.items()}
     texts = {
         body: ", ".join(
-            f"{control} {error[body, control]:.2g} %" for control in (*CONTROLS.values(), "exact")
+            f"{control} {error[body, control]:.2g} %" for control in (*PAPER_CONTROLS.values(), "exact")
         )
         for body in BODIES.values()
     }
@@ -227,7 +227,7 @@ def _higher(study: Study) -> Claim:
     for ratio in (MODEST, EXCESSIVE):
         for body in BODIES.values():
             ends = []
-            for control in CONTROLS.values():
+            for control in PAPER_CONTROLS.values():
                 records = curve(study.solved(body, ratio, control, TURNS))
                 out = np.array([r.marks.apex_protrusion for r in records if r.marks])
                 ends.append([*bust_heights(records)[-20:].mean(axis=0), out[-20:].mean()])
@@ -249,7 +249,7 @@ def _smaller(study: Study) -> Claim:
     error = {
         (body, control): abs(float(_errors(study, body, MODEST, control)[-20:].mean()))
         for body in BODIES.values()
-        for control in CONTROLS.values()
+        for control in PAPER_CONTROLS.values()
     }
     return Claim(
         "6, Fig. 7",
@@ -283,7 +283,7 @@ def _speed(study: Study) -> Claim:
     turns = {
         (body, control): study.solved(body, MODEST, control).last.iteration
         for body in BODIES.values()
-        for control in CONTROLS.values()
+        for control in PAPER_CONTROLS.values()
     }
     return Claim(
         "5",

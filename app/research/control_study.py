@@ -34,7 +34,7 @@ _QUIET_TURNS = 5
 GAINS = {"conventional": None, "conventional 1.5": 1.5, "conventional 2.0": 2.0}
 """The conventional gains that are tried, None for the default of the model [probe units]."""
 
-CONTROLS = ("none", *GAINS, "accumulating", "adaptive", "exact")
+TRIED_CONTROLS = ("none", *GAINS, "accumulating", "adaptive", "exact")
 """The volume controls that are tried, as they are named in a trial."""
 
 

@@ -12,10 +12,10 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from app.rendering.palette import LIGHT
 from app.research.cases import (
     BODIES,
-    CONTROLS,
     EXCESSIVE,
     LINE,
     MODEST,
+    PAPER_CONTROLS,
     TEMPLATE,
     TURNS,
     Study,
@@ -44,7 +44,7 @@ def figure_6(study: Study) -> Figure:
         for column, (letter, body) in enumerate(BODIES.items()):
             upper, lower = axes[2 * block, column], axes[2 * block + 1, column]
             ends = {}
-            for digit, control in CONTROLS.items():
+            for digit, control in PAPER_CONTROLS.items():
                 heights = bust_heights(curve(study.solved(body, ratio, control, TURNS)))
                 change = heights - heights[0]
                 for at, (plot, values) in enumerate(((upper, change[:, 0]), (lower, change[:, 1]))):
@@ -84,7 +84,7 @@ def figure_7(study: Study) -> Figure:
     for block, ratio in enumerate(LENGTHS):
         for column, (letter, body) in enumerate(BODIES.items()):
             plot = axes[block, column]
-            for digit, control in CONTROLS.items():
+            for digit, control in PAPER_CONTROLS.items():
                 solution = study.solved(body, ratio, control, TURNS)
                 errors = np.array([(r.error * 100.0, r.error_ml) for r in curve(solution)])
                 _line(plot, errors[:, 0], control, f"{letter}{digit} {control}")
@@ -269,7 +269,7 @@ def figure_10(study: Study) -> Figure:
         own = _show_slings(study, body, axes[0, column], f"({letter}) {body} with slings")
         for ratio in RATIOS:
             ends, first = {}, 0.0
-            for digit, control in CONTROLS.items():
+            for digit, control in PAPER_CONTROLS.items():
                 solution = study.solved(body, ratio, control, TURNS, own_lines=own)
                 records, words = curve(solution), solution.verdict.words
                 height = bust_heights(records)[:, 0]

@@ -17,7 +17,7 @@ from core.mechanics.mesh_quality import MeshQuality, OriginalShape
 from core.mechanics.model import ConstrainedModel
 from core.mechanics.newton import Equilibrium
 
-ITERATIVE_CONTROLS = ("adaptive", "conventional")
+COMPARED_CONTROLS = ("adaptive", "conventional")
 """The controls that are always compared; another joins when it is the chosen one."""
 
 NEAR = 0.05
@@ -170,7 +170,7 @@ class SolverComparison:
 
         With the ``same`` targets one that has not converged yet does.
         """
-        wanted = dict.fromkeys([*ITERATIVE_CONTROLS, self.targets.control])
+        wanted = dict.fromkeys([*COMPARED_CONTROLS, self.targets.control])
         wanted.pop("exact", None)
         runs = {}
         for control in wanted:

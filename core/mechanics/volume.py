@@ -14,8 +14,20 @@ from scipy import sparse
 from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points, frozen
 from core.mechanics.banded_matrix import Entries, Operator, compact, joined
 
-CONTROLS = ("none", "conventional", "accumulating", "adaptive", "exact")
-"""The volume controls by name; ``exact`` is no law of turns but the answer that they aim at."""
+ITERATIVE_CONTROLS = ("none", "conventional", "accumulating", "adaptive")
+"""The volume controls with a law in ``next_pressure``."""
+
+CONTROLS = (*ITERATIVE_CONTROLS, "exact")
+"""All volume controls as project files name them; ``exact`` is the solution that iterations approach.
+
+Window and command line call ``accumulating`` integral: ``control_texts`` in
+``app/presenters/model_options.py``, ``STORED`` in ``app/cli/options.py``.
+"""
+
+KEEPS_VOLUME = ("accumulating", "adaptive")
+"""The iterative controls whose volume error is zero at rest. At rest under another, the pressure is the gain
+times the error: ``gain`` of the design for ``conventional``, else 0.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,7 +171,7 @@ def next_pressure(control: str, pressure: Pressure, error: float, gain: float) -
     ``conventional`` (paper section 4): proportional to the error, times ``gain``. ``adaptive`` (in the spirit
     of section 5; the formula is ours): the push grows by the error and shrinks by how fast the volume is
     already coming home, and its step is halved whenever the volume flips. ``accumulating`` (ours) is the
-    plain baseline between them: half of every error is added.
+    plain baseline between them: half of every error is added. Raises ValueError for another control.
     """
     if control == "none":
         return replace(pressure, error=error)
@@ -167,6 +179,8 @@ def next_pressure(control: str, pressure: Pressure, error: float, gain: float) -
         return replace(pressure, value=gain * error, error=error)
     if control == "accumulating":
         return replace(pressure, value=pressure.value + INTEGRAL_STEP * error, error=error)
+    if control != "adaptive":
+        raise ValueError(f"volume control {control!r} has no law")
     before = pressure.error
     flips = error * before < 0.0 and abs(error) > _FLIP * abs(before) and abs(error) > _QUIET
     step = pressure.step / 2.0 if flips else min(ADAPTIVE_STEP, 1.05 * pressure.step)

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QSizePolicy, QVB
 
 from app.gui.plots.canvas import Turns
 from app.gui.plots.live_plot import LivePlot
-from app.gui.plots.painting import Entry, Legend, legend_entries, legend_width, run_title
+from app.gui.plots.painting import Entry, Legend, legend_entries, legend_width
 from app.gui.plots.status_chip import StatusChip, StatusLine
 from app.gui.theme.stylesheet import label
 from app.gui.widgets.basic import Segment, ToolButton, sentence
@@ -21,28 +21,17 @@ from app.gui.widgets.menu import Menu
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 from app.i18n.lengths import shown_value
+from app.presenters.model_options import control_texts
 from app.presenters.plots import Curve, Event, Exact, Track, error_quantities, height_quantities, tolerance_of
-
-CONTROLS = ("adaptive", "conventional", "none", "exact")
-"""Ways to control the volume, as named in the run."""
 
 
 def control_segment() -> Segment:
-    """Return the segment of the volume controls; its choices are named as in ``CONTROLS``."""
-    titles = (tr("Adaptive"), tr("Conventional"), tr("Off"), tr("Exact"))
-    result = Segment(tuple(zip(CONTROLS, titles, strict=True)), small=True)
-    for control, tip in zip(CONTROLS, _control_tips(), strict=True):
-        set_tip(result.button(control), tip)
+    """Return the segment of the volume controls that have a button."""
+    offered = {control: text for control, text in control_texts().items() if text.button}
+    result = Segment(tuple((control, text.button) for control, text in offered.items()), small=True)
+    for control, text in offered.items():
+        set_tip(result.button(control), text.tip)
     return result
-
-
-def _control_tips() -> tuple[str, str, str, str]:
-    return (
-        tr("Adaptive: adjusts the volume force at every iteration"),
-        tr("Conventional: volume force proportional to the volume error; may oscillate"),
-        tr("Volume is not conserved"),
-        tr("Exact: conserves the volume in one direct solution"),
-    )
 
 
 _HIGH, _LOW, _FOLDED = 184, 150, 36
@@ -157,11 +146,12 @@ class ConvergencePanel(QWidget):
         strong = "warning" if self._state in ("vibrating", "diverging") else "main"
         roles = {name: strong if name == main else "ghost" for name in tracks}
         is_main, some = main == "exact", tracks.get(main) or next(iter(tracks.values()), None)
+        texts = control_texts()
         for plot in self.plots:
             quantity = plot.quantity.name
             scale = shown_value(1.0, "mm" if quantity.endswith("_mm") else "")
             curves = [
-                Curve(track.turns, scale * getattr(track, quantity), roles[name], run_title(name))
+                Curve(track.turns, scale * getattr(track, quantity), roles[name], texts[name].curve)
                 for name, track in tracks.items()
             ]
             plot.set_curves(

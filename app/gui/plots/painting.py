@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.gui.theme.stylesheet import font, tokens_of
 from app.i18n.catalog import number, tr
+from app.presenters.model_options import control_texts
 from app.presenters.plots import Curve, Numbers, Plotted, digits_of, envelope, flips_every_turn, round_ticks
 from app.rendering.palette import Tokens
 from core.geometry.mesh import Floats
@@ -227,20 +228,11 @@ Entry = tuple[str, str, bool]
 """A name, the token of its colour, and whether its line is dashed."""
 
 
-def run_title(control: str) -> str:
-    """Return what the run of a volume control is called."""
-    return {
-        "adaptive": tr("Adaptive"),
-        "conventional": tr("Conventional"),
-        "accumulating": tr("Integral"),
-        "none": tr("No volume control"),
-    }[control]
-
-
 def legend_entries(roles: Mapping[str, str], exact: bool, exact_is_main: bool) -> list[Entry]:
     """Return the names of these runs by their roles, and of the exact answer if there is one."""
-    entries = [(run_title(name), ROLE_COLORS[role], False) for name, role in roles.items()]
-    answer = (tr("Exact"), "accent" if exact_is_main else "exact_curve", True)
+    texts = control_texts()
+    entries = [(texts[name].curve, ROLE_COLORS[role], False) for name, role in roles.items()]
+    answer = (texts["exact"].curve, "accent" if exact_is_main else "exact_curve", True)
     return [*entries, answer] if exact else entries
 
 

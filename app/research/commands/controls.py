@@ -15,7 +15,7 @@ from statistics import median
 from app.cli.options import add_folder_output
 from app.cli.output import DONE, make_folder
 from app.presenters.samples import SAMPLES, sample_design
-from app.research.control_study import CONTROLS, LONGEST, RIPPLE_TURNS, TURNS, Subject, Trial, trials
+from app.research.control_study import LONGEST, RIPPLE_TURNS, TRIED_CONTROLS, TURNS, Subject, Trial, trials
 from app.research.sphere import sphere_control
 from core import __version__
 from core.files.atomic_write import atomic_path, write_text
@@ -73,11 +73,11 @@ def run_trials(out: Path, quick: bool = False) -> list[Trial]:
     """
     lengths = (0.97, 0.6) if quick else LENGTHS
     chosen = list(subjects(quick))
-    count = len(chosen) * len(lengths) * len(CONTROLS)
+    count = len(chosen) * len(lengths) * len(TRIED_CONTROLS)
     made: list[Trial] = []
     start = time.perf_counter()
     for subject in chosen:
-        for trial in trials(subject, lengths, CONTROLS):
+        for trial in trials(subject, lengths, TRIED_CONTROLS):
             made.append(trial)
             left = (time.perf_counter() - start) * (count / len(made) - 1.0)
             print(f"\r{len(made)} of {count} cases, {left:.0f} s left ", end="", file=sys.stderr, flush=True)
@@ -113,10 +113,10 @@ def page(made: Sequence[Trial], quick: bool = False) -> Iterator[str]:
     """Yield the lines of the page on the trials."""
     yield from ("# Comparison of volume controls", "", _what_was_run(made, quick))
     yield from ("", "## Results", "")
-    rows = ((control, *_summary([t for t in made if t.control == control])) for control in CONTROLS)
+    rows = ((control, *_summary([t for t in made if t.control == control])) for control in TRIED_CONTROLS)
     yield from _table(HEADS, rows)
     yield from ("", HOW_TO_READ, "", "## Stability by length", "")
-    turned = tuple(control for control in CONTROLS if control != "exact")
+    turned = tuple(control for control in TRIED_CONTROLS if control != "exact")
     heads = ("set length", *(f"{control}: calm" for control in turned), "folded", "inverted", "overstrained")
     ratios = sorted({trial.ratio for trial in made}, reverse=True)
     yield from _table(heads, (_by_length([t for t in made if t.ratio == r], r, turned) for r in ratios))

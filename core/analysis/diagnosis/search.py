@@ -20,6 +20,7 @@ from core.document.design import Design
 from core.errors import UserError
 from core.garment.assessment import GOOD, LEVELS
 from core.mechanics.mesh_quality import STRAIN_RANGE, STRAINED_RANGE
+from core.mechanics.volume import KEEPS_VOLUME
 from core.pipeline.build import Stages, build, line_targets
 from core.progress import Progress
 
@@ -67,7 +68,7 @@ class Search:
         self.looks = _LOOKS
         self.tried: list[Fix] = []
         design = sick.stages.design
-        steady = design.volume in ("adaptive", "accumulating", "none") and design.line_hold == "spring"
+        steady = design.volume in (*KEEPS_VOLUME, "none") and design.line_hold == "spring"
         self._swings = not steady or design.line_force == "explicit" or sick.problem == "vibrating"
         self._learn(sick.stages, sick.run)
 

@@ -19,7 +19,7 @@ from core.mechanics.model import ConstrainedModel
 from core.mechanics.newton import Equilibrium, equilibrium_at
 from core.mechanics.potential import Potential
 from core.mechanics.solver_comparison import shape_of
-from core.mechanics.volume import Pressure
+from core.mechanics.volume import KEEPS_VOLUME, Pressure
 from core.pipeline.build import Stages, line_targets
 
 FADES = 0.975
@@ -128,7 +128,7 @@ def _kept(model: ConstrainedModel, targets: LineTargets, near: Equilibrium | Non
 
     There the pressure is the gain times what is missing; that is closed in on by secants.
     """
-    keeps = targets.control in ("adaptive", "accumulating")
+    keeps = targets.control in KEEPS_VOLUME
     excess = 0.0 if keeps or near is None else _excess(model, near)
 
     def at(excess: float, steps: int, near: Equilibrium | None) -> Equilibrium:

@@ -11,7 +11,7 @@ import numpy as np
 from core.geometry.mesh import Points
 from core.mechanics.convergence import CONVERGED_STEP, Convergence
 from core.mechanics.iteration import SolverState, initial_state, step
-from core.mechanics.solver_comparison import ITERATIVE_CONTROLS, MOST_TURNS, ControlRun, carried, shape_of
+from core.mechanics.solver_comparison import COMPARED_CONTROLS, MOST_TURNS, ControlRun, carried, shape_of
 from core.pipeline.build import Stages, line_targets
 from core.pipeline.solve import exact_equilibrium, solve
 from core.progress import Progress, quiet
@@ -106,7 +106,7 @@ def continue_run(before: TrialResult, stages: Stages, progress: Progress = quiet
     the window does.
     """
     control, old, design = stages.design.volume, before.stages.model, before.stages.design
-    if before.problem == "unreachable" or control not in {*ITERATIVE_CONTROLS, design.volume}:
+    if before.problem == "unreachable" or control not in {*COMPARED_CONTROLS, design.volume}:
         return None
     if control == "exact":
         return None

@@ -29,6 +29,7 @@ from core.measurements.subject import subject_of
 from core.measurements.table import original_subject, reshaped_subject
 from core.mechanics.potential import Potential
 from core.mechanics.sensitivity import Rates, Sensitivities
+from core.mechanics.volume import KEEPS_VOLUME
 from core.pipeline.build import Stages, build, detect_landmarks, line_targets
 from core.pipeline.solve import NoEquilibriumError, body_volume_rates, exact_solution
 
@@ -64,7 +65,7 @@ def converged_solution(stages: Stages, push: float | None = None) -> ConvergedSo
         raise NoEquilibriumError(stages.design)
     model = combined_volume_model(stages.model)
     share = model.volume.volume(model.tensegric.expand(balance.state.moved)) / model.volume.rest_volume - 1.0
-    keeps = targets.control in ("adaptive", "accumulating")
+    keeps = targets.control in KEEPS_VOLUME
     excess = np.full(2, 0.0 if keeps else 0.5 * share * model.volume.rest_volume)
     answer = Sensitivities(Potential(model, targets.ratios, excess), balance)
     return ConvergedSolution(answer, (lambda rates: rates) if keeps else _pushed(answer, push))

@@ -7,7 +7,7 @@ import pytest
 from shapes import torso
 
 from app.cli.main import main
-from app.research.control_study import CONTROLS, TURNS, Subject, _stays_below, trials
+from app.research.control_study import TRIED_CONTROLS, TURNS, Subject, _stays_below, trials
 from app.research.sphere import sphere_control
 from core.mechanics.options import LAWS, ModelOptions
 
@@ -15,8 +15,8 @@ TORSO = Subject("torso", torso(), "mid-bust", ModelOptions(volume_of="both"))
 
 
 def test_the_rows_of_one_length():
-    made = {trial.control: trial for trial in trials(TORSO, (0.8,), CONTROLS)}
-    assert tuple(made) == CONTROLS
+    made = {trial.control: trial for trial in trials(TORSO, (0.8,), TRIED_CONTROLS)}
+    assert tuple(made) == TRIED_CONTROLS
     assert made["conventional 2.0"].motion == "vibrating"
     assert made["conventional 1.5"].gain == 1.5
     assert made["none"].gain == made["adaptive"].gain == 0.0
@@ -55,13 +55,13 @@ def test_the_turn_from_which_on_an_error_stays_below(errors, turn):
 def test_the_command_writes_a_row_for_each_case_and_a_page(tmp_path, capsys):
     assert main(["sweep", "--quick", "--out", str(tmp_path)]) == 0
     rows = list(csv.DictReader((tmp_path / "sweep.csv").read_text("utf-8").splitlines()))
-    assert len(rows) == (len(LAWS) + 1) * 2 * len(CONTROLS)
+    assert len(rows) == (len(LAWS) + 1) * 2 * len(TRIED_CONTROLS)
     assert f"{len(rows)} of {len(rows)} cases" in capsys.readouterr().err
     page = (tmp_path / "sweep.md").read_text(encoding="utf-8")
     table = {
         cells[1].strip(): cells for cells in (line.split("|") for line in page.splitlines()) if cells[1:]
     }
-    for control in CONTROLS:
+    for control in TRIED_CONTROLS:
         of_it = [row for row in rows if row["control"] == control]
         assert int(table[control][2]) == len(of_it)
         assert int(table[control][3]) == sum(row["motion"] == "vibrating" for row in of_it)

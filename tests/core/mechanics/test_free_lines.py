@@ -140,7 +140,7 @@ def test_one_through_control_points_is_the_line_through_them(name, contact, hold
     ratios = (*ratios_of(free, 0.93),)
     found, expected = (solve_exact(model, ratios) for model in (free, snapped))
     np.testing.assert_allclose(found.state.moved, expected.state.moved, atol=1e-11)
-    for control_of in ("adaptive", "conventional", "integral", "none"):
+    for control_of in ("adaptive", "conventional", "accumulating", "none"):
         one, other = (step(m, LineTargets(ratios, control_of), initial_state(m))[0] for m in (free, snapped))
         np.testing.assert_allclose(one.moved, other.moved, atol=1e-12)
 
@@ -195,7 +195,7 @@ def test_turns_rest_where_the_exact_answer_is(contact, hold, force):
     ratios = ratios_of(model, 0.95)
     exact = solve_exact(model, ratios)
     assert exact.is_converged
-    for control in ("adaptive", "integral"):
+    for control in ("adaptive", "accumulating"):
         state = settled(model, LineTargets(ratios, control))
         np.testing.assert_allclose(state.moved, exact.state.moved, atol=1e-6)
 

@@ -145,7 +145,7 @@ def test_turns_rest_where_the_exact_answer_is(hold, contact):
     ratios = ratios_of(model, 0.99)
     exact = solve_exact(model, ratios)
     assert exact.is_converged
-    state = settled(model, LineTargets(ratios, "integral"), turns=6000)
+    state = settled(model, LineTargets(ratios, "accumulating"), turns=6000)
     np.testing.assert_allclose(state.moved, exact.state.moved, atol=1e-6)
     if hold == "held":
         reached = model.lines[-1].length(model.tensegric.expand(exact.state.moved))

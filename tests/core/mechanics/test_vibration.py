@@ -8,14 +8,13 @@ from core.mechanics.gain_limit import gain_limit
 from core.mechanics.iteration import LineTargets, SolverState, initial_state, step
 from core.mechanics.model import constrained_model
 from core.mechanics.options import ModelOptions
-from core.mechanics.volume import Pressure
+from core.mechanics.volume import ITERATIVE_CONTROLS, Pressure
 
-CONTROLS = ("none", "conventional", "adaptive")
 TORSO = constrained_model(torso(), worn=["mid-bust"])
 SKEW = constrained_model(torso(skew=0.3))
 
 
-@pytest.mark.parametrize("control", CONTROLS)
+@pytest.mark.parametrize("control", ITERATIVE_CONTROLS)
 @pytest.mark.parametrize("model", [TORSO, SKEW], ids=["one line", "skew, all lines"])
 def test_at_rest_nothing_drifts(control, model):
     state, records = run(model, LineTargets((1.0,) * 3, control, 1.5), 50)

@@ -10,7 +10,7 @@ from app.research.sphere import sphere
 from core.geometry.mesh import Mesh
 from core.mechanics.gain_limit import weighted_sum
 from core.mechanics.tensegrity import tensegrity_model
-from core.mechanics.volume import CONTROLS, Pressure, next_pressure, volume_measure
+from core.mechanics.volume import ITERATIVE_CONTROLS, KEEPS_VOLUME, Pressure, next_pressure, volume_measure
 
 
 def measured(control):
@@ -202,4 +202,16 @@ def test_the_adaptive_push_is_the_error_less_what_is_already_coming_home(before,
 def test_an_adaptive_pressure_that_reached_its_aim_stays():
     steady = Pressure(value=0.7)
     assert next_pressure("adaptive", steady, 0.0, gain=0.0) == steady
-    assert set(CONTROLS) == {"none", "conventional", "accumulating", "adaptive", "exact"}
+
+
+@pytest.mark.parametrize("control", ITERATIVE_CONTROLS)
+def test_a_control_that_keeps_the_volume_pushes_on_when_the_error_is_zero(control):
+    pressure = next_pressure(control, Pressure(), 0.01, gain=1.5)
+    for _ in range(20):
+        pressure = next_pressure(control, pressure, 0.0, gain=1.5)
+    assert (pressure.value > 0.0) == (control in KEEPS_VOLUME)
+
+
+def test_a_control_without_a_law_is_refused():
+    with pytest.raises(ValueError, match="integral"):
+        next_pressure("integral", Pressure(), 0.01, gain=1.5)
