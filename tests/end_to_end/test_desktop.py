@@ -235,4 +235,4 @@ def test_a_fault_is_told_once_and_the_work_goes_on(monkeypatch: pytest.MonkeyPat
         assert design is not None
         assert design.ratio("mid-bust") < 0.95
 
-    run_undrawn([], script)
+    run_undrawn([], script, expected=(KeyError, ZeroDivisionError))

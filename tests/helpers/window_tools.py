@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Callable, Generator
+from types import TracebackType
 
 import numpy as np
+import pytest
 from PySide6.QtCore import QCoreApplication, QPoint, Qt, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
@@ -15,6 +18,7 @@ from shiboken6 import isValid
 from app.cli.main import main
 from app.gui.main_window import MainWindow
 from app.gui.viewport.viewport import Viewport
+from core.errors import UserError
 
 PATIENCE = 90.0
 """Seconds that a script waits for one thing: a limit for what hangs, not for a machine with other work."""
@@ -22,29 +26,43 @@ PATIENCE = 90.0
 Script = Generator[Callable[[], bool], None, None]
 
 
-def run_main(arguments: list[str], script: Callable[[MainWindow], Script]) -> int:
+Kinds = tuple[type[Exception], ...]
+
+
+def run_main(arguments: list[str], script: Callable[[MainWindow], Script], expected: Kinds = ()) -> int:
     """Start ``busk`` and play ``script``, which yields what to wait for; at its end the window is closed.
 
-    The window is small, and the camera jumps where it would fly.
+    The window is small, and the camera jumps where it would fly. A fault in a slot, an event or a thread,
+    which the window survives, is raised at the end; but not one of the ``expected`` kinds, nor a UserError,
+    which the window is to show.
     """
-    player = _Player(script)
+    player, faults = _Player(script), []
+
+    def note(_: type[BaseException], fault: BaseException, __: TracebackType | None) -> None:
+        if not isinstance(fault, (UserError, *expected)):
+            faults.append(fault)
+
     QTimer.singleShot(0, player.begin)
-    code = main(arguments)
-    QCoreApplication.sendPostedEvents(None, 0)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, "__excepthook__", note)  # where all hooks of the program end
+        code = main(arguments)
+        QCoreApplication.sendPostedEvents(None, 0)
     if player.fault is not None:
-        raise player.fault
+        raise player.fault from next(iter(faults), None)
+    if faults:
+        raise faults[0]
     assert player.ended, "the window was closed before the script was over"
     return code
 
 
-def run_undrawn(arguments: list[str], script: Callable[[MainWindow], Script]) -> int:
+def run_undrawn(arguments: list[str], script: Callable[[MainWindow], Script], expected: Kinds = ()) -> int:
     """Do as ``run_main``, with no 3D view drawn and no limits looked for from the start."""
 
     def unseen(window: MainWindow) -> Script:
         undrawn(window)
         yield from script(window)
 
-    return run_main(arguments, unseen)
+    return run_main(arguments, unseen, expected)
 
 
 def settled(window: MainWindow) -> Callable[[], bool]:
