@@ -114,7 +114,7 @@ class ScanSource:
         if any(len(word or "") > _LONGEST_WORD for word in (self.unit, self.up, self.front)):
             raise UserError(
                 Message("The unit, up axis or front axis of the scan is not valid."),
-                Message("Choose the elastic again."),
+                Message("Specify a unit such as cm and axes such as +z."),
             )
 
     def set_up(self, **told: str | None) -> ScanSource:

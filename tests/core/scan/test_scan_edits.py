@@ -157,6 +157,13 @@ def test_what_is_no_edit_is_refused(wrong):
         ScanEdits(**wrong)
 
 
+def test_far_too_long_a_unit_or_axis_is_refused_with_what_to_specify():
+    for wrong in ("unit", "up", "front"):
+        with pytest.raises(UserError) as refused:
+            ScanSource("a.ply", **{wrong: "z" * 1000})
+        assert all(word in str(refused.value.hint) for word in ("unit", "axes"))
+
+
 def test_edits_are_read_again_and_designs_without_them_are_written_as_before():
     plain = Design(ScanSource("a.ply"))
     assert "edits" not in to_json(plain)
