@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from app.i18n.catalog import tr
 from app.i18n.lengths import length
 from app.presenters.messages import render
-from core.landmarks.types import CERTAIN, NAMES, Landmark
+from core.landmarks.types import CERTAIN, NAMES, POOR, Landmark
 from core.landmarks.warnings import ESSENTIAL
 
 GROUPS = {
@@ -104,8 +104,8 @@ def landmark_view(name: str, mark: Landmark | None, accepted: Collection[Spot] =
 
 
 def tone_of(confidence: float) -> str:
-    """Return the tone of a landmark's confidence 0..1: ok if certain, bad below 0.3, warn between them."""
-    return "ok" if confidence >= CERTAIN else "warn" if confidence >= 0.3 else "bad"
+    """Return the tone of a landmark's confidence 0..1: ok if certain, bad if poor, warn between them."""
+    return "ok" if confidence >= CERTAIN else "warn" if confidence >= POOR else "bad"
 
 
 @dataclass(frozen=True)

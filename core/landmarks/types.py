@@ -15,6 +15,9 @@ SIDES = ("left", "right")
 CERTAIN = 0.5
 """The confidence [1] from which on a landmark, and what is measured there, needs no second look."""
 
+POOR = 0.3
+"""The confidence [1] below which a landmark is more likely wrong than right."""
+
 PAIRS = ("bust_point", "fold", "lowest", "root_inner", "root_outer", "side", "armpit")
 SINGLE = (
     *("front_centre", "front_centre_underbust", "back_centre", "back_centre_underbust"),

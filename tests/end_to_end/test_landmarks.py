@@ -11,12 +11,15 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from window_tools import Script, run_undrawn, settled
 
+import app.gui.features.landmarks.controller
 import app.gui.features.project.controller as project_files
 from app.gui.features.landmarks.panel import LandmarksPanel
 from app.gui.main_window import MainWindow
 from app.presenters.landmarks import LandmarkView
 from core.geometry.mesh import Points
 from core.landmarks.manual import nearest_skin
+from core.landmarks.warnings import LandmarkWarning
+from core.messages import Message
 from tests.end_to_end.test_scan import pull
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -69,6 +72,25 @@ def test_the_model_follows_a_pin_before_it_is_let_go_and_escape_brings_all_back(
         assert np.array_equal(mark(window, "bust_point_left"), found)
         pins = {pin.name: pin.position for pin in window.view.viewport.overlay.pins}
         assert pins["bust_point_left"] == pytest.approx(found, abs=0.01)
+
+    run_undrawn([], script)
+
+
+def test_a_new_warning_has_its_notice_whose_button_shows_its_landmark(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    warning = LandmarkWarning("root_outer_right", Message("The scan is coarse."))
+    monkeypatch.setattr(app.gui.features.landmarks.controller, "landmark_warnings", lambda _: [warning])
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        notice = window.notices.notice()
+        assert notice is not None
+        assert notice.sentence == "The scan is coarse."
+        ((_, review),) = notice.actions
+        review()
+        assert window.landmarks.isVisible()
+        assert window.landmarks_controller._context.selection.landmark == "root_outer_right"
 
     run_undrawn([], script)
 

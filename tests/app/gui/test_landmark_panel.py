@@ -16,7 +16,8 @@ from core.landmarks.bust_point import NIPPLE
 from core.landmarks.detect import find_landmarks
 from core.landmarks.lower_breast import CREASE
 from core.landmarks.types import CERTAIN, Landmark, Landmarks
-from core.landmarks.warnings import first_warning, landmark_warnings
+from core.landmarks.warnings import LandmarkWarning, landmark_warnings
+from core.messages import Message
 from tests.core.landmarks.test_damaged_scans import body
 from tests.core.landmarks.test_landmarks import found, sample, truth
 
@@ -134,6 +135,9 @@ def test_the_first_doubt_is_of_the_landmark_that_is_shown_and_does_not_deny_its_
     }
     landmarks = Landmarks(points, 1.0, 0.0)
     said = landmark_warnings(landmarks)
-    assert str(said[0]) == "The nipple of the left breast is not clearly visible. Check its bust point."
-    assert len(said) == 2
-    assert first_warning(landmarks) == "bust_point_left"
+    nipple = "The nipple of the left breast is not clearly visible. Check its bust point."
+    assert str(said[0].message) == nipple
+    assert [each.landmark for each in said] == ["bust_point_left", "fold_left"]
+    assert [each.prominent for each in said] == [False, True], "only the fold is more likely wrong"
+    told = landmark_warnings(replace(landmarks, warnings=(Message("The scan is coarse."),)))
+    assert told == [*said, LandmarkWarning("fold_left", Message("The scan is coarse."))]

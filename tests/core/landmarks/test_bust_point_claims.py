@@ -71,7 +71,7 @@ def test_a_breast_that_was_taken_away_wholly_leaves_the_other_where_it_is():
     flat = v.copy()
     flat[inner] = spsolve(weights[inner][:, inner].tocsc(), -(weights[inner][:, ~inner] @ v[~inner]))
     seen = landmarks_of(mesh.moved(flat))  # a membrane over the chest: only ribs are left to stand out
-    (said,) = (doubt for doubt in landmark_warnings(seen) if "right" in str(doubt))
+    (said,) = (each.message for each in landmark_warnings(seen) if "right" in str(each.message))
     assert str(said).startswith("No breast protrusion on the right side")
     assert np.linalg.norm(seen.position("bust_point_left") - whole.position("bust_point_left")) < 2.0
     assert seen.points["bust_point_left"].confidence > CERTAIN

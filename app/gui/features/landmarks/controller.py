@@ -13,12 +13,12 @@ from app.gui.features.landmarks.panel import LandmarksPanel
 from app.gui.widgets.tooltip import show_tip
 from app.i18n.catalog import joined, tr
 from app.i18n.lengths import arrow_step
-from app.presenters.landmarks import kind_of, landmark_title, landmark_views, other_side, spot_of, tone_of
+from app.presenters.landmarks import kind_of, landmark_title, landmark_views, other_side, spot_of
 from app.presenters.messages import render, render_all
 from core.document.design import Design
 from core.geometry.mesh import Points
 from core.landmarks.manual import in_file, mirrored, nearest_skin
-from core.landmarks.warnings import ESSENTIAL, first_warning, landmark_warnings
+from core.landmarks.warnings import landmark_warnings
 from core.pipeline.build import IncompleteBuildError, Stages
 from core.pipeline.live_solver import Frame
 from core.scan.body import Body
@@ -103,7 +103,7 @@ class LandmarksController(QObject):
         """Show what was found on a body."""
         context, warnings = self._context, landmark_warnings(stages.landmarks)
         views = landmark_views(stages.landmarks.points, context.view.pins.accepted)
-        self._panel.set_landmarks(views, render_all(warnings))
+        self._panel.set_landmarks(views, render_all([each.message for each in warnings]))
         weak = sum(view.weak for view in views)
         context.navigation.mark_step("landmarks", "look" if weak or warnings else "done", weak)
         if not (weak or warnings):
@@ -113,18 +113,21 @@ class LandmarksController(QObject):
         """Show which landmarks of the control mesh have low confidence."""
         self._carried = {}
         self._context.view.pins.drop_back()
-        marks = [mark for mark in stages.landmarks.points.values() if kind_of(mark.name) in ESSENTIAL]
-        worst = min(marks, key=lambda mark: mark.confidence)
-        if tone_of(worst.confidence) == "bad" or stages.landmarks.warnings:
-            first, *more = landmark_warnings(stages.landmarks)
-            spoken_of = first_warning(stages.landmarks)
-            actions = [(tr("Review"), lambda: self._look_at(spoken_of))]
+        warnings = landmark_warnings(stages.landmarks)
+        if any(each.prominent for each in warnings):
+            first, *more = warnings
+            actions = [(tr("Review"), lambda: self._look_at(first.landmark))]
             if stages.landmarks.size_doubted:
                 actions.insert(0, (tr("Check unit"), lambda: self._context.navigation.show_step("scan")))
             if up := stages.landmarks.upright:
                 actions.insert(0, (tr("Set upright"), lambda: self._stand_upright(up)))
             self._context.notifications.show(
-                "warn", first, joined(map(render, more)), actions, lasting=True, topic=_DOUBT
+                "warn",
+                first.message,
+                joined(render_all([each.message for each in more])),
+                actions,
+                lasting=True,
+                topic=_DOUBT,
             )
 
     def show_stuck(self, stuck: IncompleteBuildError) -> None:
