@@ -16,7 +16,7 @@ from app.rendering.band import band_width
 from app.rendering.camera import View
 from core.deformation.tffd import deform
 from core.document.design import Design
-from core.export.units_and_axes import AXES, UNITS
+from core.export.units_and_axes import AXES, GLTF, UNITS
 from core.geometry.mesh import Floats, Mesh, Points
 from core.measurements.table import before_after, measure_rows
 from core.mechanics.iteration import Record
@@ -171,7 +171,7 @@ def default_value(what: str, key: str) -> str:
     return {"size": sizes.get(what, ""), "frames": "36", "seconds": "6", "view": "now", **space}.get(key, "")
 
 
-_OWN_SPACE = ("glb", "csv")  # formats that say themselves which unit and axes they have
+_OWN_SPACE = (*GLTF, "csv")  # formats that say themselves which unit and axes they have
 _PICTURE_SIZES = ("1000x1125", "2000x2250", "3000x3375", "1920x1080", "3840x2160")
 _TURNTABLE_SIZES = ("480x540", "640x720", "960x1080", "1280x720")
 

@@ -9,14 +9,14 @@ from pathlib import Path
 
 from core.control_mesh.fit import ControlMesh
 from core.errors import UserError
-from core.export.units_and_axes import FileSpace, space_of
+from core.export.units_and_axes import GLTF, FileSpace, space_of
 from core.files.atomic_write import atomic_path
 from core.geometry.mesh import Mesh, Points
 from core.geometry.planar_curves import Curve, Plane
 from core.messages import Message
 from core.progress import Progress, quiet
 
-FORMATS = ("ply", "obj", "stl", "glb")
+FORMATS = ("ply", "obj", "stl", *GLTF)
 
 _CLAY = (216, 175, 149, 255)  # what #EDD8C9 is as glTF counts light, from black 0 to 255
 
@@ -36,7 +36,7 @@ def write_mesh(
     progress("writing", 0.2)
     shape = trimesh.Trimesh(space.places(mesh.vertices), mesh.faces, process=False)
     options = {}
-    if kind == "glb":  # those who show it find it smooth, and not of metal as where nothing is said
+    if kind in GLTF:  # those who show it find it smooth, and not of metal as where nothing is said
         shape.vertex_normals = space.normals(mesh.vertex_normals)
         matt = trimesh.visual.material.PBRMaterial(
             baseColorFactor=_CLAY, metallicFactor=0.0, roughnessFactor=0.9, doubleSided=True

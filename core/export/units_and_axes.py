@@ -23,6 +23,9 @@ AXES: dict[str, tuple[tuple[int, int, int], ...]] = {
 "z-up" faces -y (Busk, Blender), "y-up" faces z (glTF, CLO, Maya), "z-up-front-y" faces y.
 """
 
+GLTF = ("glb",)
+"""Formats that are glTF, which sets unit and axes: metres, y up and z to the front."""
+
 
 @dataclass(frozen=True)
 class FileSpace:
@@ -58,7 +61,7 @@ class FileSpace:
 def space_of(kind: str, unit: str | None = None, axes: str | None = None) -> FileSpace:
     """Return the space of a file of some kind, "ply", "glb" ..; what is not told is as usual for that kind.
 
-    glTF 2.0 asks for metres, y up and z to the front. Raises UserError for unknown words.
+    Raises UserError for unknown words.
     """
-    usual = ("m", "y-up") if kind == "glb" else ("mm", "z-up")
+    usual = ("m", "y-up") if kind in GLTF else ("mm", "z-up")
     return FileSpace(unit or usual[0], axes or usual[1])
