@@ -26,6 +26,7 @@ VAGUE, MOST_VAGUE = 2.0, 10.0
 class CutRowText:
     """A row of the cut list, as it is printed.
 
+    ``values`` are the figures by column, as keyed in ``EDGES`` of ``cut_table.py``.
     ``to_cut`` is False for a line of which no piece can be cut; ``remark`` states why, or what to mind. The
     lengths of one that is ``front_only`` are no whole piece.
     """
@@ -33,7 +34,7 @@ class CutRowText:
     line: str
     title: str
     elastic: str
-    values: tuple[str, ...]
+    values: dict[str, str]
     rating: str
     word: str
     to_cut: bool
@@ -138,16 +139,16 @@ def cut_pieces(sheet: Report, order: Sequence[str]) -> list[tuple[str, str, str]
 
 def _cut_view(cut: CutRow, press: PressureRow) -> CutRowText:
     stretch = None if cut.elongation is None else 100.0 * cut.elongation
-    figures = (
-        NOTHING if cut.width_mm is None else width_number(cut.width_mm),
-        _length(cut.cut_mm),
-        _length(cut.allowance_mm),
-        value_text(stretch, 0),
-        _length(cut.reached_whole_mm),
-        _length(cut.height_mm, signed=True),
-        value_text(cut.tension_n, 1),
-        value_text(press.max_kpa, 1),
-    )
+    figures = {
+        "width": NOTHING if cut.width_mm is None else width_number(cut.width_mm),
+        "cut": _length(cut.cut_mm),
+        "allowance": _length(cut.allowance_mm),
+        "elongation": value_text(stretch, 0),
+        "whole": _length(cut.reached_whole_mm),
+        "height": _length(cut.height_mm, signed=True),
+        "tension": value_text(cut.tension_n, 1),
+        "pressure": value_text(press.max_kpa, 1),
+    }
     word = rating_text(press.light) if press.light else ""
     title, to_cut = piece_title(cut.line, cut.title), cut.cut_mm is not None
     return CutRowText(
@@ -184,9 +185,8 @@ def _elastic(cut: CutRow) -> str:
 
 
 def _without_figures(view: CutRowText) -> CutRowText:
-    first, *others = view.values
     remark = tr("No value: the shape is not valid.")
-    nothing = (first, *(NOTHING for _ in others))
+    nothing = dict.fromkeys(view.values, NOTHING) | {"width": view.values["width"]}
     return replace(view, values=nothing, rating="", word="", to_cut=False, remark=remark)
 
 

@@ -23,8 +23,19 @@ from app.report.tables import heading, paragraph
 from app.report.text import pressure_legend
 
 _ROW, _REMARK = 5.6, 4.0
-_EDGES = (71.0, 84.5, 95.0, 109.5, 124.0, 139.0, 153.0, 162.0)  # right ends of the figures
-_CUT, _STRETCH = 1, 3  # places of the length to cut, and of the last figure that goes with it
+EDGES = {
+    "width": 71.0,
+    "cut": 84.5,
+    "allowance": 95.0,
+    "elongation": 109.5,
+    "whole": 124.0,
+    "height": 139.0,
+    "tension": 153.0,
+    "pressure": 162.0,
+}
+"""The columns of figures from left to right, and their right ends [mm]."""
+
+_OF_PIECE = ("cut", "allowance", "elongation")  # side by side; a line without a piece has none of them
 _ELASTIC, _LIGHT, _WORD = 35.0, 165.0, 168.0
 
 
@@ -40,16 +51,16 @@ def cut_blocks(handout: ReportDocument) -> list[Block]:
 
 
 def _cut_head() -> Block:
-    titles = (
-        tr("width {unit}").format(unit=length_unit()),
-        tr("cut {unit}").format(unit=length_unit()),
-        tr("seams"),
-        tr("elong. %"),
-        tr("worn {unit}").format(unit=length_unit()),
-        tr("height {unit}").format(unit=length_unit()),
-        tr("tension N"),
-        tr("kPa"),
-    )
+    titles = {
+        "width": tr("width {unit}").format(unit=length_unit()),
+        "cut": tr("cut {unit}").format(unit=length_unit()),
+        "allowance": tr("seams"),
+        "elongation": tr("elong. %"),
+        "whole": tr("worn {unit}").format(unit=length_unit()),
+        "height": tr("height {unit}").format(unit=length_unit()),
+        "tension": tr("tension N"),
+        "pressure": tr("kPa"),
+    }
     named = (
         (0.0, tr("Line")),
         (_ELASTIC, tr("Elastic")),
@@ -59,8 +70,8 @@ def _cut_head() -> Block:
     def paint(paper: PagePainter, x: float, y: float) -> None:
         for left, title in named:
             paper.text(x + left, y + 2.8, title, "caption")
-        for edge, title in zip(_EDGES, titles, strict=True):
-            paper.text(x + edge, y + 2.8, title, "caption", align="right")
+        for key, edge in EDGES.items():
+            paper.text(x + edge, y + 2.8, titles[key], "caption", align="right")
         paper.rule(x, y + 4.2, WIDE, ink=LIGHT.outline)
 
     return Block(4.2, paint, keep=True)
@@ -70,23 +81,25 @@ def _cut_row(view: CutRowText, colour: str) -> Block:
     lines = wrap(view.title, "strong", _ELASTIC - 6.5)  # a name is never cut: it tells the side
     high = _ROW + (len(lines) - 1) * line_height("strong")
     remark = elide(view.remark, "small", WIDE - 6.0)
-    room = _EDGES[0] - _ELASTIC - 8.0
+    room = EDGES["width"] - _ELASTIC - 8.0
     kind = fitting_font(view.elastic, room)
     elastic = elide(view.elastic, kind, room)
     word = elide(view.word, "body", WIDE - _WORD)
-    refused = elide(tr("DO NOT CUT"), "strong", _EDGES[_STRETCH] - _EDGES[0] - 3.0)
+    end = EDGES[_OF_PIECE[-1]]
+    refused = elide(tr("DO NOT CUT"), "strong", end - EDGES["width"] - 3.0)
 
     def paint(paper: PagePainter, x: float, y: float) -> None:
         base, middle = y + 3.75, y + 2.8
         paint_chip(paper, x, middle, colour or LIGHT.control)
         paper.lines(x + 4.6, base - 0.74 * line_height("strong"), lines, "strong")
         paper.text(x + _ELASTIC, base, elastic, kind, ink=LIGHT.text)
-        for place, (edge, figure) in enumerate(zip(_EDGES, view.values, strict=True)):
-            if view.to_cut or not _CUT <= place <= _STRETCH:
-                strong = place == _CUT and not view.front_only
-                paper.text(x + edge, base, figure, "figure strong" if strong else "figure", align="right")
+        for key, edge in EDGES.items():
+            if view.to_cut or key not in _OF_PIECE:
+                strong = key == "cut" and not view.front_only
+                type_ = "figure strong" if strong else "figure"
+                paper.text(x + edge, base, view.values[key], type_, align="right")
         if not view.to_cut:
-            paper.text(x + _EDGES[_STRETCH], base, refused, "strong", align="right", ink=LIGHT.bad)
+            paper.text(x + end, base, refused, "strong", align="right", ink=LIGHT.bad)
         if view.rating:
             paint_light(paper, x + _LIGHT, middle, view.rating)
             paper.text(x + _WORD, base, word, "body")

@@ -19,6 +19,8 @@ from app.gui.theme.stylesheet import load_fonts
 from app.i18n.catalog import language, number, use_language
 from app.i18n.lengths import length_number
 from app.presenters.lines import line_colours
+from app.report.cut_rows import cut_views
+from app.report.cut_table import EDGES
 from app.report.document import SHOT_SIZES, SHOTS, ReportDocument
 from app.report.pages import pages_of, write_pdf
 from app.report.painter import A4, MARGIN, TYPES
@@ -202,6 +204,12 @@ def test_a_shape_that_is_no_result_tells_no_figure_of_it(sheet: Report, tmp_path
     assert len(measured) > 10
     for row in measured:
         assert " ".join((told(row["before"], 1), told(None, 0), told(None, 0))) in text, row["key"]
+
+
+def test_every_figure_of_the_cut_list_has_its_column(sheet: Report) -> None:
+    views = cut_views(sheet, [])
+    assert views
+    assert all(set(view.values) == set(EDGES) for view in views)
 
 
 def test_a_front_part_alone_is_no_great_figure(sheet: Report, tmp_path: Path) -> None:

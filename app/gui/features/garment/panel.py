@@ -208,20 +208,21 @@ class GarmentRow(QFrame):
         grid.setContentsMargins(8, 6, 8, 6)
         grid.setHorizontalSpacing(0)
         grid.setVerticalSpacing(0)
-        for column, room in enumerate((CHIP, 0, CUT, NEWTONS)):
+        chip, title, cut, tension, pressure = range(5)
+        for column, room in ((chip, CHIP), (cut, CUT), (tension, NEWTONS)):
             grid.setColumnMinimumWidth(column, room)
-        grid.setColumnStretch(1, 1)
-        grid.addWidget(self._chip, 0, 0)
-        grid.addWidget(self.title, 0, 1)
-        for column, each in enumerate((self.cut, self.tension), start=2):
-            grid.addWidget(each, 0, column, _RIGHT)
+        grid.setColumnStretch(title, 1)
+        grid.addWidget(self._chip, 0, chip)
+        grid.addWidget(self.title, 0, title)
+        grid.addWidget(self.cut, 0, cut, _RIGHT)
+        grid.addWidget(self.tension, 0, tension, _RIGHT)
         grid.setRowMinimumHeight(0, 21)
         grid.setRowMinimumHeight(1, 21)
-        grid.addWidget(self.elastic, 1, 1, 1, 2)
-        grid.addWidget(self.stretch, 1, 3, _RIGHT)
-        grid.addWidget(self.set_stretch, 1, 3, _RIGHT)
-        grid.addWidget(self.pressure, 0, 4, 2, 1, Qt.AlignmentFlag.AlignTop)
-        grid.addWidget(self.notes, 2, 1, 1, 4)
+        grid.addWidget(self.elastic, 1, title, 1, tension - title)
+        grid.addWidget(self.stretch, 1, tension, _RIGHT)
+        grid.addWidget(self.set_stretch, 1, tension, _RIGHT)
+        grid.addWidget(self.pressure, 0, pressure, 2, 1, Qt.AlignmentFlag.AlignTop)
+        grid.addWidget(self.notes, 2, title, 1, -1)
         self.notes.setContentsMargins(5, 2, 0, 2)
 
 
