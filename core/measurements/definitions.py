@@ -1,6 +1,8 @@
 """Definitions of all measurements: name, unit and method.
 
-The value of each key is yielded by ``girths.py`` or ``bust.py``; window, report and files follow.
+The value of each key is yielded by ``girths.py`` or ``bust.py``; window, report and files follow. The guide
+shows a picture of each and is not built without it: draw a new one with
+``.venv/bin/python packaging/docs_pictures.py measures``, after ``packaging/measure_marks.py`` has its curves.
 """
 
 from __future__ import annotations

@@ -23,10 +23,10 @@ from core.messages import LineName, Message, plain
 from core.pipeline.build import Stages, build
 
 COLUMNS = tuple(field.name for field in fields(CutRow))
-"""Columns of the output as CSV, the fields of a row: a new field needs no change here."""
+"""Columns of the output as CSV: all fields of a row, also a new one. The text has those of ``_SHOWN``."""
 
 _SHOWN = ("line", "cut", "elongation", "tension", "front", "whole", "elastic", "notes")
-"""Columns of ``as_table`` that are printed; the last is printed below its row."""
+"""Columns of ``as_table`` that are printed as text; the last is printed below its row."""
 
 
 @dataclass(frozen=True)
