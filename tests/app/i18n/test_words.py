@@ -41,8 +41,11 @@ def places(text: str) -> list[str]:
 def test_every_text_is_translated_and_no_other(code: str) -> None:
     shown = {(context, english_text) for context, english_text, _ in texts()}
     assert len(shown) > 2000
-    assert sorted(shown - translations(code).keys()) == [], "missing: see `make words`"
-    assert sorted(translations(code).keys() - shown) == [], "left over: see `make words`"
+    missing = sorted(shown - translations(code).keys())
+    assert missing == [], (
+        "not in the catalogue, or without a translation: run `make words`, then translate the empty entries"
+    )
+    assert sorted(translations(code).keys() - shown) == [], "no longer in the code: run `make words`"
 
 
 @pytest.mark.parametrize("code", TRANSLATIONS)
@@ -56,7 +59,7 @@ def test_a_translation_has_the_same_places_to_fill(code: str) -> None:
 @pytest.mark.parametrize("code", TRANSLATIONS)
 def test_a_catalogue_is_written_as_it_is_read(code: str) -> None:
     path = ROOT / "resources" / "locale" / code / "LC_MESSAGES" / "busk.po"
-    assert path.read_text("utf-8") == catalogue_text(texts(), translations(code), code), "see `make words`"
+    assert path.read_text("utf-8") == catalogue_text(texts(), translations(code), code), "run `make words`"
 
 
 def test_a_message_is_given_what_its_text_names() -> None:
