@@ -236,3 +236,20 @@ def test_a_fault_is_told_once_and_the_work_goes_on(monkeypatch: pytest.MonkeyPat
         assert design.ratio("mid-bust") < 0.95
 
     run_undrawn([], script, expected=(KeyError, ZeroDivisionError))
+
+
+def test_a_fault_in_a_slot_or_thread_fails_the_test_that_does_not_expect_it() -> None:
+    def in_slot(window: MainWindow) -> Script:
+        yield lambda: True
+        QTimer.singleShot(0, window, lambda: {}["nothing"])
+        yield lambda: window.crash_handler.sheet is not None
+
+    def in_thread(window: MainWindow) -> Script:
+        yield lambda: True
+        threading.Thread(target=lambda: 1 // 0, name="faulty").start()
+        yield lambda: window.crash_handler.sheet is not None
+
+    with pytest.raises(KeyError):
+        run_undrawn([], in_slot)
+    with pytest.raises(ZeroDivisionError):
+        run_undrawn([], in_thread, expected=(KeyError,))
