@@ -235,6 +235,7 @@ class LandmarksPanel(QWidget):
 
     def _rebuild(self, landmarks: Sequence[LandmarkView]) -> None:
         for row in self.rows.values():
+            row.hide()  # or a layout that has just taken it shows it as a window of its own
             row.setParent(None)
             row.deleteLater()
         self.rows = {view.name: LandmarkRow(view) for view in landmarks}

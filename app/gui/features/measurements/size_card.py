@@ -92,6 +92,7 @@ class SizeCard(QWidget):
         keys = [view.key for view in views]
         if keys != [each.objectName() for each in self.others.findChildren(QPushButton)]:
             for each in self.others.findChildren(QWidget, options=Qt.FindChildOption.FindDirectChildrenOnly):
+                each.hide()  # or a layout that has just taken it shows it as a window of its own
                 each.setParent(None)
                 each.deleteLater()
             self._cautions = {view.key: _caution() for view in views}
