@@ -145,8 +145,8 @@ def _height() -> Amount:
 def _force() -> Choice:
     tip = tr(
         "Choose the iteration scheme for line forces. Implicit: cables and lines are solved in the same "
-        "iteration. Explicit: line forces lag by one iteration, as in the paper; only very soft lines "
-        "converge, so the stiffness changes too."
+        "iteration. Explicit: line forces lag by one iteration, as in the paper; the solver converges only "
+        "with very soft lines, so the line stiffness is reduced too."
     )
     options = (("implicit", tr("Implicit")), ("explicit", tr("Explicit")))
     return Choice("line_force", tr("Line force"), tip, options)

@@ -120,7 +120,7 @@ def pressure_legend() -> list[tuple[str, str]]:
 
 def foot_words(sheet: Report) -> str:
     """Return what was at work, for the foot of each page."""
-    mesh = tr("control mesh {count}").format(count=sheet.model["template"])
+    mesh = tr("{count}-polygon control mesh").format(count=sheet.model["template"])
     return " · ".join((f"Busk {sheet.versions['busk']}", mesh, sheet.scan))
 
 

@@ -104,7 +104,7 @@ def _refuse_line_height(line_height: float) -> None:
     low, high = LINE_HEIGHTS
     if not low <= line_height <= high:
         raise FitError(
-            Message("The line height {height} is out of range.", height=f"{line_height:g}"),
+            Message("The mid-bust line height {height} is out of range.", height=f"{line_height:g}"),
             Message("Enter a value from {low} to {high}.", low=f"{low:g}", high=f"{high:g}"),
         )
 

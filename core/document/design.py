@@ -153,7 +153,7 @@ class Design:
         check_flags((getattr(self, key), SettingName(key)) for key in ("scaled_normals", "dense_volume"))
         check_numbers(
             (
-                (self.line_height, 0.25, 0.75, SettingName("line height")),
+                (self.line_height, 0.25, 0.75, SettingName("mid-bust line height")),
                 *((getattr(self, key), *limits, SettingName(key)) for key, limits in RANGES.items()),
                 (1.0 if self.gain is None else self.gain, 0.0, 10.0, SettingName("gain")),
                 (self.tissue_stiffness, *TISSUE_LIMITS, SettingName("tissue stiffness")),

@@ -206,7 +206,7 @@ class OverstretchedError(ElasticError):
         if ratio is not None:
             least = math.ceil(100.0 * MARGIN * ratio * (1.0 + elongation) / (1.0 + elastic.max_elongation))
             hint = Message(
-                "Set {line} to {percent} % or longer, or choose an elastic with higher elongation.",
+                "Set {line} to {percent} % or more, or choose an elastic with higher elongation.",
                 line=line,
                 percent=f"{least:.0f}",
             )

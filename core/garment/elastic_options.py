@@ -188,7 +188,7 @@ def _slack(stages: Stages, name: str) -> ElasticError:
     percent = math.floor(100.0 * length / line.rest_length - 0.1)
     return ElasticError(
         Message("{line} is slack at this length (no tension).", line=LineName(name)),
-        Message("Set {line} to {percent} % or shorter.", line=LineName(name), percent=f"{percent:.0f}"),
-        Message("Slack at this length: set the line to {percent} % or shorter.", percent=f"{percent:.0f}"),
+        Message("Set {line} to {percent} % or less.", line=LineName(name), percent=f"{percent:.0f}"),
+        Message("Slack at this length: set the line to {percent} % or less.", percent=f"{percent:.0f}"),
         LineName(name),
     )

@@ -57,7 +57,8 @@ MOST_MEMBERS = 10_000
 """A packed file may be packed in so many pieces; programs that pack in blocks need one for each 64 kB."""
 
 _THINNER = Message(
-    "Reduce the scan until its file is smaller than {size} MB.", size=LARGEST_FILE // 1_000_000
+    "Reduce the resolution of the scan until the file is smaller than {size} MB.",
+    size=LARGEST_FILE // 1_000_000,
 )
 _STEP = 1 << 20
 

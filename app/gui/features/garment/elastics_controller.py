@@ -95,7 +95,7 @@ class ElasticsController(QObject):
     def save_template(self) -> None:
         """Prompt for a file and write an empty table."""
         hint = tr("Enter your measurements, then import the file.")
-        self._write(tr("Save template"), "elastic", write_template, hint)
+        self._write(tr("Export empty table"), "elastic", write_template, hint)
 
     def _write(self, title: str, name: str, write: Callable[[Path], None], hint: str) -> None:
         sheet = self.sheet

@@ -83,8 +83,8 @@ class ElasticsDialog(Dialog):
             tr("Export CSV…"), lambda: self.export_requested.emit(self.marked), "quiet"
         )
         set_tip(handed_on, tr("Export the selected elastic as a table"))
-        template = self.add_button(tr("Save template…"), self.template_requested.emit, "quiet")
-        set_tip(template, tr("Save an empty table (CSV) for your measurements"))
+        template = self.add_button(tr("Export empty table…"), self.template_requested.emit, "quiet")
+        set_tip(template, tr("Export an empty table (CSV) for your measurements"))
         self.delete = self.add_button(tr("Delete…"), lambda: self.delete_requested.emit(self.marked), "quiet")
         set_tip(self.delete, tr("Delete a custom elastic; projects that use it keep a copy"))
         for place, each in enumerate((brought, handed_on, template, self.delete)):
