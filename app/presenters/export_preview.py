@@ -163,7 +163,7 @@ def _cut(path: str, outcome: ExportSource, manner: ExportOptions) -> ExportPrevi
     cuts = cut_list(stages, points)
     table = as_table(stages, cuts, pressure_list(stages, points))
     told = listed(row[0] for row in table[1:]) or tr("No active lines")
-    return ExportPreview(told, tr("in {unit}").format(unit="mm"), lambda at, _, hear: write_table(at, table))
+    return ExportPreview(told, "", lambda at, _, hear: write_table(at, table))
 
 
 def _measures(path: str, outcome: ExportSource, manner: ExportOptions) -> ExportPreview:

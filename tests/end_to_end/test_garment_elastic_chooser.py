@@ -115,7 +115,7 @@ def test_effects_that_come_late_are_dropped_with_the_chooser(monkeypatch: pytest
         yield lambda: not window.jobs.at_work()
         views = chooser_of(window).views()
         assert not any(view.usable for view in views[1:]), "they are of the line as it is now"
-        assert {view.note for view in views[1:]} == {"Slack at this length: set the line to 99 % or shorter."}
+        assert {view.note for view in views[1:]} == {"Slack at this length: set the line to 99 % or less."}
         chooser_of(window).reject()
 
     run_undrawn([], script)

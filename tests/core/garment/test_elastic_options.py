@@ -108,7 +108,7 @@ def test_a_slack_line_names_the_length_at_which_an_elastic_pulls(
 ) -> None:
     stages = worn_at(built("mannequin"), 1.05, line_hold=hold)
     option = elastic_option(stages, NAMES, STRAP, mode)
-    assert str(option.reason) == "Slack at this length: set the line to 99 % or shorter."
+    assert str(option.reason) == "Slack at this length: set the line to 99 % or less."
     shorter = worn_at(stages, 0.99, line_hold=hold)
     assert elastic_option(shorter, NAMES, STRAP, mode).outcome is not None
 
