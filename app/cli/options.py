@@ -58,8 +58,13 @@ def add_scan(parser: ArgumentParser) -> None:
 
 def add_settings(parser: ArgumentParser) -> None:
     """Add the model options and the custom lines of a design."""
-    parser.add_argument("--settings", action="append", metavar="KEY=VALUE", help=settings_help())
+    add_model_settings(parser)
     parser.add_argument("--path", action="append", metavar="NAME=POINTS", help=LINE_HELP)
+
+
+def add_model_settings(parser: ArgumentParser) -> None:
+    """Add the model options of a design."""
+    parser.add_argument("--settings", action="append", metavar="KEY=VALUE", help=settings_help())
 
 
 def add_lines(parser: ArgumentParser) -> None:

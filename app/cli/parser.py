@@ -30,6 +30,7 @@ COMMANDS = {
     "figures": "reproduce the figures and tables of the paper",
     "controls": "compare all volume controls on the samples and the sphere",
     "accuracy": "measure the accuracy of landmarks and girths on a folder of bodies with known values",
+    "check-model": "compare the model with displacements of an independent finite-element model",
     "self-test": "check this installation; --out keeps the test files",
 }
 """Every command with a short description."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -97,7 +97,11 @@ def fit_control_mesh(
     _refuse_folded(int(best.faults.folded.sum()))
     quality = measure_fit(best.mesh, ground.skin, *_off_landmarks(template, best.mesh, landmarks))
     warnings = [*_fold_warnings(best.lost), *_arm_warning(ground), *_hole_warning(int(holes.sum()))]
-    return _control_mesh(template, best.mesh, [*warnings, *quality.warnings], quality)
+    return replace(
+        control_mesh_at(template, best.mesh.vertices),
+        warnings=(*warnings, *quality.warnings),
+        quality=quality,
+    )
 
 
 def _refuse_line_height(line_height: float) -> None:
@@ -268,9 +272,9 @@ def _fold_warnings(lost: list[int]) -> list[Message]:
     ]
 
 
-def _control_mesh(
-    template: Template, mesh: Mesh, warnings: list[Message], quality: FitQuality
-) -> ControlMesh:
+def control_mesh_at(template: Template, points: Points) -> ControlMesh:
+    """Return the control mesh of a template with its control points at ``points``, shape (n, 3) [mm]."""
+    mesh = Mesh(points, template.faces)
     bust = template.row_of("bust point")
     left, right = (template.point(bust, sign * template.bust_column) for sign in (1, -1))
     return ControlMesh(
@@ -281,6 +285,5 @@ def _control_mesh(
         template.paths,
         (left, right),
         mesh.boundary_loops[0],
-        tuple(warnings),
-        quality,
+        (),
     )

@@ -11,7 +11,7 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 
 from core.control_mesh.back_length import Back, back_of
-from core.control_mesh.fit import ControlMesh, fit_control_mesh
+from core.control_mesh.fit import ControlMesh, control_mesh_at, fit_control_mesh
 from core.control_mesh.straps import Tail
 from core.control_mesh.template import read_template
 from core.deformation.blend_region import BlendRegion, blend_weights
@@ -199,12 +199,17 @@ def _same(old: tuple[Any, ...], new: tuple[Any, ...]) -> bool:
 
 
 def build(
-    design: Design, previous: Stages | IncompleteBuildError | None = None, progress: Progress = quiet
+    design: Design,
+    previous: Stages | IncompleteBuildError | None = None,
+    progress: Progress = quiet,
+    *,
+    control_points: Points | None = None,
 ) -> Stages:
     """Build everything that precedes solving ``design``; ``progress`` receives the name of each new stage.
 
-    ``previous`` is the last result, whole or incomplete; stages with equal inputs are reused. Raises the
-    UserError of the stage that fails, or Cancelled; ``previous`` then remains valid.
+    ``previous`` is the last result, whole or incomplete; stages with equal inputs are reused. The control
+    mesh is fitted, unless its ``control_points`` (n, 3) [mm] are known. Raises the UserError of the stage
+    that fails, or Cancelled; ``previous`` then remains valid.
     """
     stage = _StageCache(previous, progress)
     try:
@@ -215,17 +220,22 @@ def build(
     else:
         try:
             body = stage("edit scan", partial(apply_edits, progress=stage.inside), body, design.scan.edits)
-            return _stages(stage, design, scan, body)
+            return _stages(stage, design, scan, body, control_points)
         except (LandmarkError, FitError) as problem:
             stuck = IncompleteBuildError(problem, body, design, stage)
     # Raised out here it has no context: what the window keeps would keep all that was read and tried.
     raise stuck
 
 
-def _stages(stage: _StageCache, design: Design, scan: ScanFile, body: Body) -> Stages:
+def _stages(
+    stage: _StageCache, design: Design, scan: ScanFile, body: Body, control_points: Points | None
+) -> Stages:
     landmarks = stage(FINDING, partial(detect_landmarks, progress=stage.inside), body, design.placed)
     template = stage("read template", read_template, design.template)
-    control = stage("fit control mesh", fit_control_mesh, template, body, landmarks, design.line_height)
+    if control_points is None:
+        control = stage("fit control mesh", fit_control_mesh, template, body, landmarks, design.line_height)
+    else:
+        control = stage("place control mesh", control_mesh_at, template, control_points)
     patch = stage("find patch", blend_weights, body.mesh, control)
     weights = design.weights, design.scaled_normals
     binding = stage("bind body", _bind, body.mesh, control, patch.fade, *weights)
