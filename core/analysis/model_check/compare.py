@@ -147,27 +147,31 @@ def compare(case: ReferenceCase, stages: Stages) -> CaseComparison:
     rest, reference = case.rest[used], case.displacement[used]
     model = _at_nodes(stages, moved, rest)
     off = np.linalg.norm(model - reference, axis=1)
-    rises = []
-    for bust_point in case.bust_points:
-        disc = np.linalg.norm(rest - bust_point, axis=1) < DISC_MM
-        if not disc.any():
-            raise UserError(
-                Message("The reference case {case} has no nodes round a bust point.", case=case.name),
-                Message("Choose another case."),
-            )
-        rises.append(Rise(float(model[disc, 2].mean()), float(reference[disc, 2].mean())))
+    left, right = (_rise(case, rest, model, reference, at) for at in case.bust_points)
     return CaseComparison(
         case.name,
         case.kind,
         _rms(off),
         _rms(np.linalg.norm(reference, axis=1)),
-        *rises,
+        left,
+        right,
         float(off.max()),
         tuple(rest[off.argmax()].tolist()),
         len(rest),
         len(case.rest) - len(rest),
         notes,
     )
+
+
+def _rise(case: ReferenceCase, rest: Points, model: Points, reference: Points, bust_point: Floats) -> Rise:
+    """Return the mean rises of the nodes ``rest`` round a bust point, all (n, 3) [mm]. Raises UserError."""
+    disc = np.linalg.norm(rest - bust_point, axis=1) < DISC_MM
+    if not disc.any():
+        raise UserError(
+            Message("The reference case {case} has no nodes near a bust point.", case=case.name),
+            Message("Choose another case."),
+        )
+    return Rise(float(model[disc, 2].mean()), float(reference[disc, 2].mean()))
 
 
 def _movable(case: ReferenceCase, stages: Stages) -> Flags:

@@ -123,7 +123,7 @@ def _arrays(path: Path) -> Arrays:
     except FileNotFoundError:
         raise UserError(
             Message("{file} does not exist.", file=str(path)),
-            Message("Check the name, or choose another case."),
+            Message("Check the name, or choose another one."),
         ) from None
     except OSError as problem:
         raise UserError(

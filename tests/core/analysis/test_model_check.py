@@ -1,0 +1,195 @@
+"""The model against reference cases: its own displacements are met, others by the difference; files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from coarse_bodies import coarse_body
+from reference_cases import BOTH, MID_BUST, SLINGS, case_arrays, write_case
+
+from core.analysis.model_check.compare import NO_WEIGHT, CaseComparison, Rise, body_file, check_model
+from core.analysis.model_check.reference_case import case_file, read_case
+from core.document.design import Design, ScanSource
+from core.errors import UserError
+
+Arrays = dict[str, Any]
+
+
+@pytest.fixture(scope="module")
+def body(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return coarse_body("mannequin", tmp_path_factory.mktemp("coarse"))
+
+
+@pytest.fixture(scope="module")
+def sling(body: Path) -> Arrays:
+    return case_arrays(body, SLINGS)
+
+
+def compared(case: Path, **settings: Any) -> CaseComparison:
+    (found,) = check_model([read_case(case)], Design(ScanSource(""), **settings))
+    return found
+
+
+def test_displacements_of_the_model_itself_are_met(body: Path, sling: Arrays, tmp_path: Path) -> None:
+    found = compared(write_case(tmp_path, sling, body))
+    assert found.kind == "sling"
+    assert found.reference_rms_mm > 0.2
+    assert found.ratio < 1e-6
+    assert found.left.model == pytest.approx(found.left.reference, abs=1e-6)
+    assert found.left.model > 0.2  # a sling lifts
+    assert found.passed
+    assert (found.left_out, found.notes) == (0, ())
+
+
+def test_the_difference_is_told_as_part_of_the_reference(body: Path, sling: Arrays, tmp_path: Path) -> None:
+    scaled = 1.1 * sling["displacement"]
+    found = compared(write_case(tmp_path, sling, body, displacement=scaled))
+    assert found.ratio == pytest.approx(1.0 / 11.0, rel=1e-6)
+    away = np.linalg.norm(sling["displacement"], axis=1)
+    assert found.largest_mm == pytest.approx(0.1 * away.max(), rel=1e-6)
+    assert found.largest_at == pytest.approx(sling["rest"][away.argmax()])
+    assert found.left.reference == pytest.approx(1.1 * found.left.model, rel=1e-6)
+
+
+@pytest.mark.parametrize(("lines", "kind"), [(MID_BUST, "mid-bust"), (BOTH, "other")])
+def test_it_is_the_stored_control_mesh_that_wears_the_lines(
+    body: Path, tmp_path: Path, lines: list[Any], kind: str
+) -> None:
+    stored = case_arrays(body, lines, line_height=0.65)
+    found = compared(write_case(tmp_path, stored, body))
+    assert found.kind == kind
+    assert found.ratio < 1e-6
+    assert compared(tmp_path / "case.npz", line_stiffness=100.0).ratio > 0.01  # settings act
+
+
+def test_a_net_does_not_respond_to_gravity(body: Path, sling: Arrays, tmp_path: Path) -> None:
+    none = {"line_rows": np.empty(0), "line_columns": np.empty(0), "gravity": np.zeros(3)}
+    found = compared(write_case(tmp_path, sling, body, **none))
+    assert (found.kind, found.ratio, found.passed) == ("weight", 1.0, False)
+    assert found.notes == (NO_WEIGHT,)
+
+
+def test_nodes_away_from_movable_skin_are_left_out(body: Path, sling: Arrays, tmp_path: Path) -> None:
+    rest = np.vstack([sling["rest"], [0.0, 200.0, 0.0]])
+    moved = np.vstack([sling["displacement"], [50.0, 50.0, 50.0]])
+    found = compared(write_case(tmp_path, sling, body, rest=rest, displacement=moved))
+    assert (found.compared, found.left_out) == (len(rest) - 1, 1)
+    assert found.ratio < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("changed", "problem"),
+    [
+        ({"rest": lambda rest: rest + 100.0}, "not on the skin of mannequin.ply"),
+        ({"bust_left": lambda point: point + 100.0}, "no nodes near a bust point"),
+    ],
+)
+def test_a_case_that_does_not_fit_its_body_is_refused(
+    body: Path, sling: Arrays, tmp_path: Path, changed: dict[str, Any], problem: str
+) -> None:
+    arrays = {name: change(sling[name]) for name, change in changed.items()}
+    with pytest.raises(UserError, match=problem):
+        compared(write_case(tmp_path, sling, body, **arrays))
+
+
+def test_a_body_is_found_beside_the_case_among_the_samples_or_in_the_folder(
+    body: Path, sling: Arrays, tmp_path: Path
+) -> None:
+    alone = read_case(write_case(tmp_path / "alone", sling))
+    assert body_file(alone).parent.name == "samples"
+    assert body_file(read_case(write_case(tmp_path / "beside", sling, body))).parent.name == "beside"
+    other = read_case(write_case(tmp_path / "other", sling, body="other.ply"))
+    with pytest.raises(UserError, match=r"other\.ply .* case was not found\. .*--bodies"):
+        body_file(other, tmp_path)
+    (tmp_path / "other.ply").touch()
+    assert body_file(other, tmp_path) == tmp_path / "other.ply"
+
+
+@pytest.mark.parametrize(
+    ("model", "reference", "passed"),
+    [
+        (0.2, -0.29, True),
+        (0.2, -0.31, False),
+        (18.0, 21.0, True),
+        (17.8, 21.0, False),
+        (2.7, 3.1, True),
+        (3.7, 3.1, False),
+    ],
+)
+def test_a_rise_may_be_off_by_half_a_millimetre_or_a_share(
+    model: float, reference: float, passed: bool
+) -> None:
+    assert Rise(model, reference).passed == passed
+
+
+@pytest.mark.parametrize(
+    ("kind", "off", "passed"),
+    [
+        *(("weight", 0.15, True), ("weight", 0.151, False)),
+        *(("sling", 0.25, True), ("sling", 0.251, False)),
+        *(("mid-bust", 0.40, True), ("mid-bust", 0.401, False)),
+        *(("other", 0.40, True), ("other", 0.401, False)),
+    ],
+)
+def test_a_case_passes_with_error_and_both_rises_within_their_limits(
+    kind: str, off: float, passed: bool
+) -> None:
+    near, far = Rise(1.0, 1.0), Rise(1.0, 2.0)
+    place = (0.0, 0.0, 0.0)
+    assert CaseComparison("", kind, off, 1.0, near, near, 1.0, place, 10, 0).passed == passed
+    assert not CaseComparison("", kind, off, 1.0, far, near, 1.0, place, 10, 0).passed
+    assert not CaseComparison("", kind, off, 1.0, near, far, 1.0, place, 10, 0).passed
+
+
+WRONG: dict[str, Arrays] = {
+    "'displacement' is missing": {"displacement": None},
+    "'ratio' is missing": {"ratio": None},
+    "'rest' does not have the expected shape": {"rest": np.zeros((4, 2))},
+    "'displacement' does not have": {"displacement": np.zeros((4, 3))},
+    "'gravity' does not have": {"gravity": np.array(["a", "b", "c"])},
+    "'control_points' does not have": {"control_points": np.zeros((3, 3))},
+    "'bust_left' contains values that are not finite": {"bust_left": np.array([np.nan, 0.0, 0.0])},
+    "'ratio' is not positive": {"ratio": 0.0},
+    "no node moves": {"rest": np.zeros((4, 3)), "displacement": np.zeros((4, 3))},
+    "its control mesh is not that of a template": {"control_faces": np.array([[0, 1, 2]])},
+    "a line leaves the control mesh": {"line_rows": np.array([[2, 99]]), "line_columns": np.array([[0, 0]])},
+    "'line_columns' does not have": {"line_columns": np.array([[0, 0]])},
+    "neither lines nor another gravity": {"line_rows": np.empty(0)},
+    "'body' is not a file name": {"body": "../mannequin.ply"},
+    "is not a reference case": {"body": np.array({"an": "object"})},
+}
+
+
+@pytest.mark.parametrize("problem", WRONG)
+def test_an_incomplete_file_is_refused(sling: Arrays, tmp_path: Path, problem: str) -> None:
+    with pytest.raises(UserError, match=rf"^case\.npz .*{problem}"):
+        read_case(write_case(tmp_path, sling, **WRONG[problem]))
+
+
+def test_a_broken_or_missing_file_is_refused(
+    sling: Arrays, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole, broken = write_case(tmp_path, sling), tmp_path / "broken.npz"
+    for data in (b"", b"no zip", whole.read_bytes()[:-200]):
+        broken.write_bytes(data)
+        with pytest.raises(UserError, match=r"broken\.npz is not a reference case"):
+            read_case(broken)
+    with pytest.raises(UserError, match="does not exist"):
+        read_case(tmp_path / "none.npz")
+    with pytest.raises(UserError, match="cannot be read: not a file"):
+        read_case(tmp_path)
+    monkeypatch.setattr("core.analysis.model_check.reference_case._LARGEST", whole.stat().st_size + 1)
+    with pytest.raises(UserError, match="is not a reference case"):
+        read_case(whole)  # small as a file, large when unpacked
+
+
+def test_a_case_is_named_or_is_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    included = {"sling": tmp_path / "sling.npz"}
+    monkeypatch.setattr("core.analysis.model_check.reference_case.included_cases", lambda: included)
+    assert case_file("sling") == tmp_path / "sling.npz"
+    assert case_file("folder/own.npz") == Path("folder/own.npz")
+    with pytest.raises(UserError, match=r"no reference case 'slnig'\. Choose one of: sling\."):
+        case_file("slnig")
