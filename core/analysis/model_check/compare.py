@@ -185,7 +185,7 @@ def _movable(case: ReferenceCase, stages: Stages) -> Flags:
                 case=case.name,
                 file=case.body,
             ),
-            Message("Check that the file is the body of this case, in mm, with z up and facing -y."),
+            Message("Check that the file is the body on which this case was computed."),
         )
     return used
 
