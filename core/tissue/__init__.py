@@ -1,0 +1,1 @@
+"""Soft tissue as a solid between skin and chest wall."""

@@ -1,0 +1,75 @@
+"""A solid condensed to control points: stiffness and weight there, nothing else being loaded (ours)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+from scipy.spatial import cKDTree
+
+from core.control_mesh.fit import ControlMesh
+from core.geometry.mesh import Floats, Mesh, Points, frozen
+from core.progress import Progress, quiet
+from core.tissue.skin_patch import skin_patch
+from core.tissue.solid import TissueSolid, tissue_solid
+
+DISC = 7.5
+"""A control point moves as the skin within this distance does on the mean [mm]."""
+
+GIVE = 0.03
+"""Each point gives way by itself so much more, over the usual give of a point [1].
+
+Discs that overlap, as in a crease, would else be as good as rigidly joined.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class TissueResponse:
+    """What tissue of a shear modulus of 1 kPa answers at the free control points.
+
+    ``stiffness`` (3 f, 3 f) [N/mm] goes with the modulus; ``weight`` (3 f, 3) [N/g] does not. ``rise`` [mm]
+    is how far the bust points rise when all weight is taken.
+    """
+
+    stiffness: Floats
+    weight: Floats
+    rise: float
+
+    def shear_modulus(self, sag: float) -> float:
+        """Return the modulus [kPa] of a person whose bust points rise by ``sag`` [mm] without weight."""
+        return self.rise / sag
+
+
+def condense(
+    body: Mesh, coarse: ControlMesh, fine: ControlMesh, progress: Progress = quiet
+) -> TissueResponse:
+    """Return what the tissue between ``body`` and chest wall answers at the free points of ``fine``.
+
+    ``coarse`` is the control mesh that ``fine`` halves. Raises ValueError where the chest wall crosses the
+    skin, Cancelled.
+    """
+    solid = tissue_solid(skin_patch(body, coarse.mesh, coarse.fixed), 1.0, progress=progress)
+    rows = disc_rows(solid, body, fine.mesh.vertices[~fine.fixed])
+    compliance, _ = solid.compliance(rows)
+    response = np.stack([solid.weight_response(axis) for axis in np.eye(3)], axis=2)
+    moved = np.stack([rows @ response[:, axis] for axis in range(3)], axis=1)
+    give = GIVE * np.median(compliance.diagonal())
+    stiffness = np.linalg.inv(compliance + give * np.eye(len(compliance)))
+    stiffness = 0.5 * (stiffness + stiffness.T)
+    place = np.cumsum(~fine.fixed) - 1
+    rise = float(np.mean([moved[place[point], 2, 2] for point in fine.bust_points]))
+    return TissueResponse(frozen(stiffness), frozen(stiffness @ moved.reshape(-1, 3)), rise)
+
+
+def disc_rows(solid: TissueSolid, body: Mesh, points: Points) -> sparse.csr_array:
+    """Return the share of each node in the mean over a disc round each of ``points``, (k, nodes) [1]."""
+    tree = cKDTree(body.vertices)
+    near = [tree.query_ball_point(here, DISC) for here in points]
+    samples = np.concatenate(
+        [np.vstack([body.vertices[at], here]) for at, here in zip(near, points, strict=True)]
+    )
+    owner = np.repeat(np.arange(len(points)), [len(at) + 1 for at in near])
+    share = 1.0 / np.bincount(owner)[owner]
+    mean = sparse.csr_array((share, (owner, np.arange(len(owner)))), shape=(len(points), len(owner)))
+    return sparse.csr_array(mean @ solid.cells.skin_rows(samples))

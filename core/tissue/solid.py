@@ -1,0 +1,185 @@
+"""Nearly incompressible solid between skin and chest wall: what it does under weight and under loads.
+
+Small displacements from the scan, on which the tissue is in balance with its weight. Displacements are
+quadratic in each tetrahedron, the pressure is linear: a pair that does not lock (Taylor and Hood 1973).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.linalg import SuperLU, splu
+
+from core.geometry.mesh import Flags, Floats, Indices, Points
+from core.progress import Progress, quiet
+from core.tissue.skin_patch import SkinPatch
+from core.tissue.tetrahedra import EDGES, LAYERS, Tetrahedra, layered_tetrahedra
+from core.tissue.wall_film import DEPTH, wall_film
+
+BULK_OVER_SHEAR = 500.0
+"""Bulk over shear modulus of tissue [1]: assumed, nearly incompressible."""
+
+DENSITY = 0.95
+"""Density of tissue [kg/l]: assumed, between fat and gland."""
+
+EARTH = 9.81e-6
+"""Weight of a volume of density 1 kg/l [N/mm^3]."""
+
+_AT_ONCE = 4
+"""So many right sides are solved at a time: with 24 each takes three times as long."""
+
+_NEAR, _FAR = 0.5854101966249685, 0.1381966011250105
+_POINTS = np.where(np.eye(4, dtype=np.bool_), _NEAR, _FAR)
+"""Four points of a tetrahedron whose mean is exact for quadratic functions, in barycentric coordinates."""
+
+
+@dataclass(frozen=True, eq=False)
+class TissueSolid:
+    """Tetrahedra of tissue with a shear modulus [kPa] and a density [kg/l]; wall and rim do not move."""
+
+    cells: Tetrahedra
+    fixed: Flags
+    shear_modulus: float
+    density: float
+
+    @cached_property
+    def weights(self) -> Floats:
+        """Return the weight that each node bears, shape (nodes,) [N]."""
+        share = np.array([_shape(point) for point in _POINTS]).mean(axis=0)
+        borne = np.abs(self.cells.volumes())[:, None] * share * self.density * EARTH
+        at = self.cells.nodes.ravel()
+        return np.asarray(np.bincount(at, borne.ravel(), self.cells.node_count), dtype=np.float64)
+
+    def weight_response(self, gravity: Points) -> Points:
+        """Return how nodes move when ``gravity`` (3,) [g] is added to that on the scan, (nodes, 3) [mm]."""
+        loads = self.weights[:, None] * np.asarray(gravity, dtype=np.float64)
+        return self.displacements(loads[:, :, None])[:, :, 0]
+
+    def displacements(self, loads: Floats) -> Floats:
+        """Return displacements under ``loads``, both of shape (nodes, 3, k) [N], [mm]."""
+        count = loads.shape[2]
+        forces = np.zeros((self._factors.shape[0], count))
+        free = ~self.fixed
+        forces[: 3 * free.sum()] = loads[free].reshape(-1, count)
+        moved = np.zeros_like(loads)
+        for start in range(0, count, _AT_ONCE):
+            some = slice(start, start + _AT_ONCE)
+            solved = self._factors.solve(forces[:, some])[: 3 * free.sum()]
+            moved[free, :, some] = solved.reshape(free.sum(), 3, -1)
+        return moved
+
+    def compliance(self, rows: sparse.csr_array) -> tuple[Floats, Floats]:
+        """Return what unit forces at means of nodes do: at the means, and at all nodes.
+
+        ``rows`` (k, nodes) are the means. Shapes (3 k, 3 k) and (nodes, 3, 3 k) [mm/N].
+        """
+        count = rows.shape[0]
+        loads = np.zeros((self.cells.node_count, 3, count, 3))
+        for axis in range(3):
+            loads[:, axis, :, axis] = rows.toarray().T
+        moved = self.displacements(loads.reshape(-1, 3, 3 * count))
+        at_means = np.stack([rows @ moved[:, axis] for axis in range(3)], axis=1).reshape(3 * count, -1)
+        return 0.5 * (at_means + at_means.T), moved
+
+    @cached_property
+    def _factors(self) -> SuperLU:
+        """Return the factors of the tangent: symmetric, so its diagonal is kept as it is."""
+        stiffness, divergence, compressibility = self._tangent()
+        free = np.flatnonzero(np.repeat(~self.fixed, 3))
+        coupling = -divergence[:, free]
+        high = sparse.hstack([stiffness[free][:, free], coupling.T])
+        whole = sparse.csc_array(sparse.vstack([high, sparse.hstack([coupling, -compressibility])]))
+        options = {"SymmetricMode": True}
+        return splu(whole, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+
+    def _tangent(self) -> tuple[sparse.csc_array, sparse.csc_array, sparse.csc_array]:
+        """Return stiffness (3 n, 3 n), divergence (c, 3 n) and compressibility (c, c) in N and mm."""
+        cells, shear = self.cells, 1e-3 * self.shear_modulus
+        gradients, volumes = _corner_gradients(cells)
+        stiffness = np.zeros((len(volumes), 10, 3, 10, 3))
+        divergence = np.zeros((len(volumes), 4, 10, 3))
+        for point in _POINTS:
+            slope = np.einsum("ai,tic->tac", _shape_slopes(point), gradients)
+            part = 0.25 * volumes
+            alike = np.einsum("t,tac,tbc->tab", shear * part, slope, slope)
+            stiffness += np.einsum("tab,cd->tacbd", alike, np.eye(3))
+            stiffness += np.einsum("t,tad,tbc->tacbd", shear * part, slope, slope)
+            divergence += np.einsum("t,p,tac->tpac", part, point, slope)
+        pressure = _POINTS.T @ _POINTS / 4.0 / (BULK_OVER_SHEAR * shear)
+        motion = (3 * cells.nodes[:, :, None] + np.arange(3)).reshape(len(volumes), 30)
+        corner, count = cells.nodes[:, :4], 3 * cells.node_count
+        return (
+            _summed(stiffness, motion, motion, (count, count)),
+            _summed(divergence, corner, motion, (len(cells.corners), count)),
+            _summed(volumes[:, None, None] * pressure, corner, corner, (len(cells.corners),) * 2),
+        )
+
+
+def tissue_solid(
+    patch: SkinPatch,
+    shear_modulus: float,
+    density: float = DENSITY,
+    depth: float = DEPTH,
+    layers: int = LAYERS,
+    progress: Progress = quiet,
+) -> TissueSolid:
+    """Return the tissue under a skin patch, of a shear modulus [kPa], its factors made.
+
+    Raises ValueError where the chest wall crosses the skin, Cancelled.
+    """
+    progress("tissue", 0.0)
+    cells = layered_tetrahedra(patch.mesh, wall_film(patch, depth), layers)
+    solid = TissueSolid(cells, _immovable(cells, patch), shear_modulus, density)
+    progress("tissue", 0.3)
+    assert solid._factors is not None
+    progress("tissue", 1.0)
+    return solid
+
+
+def _immovable(cells: Tetrahedra, patch: SkinPatch) -> Flags:
+    """Return which nodes lie on the wall or on the side under the rim, shape (nodes,)."""
+    count = len(patch.mesh.vertices)
+    corner = np.arange(len(cells.corners))
+    on_wall, on_rim = corner < count, np.isin(corner % count, patch.rim)
+    below = np.sort(cells.edges % count, axis=1)
+    loops = [np.stack([loop, np.roll(loop, -1)], axis=1) for loop in patch.mesh.boundary_loops]
+    sides = np.sort(np.concatenate(loops), axis=1)
+    along_rim = np.isin(below[:, 0] * count + below[:, 1], sides[:, 0] * count + sides[:, 1])
+    upright = (below[:, 0] == below[:, 1]) & np.isin(below[:, 0], patch.rim)
+    middle = on_wall[cells.edges].all(axis=1) | along_rim | upright
+    return np.concatenate([on_wall | on_rim, middle])
+
+
+def _shape(point: Floats) -> Floats:
+    """Return the ten quadratic shape functions at barycentric coordinates (4,), shape (10,) [1]."""
+    middle = 4.0 * point[EDGES[:, 0]] * point[EDGES[:, 1]]
+    return np.concatenate([point * (2.0 * point - 1.0), middle])
+
+
+def _shape_slopes(point: Floats) -> Floats:
+    """Return their derivatives by the four barycentric coordinates, shape (10, 4) [1]."""
+    slopes = np.zeros((10, 4))
+    slopes[range(4), range(4)] = 4.0 * point - 1.0
+    middle = np.arange(4, 10)
+    slopes[middle, EDGES[:, 0]] = 4.0 * point[EDGES[:, 1]]
+    slopes[middle, EDGES[:, 1]] = 4.0 * point[EDGES[:, 0]]
+    return slopes
+
+
+def _corner_gradients(cells: Tetrahedra) -> tuple[Floats, Floats]:
+    """Return gradients of the barycentric coordinates (t, 4, 3) [1/mm] and volumes (t,) [mm^3]."""
+    start = cells.corners[cells.nodes[:, 0]]
+    sides = np.stack([cells.corners[cells.nodes[:, k]] - start for k in (1, 2, 3)], axis=2)
+    inverse = np.linalg.inv(sides)
+    first = -inverse.sum(axis=1, keepdims=True)
+    return np.concatenate([first, inverse], axis=1), np.linalg.det(sides) / 6.0
+
+
+def _summed(parts: Floats, rows: Indices, columns: Indices, shape: tuple[int, int]) -> sparse.csc_array:
+    """Return the matrix to which each element adds its part, (t, .., ..), at its rows and columns."""
+    high, wide = rows.shape[1], columns.shape[1]
+    where = (np.repeat(rows, wide, axis=1).ravel(), np.tile(columns, (1, high)).ravel())
+    return sparse.csc_array(sparse.coo_array((parts.ravel(), where), shape=shape))
