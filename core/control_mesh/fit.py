@@ -36,7 +36,8 @@ class ControlMesh:
     template, column 0 the centre, positive the subject's left. ``paths`` are the control points of each named
     line from right (-x) to left, ``embedded`` the vertices of lines that run between control points;
     ``bust_points`` those at the bust points, (left, right). ``border`` (b,) is the border loop in order,
-    ``warnings`` what the user should know of the fit, ``quality`` its figures.
+    ``warnings`` what the user should know of the fit, ``quality`` its figures. ``anchored`` (n,) are points
+    at which bands are held in space though the skin may move there, if there are any.
     """
 
     mesh: Mesh
@@ -49,6 +50,12 @@ class ControlMesh:
     warnings: tuple[Message, ...]
     quality: FitQuality | None = None
     embedded: Mapping[str, EmbeddedCurve] = field(default_factory=dict)
+    anchored: Flags | None = None
+
+    @property
+    def held(self) -> Flags:
+        """Return the points at which lines are held in space, (n,): those that are anchored or fixed."""
+        return self.fixed if self.anchored is None else self.anchored | self.fixed
 
     @property
     def grid(self) -> Grid:

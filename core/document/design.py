@@ -26,7 +26,7 @@ from core.document.printable_name import repeated
 from core.errors import LandmarkError, LineError, UserError
 from core.landmarks.manual import PlacedMark
 from core.mechanics.constraint_lines import RATIO_LIMITS
-from core.mechanics.options import CHOICES, DEFAULT_LINE_STIFFNESS, RANGES, ModelOptions
+from core.mechanics.options import CHOICES, DEFAULT_LINE_STIFFNESS, RANGES, SAG, ModelOptions
 from core.mechanics.volume import CONTROLS
 from core.messages import LineName, Message, SettingName
 from core.scan.source import ScanSource
@@ -72,6 +72,9 @@ class Design:
     line_hold: str = "spring"
     firm_chest: float = 0.0
     volume_of: str = "each"
+    tissue: str = "net"
+    sag: float = SAG
+    posture: str = "standing"
     own_lines: tuple[CustomLine, ...] = ()
     traits: tuple[LineSettings, ...] = ()
     placed: tuple[PlacedMark, ...] = ()

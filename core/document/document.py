@@ -11,7 +11,7 @@ from core.messages import Message
 VARIANTS = ("A", "B", "C")
 """What variants are called, in this order."""
 
-_OF_THE_BODY = ("scan", "placed", "own_measures", "tissue_stiffness", "customer", "worn_tight_mm")
+_OF_THE_BODY = ("scan", "placed", "own_measures", "tissue_stiffness", "sag", "customer", "worn_tight_mm")
 
 
 @dataclass(frozen=True)

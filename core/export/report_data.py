@@ -34,7 +34,10 @@ AROUND = 12.0
 """What a section shows beside the part that can move [mm]."""
 
 NOT_MODELLED = (
-    Message("Friction between garment and skin, gravity, breathing, posture and movement are not modelled."),
+    Message(
+        "Friction between garment and skin, breathing and movement are not modelled; gravity and posture "
+        "only with solid tissue."
+    ),
     Message("Only lines shape the body: fabric between them, seams, wires and hooks are not modelled."),
 )
 """What no figure of a sheet takes into account."""
@@ -302,5 +305,14 @@ def _turns(stages: Stages, records: Sequence[Record]) -> IterationCurve:
 
 
 def _model(stages: Stages) -> dict[str, Any]:
-    names = "template", "volume", "line_contact", "line_hold", "member_law", "tissue_stiffness"
+    names = (
+        "template",
+        "volume",
+        "line_contact",
+        "line_hold",
+        "member_law",
+        "tissue",
+        "sag",
+        "tissue_stiffness",
+    )
     return {name: getattr(stages.design, name) for name in names}

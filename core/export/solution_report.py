@@ -28,6 +28,16 @@ _LIBRARIES = ("numpy", "scipy", "trimesh")
 _SETTINGS = ("template", "line_height", "weights", "scaled_normals", "dense_volume", "tissue_stiffness")
 
 
+_NOT_ON_NET = Message(
+    "Not modelled: friction between garment and skin, gravity, the measured stiffness of "
+    "tissue, and the material of lines without an elastic."
+)
+_NOT_ON_SOLID = Message(
+    "Not modelled: friction between garment and skin, the measured softness of this person, and the "
+    "material of lines without an elastic."
+)
+
+
 def write_solution(solution: Solution, folder: Path, more: Mapping[str, Any] | None = None) -> dict[str, Any]:
     """Write body.ply, control.ply, control.csv, turns.csv and report.json, and return the report.
 
@@ -170,10 +180,7 @@ def notes(stages: Stages) -> list[Message]:
         *warnings(stages),
         *stages.body.repairs,
         Message("Lengths are front lengths, from side to side; the back does not change."),
-        Message(
-            "Not modelled: friction between garment and skin, gravity, the measured stiffness of "
-            "tissue, and the material of lines without an elastic."
-        ),
+        _NOT_ON_NET if stages.tissue is None else _NOT_ON_SOLID,
     ]
 
 

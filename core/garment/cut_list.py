@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from core.control_mesh.path_snapping import max_deviation
+from core.document.design import Design
 from core.document.elastic import Elastic
-from core.garment.tension import LineTension, line_tensions
+from core.garment.tension import LineTension, line_tensions, mean_elongation
 from core.geometry.mesh import Points
 from core.geometry.plane_sections import arc_length
 from core.mechanics.constraint_lines import Line
@@ -49,9 +50,10 @@ class CutRow:
     """One piece to cut, or why there is none yet.
 
     ``reached_front_mm`` is the front part as it is worn, ``reached_whole_mm`` the whole closed band, or the
-    same for an open line. ``cut_mm`` = whole / (1 + ``elongation``) + ``allowance_mm``; a slack piece is not
-    stretched, and is cut to the length that is set. None stands for what is not known, an empty ``elastic``
-    for a line that is made of nothing in particular. ``notes`` are sentences. ``front_only`` tells of an open
+    same for an open line. ``cut_mm`` is the front as it is set, the back / (1 + ``elongation``), and
+    ``allowance_mm``; a slack piece is not stretched, and is cut to the length that is set. None stands for
+    what is not known, an empty ``elastic`` for a line that is made of nothing in particular. ``notes`` are
+    sentences. ``front_only`` tells of an open
     line that ends where the control mesh does, as straps do: its lengths are those of the part that is
     modelled, and no whole piece can be cut to them. ``far`` tells of an elastic that is stretched nearly to
     the end of its table, ``refused`` why none can be cut to this length. A ``slack`` line has no tension;
@@ -115,7 +117,7 @@ def cut_list(stages: Stages, control_points: Points) -> CutList:
         if line.name in design.active_lines()
     )
     unit = newtons_per_unit(stages.model, design.tissue_stiffness)
-    return CutList(rows, design.tissue_stiffness, unit, _notes(rows, design.tissue_stiffness))
+    return CutList(rows, design.tissue_stiffness, unit, (*_of_newtons(design, rows), *_notes(rows)))
 
 
 def _middle(places: Points) -> float:
@@ -158,8 +160,9 @@ def _row(stages: Stages, line: Line, reached: float, tensions: Mapping[str, Line
         return _noted(row, UNCHOSEN)
     if design.line_hold == "held":
         return _held(row, elastic)
-    elongation = reached / (design.ratio(line.name) * line.rest_length) - 1.0
-    return _stretched(row, elastic, elongation, elastic.force(elongation))
+    natural = design.ratio(line.name) * line.rest_length
+    elongation = mean_elongation(elastic, tension, reached / natural - 1.0)
+    return _stretched(row, elastic, natural, elongation, elastic.force(elongation))
 
 
 def goes_on(stages: Stages, line: Line) -> bool:
@@ -169,7 +172,7 @@ def goes_on(stages: Stages, line: Line) -> bool:
     """
     if line.back_length > 0.0 or line.closed or line.tail_length > 0.0:
         return False
-    rest, fixed = stages.control.mesh.vertices, line.weights @ stages.control.fixed > 1.0 - 1e-9
+    rest, fixed = stages.control.mesh.vertices, line.weights @ stages.control.held > 1.0 - 1e-9
     bands = [each.places(rest)[1:-1] for each in stages.model.lines if each.back_length > 0.0]
     ends = line.places(rest)[[0, -1]]
     sewn = [any(max_deviation(end[None], band) < SEWN_ON for band in bands) for end in ends]
@@ -192,10 +195,12 @@ def _held(row: CutRow, elastic: Elastic) -> CutRow:
         return _refused(row, elastic.overload_error(row.tension_n, LineName(row.line, row.title)).text)
     if row.slack:
         return row
-    return _stretched(row, elastic, elastic.elongation(row.tension_n), row.tension_n)
+    elongation = elastic.elongation(row.tension_n)
+    return _stretched(row, elastic, row.reached_front_mm / (1.0 + elongation), elongation, row.tension_n)
 
 
-def _stretched(row: CutRow, elastic: Elastic, elongation: float, tension: float) -> CutRow:
+def _stretched(row: CutRow, elastic: Elastic, front: float, elongation: float, tension: float) -> CutRow:
+    """Return the row with what is cut: ``front`` [mm] unstretched, and its back stretched as it is."""
     if elongation > elastic.max_elongation:
         return _refused(row, elastic.overstretch_error(elongation, LineName(row.line, row.title)).text)
     row = replace(
@@ -203,7 +208,9 @@ def _stretched(row: CutRow, elastic: Elastic, elongation: float, tension: float)
         elongation=max(elongation, 0.0),
         tension_n=tension,
         allowance_mm=elastic.allowance_mm,
-        cut_mm=row.reached_whole_mm / (1.0 + elongation) + elastic.allowance_mm,
+        cut_mm=front
+        + (row.reached_whole_mm - row.reached_front_mm) / (1.0 + elongation)
+        + elastic.allowance_mm,
         estimate=elastic.estimate,
     )
     if elongation < 0.0:
@@ -236,15 +243,25 @@ def _uneven(tension: LineTension) -> tuple[Message, ...]:
     )
 
 
-def _notes(rows: tuple[CutRow, ...], tissue: float) -> tuple[Message, ...]:
-    """Return in sentences what holds for the whole list."""
-    notes = [
-        Message(
+def _of_newtons(design: Design, rows: tuple[CutRow, ...]) -> Iterator[Message]:
+    """Yield what the newtons of the list rest on."""
+    if design.tissue == "net":
+        yield Message(
             "Forces in N are estimates: skin and tissue stiffness is assumed to be {tissue} N "
             "per m of width and unit strain; measured values of skin alone are about 160 to 1150.",
-            tissue=f"{tissue:.0f}",
-        ),
-    ]
+            tissue=f"{design.tissue_stiffness:.0f}",
+        )
+    elif any(not row.elastic and row.tension_n is not None for row in rows):
+        yield Message(
+            "Forces in N of lines without an elastic are estimates: they depend on the softness of "
+            "the tissue, a sag of {sag}.",
+            sag=Length(design.sag, 0),
+        )
+
+
+def _notes(rows: tuple[CutRow, ...]) -> tuple[Message, ...]:
+    """Return in sentences what holds for the whole list."""
+    notes = []
     guessed = sorted({row.elastic for row in rows if row.elastic and row.estimate and row.cut_mm})
     if guessed:
         notes.append(

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from core.document.elastic import Elastic
 from core.errors import LineError
 from core.geometry.mesh import Floats, Points
 from core.mechanics.force_units import newtons_per_unit
@@ -44,6 +45,15 @@ class LineTension:
         return -self.mean if self.mean < -SLACK else 0.0
 
 
+def mean_elongation(elastic: Elastic, tension: LineTension | None, unslackened: float) -> float:
+    """Return how far a line's elastic is stretched on the mean [1], as the ``tension`` of a line tells.
+
+    Where it tells nothing the line is stretched by ``unslackened`` [1], which is below 0 if it is slack.
+    """
+    pulls = tension is not None and tension.mean > 0.0
+    return elastic.elongation(tension.mean) if tension is not None and pulls else unslackened
+
+
 def divergence_error() -> LineError:
     """Return what to say where the points are those of no body any more."""
     return LineError(
@@ -70,13 +80,13 @@ def line_tensions(stages: Stages, control_points: Points) -> Mapping[str, LineTe
 def _springs(stages: Stages, points: Points) -> dict[str, LineTension]:
     model = stages.model
     unit = newtons_per_unit(model, stages.design.tissue_stiffness)
-    natural = model.natural_lengths(line_targets(stages.design, stages).ratios)
-    force = unit * model.segments.stiffness * (model.segments.lengths(points) - natural)
+    potential = Potential(model, line_targets(stages.design, stages).ratios)
+    force = unit * potential.tape * potential.stretch(model.segments.lengths(points))
     made = stages.design.active_elastics()
     tensions = {}
     for index in model.acting_lines:
         here, name = model.owner == index, model.lines[index].name
-        mean = float(np.average(force[here], weights=(natural + model.beyond)[here]))
+        mean = float(np.average(force[here], weights=(potential.natural + model.beyond)[here]))
         tensions[name] = LineTension(force[here], mean, name not in made)
     return tensions
 

@@ -268,7 +268,7 @@ _TABLE = (
             "wall extrapolated from the surrounding skin. This is the protruding part only, less than the "
             "whole breast. The top of the breast root is not visible and is assumed at half the root width "
             "above its ends; ± is the effect of assuming the top {lower} lower. After reshaping, the "
-            "volume gained by the skin of that side is added.",
+            "change in volume under the skin on the same side is added.",
             lower=Length(15.0),
         ),
         AREAS,

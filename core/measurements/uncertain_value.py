@@ -14,8 +14,8 @@ LIFT, OUT = "lift", "out"
 CUT, TENSION, MEAN_KPA, MAX_KPA = "cut", "tension", "mean_kpa", "max_kpa"
 """Kinds of figures; keys are "before:bust_girth", "lift", "lift left", "cut:mid-bust" and the like."""
 
-LANDMARKS, SCAN, TISSUE, LINE, TAPE, ELASTIC, ROOT = SOURCES = (
-    *("landmarks", "scan", "tissue", "line", "tape", "elastic", "root"),
+LANDMARKS, SCAN, TISSUE, LINE, TAPE, ELASTIC, ROOT, MODEL = SOURCES = (
+    *("landmarks", "scan", "tissue", "line", "tape", "elastic", "root", "model"),
 )
 """What figures may be off by, in the order in which it is told."""
 
@@ -83,7 +83,7 @@ class OutputUncertainties:
     @property
     def whole(self) -> bool:
         """Return whether all sources are in."""
-        return LANDMARKS in self.sources and (self.bare or bool(self.contact))
+        return LANDMARKS in self.sources
 
     def plus_minus(self, key: str) -> float | None:
         """Return what stands after the ± of a figure, in its unit.

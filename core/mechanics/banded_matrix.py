@@ -30,6 +30,29 @@ def compact(matrix: sparse.csr_array) -> Operator:
     return frozen(matrix.toarray()) if np.prod(matrix.shape) <= DENSE_LIMIT else matrix
 
 
+def over_axes(matrix: Operator, points: int) -> sparse.csr_array:
+    """Return a stiffness of ``points`` over all coordinates, (3 f, 3 f): an (f, f) one acts on each axis."""
+    whole = sparse.csr_array(matrix)
+    return whole if whole.shape[0] == 3 * points else sparse.csr_array(sparse.kron(whole, np.eye(3)))
+
+
+def lower_points(matrix: Operator, points: int, relaxation: float = 1.0) -> sparse.csr_array:
+    """Return the lower triangle of a stiffness over all coordinates, (3 f, 3 f), each point's block whole.
+
+    Each block on the diagonal is divided by ``relaxation`` [1]: the points then go so much further.
+    """
+    if isinstance(matrix, np.ndarray) and len(matrix) == 3 * points:
+        point = np.arange(3 * points) // 3
+        lower = np.where(point[:, None] >= point, matrix, 0.0)
+        return sparse.csr_array(np.where(point[:, None] == point, lower / relaxation, lower))
+    whole = sparse.coo_array(over_axes(matrix, points))
+    row, column = whole.row // 3, whole.col // 3
+    below = row >= column
+    value = np.where(row == column, whole.data / relaxation, whole.data)
+    kept = (value[below], (whole.row[below], whole.col[below]))
+    return sparse.csr_array(sparse.coo_array(kept, shape=whole.shape))
+
+
 @dataclass(frozen=True, eq=False)
 class Entries:
     """Matrix entries that are linear in ``width`` figures: ``value`` times figure ``source`` at its place.

@@ -7,7 +7,7 @@ them by the same weights (ours).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -15,7 +15,7 @@ import numpy.typing as npt
 from scipy import sparse
 
 from core.errors import LineError
-from core.geometry.mesh import Floats, Indices, Points, frozen
+from core.geometry.mesh import Flags, Floats, Indices, Points, frozen
 from core.length_text import millimetres, parse_length
 from core.messages import Length, LengthRange, LineName, Message
 
@@ -33,7 +33,9 @@ class Line:
     from control point to control point: line stiffness refers to it, however finely a line is divided.
     ``back_length`` [mm] completes the front part to the whole closed band round the body, and does not
     change. ``tail_length`` [mm] runs on over the shoulder on the fixed body, and is part of the length that
-    is set. ``constrains`` is False when no vertex can move.
+    is set. ``constrains`` is False when no vertex can move. Vertices on ``anchored`` (n,) control points are
+    held in space by the band that they are sewn to, whatever the skin does there: ``still`` (k - 1, 3) [mm]
+    is their share of the segment vectors.
     """
 
     name: str
@@ -43,6 +45,8 @@ class Line:
     back_length: float
     constrains: bool
     tail_length: float = 0.0
+    anchored: Flags | None = None
+    still: Points | float = 0.0
 
     @property
     def rest_length(self) -> float:
@@ -57,7 +61,8 @@ class Line:
     @cached_property
     def across(self) -> sparse.csr_array:
         """Return the matrix from control points to segment vectors, shape (k - 1, n)."""
-        return sparse.csr_array(self.weights[:-1] - self.weights[1:])
+        across = sparse.csr_array(self.weights[:-1] - self.weights[1:])
+        return across if self.anchored is None else sparse.csr_array(across.multiply(~self.anchored))
 
     @cached_property
     def closed(self) -> bool:
@@ -70,7 +75,7 @@ class Line:
 
     def length(self, points: Points) -> float:
         """Return the length of what is set on control points, shape (n, 3) [mm]."""
-        return float(np.linalg.norm(self.across @ points, axis=1).sum()) + self.tail_length
+        return float(np.linalg.norm(self.across @ points + self.still, axis=1).sum()) + self.tail_length
 
 
 def line_on(name: str, path: npt.ArrayLike, points: Points, free: Indices, back_length: float = 0.0) -> Line:
@@ -79,6 +84,15 @@ def line_on(name: str, path: npt.ArrayLike, points: Points, free: Indices, back_
     where = np.arange(len(nodes)), nodes
     weights = sparse.csr_array((np.ones(len(nodes)), where), shape=(len(nodes), len(points)))
     return free_line(name, weights, points, free, len(nodes) - 1, back_length)
+
+
+def anchored_line(line: Line, points: Points, anchored: Flags, free: Indices) -> Line:
+    """Return a line whose vertices on ``anchored`` (n,) control points are held at ``points`` (n, 3) [mm]."""
+    held = sparse.diags_array(np.where(anchored, 1.0, 0.0))
+    still = np.asarray((line.weights[:-1] - line.weights[1:]) @ held @ points)
+    loose = free[~anchored[free]]
+    constrains = bool((abs(line.weights[:, loose]).sum(axis=1) > 1e-9).any())
+    return replace(line, constrains=constrains, anchored=anchored, still=frozen(still))
 
 
 def free_line(

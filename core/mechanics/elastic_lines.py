@@ -16,6 +16,7 @@ import numpy as np
 from core.geometry.mesh import Floats
 from core.mechanics.model import ConstrainedModel, assemble
 from core.mechanics.newton import Equilibrium
+from core.mechanics.potential import Potential
 
 PRECISION = 1e-9
 """By how much the force of a line may differ from its elastic's at the same length, in parts."""
@@ -81,16 +82,14 @@ class ElasticLines:
         return assemble(model.tensegric, model.lines, model.volume, worn, stiffness).with_layout_of(model)
 
     def elongations(self, model: ConstrainedModel, balance: Equilibrium) -> dict[str, float]:
-        """Return how far the front of each elastic is stretched [1], by line."""
-        lengths = dict(
-            zip(
-                (line.name for line in model.lines),
-                model.line_lengths(model.tensegric.expand(balance.state.moved)),
-                strict=True,
-            )
-        )
+        """Return how far the front of each elastic is stretched [1], by line; what is slack counts as 0."""
+        potential = Potential(model, tuple(self.ratios[line.name] for line in model.lines))
+        _, pieces = model.segments.spans(balance.state.moved)
+        slack = model.sums(potential.stretch(pieces) - (pieces - potential.natural))
+        reached = model.line_lengths(model.tensegric.expand(balance.state.moved))
+        long = {line.name: each for line, each in zip(model.lines, slack + reached, strict=True)}
         rest = {line.name: line.rest_length for line in model.lines}
-        return {name: lengths[name] / (self.ratios[name] * rest[name]) - 1.0 for name in self.elastics}
+        return {name: float(long[name] / (self.ratios[name] * rest[name])) - 1.0 for name in self.elastics}
 
     def secants(self, elongations: Mapping[str, float]) -> Floats:
         """Return EA of the elastics at their elongations, shape (e,) [N]."""

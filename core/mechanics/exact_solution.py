@@ -153,7 +153,7 @@ def _turned(model: ConstrainedModel, ratios: tuple[float, ...], excess: Floats |
         moved = state.moved
         if measured.step < _AT_REST:
             break
-    both = replace(model.tensegric, mechanics=replace(model.options, volume_of="both"))
+    both = model.tensegric.with_options(replace(model.options, volume_of="both"))
     potential = Potential(replace(model, tensegric=both), ratios, excess)
     place = potential.at(moved)
     forces, push = SlidingSurface(potential.model).projected(place)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from core.mechanics.model import ConstrainedModel
+from core.mechanics.tensegrity import TensegrityModel
 
 
 def net_stiffness(model: ConstrainedModel) -> float:
@@ -18,7 +19,9 @@ def net_stiffness(model: ConstrainedModel) -> float:
     In units of the model's stiffness, the mean over directions, the width held; sqrt(3) for equilateral
     triangles under the law of force densities. The scale of the mesh does not matter.
     """
-    tensegric, corners = model.tensegric, model.tensegric.rest[model.volume.faces]
+    tensegric = model.tensegric
+    assert isinstance(tensegric, TensegrityModel)
+    corners = model.tensegric.rest[model.volume.faces]
     sides = corners - np.roll(corners, 1, axis=1)
     area = 0.5 * float(np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum())
     first, second = tensegric.rest[tensegric.cables].transpose(1, 0, 2)
@@ -30,5 +33,10 @@ def net_stiffness(model: ConstrainedModel) -> float:
 
 
 def newtons_per_unit(model: ConstrainedModel, tissue_stiffness: float) -> float:
-    """Return what one unit of the model's stiffness is [N/mm] on a tissue of so many N/m."""
+    """Return what one unit of the model's stiffness is [N/mm] on a tissue of so many N/m.
+
+    A solid has newtons of its own.
+    """
+    if model.options.tissue == "solid":
+        return 1.0
     return tissue_stiffness / 1000.0 / net_stiffness(model)

@@ -15,15 +15,17 @@ from scipy import sparse
 from scipy.sparse import linalg as sparse_linalg
 
 from core.geometry.mesh import Floats, unit
-from core.mechanics.banded_matrix import Entries, Operator, Solve
+from core.mechanics.banded_matrix import Entries, Operator, Solve, lower_points, over_axes
 from core.mechanics.iteration import HELD_GROWTH
 from core.mechanics.model import ConstrainedModel
 from core.mechanics.newton import LONGEST_STEP, Equilibrium, SlidingSurface, equilibrium_at
 from core.mechanics.potential import Evaluation, Potential
 from core.mechanics.springs import stretch_blocks
+from core.mechanics.tensegrity import TissueModel
 
 _NEAR_ENOUGH = 1e-6  # largest unbalanced force over the mean stiffness [mm]: the limit does not see less
 _STEPS = 12  # three are the rule
+_DENSE = 0.3  # share of entries that are not 0 from which a full matrix is solved sooner
 
 
 def gain_limit(model: ConstrainedModel) -> float:
@@ -37,7 +39,9 @@ def gain_limit(model: ConstrainedModel) -> float:
         n = unit(a)
         across = sparse.csr_array(sparse.block_diag([np.outer(v, v) for v in n], format="csr"))
         lines = sparse.csr_array(across @ lines)
-    d = sparse_linalg.spsolve(sparse.csc_array(cables + lines), a.ravel())
+    matrix = sparse.csc_array(cables + lines)
+    dense = matrix.nnz > _DENSE * a.size**2
+    d = np.linalg.solve(matrix.toarray(), a.ravel()) if dense else sparse_linalg.spsolve(matrix, a.ravel())
     return model.probe / abs(float(a.ravel() @ d))
 
 
@@ -49,7 +53,7 @@ class OscillationLimit:
         slides = model.options.line_contact == "sliding" and len(model.owner) > 0
         self._skin = SlidingSurface(model) if slides else None
         band = model.layout.band
-        lower = _lower_entries(model.tensegric.stiffness if slides else model.stiffness)
+        lower = _lower_entries(model.tensegric.stiffness if slides else model.stiffness, model.tensegric)
         self._lower = band.general(lower) @ np.ones(1)
         if slides:
             row, column, weight = sparse.find(sparse.tril(model.line_laplacian))
@@ -183,31 +187,30 @@ def _apart(multipliers: Floats, sides: int) -> Floats:
     return np.concatenate([np.full(sides, multipliers[0]), multipliers[1:]])
 
 
-def _lower_entries(stiffness: Operator) -> Entries:
-    """Return the entries of the lower triangle of a stiffness (f, f) that acts alike in all directions."""
-    row, column, weight = sparse.find(sparse.tril(sparse.csr_array(stiffness)))
-    axes = np.arange(3)
-    rows, columns = ((3 * at[:, None] + axes).ravel() for at in (row, column))
-    return Entries(rows, columns, np.zeros_like(rows), np.repeat(weight, 3), 1)
+def _lower_entries(stiffness: Operator, tissue: TissueModel) -> Entries:
+    """Return the entries of the lower triangle of a stiffness of the free points."""
+    row, column, weight = sparse.find(lower_points(stiffness, len(tissue.free), tissue.relaxation))
+    return Entries(
+        row.astype(np.int64), column.astype(np.int64), np.zeros(len(row), dtype=np.int64), weight, 1
+    )
 
 
 def _double_lower_less_true(model: ConstrainedModel) -> tuple[sparse.csr_array, sparse.csr_array]:
     """Return 2 M - H at rest for the cables and for the lines, both of shape (3 f, 3 f)."""
     tensegric, segments = model.tensegric, model.segments
     rest = np.zeros((len(tensegric.free), 3))
-    figures = [np.ones(1), *tensegric.hessian_figures(rest, False)]
-    true = weighted_sum(tensegric.hessian_entries, figures, rest.size)
+    figures = tensegric.hessian_figures(rest, False)
+    true = over_axes(tensegric.stiffness, len(rest))  # it is the true one where nothing else is
+    if figures:
+        true = weighted_sum(tensegric.hessian_entries, [np.ones(1), *figures], rest.size)
     u = segments.rest_spans / segments.rest_lengths[:, None]
     blocks = stretch_blocks(u, segments.stiffness, np.zeros(len(u)))
     line_true = weighted_sum([segments.entries], [blocks.ravel()], rest.size)
+    points = len(tensegric.free)
     return (
-        sparse.csr_array(2.0 * _lower(tensegric.stiffness) - true),
-        sparse.csr_array(2.0 * _lower(model.line_laplacian) - line_true),
+        sparse.csr_array(2.0 * lower_points(tensegric.stiffness, points, tensegric.relaxation) - true),
+        sparse.csr_array(2.0 * lower_points(model.line_laplacian, points, tensegric.relaxation) - line_true),
     )
-
-
-def _lower(stiffness: Operator) -> sparse.csr_array:
-    return sparse.csr_array(sparse.kron(sparse.tril(sparse.csr_array(stiffness)), np.eye(3)))
 
 
 def weighted_sum(parts: Sequence[Entries], figures: Sequence[Floats], size: int) -> sparse.csr_array:

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
-from scipy.linalg import solve_triangular
+from scipy.linalg import lapack, solve_triangular
 from scipy.sparse import linalg as sparse_linalg
 
 from core.geometry.mesh import Floats, Indices, Points, frozen, unit
-from core.mechanics.banded_matrix import DENSE_LIMIT, Operator, Solve
+from core.mechanics.banded_matrix import DENSE_LIMIT, Operator, Solve, lower_points
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,10 +49,33 @@ class GaussSeidelSweep:
         return self.forward(forces)
 
 
-def bonded_sweep(stiffness: Operator) -> GaussSeidelSweep:
-    """Return the sweep of a stiffness (f, f) that acts alike in all directions."""
-    none = np.empty((0, stiffness.shape[0]))
-    return GaussSeidelSweep(_forward(stiffness), np.empty(0, dtype=np.int64), none, np.empty((0, 0)))
+def bonded_sweep(stiffness: Operator, points: int, relaxation: float = 1.0) -> GaussSeidelSweep:
+    """Return the sweep of a stiffness of ``points``, (f, f) if it acts alike in all directions or (3 f, 3 f).
+
+    The latter's points go further by ``relaxation`` [1].
+    """
+    none = np.empty((0, points))
+    alike = stiffness.shape[0] == points
+    forward = _forward(stiffness) if alike else _forward_of_blocks(stiffness, points, relaxation)
+    return GaussSeidelSweep(forward, np.empty(0, dtype=np.int64), none, np.empty((0, 0)))
+
+
+def _forward_of_blocks(stiffness: Operator, points: int, relaxation: float) -> Solve:
+    """Return the solver of the lower triangle of a stiffness (3 f, 3 f): each point solves its own block."""
+    lower = lower_points(stiffness, points, relaxation).toarray()
+    blocks = lower.reshape(points, 3, points, 3)[np.arange(points), :, np.arange(points)]
+    own = np.linalg.inv(blocks)
+    # Each point's rows over its own block: what is left has ones on the diagonal, and is inverted quickly.
+    scaled = np.einsum("pab,pbk->pak", own, lower.reshape(points, 3, -1)).reshape(lower.shape)
+    inverse, _ = lapack.dtrtri(scaled, lower=1, unitdiag=1)
+    inverse = np.tril(inverse, -1) + np.eye(len(inverse))
+
+    def forward(right: Points) -> Points:
+        return np.asarray(inverse @ np.einsum("pab,pb->pa", own, right.reshape(points, 3)).ravel()).reshape(
+            -1, 3
+        )
+
+    return forward
 
 
 def sliding_sweep(cables: Operator, lines: Operator, nodes: Indices) -> GaussSeidelSweep:

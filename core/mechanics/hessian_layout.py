@@ -19,7 +19,7 @@ from core.mechanics.banded_matrix import (
     same_member,
 )
 from core.mechanics.springs import Springs
-from core.mechanics.tensegrity import TensegrityModel
+from core.mechanics.tensegrity import TissueModel
 from core.mechanics.volume import VolumeMeasure
 
 
@@ -75,7 +75,7 @@ class HessianLayout:
         )
 
 
-def layout_of(tensegric: TensegrityModel, segments: Springs, volume: VolumeMeasure) -> HessianLayout:
+def layout_of(tensegric: TissueModel, segments: Springs, volume: VolumeMeasure) -> HessianLayout:
     """Compute the layout of a model with the ``segments`` of its active lines."""
     fixed, *parts = tensegric.hessian_entries
     corners = volume.curvature(tensegric.place)

@@ -127,7 +127,8 @@ def natural_lengths_for(
     """
     natural = model.natural_lengths(targets.ratios)
     if model.options.line_hold == "spring":
-        return natural, state.tensions
+        slackens = model.options.tissue == "solid"
+        return np.minimum(natural, lengths) if slackens else natural, state.tensions
     before = state.tensions if len(state.tensions) else np.zeros(len(model.lines))
     excess = model.tapes * model.sums(lengths - natural)
     pull = (before + excess)[model.owner]

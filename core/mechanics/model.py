@@ -12,13 +12,14 @@ from scipy import sparse
 
 from core.control_mesh.fit import ControlMesh
 from core.geometry.mesh import Floats, Indices, Points, frozen
-from core.mechanics.banded_matrix import Operator, compact
-from core.mechanics.constraint_lines import Line, free_line, line_on
+from core.mechanics.banded_matrix import Operator, compact, over_axes
+from core.mechanics.condensed_tissue import CondensedTissue
+from core.mechanics.constraint_lines import Line, anchored_line, free_line, line_on
 from core.mechanics.gauss_seidel import GaussSeidelSweep, bonded_sweep, sliding_sweep
 from core.mechanics.hessian_layout import HessianLayout, layout_of
 from core.mechanics.options import ModelOptions
 from core.mechanics.springs import Springs, members
-from core.mechanics.tensegrity import TensegrityModel, tensegrity_model
+from core.mechanics.tensegrity import TissueModel, tensegrity_model
 from core.mechanics.volume import VolumeMeasure, volume_measure
 
 
@@ -31,7 +32,7 @@ class ConstrainedModel:
     slides over the shoulder from the segment on, as long as it is whatever the body does.
     """
 
-    tensegric: TensegrityModel
+    tensegric: TissueModel
     lines: tuple[Line, ...]
     volume: VolumeMeasure
     segments: Springs
@@ -45,8 +46,11 @@ class ConstrainedModel:
 
     @cached_property
     def stiffness(self) -> Operator:
-        """Stiffness of cables, ground and implicit line segments between free points, shape (f, f) [1]."""
-        return compact(sparse.csr_array(sparse.csr_array(self.tensegric.stiffness) + self.line_laplacian))
+        """Stiffness of tissue and implicit line segments between free points, (f, f) or (3 f, 3 f) [1]."""
+        own, points = self.tensegric.stiffness, len(self.tensegric.free)
+        if own.shape[0] == points:
+            return compact(sparse.csr_array(sparse.csr_array(own) + self.line_laplacian))
+        return np.asarray(own + over_axes(self.line_laplacian, points))
 
     @cached_property
     def line_laplacian(self) -> sparse.csr_array:
@@ -61,7 +65,7 @@ class ConstrainedModel:
     def sweep(self) -> GaussSeidelSweep:
         """Return how one turn answers the forces that it finds unbalanced."""
         if self.options.line_contact == "glued" or not len(self.owner):
-            return bonded_sweep(self.stiffness)
+            return bonded_sweep(self.stiffness, len(self.tensegric.free), self.tensegric.relaxation)
         return sliding_sweep(self.tensegric.stiffness, self.line_laplacian, self.segments.nodes)
 
     @cached_property
@@ -117,16 +121,16 @@ class ConstrainedModel:
 
     def line_lengths(self, points: Points) -> tuple[float, ...]:
         """Return the lengths of the front parts of all lines, worn or not [mm]; ``points`` (n, 3) [mm]."""
-        across, owner, tails = self._all_segments
-        spans = across @ points
+        across, still, owner, tails = self._all_segments
+        spans = across @ points + still
         lengths = np.sqrt(np.einsum("ij,ij->i", spans, spans))
         return tuple((np.bincount(owner, lengths, len(self.lines)) + tails).tolist())
 
     @cached_property
-    def _all_segments(self) -> tuple[sparse.csr_array, Indices, Floats]:
+    def _all_segments(self) -> tuple[sparse.csr_array, Points, Indices, Floats]:
         owner = np.repeat(np.arange(len(self.lines)), [len(line.rest_lengths) for line in self.lines])
         tails = np.array([line.tail_length for line in self.lines])
-        return _joined(self.lines, len(self.tensegric.rest)), owner, tails
+        return *_joined(self.lines, len(self.tensegric.rest)), owner, tails
 
     @cached_property
     def tapes(self) -> Floats:
@@ -148,13 +152,14 @@ def constrained_model(
     tail_lengths: Mapping[str, float] | None = None,
     mechanics: ModelOptions | None = None,
     own_stiffness: Mapping[str, float] | None = None,
+    solid: CondensedTissue | None = None,
 ) -> ConstrainedModel:
-    """Build the model of a control mesh with a line on each of its paths.
+    """Build the model of a control mesh with a line on each of its paths, on a net or a ``solid``.
 
     ``worn`` names the lines that act (all of them if None), the others are only measured; ``back_lengths``
     and ``tail_lengths`` [mm] see ``Line``, ``own_stiffness`` [1] see ``assemble``.
     """
-    tensegric = tensegrity_model(control.mesh, control.fixed, mechanics)
+    tensegric: TissueModel = solid or tensegrity_model(control.mesh, control.fixed, mechanics)
     backs, tails, points = back_lengths or {}, tail_lengths or {}, control.mesh.vertices
     through = [
         line_on(name, path, points, tensegric.free, backs.get(name, 0.0))
@@ -165,6 +170,8 @@ def constrained_model(
         for name, embedded in control.embedded.items()
     ]
     lines = tuple(replace(line, tail_length=tails.get(line.name, 0.0)) for line in (*through, *between))
+    if control.anchored is not None:
+        lines = tuple(anchored_line(line, points, control.anchored, tensegric.free) for line in lines)
     columns = control.column[control.mesh.faces].sum(axis=1)
     volume = volume_measure(control.mesh, tensegric.free, columns > 0)
     worn = control.line_names if worn is None else worn
@@ -172,7 +179,7 @@ def constrained_model(
 
 
 def assemble(
-    tensegric: TensegrityModel,
+    tensegric: TissueModel,
     lines: tuple[Line, ...],
     volume: VolumeMeasure,
     worn: Collection[str],
@@ -192,15 +199,17 @@ def assemble(
     beyond = np.concatenate([none, *(_beyond(line) for _, line in pulling)])
     tapes = np.concatenate([none, *(line.rest_lengths for _, line in pulling)]) + beyond
     each = np.array([own_stiffness.get(line.name, usual) * unit * line.spacing for _, line in pulling])
-    across = _joined([line for _, line in pulling], len(tensegric.rest))
-    segments = members(tensegric.rest, tensegric.place, across, np.repeat(each, counts) / tapes)
+    across, still = _joined([line for _, line in pulling], len(tensegric.rest))
+    segments = members(tensegric.rest, tensegric.place, across, np.repeat(each, counts) / tapes, still)
     return ConstrainedModel(tensegric, lines, volume, segments, owner, frozen(beyond))
 
 
-def _joined(lines: Sequence[Line], count: int) -> sparse.csr_array:
-    """Return the ``across`` of all lines one after the other, shape (s, count)."""
+def _joined(lines: Sequence[Line], count: int) -> tuple[sparse.csr_array, Points]:
+    """Return ``across`` (s, count) and ``still`` (s, 3) of all lines one after the other."""
     none = sparse.csr_array((0, count))
-    return sparse.csr_array(sparse.vstack([none, *(line.across for line in lines)], format="csr"))
+    across = sparse.csr_array(sparse.vstack([none, *(line.across for line in lines)], format="csr"))
+    still = [np.broadcast_to(line.still, (len(line.rest_lengths), 3)) for line in lines]
+    return across, np.concatenate([np.empty((0, 3)), *still])
 
 
 def _beyond(line: Line) -> Floats:

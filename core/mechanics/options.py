@@ -12,6 +12,11 @@ LINE_FORCES = ("implicit", "explicit")
 CONTACTS = ("glued", "sliding")
 LINE_HOLDS = ("spring", "held")
 VOLUMES = ("each", "both")
+TISSUES = ("net", "solid")
+POSTURES = ("standing", "lying", "unloaded")
+
+SAG = 20.0
+"""Rise of the bust points when their weight is taken, where nothing is known of the person [mm]: assumed."""
 
 DEFAULT_LINE_STIFFNESS = 16.0
 """Stiffness of a line segment in units of the cables' mean stiffness at a point [1]; ours."""
@@ -30,7 +35,9 @@ class ModelOptions:
     across the skin, the garment carries the rest. ``line_hold``: a line is a "spring" (paper section 3) or
     its length is "held" exactly, under one tension. ``firm_chest`` [1] ties points to their rest, the more
     the thinner the tissue below; 0 not at all, 0.1 firm. ``volume_of`` tells what the exact answer holds:
-    "each" breast, or the sum of "both".
+    "each" breast, or the sum of "both". ``tissue`` is the "net" of cables (paper section 2) or a "solid"
+    with weight under the skin (ours), as soft as its ``sag`` [mm] tells: the rise of the bust points when
+    their weight is taken. ``posture``: the person stands as scanned, lies on the back, or has no weight.
     """
 
     member_law: str = "force-density"
@@ -41,6 +48,9 @@ class ModelOptions:
     line_hold: str = "spring"
     firm_chest: float = 0.0
     volume_of: str = "each"
+    tissue: str = "net"
+    sag: float = SAG
+    posture: str = "standing"
 
 
 CHOICES = {
@@ -49,8 +59,15 @@ CHOICES = {
     "line_contact": CONTACTS,
     "line_hold": LINE_HOLDS,
     "volume_of": VOLUMES,
+    "tissue": TISSUES,
+    "posture": POSTURES,
 }
 """The words that each choice allows."""
 
-RANGES = {"prestress": (0.1, 1.0), "line_stiffness": (0.1, 500.0), "firm_chest": (0.0, 1.0)}
+RANGES = {
+    "prestress": (0.1, 1.0),
+    "line_stiffness": (0.1, 500.0),
+    "firm_chest": (0.0, 1.0),
+    "sag": (1.0, 100.0),
+}
 """The least and the largest number that each setting allows."""

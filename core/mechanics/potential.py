@@ -47,6 +47,7 @@ class Potential:
         self.model = model
         self.natural = model.natural_lengths(ratios)
         hold = model.options.line_hold == "held"
+        self.one_sided = model.options.tissue == "solid"
         self.tape = np.zeros(len(self.natural)) if hold else model.segments.stiffness
         self.held_lines = model.acting_lines if hold else model.acting_lines[:0]
         together = model.volume.closed or model.options.volume_of == "both"
@@ -62,8 +63,13 @@ class Potential:
 
     def energy(self, place: Evaluation) -> float:
         """Return the energy above that of the slack rest shape."""
-        longer = place.lengths - self.natural
+        longer = self.stretch(place.lengths)
         return self.model.tensegric.energy(place.moved) + 0.5 * float(self.tape @ (longer * longer))
+
+    def stretch(self, lengths: Floats) -> Floats:
+        """Return how much longer each segment is than by nature, (s,) [mm]; 0 of slack ones on a solid."""
+        longer = lengths - self.natural
+        return np.maximum(longer, 0.0) if self.one_sided else longer
 
     def _held(
         self, volumes: Floats, gradients: Floats, spans: Points, lengths: Floats
@@ -79,21 +85,31 @@ class Potential:
     def at(self, moved: Points) -> Evaluation:
         """Return all first-order figures at displacements of the free points, shape (f, 3) [mm]."""
         spans, lengths = self.model.segments.spans(moved)
-        force = (self.tape * (1.0 - self.natural / lengths))[:, None] * spans
+        force = self.pulls(lengths)[:, None] * spans
         points = self.model.tensegric.expand(moved)
         held, slopes = self._held(*self.model.volume.measure(points), spans, lengths)
         inner, line = self.model.tensegric.gradient(moved), self.model.segments.sum(force)
         return Evaluation(moved, points, spans, lengths, inner, line, held, slopes)
 
+    def pulls(self, lengths: Floats) -> Floats:
+        """Return tension over length of each segment, shape (s,) [1]; on a solid none pushes."""
+        return np.asarray(self.tape * self.stretch(lengths) / lengths)
+
+    def taut(self, lengths: Floats) -> Floats:
+        """Return 1 for each segment that acts, 0 for slack tape on a solid, shape (s,)."""
+        return np.where(lengths > self.natural, 1.0, 0.0) if self.one_sided else np.ones(len(lengths))
+
     def line_blocks(self, place: Evaluation, multipliers: Floats, clip: bool) -> Floats:
         """Return the second derivative of each line segment's energy and held length, shape (s, 3, 3)."""
-        across = self.tape * (1.0 - self.natural / place.lengths)
+        across = self.pulls(place.lengths)
         tensions = np.zeros(len(self.model.lines))
         tensions[self.held_lines] = -multipliers[len(self.sides) :]
         across = across + tensions[self.model.owner] / place.lengths
         if clip:
             across = np.maximum(across, 0.0)
-        return stretch_blocks(place.spans / place.lengths[:, None], self.tape, across)
+        return stretch_blocks(
+            place.spans / place.lengths[:, None], self.tape * self.taut(place.lengths), across
+        )
 
     def residual_norm(self, place: Evaluation, multipliers: Floats) -> float:
         """Return the largest of the unbalanced forces over the mean stiffness and of what is held [mm]."""

@@ -53,7 +53,8 @@ class Sensitivities:
     def by_ratio(self, lines: Indices) -> Rates:
         """Return the rates by the natural lengths of ``lines`` (p,), over their lengths at rest [mm / 1]."""
         model, place = self.potential.model, self.place
-        pull = -self.potential.tape * model.tapes_at_rest / place.lengths
+        taut = self.potential.taut(place.lengths)
+        pull = -self.potential.tape * taut * model.tapes_at_rest / place.lengths
         forces = self.by_line(pull, lines)
         held = np.zeros((len(self.potential.wanted), len(lines)))
         of_line = model.sums(model.tapes_at_rest)
@@ -78,13 +79,28 @@ class Sensitivities:
             by_setting = np.zeros_like(natural)
             by_setting[potential.held_lines] = -rates.multipliers[len(potential.sides) :]
             return potential.tensions(self.balance.multipliers), by_setting
-        along = self.place.spans / self.place.lengths[:, None]
-        slopes = [
-            model.segments.sum(np.where(model.owner[:, None] == line, along, 0.0)).ravel()
-            for line in range(len(model.lines))
-        ]
-        longer = model.sums(self.place.lengths - potential.natural)
-        return model.tapes * longer, model.tapes[:, None] * (rates.of(np.stack(slopes)) - natural)
+        slopes = self.stretch_slopes(range(len(model.lines)))
+        share = self.taut_shares[:, None]
+        return (
+            model.tapes * model.sums(potential.stretch(self.place.lengths)),
+            model.tapes[:, None] * (rates.of(slopes) - share * natural),
+        )
+
+    def stretch_slopes(self, lines: Sequence[int]) -> Floats:
+        """Return the slopes of what ``lines`` are stretched by, by the free points, shape (p, 3 f) [1]."""
+        model, lengths = self.potential.model, self.place.lengths
+        along = (self.potential.taut(lengths) / lengths)[:, None] * self.place.spans
+        owner = model.owner[:, None]
+        each = [model.segments.sum(np.where(owner == line, along, 0.0)).ravel() for line in lines]
+        return np.stack(each) if each else np.zeros((0, 3 * self._free))
+
+    @cached_property
+    def taut_shares(self) -> Floats:
+        """Return the part of each line's tape that is not slack, shape (lines,) [1]."""
+        model = self.potential.model
+        whole = model.sums(model.tapes_at_rest)
+        taut = model.sums(self.potential.taut(self.place.lengths) * model.tapes_at_rest)
+        return np.where(whole > 0.0, taut / np.where(whole > 0.0, whole, 1.0), 1.0)
 
     def by_forces(self, forces: Floats) -> Rates:
         """Return the rates by p settings one unit of which adds ``forces`` (3 f, p) to the energy's slope."""

@@ -23,13 +23,15 @@ class Springs:
 
     ``across`` (s, n) makes their vectors, from the second place to the first, of all points: +1 at the first
     and -1 at the second, or the weights of the points that a place lies between. ``signs`` (s, f) are its
-    columns of the free points. ``rest_spans`` (s, 3) [mm] are the vectors at rest; ``stiffness`` (s,) [1].
+    columns of the free points. ``rest_spans`` (s, 3) [mm] are the vectors at rest; ``stiffness`` (s,) [1];
+    ``still`` (s, 3) [mm] is the part of the vectors that no point moves.
     """
 
     across: sparse.csr_array
     rest_spans: Points
     stiffness: Floats
     signs: Operator
+    still: Points | float = 0.0
 
     @cached_property
     def gather(self) -> Operator:
@@ -60,7 +62,7 @@ class Springs:
 
     def lengths(self, points: Points) -> Floats:
         """Return the lengths of the members at all points, shapes (s,) and (n, 3) [mm]."""
-        return np.asarray(np.linalg.norm(self.across @ points, axis=1))
+        return np.asarray(np.linalg.norm(self.across @ points + self.still, axis=1))
 
     def spans(self, moved: Points) -> tuple[Points, Floats]:
         """Return vectors and lengths of the members, shapes (s, 3) and (s,) [mm]."""
@@ -105,11 +107,16 @@ def springs(rest: Points, place: Indices, pairs: Indices, stiffness: Floats) -> 
     return members(rest, place, incidence_of(np.arange(len(rest)), pairs), stiffness)
 
 
-def members(rest: Points, place: Indices, across: sparse.csr_array, stiffness: Floats) -> Springs:
-    """Build members whose vectors are ``across`` (s, n) times the points; see ``springs`` for the others."""
+def members(
+    rest: Points, place: Indices, across: sparse.csr_array, stiffness: Floats, still: Points | float = 0.0
+) -> Springs:
+    """Build members whose vectors are ``across`` (s, n) times the points and ``still`` (s, 3) [mm].
+
+    See ``springs`` for the others.
+    """
     free = np.flatnonzero(place >= 0)
     signs = sparse.csr_array(across[:, free[np.argsort(place[free])]])
-    return Springs(across, frozen(across @ rest), frozen(stiffness), compact(signs))
+    return Springs(across, frozen(across @ rest + still), frozen(stiffness), compact(signs), still)
 
 
 def incidence_of(place: Indices, pairs: Indices) -> sparse.csr_array:

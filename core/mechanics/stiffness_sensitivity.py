@@ -9,7 +9,9 @@ from typing import Protocol
 import numpy as np
 
 from core.geometry.mesh import Floats, Indices
+from core.mechanics.condensed_tissue import CondensedTissue
 from core.mechanics.sensitivity import Rates, Sensitivities
+from core.mechanics.tensegrity import TensegrityModel
 
 _NEAR = 1e-6  # of the elongation, for the slope of a curve of straight pieces
 
@@ -50,8 +52,7 @@ class StiffnessRates:
 def by_stiffness(answer: Sensitivities, lines: Indices) -> Rates:
     """Return the rates by the logarithm of the stiffness of ``lines`` (p,); of held lines none."""
     potential = answer.potential
-    pull = potential.tape * (1.0 - potential.natural / answer.place.lengths)
-    return answer.by_forces(answer.by_line(pull, lines))
+    return answer.by_forces(answer.by_line(potential.pulls(answer.place.lengths), lines))
 
 
 def stiffness_rates(
@@ -74,28 +75,17 @@ def stiffness_rates(
     stiff = changes.stiffer.copy()
     other = np.zeros((len(longer), stiff.shape[1])) if beside is None else beside
     if made and not len(answer.potential.held_lines):
-        along = _lengths(answer, made)
         natural = ratios[made] * np.array([model.lines[line].rest_length for line in made])
-        lengths = model.sums(answer.place.lengths + model.beyond)
-        reached = lengths[made]
-        stretch = along / natural[:, None]
-        bend = np.array(
-            [_bend(elastics[line], at) for line, at in zip(made, reached / natural - 1.0, strict=True)]
-        )
+        elongation = model.sums(answer.potential.stretch(answer.place.lengths))[made] / natural
+        stretch = answer.stretch_slopes(made) / natural[:, None]
+        bend = np.array([_bend(elastics[line], at) for line, at in zip(made, elongation, strict=True)])
         own = changes.ratios[made] / ratios[made, None]
         given = stretch @ (stiffer @ changes.stiffer + longer @ changes.ratios + other)
-        right = bend[:, None] * (given - (reached / natural)[:, None] * own) - own
+        right = bend[:, None] * (given - (answer.taut_shares[made] + elongation)[:, None] * own) - own
         system = np.eye(len(made)) - bend[:, None] * (stretch @ stiffer[:, made])
         stiff[made] += np.linalg.solve(system, right)
     moved = stiffer @ stiff + longer @ changes.ratios + other
     return StiffnessRates(moved, _pulls(answer, moved, stiff, changes.ratios))
-
-
-def _lengths(answer: Sensitivities, lines: list[int]) -> Floats:
-    """Return the slopes of the lengths of ``lines`` by the free points, shape (p, 3 f) [1]."""
-    segments, owner = answer.potential.model.segments, answer.potential.model.owner
-    along = answer.place.spans / answer.place.lengths[:, None]
-    return np.stack([segments.sum(np.where(owner[:, None] == line, along, 0.0)).ravel() for line in lines])
 
 
 def _bend(elastic: CurvedSecant, elongation: float) -> float:
@@ -113,8 +103,9 @@ def _pulls(answer: Sensitivities, moved: Floats, stiff: Floats, ratios: Floats) 
         [np.sum(along * (model.segments.signs @ column.reshape(-1, 3)), axis=1) for column in moved.T], axis=1
     )
     natural = model.tapes_at_rest[:, None] * ratios[model.owner]
-    tension = potential.tape * (place.lengths - potential.natural)
-    return np.asarray(potential.tape[:, None] * (steps - natural) + tension[:, None] * stiff[model.owner])
+    taut = potential.tape * potential.taut(place.lengths)
+    tension = potential.tape * potential.stretch(place.lengths)
+    return np.asarray(taut[:, None] * (steps - natural) + tension[:, None] * stiff[model.owner])
 
 
 def d_ground(answer: Sensitivities, ground: Floats) -> Rates:
@@ -127,13 +118,24 @@ def d_ground(answer: Sensitivities, ground: Floats) -> Rates:
 
 def d_prestress(answer: Sensitivities) -> Rates:
     """Return the rates by ``ModelOptions.prestress`` [mm / 1]; 0 under laws that know none."""
-    cables = answer.potential.model.tensegric.cable_springs
+    tissue = answer.potential.model.tensegric
+    cables = tissue.cable_springs if isinstance(tissue, TensegrityModel) else None
     if cables is None:
         return answer.by_forces(np.zeros((answer.place.gradient.size, 1)))
     spans, lengths = cables.spans(answer.place.moved)
     shorter = (cables.stiffness * cables.rest_lengths / lengths)[:, None] * spans
     at_rest = cables.stiffness[:, None] * cables.rest_spans  # the force that balances them there
     return answer.by_forces(cables.sum(shorter - at_rest).reshape(-1, 1))
+
+
+def d_sag(answer: Sensitivities) -> Rates:
+    """Return the rates by the logarithm of ``ModelOptions.sag``, at the stiffness that lines have [mm].
+
+    The stiffness of a solid goes with 1 / sag, its weight does not.
+    """
+    solid = answer.potential.model.tensegric
+    assert isinstance(solid, CondensedTissue)
+    return answer.by_forces(-(solid.gradient(answer.place.moved) + solid.load).reshape(-1, 1))
 
 
 def d_tissue(prestress: float) -> float:

@@ -9,8 +9,9 @@ balances all its cables at rest, so that what remains is ``q_ij`` times the chan
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from scipy import sparse
@@ -21,6 +22,61 @@ from core.mechanics.banded_matrix import Entries, Operator, compact
 from core.mechanics.corotated_cells import Cells, cells
 from core.mechanics.options import ModelOptions
 from core.mechanics.springs import Springs, laplacian, springs
+
+
+class TissueModel(Protocol):
+    """What a model asks of its tissue: ``TensegrityModel``, or a solid condensed to the control points."""
+
+    @property
+    def rest(self) -> Points:
+        """Return the control points at rest, shape (n, 3) [mm]."""
+
+    @property
+    def free(self) -> Indices:
+        """Return the indices of the points that can move, (f,), ascending."""
+
+    @property
+    def cables(self) -> Indices:
+        """Return the edges of the control mesh that have at least one free end, (m, 2)."""
+
+    @property
+    def mechanics(self) -> ModelOptions:
+        """Return the choices that it was built with."""
+
+    @property
+    def place(self) -> Indices:
+        """Return row of each control point among the free ones, shape (n,); -1 for a fixed point."""
+
+    @property
+    def stiffness(self) -> Operator:
+        """Return the stiffness of an iteration, (f, f) where it acts alike on each axis, or (3 f, 3 f)."""
+
+    @property
+    def mean_stiffness(self) -> float:
+        """Return the mean stiffness at a point."""
+
+    @property
+    def relaxation(self) -> float:
+        """Return how far a point goes in an iteration, over the way to its balance [1]."""
+
+    @property
+    def hessian_entries(self) -> tuple[Entries, ...]:
+        """Return the positions of the values of ``hessian_figures``: the constant part first."""
+
+    def with_options(self, mechanics: ModelOptions) -> TissueModel:
+        """Return the same tissue under other choices of how lines and volume act."""
+
+    def energy(self, moved: Points) -> float:
+        """Return the elastic energy for displacements of the free points, shape (f, 3) [mm]; 0 at rest."""
+
+    def gradient(self, moved: Points) -> Points:
+        """Return the derivative of the energy, shape (f, 3)."""
+
+    def hessian_figures(self, moved: Points, clip: bool) -> list[Floats]:
+        """Return the figures of all but the constant part of the second derivative, in order."""
+
+    def expand(self, moved: Points) -> Points:
+        """Return all control points, shape (n, 3) [mm], the free ones displaced by ``moved`` (f, 3)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +130,15 @@ class TensegrityModel:
             return self.stiffness
         ground = np.zeros(len(self.free)) if self.ground is None else self.ground
         return compact(sparse.csr_array(sparse.diags_array(ground)))
+
+    @property
+    def relaxation(self) -> float:
+        """Return 1: a point goes to its balance (paper section 5)."""
+        return 1.0
+
+    def with_options(self, mechanics: ModelOptions) -> TensegrityModel:
+        """Return the same net under other choices of how lines and volume act."""
+        return replace(self, mechanics=mechanics)
 
     @property
     def cable_springs(self) -> Springs | None:

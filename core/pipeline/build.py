@@ -12,6 +12,7 @@ import numpy as np
 
 from core.control_mesh.back_length import Back, back_of
 from core.control_mesh.fit import ControlMesh, control_mesh_at, fit_control_mesh
+from core.control_mesh.halved import halved
 from core.control_mesh.straps import Tail
 from core.control_mesh.template import read_template
 from core.deformation.blend_region import BlendRegion, blend_weights
@@ -21,10 +22,11 @@ from core.document.design import Design, ScanSource
 from core.document.line_notation import with_custom_lines
 from core.document.storage.project_file import ScanFile, read_scan_file
 from core.errors import FitError, LandmarkError, LineError, UserError
-from core.geometry.mesh import Floats, Mesh, Points
+from core.geometry.mesh import Floats, Mesh, Points, frozen
 from core.landmarks.detect import FINDING, find_landmarks
 from core.landmarks.manual import PLACED, PlacedMark, in_mm
 from core.landmarks.types import Landmark, Landmarks
+from core.mechanics.condensed_tissue import CondensedTissue
 from core.mechanics.gain_limit import gain_limit
 from core.mechanics.iteration import LineTargets, Observables
 from core.mechanics.model import ConstrainedModel, constrained_model
@@ -37,6 +39,7 @@ from core.progress import Progress, quiet
 from core.scan.body import Body, ImplausibleScanError, body_of
 from core.scan.edited_body import KEEP_MORE, NO_BUST, apply_edits
 from core.scan.source import UNEDITED
+from core.tissue.condensed import TissueResponse, condense
 
 SHARES = {
     "read scan": 0.46,
@@ -73,8 +76,10 @@ Memo = Mapping[str, tuple[tuple[Any, ...], Any]]
 class Stages:
     """The results that a design leads to before any turn is made.
 
+    ``fitted`` is the control mesh whose points own lines are named by, which ``control`` may have halved.
     ``backs`` complete the lines of the template to whole bands, ``tails`` own lines to straps; ``routes`` are
-    where all of them run at rest. ``gain`` is the conventional gain in force,
+    where all of them run at rest. ``tissue`` is what the solid under the skin answers, where the model has
+    one. ``gain`` is the conventional gain in force,
     ``gain_limit`` the one at which it begins to vibrate at rest (probe units [1]); ``seconds`` what each
     stage took when it was last made; ``memo`` holds each stage's inputs and result for reuse.
     """
@@ -84,6 +89,7 @@ class Stages:
     body: Body
     landmarks: Landmarks
     control: ControlMesh
+    fitted: ControlMesh
     patch: BlendRegion
     binding: Binding
     moving: MovingFaces
@@ -93,6 +99,7 @@ class Stages:
     routes: Mapping[str, LineRoute]
     model: ConstrainedModel
     gain_limit: float
+    tissue: TissueResponse | None
     seconds: Mapping[str, float]
     memo: Memo
 
@@ -233,9 +240,14 @@ def _stages(
     landmarks = stage(FINDING, partial(detect_landmarks, progress=stage.inside), body, design.placed)
     template = stage("read template", read_template, design.template)
     if control_points is None:
-        control = stage("fit control mesh", fit_control_mesh, template, body, landmarks, design.line_height)
+        fitted = stage("fit control mesh", fit_control_mesh, template, body, landmarks, design.line_height)
     else:
-        control = stage("place control mesh", control_mesh_at, template, control_points)
+        fitted = stage("place control mesh", control_mesh_at, template, control_points)
+    control, tissue = fitted, None
+    if design.tissue == "solid":
+        control = stage("halve control mesh", halved, fitted)
+        condensed = partial(condense, progress=stage.inside)
+        tissue = stage("condense tissue", condensed, body.smoothed, fitted, control)
     patch = stage("find patch", blend_weights, body.mesh, control)
     weights = design.weights, design.scaled_normals
     binding = stage("bind body", _bind, body.mesh, control, patch.fade, *weights)
@@ -243,20 +255,22 @@ def _stages(
     moving = stage("prepare normals", moving_faces, body.mesh, binding.moving, middle)
     watch = stage("watch body", BodyObservables, binding, control, landmarks)
     backs = stage("measure bands", _backs, body, control)
-    laid = stage("lay own lines", with_custom_lines, control, design.own_lines)
+    laid = stage("lay own lines", with_custom_lines, fitted, design.own_lines)
+    if tissue is not None:
+        laid = stage("halve own lines", halved, laid)
     tails = stage("lead straps", strap_tails, body.mesh, laid, design.own_lines, backs)
     routes = stage("trace lines", line_routes, body.mesh, laid, backs, tails)
     lengths = (*({name: part.length for name, part in each.items()} for each in (backs, tails)),)
     chosen = design.active_lines(), design.model_options, design.line_stiffnesses()
-    model = stage("build model", _model, laid, *lengths, *chosen)
+    model = stage("build model", _model, laid, *lengths, *chosen, tissue)
     elastics = design.active_elastics()
     if elastics and design.line_hold == "spring":  # a held line has its length, whatever it is made of
         change = stage("follow body", DenseVolumeChange, binding, moving) if design.dense_volume else None
         made = design.lines, elastics, design.tissue_stiffness, design.line_stiffnesses()
         model = stage("fit elastics", solve_elastic_model, model, *made, change)
     limit = stage("probe gain", gain_limit, model)
-    fitted = scan, body, landmarks, control, patch, binding, moving, watch
-    return Stages(design, *fitted, backs, tails, routes, model, limit, stage.seconds, stage.memo)
+    made_of = scan, body, landmarks, control, fitted, patch, binding, moving, watch
+    return Stages(design, *made_of, backs, tails, routes, model, limit, tissue, stage.seconds, stage.memo)
 
 
 def line_targets(design: Design, stages: Stages) -> LineTargets:
@@ -321,12 +335,18 @@ def _model(
     worn: frozenset[str],
     mechanics: ModelOptions,
     own_stiffness: Mapping[str, float],
+    tissue: TissueResponse | None,
 ) -> ConstrainedModel:
     unknown = sorted(worn - set(control.line_names))
     if unknown:
         raise LineError(
             Message("There is no line '{line}'.", line=LineName(unknown[0])),
             Message("Available lines: {lines}.", lines=", ".join(control.line_names)),
+        )
+    if tissue is not None and mechanics.line_contact == "sliding":
+        raise LineError(
+            Message("Sliding lines cannot be computed on solid tissue."),
+            Message("Choose bonded lines, or the net as tissue."),
         )
     return constrained_model(
         control,
@@ -335,4 +355,32 @@ def _model(
         tail_lengths=tails,
         mechanics=mechanics,
         own_stiffness=own_stiffness,
+        solid=None if tissue is None else solid_tissue(control, tissue, mechanics),
+    )
+
+
+GRAVITY = {"standing": (0.0, 0.0, -1.0), "lying": (0.0, 1.0, 0.0), "unloaded": (0.0, 0.0, 0.0)}
+"""Gravity in each posture, in the axes of the body [g]."""
+
+
+def solid_tissue(
+    control: ControlMesh,
+    tissue: TissueResponse,
+    mechanics: ModelOptions,
+    gravity: tuple[float, ...] | None = None,
+) -> CondensedTissue:
+    """Return the solid under a control mesh, as soft as its sag tells.
+
+    ``gravity`` [g] is that of its posture unless it is told.
+    """
+    change = np.subtract(gravity or GRAVITY[mechanics.posture], GRAVITY["standing"])
+    free = np.flatnonzero(~control.fixed)
+    edges = control.mesh.edges
+    return CondensedTissue(
+        control.mesh.vertices,
+        free,
+        edges[~control.fixed[edges].all(axis=1)],
+        frozen(tissue.shear_modulus(mechanics.sag) * tissue.stiffness),
+        frozen((tissue.weight @ change).reshape(-1, 3)),
+        mechanics,
     )

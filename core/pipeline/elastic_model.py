@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 from core.document.elastic import Elastic
 from core.document.lines import ActiveLine
 from core.errors import LineError
-from core.mechanics.elastic_lines import ElasticLines, FittedModel, fit_elastics
+from core.mechanics.elastic_lines import ElasticLines, FittedModel, Solve, fit_elastics
 from core.mechanics.exact_solution import BodyChange, solve_body_exact, solve_exact
 from core.mechanics.force_units import newtons_per_unit
 from core.mechanics.model import ConstrainedModel
@@ -43,12 +43,21 @@ def solve_elastic_model(
     return fitted.model
 
 
-def _solver(
-    ratios: tuple[float, ...], change: BodyChange | None
-) -> Callable[[ConstrainedModel], Equilibrium]:
-    if change is None:
-        return lambda model: solve_exact(model, ratios)
-    return lambda model: solve_body_exact(model, ratios, change)
+def _solver(ratios: tuple[float, ...], change: BodyChange | None) -> Solve:
+    """Return what solves the model of each round."""
+    near: Equilibrium | None = None
+
+    def solve(model: ConstrainedModel) -> Equilibrium:
+        nonlocal near
+        if change is None:
+            found = solve_exact(model, ratios, near=near)
+        else:
+            found = solve_body_exact(model, ratios, change, near=near)
+        # Solid tissue and lines that only pull have one balance; on a net another might be found from there.
+        near = found if model.options.tissue == "solid" and found.is_converged else None
+        return found
+
+    return solve
 
 
 def _no_agreement(fitted: FittedModel) -> LineError:

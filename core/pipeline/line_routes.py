@@ -38,7 +38,7 @@ def strap_tails(
     for line in own:
         if line.over_shoulder:
             end = control.upper_end(line.name)
-            if end @ control.fixed < 1.0 - 1e-9:
+            if end @ control.held < 1.0 - 1e-9:
                 problem = Message(
                     "The upper end is not fixed: extend the line to the edge of the control mesh."
                 )

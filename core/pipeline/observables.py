@@ -88,7 +88,7 @@ class BodyObservables:
 def _sides(rest: Points, control: ControlMesh) -> tuple[Flags, Flags]:
     """Return which vertices lie on the free part of the left and of the right breast."""
     _, nearest = cKDTree(control.mesh.vertices).query(rest)
-    free = ~control.fixed[nearest]
+    free = ~control.held[nearest]
     return free & (control.column[nearest] > 0), free & (control.column[nearest] < 0)
 
 

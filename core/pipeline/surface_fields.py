@@ -11,6 +11,7 @@ from core.control_mesh.fit import ControlMesh
 from core.geometry.closest_point import Frames, neighbourhoods
 from core.geometry.mesh import Floats, Indices, Mesh, Points
 from core.mechanics.model import ConstrainedModel
+from core.mechanics.potential import Potential
 
 
 def normal_displacement(rest: Points, normals: Points, places: Points) -> Floats:
@@ -89,8 +90,8 @@ def line_forces(model: ConstrainedModel, points: Points, ratios: tuple[float, ..
     """
     if model.options.line_hold == "held" or not len(model.owner):
         return {}
-    longer = model.segments.lengths(points) - model.natural_lengths(ratios)
-    force = model.segments.stiffness * longer
+    potential = Potential(model, ratios)
+    force = potential.tape * potential.stretch(model.segments.lengths(points))
     share = force / max(float(np.abs(force).max()), 1e-9)
     return {
         line.name: share[model.owner == index]

@@ -113,6 +113,9 @@ def traits(draw, made_of):
 @st.composite
 def designs(draw):
     made_of = draw(elastics)
+    words_of = {key: draw(st.sampled_from(choices)) for key, choices in CHOICES.items()}
+    if words_of["tissue"] == "solid":
+        words_of["line_contact"] = "glued"  # lines cannot slide on a solid
     return draw(
         st.builds(
             Design,
@@ -134,7 +137,7 @@ def designs(draw):
             customer=names,
             worn_tight_mm=st.floats(*WORN_TIGHT),
             calibration=st.none() | calibrations,
-            **{key: st.sampled_from(choices) for key, choices in CHOICES.items()},
+            **{key: st.just(word) for key, word in words_of.items()},
             **{key: st.floats(*limits) for key, limits in RANGES.items()},
             unknown=st.dictionaries(words.filter(lambda word: word not in ALL_KNOWN), anything, max_size=3),
         )

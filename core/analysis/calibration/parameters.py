@@ -15,17 +15,25 @@ from core.geometry.mesh import Floats
 from core.mechanics.constraint_lines import RATIO_LIMITS
 from core.mechanics.options import RANGES
 from core.mechanics.sensitivity import Sensitivities
-from core.mechanics.stiffness_sensitivity import Changes, d_ground, d_prestress, d_tissue, stiffness_rates
-from core.mechanics.tensegrity import firm_ground
+from core.mechanics.stiffness_sensitivity import (
+    Changes,
+    d_ground,
+    d_prestress,
+    d_sag,
+    d_tissue,
+    stiffness_rates,
+)
+from core.mechanics.tensegrity import TensegrityModel, firm_ground
 from core.pipeline.active_lines import active_line_groups
 from core.pipeline.build import Stages
 from core.pipeline.solve import body_volume_rates
 
-LINE_STIFFNESS, FIRM_CHEST, PRESTRESS, TISSUE = (
+LINE_STIFFNESS, FIRM_CHEST, PRESTRESS, TISSUE, SAG = (
     "line_stiffness",
     "firm_chest",
     "prestress",
     "tissue_stiffness",
+    "sag",
 )
 """Numbers that are settings of the whole design."""
 
@@ -39,6 +47,7 @@ _BEFORE = {
     LINE_STIFFNESS: 1.0,
     STIFFNESS: 1.0,
     TISSUE: 0.5,
+    SAG: math.log(1.5),
     FIRM_CHEST: 0.1,
     PRESTRESS: 0.25,
     LENGTH: 0.02,
@@ -65,7 +74,7 @@ class Parameter:
     @property
     def logarithmic(self) -> bool:
         """Return whether it is sought by its logarithm, which is what matters of a stiffness."""
-        return self.kind in (LINE_STIFFNESS, STIFFNESS, TISSUE)
+        return self.kind in (LINE_STIFFNESS, STIFFNESS, TISSUE, SAG)
 
     @property
     def prior_deviation(self) -> float:
@@ -142,11 +151,18 @@ def _candidates(stages: Stages, lengths: bool, each: bool) -> Iterator[Parameter
         for group in springy:
             if group[0] in own or (each and len(springy) > 1):
                 yield Parameter(STIFFNESS, group)
-        if len(springy) < len(groups):
-            yield Parameter(TISSUE, tuple(name for group in groups if group[0] in elastic for name in group))
-    yield Parameter(FIRM_CHEST)
-    if design.member_law == "prestressed":
-        yield Parameter(PRESTRESS)
+    moving = [name for group in groups for name in group]
+    made = tuple(name for name in moving if name in elastic)
+    measured = bool(made) and design.line_hold == "spring"
+    if design.tissue == "net" and measured:
+        yield Parameter(TISSUE, made)
+    if design.tissue == "solid" and (measured or design.posture != "standing"):
+        # Beside weight and elastics all is as stiff as the tissue, and its stiffness moves nothing.
+        yield Parameter(SAG, tuple(name for name in moving if name not in elastic))
+    if design.tissue == "net":
+        yield Parameter(FIRM_CHEST)
+        if design.member_law == "prestressed":
+            yield Parameter(PRESTRESS)
     if lengths:
         yield from (Parameter(LENGTH, group) for group in groups)
 
@@ -173,7 +189,7 @@ def point_sensitivities(stages: Stages, answer: Sensitivities, numbers: tuple[Pa
         rows = [names.index(name) for name in number.lines]
         if number.kind in (LINE_STIFFNESS, STIFFNESS):
             stiffer[rows, column] = 1.0
-        elif number.kind == TISSUE:
+        elif number.kind in (TISSUE, SAG):
             stiffer[rows, column] = -1.0
         elif number.kind == LENGTH:
             shares[rows, column] = 1.0
@@ -187,8 +203,12 @@ def point_sensitivities(stages: Stages, answer: Sensitivities, numbers: tuple[Pa
             beside[:, column] = kept(d_ground(answer, _ground(stages))).moved[:, 0]
         elif number.kind == PRESTRESS:
             beside[:, column] = kept(d_prestress(answer)).moved[:, 0]
+        elif number.kind == SAG:
+            beside[:, column] = kept(d_sag(answer)).moved[:, 0]
     return stiffness_rates(answer, Changes(stiffer, shares), elastics, ratios, kept, beside).moved
 
 
 def _ground(stages: Stages) -> Floats:
-    return firm_ground(stages.model.tensegric, stages.control.mesh)
+    net = stages.model.tensegric
+    assert isinstance(net, TensegrityModel)
+    return firm_ground(net, stages.control.mesh)

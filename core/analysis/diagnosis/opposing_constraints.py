@@ -18,6 +18,7 @@ from scipy.sparse import linalg as sparse_linalg
 
 from core.analysis.diagnosis.stability import equilibrium_for
 from core.geometry.mesh import Floats, Points
+from core.mechanics.banded_matrix import over_axes
 from core.mechanics.force_units import newtons_per_unit
 from core.mechanics.iteration import LineTargets
 from core.mechanics.model import ConstrainedModel
@@ -115,8 +116,8 @@ class _Skin:
 
     def __init__(self, model: ConstrainedModel, place: Evaluation, newtons: float) -> None:
         self.model = model
-        stiffness = sparse.csc_array(sparse.csr_array(model.tensegric.stiffness))
-        self._moves = sparse_linalg.splu(newtons * stiffness).solve
+        stiffness = sparse.csc_array(over_axes(model.tensegric.stiffness, len(model.tensegric.free)))
+        self._solve = sparse_linalg.splu(newtons * stiffness).solve
         self._outward = model.volume.gradient(place.points)
 
     def pull(self, lines: tuple[str, ...], force: Points) -> ConstraintForce:
@@ -127,6 +128,10 @@ class _Skin:
         """Return how two constraints stand to each other."""
         undone = -float(np.vdot(one.force, self._moves(other.force)))
         return Opposition(one, other, self._angle(one.force, other.force), undone)
+
+    def _moves(self, force: Points) -> Points:
+        """Return how a force moves the skin, both (f, 3) [N, mm]."""
+        return np.asarray(self._solve(force.ravel())).reshape(-1, 3)
 
     def _angle(self, one: Points, other: Points) -> float:
         """Return the angle between what two forces do to the skin [degrees], 90 where one is nothing."""
@@ -163,7 +168,7 @@ def _lines(
 ) -> Iterator[tuple[LineGroup, Points]]:
     """Yield the force of each worn line that acts, linked ones together, in units of the model."""
     model = potential.model
-    tension = potential.tape * (place.lengths - potential.natural)
+    tension = potential.tape * potential.stretch(place.lengths)
     if len(balance.tensions):
         tension = tension + balance.tensions[model.owner]
     along = (tension / place.lengths)[:, None] * place.spans

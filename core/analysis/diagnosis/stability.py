@@ -119,7 +119,7 @@ def equilibrium_for(stages: Stages, targets: LineTargets, near: Equilibrium | No
 
 def combined_volume_model(model: ConstrainedModel) -> ConstrainedModel:
     """Return a model as turns measure it: both breasts together, whatever the exact answer holds."""
-    both = replace(model.tensegric, mechanics=replace(model.options, volume_of="both"))
+    both = model.tensegric.with_options(replace(model.options, volume_of="both"))
     return replace(model, tensegric=both)
 
 

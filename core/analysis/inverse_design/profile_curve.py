@@ -99,7 +99,7 @@ class ProfileCurve:
 
 def profile_at(stages: Stages, section: str, control_points: Points) -> ProfileCurve:
     """Return the profile of a section as it is at control points, (n, 3) [mm], with handles, none pulled."""
-    heights = stages.control.mesh.vertices[~stages.control.fixed, 2]
+    heights = stages.control.mesh.vertices[~stages.control.held, 2]
     grid = np.arange(heights.min(), heights.max(), _FINE)
     base = np.stack([grid, skin_of(stages, section, grid)(control_points)[0]], axis=1)
     base = base[np.isfinite(base[:, 1])]
@@ -112,7 +112,7 @@ def profile_at(stages: Stages, section: str, control_points: Points) -> ProfileC
 
 def profile_from_table(stages: Stages, section: str, curve: Floats) -> ProfileCurve:
     """Return the profile of a ``curve`` (k, 2) [mm] of heights and outs, with handles if it is long."""
-    heights = stages.control.mesh.vertices[~stages.control.fixed, 2]
+    heights = stages.control.mesh.vertices[~stages.control.held, 2]
     inside = curve[(curve[:, 0] >= heights.min()) & (curve[:, 0] <= heights.max())]
     long = len(inside) >= _ENOUGH
     handles = _handles(inside, False) if long else np.zeros(0, dtype=np.int64)
@@ -217,7 +217,7 @@ def profile_goals(stages: Stages, section: str, curve: Floats) -> tuple[Goal, ..
 
     The ``section`` is "left" or "right" or its x [mm]. Raises UserError if the curve lies elsewhere.
     """
-    heights = stages.control.mesh.vertices[~stages.control.fixed, 2]
+    heights = stages.control.mesh.vertices[~stages.control.held, 2]
     low, high = float(heights.min()), float(heights.max())
     inside = curve[(curve[:, 0] >= low) & (curve[:, 0] <= high)]
     inside = inside[inside[:, 0] > overhang_height(stages, section, inside)]

@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 from types import MappingProxyType
 
+import numpy as np
+
 from core.analysis.length_limits.path_solutions import PathPoint
 from core.document.elastic import Elastic
 from core.document.lines import ActiveLine
@@ -133,12 +135,19 @@ def _limit_at_rest(model: ConstrainedModel, swing: OscillationLimit) -> float:
 
 
 def _pull(found: PathPoint, together: tuple[int, ...]) -> float:
-    """Return how far the slackest tried line is stretched, over its rest length; negative: it pushes."""
+    """Return how far the slackest tried line is stretched, over its rest length; negative: it pushes.
+
+    Of a line on a solid, which pulls piece by piece, the piece that is stretched furthest tells.
+    """
     model = found.model
     rest = [line.rest_length for line in model.lines]
     if model.options.line_hold == "held":
         held = found.balance.tensions
         return min(float(held[at] / model.tapes[at] / rest[at]) for at in together if model.tapes[at] > 0.0)
+    if model.options.tissue == "solid":
+        longer = model.segments.lengths(found.points) - model.natural_lengths(found.ratios)
+        longer = longer / model.tapes_at_rest
+        return min(float(longer[model.owner == at].max(initial=-np.inf)) for at in together)
     lengths = model.line_lengths(found.points)
     return min(lengths[at] / rest[at] - found.ratio for at in together)
 

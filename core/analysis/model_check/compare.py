@@ -17,9 +17,11 @@ from core.document.lines import CustomLine
 from core.errors import UserError
 from core.geometry.closest_point import barycentric, nearest_faces
 from core.geometry.mesh import Flags, Floats, Points
+from core.mechanics.model import assemble
 from core.messages import Message
-from core.pipeline.build import Stages, build
+from core.pipeline.build import Stages, build, solid_tissue
 from core.pipeline.solve import NoEquilibriumError, exact_equilibrium
+from core.tissue.condensed import TissueResponse
 
 ERROR_LIMITS = {"weight": 0.15, "sling": 0.25, "mid-bust": 0.40, "other": 0.40}
 """Largest error by kind of case, as rms of the difference over rms of the reference [1]; ours."""
@@ -125,7 +127,22 @@ def case_stages(case: ReferenceCase, design: Design, body: Path, previous: Stage
     for number, points in enumerate(case.lines, 1):
         line = CustomLine(f"reference {number}", points)
         design = design.with_custom_line(line).with_line(line.name, case.ratio)
-    return build(design, previous, control_points=case.control_points)
+    stages = build(design, previous, control_points=case.control_points)
+    return stages if stages.tissue is None else _on_solid(case, stages, stages.tissue)
+
+
+def _on_solid(case: ReferenceCase, stages: Stages, tissue: TissueResponse) -> Stages:
+    """Return stages whose solid has the modulus, the gravity and the newtons of the lines of a case."""
+    model, sag = stages.model, tissue.rise / case.shear_modulus_kpa
+    options = replace(stages.design.model_options, sag=sag)
+    solid = solid_tissue(stages.control, tissue, options, case.gravity)
+    own = {
+        line.name: case.line_stiffness_n / (solid.mean_stiffness * line.spacing)
+        for line in model.lines
+        if line.name in stages.design.active_lines()
+    }
+    made = assemble(solid, model.lines, model.volume, stages.design.active_lines(), own)
+    return replace(stages, model=made)
 
 
 def control_displacement(case: ReferenceCase, stages: Stages) -> tuple[Points, tuple[Message, ...]]:
@@ -137,7 +154,8 @@ def control_displacement(case: ReferenceCase, stages: Stages) -> tuple[Points, t
     if not balance.is_converged:
         raise NoEquilibriumError(stages.design)
     moved = stages.model.tensegric.expand(balance.state.moved) - stages.control.mesh.vertices
-    return moved, (NO_WEIGHT,) if case.gravity != STANDING else ()
+    weightless = stages.tissue is None and case.gravity != STANDING
+    return moved, (NO_WEIGHT,) if weightless else ()
 
 
 def compare(case: ReferenceCase, stages: Stages) -> CaseComparison:

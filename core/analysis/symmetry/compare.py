@@ -89,7 +89,7 @@ def _mirrored(body: Body, control: ControlMesh, patch: BlendRegion) -> MirroredS
     if len(calm.vertices) != len(fade):  # of a giant scan the calm skin is coarser
         fade = fade[cKDTree(body.mesh.vertices).query(calm.vertices)[1]]
     nearest = np.asarray(cKDTree(control.mesh.vertices).query(calm.vertices)[1])
-    breasts = ~control.fixed[nearest] & (fade > 0.0)
+    breasts = ~control.held[nearest] & (fade > 0.0)
     middle = float(control.mesh.vertices[control.border, 0].mean())
     return MirroredSurface(calm, fade == 0.0, breasts, middle)
 

@@ -23,7 +23,7 @@ def moves_one_side(stages: Stages) -> bool:
 def _one_sided(stages: Stages, group: tuple[str, ...]) -> bool:
     control = stages.control
     touched = [line.weights.nonzero()[1] for line in stages.model.lines if line.name in group]
-    pulled = {int(point) for points in touched for point in points if not control.fixed[point]}
+    pulled = {int(point) for points in touched for point in points if not control.held[point]}
     sides = {int(control.column[point]) for point in pulled} - {0}
     return bool(sides) and (min(sides) > 0 or max(sides) < 0)
 

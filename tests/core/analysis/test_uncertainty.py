@@ -21,9 +21,11 @@ from core.analysis.uncertainty.input_uncertainty import (
     with_overrides,
 )
 from core.analysis.uncertainty.linear_propagation import Propagation
+from core.analysis.uncertainty.model_error import model_error_mm, model_errors
 from core.analysis.uncertainty.monte_carlo import sample
 from core.analysis.uncertainty.parameters import PLACING, perturb, uncertain_parameters
 from core.analysis.uncertainty.perturbed_solutions import PerturbedSolutions
+from core.deformation.tffd import deform
 from core.document.custom_measures import CustomMeasurement
 from core.errors import UserError
 from core.garment.elastic_library import find_elastic
@@ -32,6 +34,7 @@ from core.geometry.planar_curves import Plane, Slicer
 from core.measurements.uncertain_value import (
     LANDMARKS,
     LINE,
+    MODEL,
     SCAN,
     SOURCES,
     TAPE,
@@ -74,9 +77,11 @@ def test_both_ways_agree_on_small_spreads(plain: Stages, contact: str) -> None:
     trials = PerturbedSolutions(build(replace(made, line_contact=contact), plain))
     small = default_uncertainty().scaled(0.02)
     turning = [knob for knob in uncertain_parameters(trials.base, small) if knob.source != LANDMARKS]
-    assert {knob.source for knob in turning} == {"tissue", "line", "tape", "elastic", "scan"}
+    turning += model_errors(trials, small)
+    assert {knob.source for knob in turning} == {"tissue", "line", "tape", "elastic", "scan", "model"}
     if contact == "sliding":  # the rest is as glued
-        turning = [knob for knob in turning if knob.source in ("line", "elastic") or knob.name == "mid-bust"]
+        kept = ("line", "elastic", "model")
+        turning = [knob for knob in turning if knob.source in kept or knob.name == "mid-bust"]
     propagation = Propagation(trials)
     effects = [propagation.effect(knob).values for knob in turning]
     found, here = sample(trials, turning, 2), trials(perturb(trials.base, {})).values
@@ -151,7 +156,10 @@ def test_the_quick_part_comes_first_and_the_other_contact_last(told: list[Output
     assert LANDMARKS not in first.sources
     assert first.by_output["lift"].sd < last.by_output["lift"].sd
     assert last.contact == "sliding"
-    assert last.other["lift"] > 3.0 * last.sds * last.by_output["lift"].sd  # a choice, and no part of the ±
+    without_model = {name: sd for name, sd in last.by_output["lift"].by_source.items() if name != MODEL}
+    assert last.other["lift"] > 3.0 * last.sds * hypot(
+        *without_model.values()
+    )  # a choice, and no part of the ±
     assert (last.skin >= SURE.skin_mm).all()
     assert last.rest == SURE.skin_mm
 
@@ -224,8 +232,9 @@ def test_all_that_is_assumed_is_data_with_its_origin() -> None:
             with_overrides([text], default_uncertainty())
 
 
-def test_a_source_that_is_none_turns_nothing(plain: Stages) -> None:
+def test_a_source_that_is_none_turns_nothing(plain: Stages, trials: PerturbedSolutions) -> None:
     assert uncertain_parameters(plain, InputUncertainty()) == ()
+    assert model_errors(trials, InputUncertainty()) == ()
     assert {
         knob.source for knob in uncertain_parameters(plain, replace(InputUncertainty(), skin_mm=1.0))
     } == {SCAN}
@@ -297,6 +306,53 @@ def test_what_placing_a_landmark_where_it_is_changes_is_in_the_spread(
     ]
     of_landmarks = told[-1].by_output[key].by_source[LANDMARKS]
     assert of_landmarks == pytest.approx(hypot(jump, *turns), rel=1e-6)
+
+
+@pytest.mark.parametrize("tissue", ["net", "solid"])
+def test_the_model_error_has_its_size_where_the_body_is_reshaped(plain: Stages, tissue: str) -> None:
+    trials = PerturbedSolutions(build(replace(plain.design, tissue=tissue), plain))
+    moved = deform(trials.base.binding, trials.points) - trials.base.body.mesh.vertices
+    sizes = default_uncertainty()
+    share, least = sizes.of_model(tissue)
+    assert (share, least) == ((0.25, 0.5) if tissue == "solid" else (0.6, 1.0))
+    motion = np.linalg.norm(moved[trials.base.binding.moving], axis=1)
+    rms = float(np.sqrt((motion**2).mean()))
+    assert model_error_mm(trials, sizes) == pytest.approx([max(share * rms, least)] * 2, rel=0.1)
+    assert model_error_mm(trials, InputUncertainty(net_error=10.0, solid_error=10.0)) == pytest.approx(
+        [10.0 * rms] * 2, rel=0.1
+    )
+    alone = InputUncertainty(**dict(zip(_of_model(tissue), (share, least), strict=True)))
+    spread = UncertaintyEstimator(trials, alone).estimate_partial()
+    for knob in model_errors(trials, sizes):
+        free = np.linalg.norm(knob.shift[trials.base.model.tensegric.free], axis=1)
+        assert free.max() == pytest.approx(model_error_mm(trials, sizes).max(), rel=0.05)
+    # A bust point yields nearly as much as any place, and girth by girth what hangs on it.
+    lift, girth, volume = (
+        spread.by_output[key].by_source[MODEL]
+        for key in ("lift", "change:bust_girth", "change:breast_volume_left")
+    )
+    assert 0.8 * least < lift < 1.2 * max(share * rms, least)
+    assert 0.5 * least < girth < 3.0 * least
+    assert volume < 0.01 * trials.original.before["breast_volume_left"].value, "tissue keeps its volume"
+    assert spread.by_output["after:bust_girth"].by_source[MODEL] == pytest.approx(girth)
+    assert spread.by_output["change:waist_girth"].sd < 1e-9, "no line reaches the waist"
+    assert all(
+        doubt.by_source.get(MODEL, 0.0) < 1e-9
+        for key, doubt in spread.by_output.items()
+        if key.startswith("before:")
+    )
+
+
+def _of_model(tissue: str) -> tuple[str, str]:
+    return f"{tissue}_error", f"{tissue}_error_mm"
+
+
+def test_without_a_line_on_the_breasts_there_is_no_model_error(plain: Stages) -> None:
+    bare = plain.design.with_line("mid-bust", None)
+    on_ribs = bare.with_line("under-bust", 0.9)
+    for design in (bare, on_ribs):
+        trials = PerturbedSolutions(build(design, plain))
+        assert model_errors(trials, default_uncertainty()) == ()
 
 
 def test_a_bare_body_is_neither_fitted_nor_solved(plain: Stages, monkeypatch: pytest.MonkeyPatch) -> None:

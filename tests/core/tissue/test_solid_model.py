@@ -1,0 +1,149 @@
+"""The model on solid tissue: balance, signs that hold on any body, derivatives, and the paper's iteration."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from solid_bodies import BOTH, SLING, worn
+
+from core.errors import LineError
+from core.garment.tension import line_tensions
+from core.geometry.mesh import Points
+from core.mechanics.iteration import LineTargets, iterate
+from core.mechanics.newton import Equilibrium
+from core.mechanics.potential import Potential
+from core.mechanics.sensitivity import Sensitivities
+from core.pipeline.build import Stages, build, line_targets
+from core.pipeline.solve import exact_equilibrium
+
+
+@pytest.fixture(scope="module")
+def lifted(person: Stages) -> Stages:
+    """The person in slings and a mid-bust line, all at 95 %."""
+    return worn(person, 0.95, *BOTH)
+
+
+def balance_of(stages: Stages) -> Equilibrium:
+    balance = exact_equilibrium(stages)
+    assert balance.is_converged
+    return balance
+
+
+def shift(stages: Stages) -> Points:
+    """Return how the control points move, (n, 3) [mm]."""
+    balance = balance_of(stages)
+    return stages.model.tensegric.expand(balance.state.moved) - stages.control.mesh.vertices
+
+
+def rise(stages: Stages) -> float:
+    """Return how far the bust points rise on the mean [mm]."""
+    return float(shift(stages)[list(stages.control.bust_points), 2].mean())
+
+
+def tension(stages: Stages, line: str) -> float:
+    points = stages.control.mesh.vertices + shift(stages)
+    return line_tensions(stages, points)[line].mean
+
+
+def test_a_person_in_nothing_stands_as_scanned_to_the_bit(person: Stages) -> None:
+    assert not shift(person).any()
+    state, record = next(iterate(person.model, lambda: line_targets(person.design, person), turns=1))
+    assert not state.moved.any()
+    assert record.error == pytest.approx(0.0, abs=1e-12)
+
+
+def test_without_weight_the_bust_points_rise_by_the_sag(person: Stages) -> None:
+    for sag in (10.0, 25.0):
+        unloaded = worn(person, 1.0, posture="unloaded", sag=sag)
+        assert rise(unloaded) == pytest.approx(sag, rel=0.15)  # the sag is that of the linear answer
+
+
+def test_a_sling_lifts_and_one_that_is_too_long_does_nothing(person: Stages) -> None:
+    assert rise(worn(person, 0.95, *SLING)) > 1.0
+    assert not shift(worn(person, 1.05, *BOTH)).any()
+
+
+def test_softer_tissue_takes_the_same_shape_at_forces_in_proportion(person: Stages) -> None:
+    firm, soft = (worn(person, 0.95, *SLING, sag=sag, line_stiffness=500.0) for sag in (20.0, 40.0))
+    away = shift(firm) - shift(soft)
+    assert np.linalg.norm(away) < 0.1 * np.linalg.norm(shift(firm))
+    assert tension(soft, SLING[0]) == pytest.approx(0.5 * tension(firm, SLING[0]), rel=0.1)
+
+
+def test_each_breast_keeps_its_volume(lifted: Stages) -> None:
+    points = lifted.control.mesh.vertices + shift(lifted)
+    change = lifted.model.volume.side_volumes(points) - lifted.model.rest_sides
+    assert np.abs(change).max() < 1e-6 * lifted.model.rest_sides.min()
+
+
+def test_gradient_and_curvature_are_those_of_the_energy(lifted: Stages) -> None:
+    model, ratios = lifted.model, line_targets(lifted.design, lifted).ratios
+    potential = Potential(model, ratios)
+    there = balance_of(lifted).state.moved
+    way = np.random.default_rng(3).normal(size=there.shape)
+    place = potential.at(there + 0.1 * way)
+    here, step = place.moved, 1e-4
+    ahead, behind = (potential.at(here + sign * step * way) for sign in (1.0, -1.0))
+    slope = (potential.energy(ahead) - potential.energy(behind)) / (2.0 * step)
+    assert float(place.gradient @ way.ravel()) == pytest.approx(slope, rel=1e-6)
+    bend = (ahead.gradient - behind.gradient) / (2.0 * step)
+    none = np.zeros(len(potential.wanted))
+    hessian = model.layout.band.full(potential.hessian(place, none, clip=False, curved=True))
+    assert np.abs(hessian @ way.ravel() - bend).max() < 1e-6 * np.abs(bend).max()
+
+
+def test_what_a_length_moves_is_known_without_trying(lifted: Stages, person: Stages) -> None:
+    model, balance = lifted.model, balance_of(lifted)
+    names = [line.name for line in model.lines]
+    line = names.index("mid-bust")
+    potential = Potential(model, line_targets(lifted.design, lifted).ratios)
+    rates = Sensitivities(potential, balance).by_ratio(np.array([line])).moved[:, 0]
+    step = 1e-5
+    sides = []
+    for sign in (1.0, -1.0):
+        lines = tuple(
+            replace(each, ratio=0.95 + sign * step) if each.name == "mid-bust" else each
+            for each in lifted.design.lines
+        )
+        other = build(replace(lifted.design, lines=lines), lifted)
+        sides.append(balance_of(other).state.moved.ravel())
+    tried = (sides[0] - sides[1]) / (2.0 * step)
+    assert np.abs(rates - tried).max() < 1e-5 * np.abs(tried).max()
+
+
+def test_the_iteration_of_the_paper_ends_at_the_balance_of_both_volumes(person: Stages) -> None:
+    both = worn(person, 0.97, *SLING, volume_of="both")
+    ratios = line_targets(both.design, both).ratios
+    *_, (state, record) = iterate(both.model, lambda: LineTargets(ratios, "adaptive"), turns=1500)
+    assert abs(record.error) < 1e-6
+    assert np.abs(state.moved - balance_of(both).state.moved).max() < 0.05
+
+
+def test_conventional_control_oscillates_above_its_limit_and_adaptive_control_does_not(
+    person: Stages,
+) -> None:
+    stages = worn(person, 0.97, *SLING)
+    ratios = line_targets(stages.design, stages).ratios
+
+    def swing(control: str, gain: float) -> float:
+        targets = LineTargets(ratios, control, gain)
+        errors = [each.error for _, each in iterate(stages.model, lambda: targets, turns=400)]
+        return float(np.ptp(errors[-20:]))
+
+    limit = stages.gain_limit
+    assert swing("conventional", 0.9 * limit) < 1e-5
+    assert swing("conventional", 1.2 * limit) > 1e-4
+    assert swing("adaptive", 1.2 * limit) < 1e-5
+
+
+def test_sliding_lines_are_refused(person: Stages) -> None:
+    with pytest.raises(LineError, match="Sliding lines"):
+        build(replace(person.design, line_contact="sliding"), person)
+
+
+def test_own_lines_are_named_by_the_points_of_the_template(person: Stages) -> None:
+    fitted, halved = person.fitted.mesh.vertices, person.control.mesh.vertices
+    assert len(fitted) < len(halved)
+    assert np.array_equal(fitted, halved[: len(fitted)])
