@@ -16,6 +16,7 @@ from threadpoolctl import threadpool_limits
 
 from core.analysis.uncertainty.input_uncertainty import InputUncertainty, default_uncertainty
 from core.analysis.uncertainty.linear_propagation import Effect, Propagation, effects
+from core.analysis.uncertainty.model_error import model_errors
 from core.analysis.uncertainty.parameters import (
     PLACING,
     Perturbed,
@@ -77,7 +78,8 @@ class UncertaintyEstimator:
             self.estimate_partial(progress)
         marks = [knob for knob in self._knobs if knob.source == LANDMARKS]
         whole = self._by([*marks, *([PLACING] if marks else [])], progress)
-        if self.trials.has_no_active_lines:  # the contact of no line makes no difference
+        design = self.trials.base.design
+        if self.trials.has_no_active_lines or design.tissue == "solid":  # there is but one contact
             return replace(whole, sources=SOURCES)
         progress("the other contact", 1.0)
         with threadpool_limits(1):
@@ -86,7 +88,8 @@ class UncertaintyEstimator:
 
     @cached_property
     def _knobs(self) -> tuple[UncertainParameter, ...]:
-        return uncertain_parameters(self.trials.base, self.sizes)
+        with threadpool_limits(1):
+            return *uncertain_parameters(self.trials.base, self.sizes), *model_errors(self.trials, self.sizes)
 
     def _by(self, turning: Sequence[UncertainParameter], progress: Progress) -> OutputUncertainties:
         # Two BLAS threads make these small products many times slower.

@@ -22,9 +22,11 @@ class InputUncertainty:
 
     ``landmark_mm`` of a landmark in each direction along the skin, ``unsure_landmark_mm`` of one that is not
     sure; ``skin_mm`` of the scan along its normals; ``tissue_ln`` and ``line_ln`` of the logarithm of the
-    stiffness of tissue and of lines without an elastic; ``tape_mm`` of the length of a band as it is sewn;
-    ``elastic_ln`` and ``measured_elastic_ln`` of the logarithm of an elastic's force. What is told after a ±
-    is ``sds`` of them.
+    stiffness of a net and of lines without an elastic, ``sag_ln`` of that of the sag of a solid;
+    ``tape_mm`` of the length of a band as it is sewn; ``elastic_ln`` and ``measured_elastic_ln`` of the
+    logarithm of an elastic's force. ``net_error`` and ``solid_error`` [1] of the displacement by each model
+    of the tissue, over the rms motion of a breast, at least ``net_error_mm`` and ``solid_error_mm``. What is
+    told after a ± is ``sds`` of them.
     """
 
     sds: float = 2.0
@@ -32,10 +34,15 @@ class InputUncertainty:
     unsure_landmark_mm: float = 0.0
     skin_mm: float = 0.0
     tissue_ln: float = 0.0
+    sag_ln: float = 0.0
     line_ln: float = 0.0
     tape_mm: float = 0.0
     elastic_ln: float = 0.0
     measured_elastic_ln: float = 0.0
+    net_error: float = 0.0
+    net_error_mm: float = 0.0
+    solid_error: float = 0.0
+    solid_error_mm: float = 0.0
 
     def __post_init__(self) -> None:
         for name in NUMBERS:
@@ -58,6 +65,12 @@ class InputUncertainty:
         # A smooth breast tells where it points to, but its nipple lies somewhere about there.
         sure = mark.confidence >= CERTAIN and mark.rule != SMOOTH
         return self.landmark_mm if sure else self.unsure_landmark_mm
+
+    def of_model(self, tissue: str) -> tuple[float, float]:
+        """Return the error of a model of the tissue: its share of the motion [1], and its least [mm]."""
+        if tissue == "solid":
+            return self.solid_error, self.solid_error_mm
+        return self.net_error, self.net_error_mm
 
 
 NUMBERS = tuple(field.name for field in fields(InputUncertainty))

@@ -27,9 +27,10 @@ from core.deformation.tffd import deform
 from core.errors import UserError
 from core.garment.tension import LineTension, line_tensions
 from core.geometry.mesh import Floats, Points
-from core.measurements.uncertain_value import ELASTIC, LANDMARKS, LINE, SCAN, TAPE, TISSUE
+from core.measurements.uncertain_value import ELASTIC, LANDMARKS, LINE, MODEL, SCAN, TAPE, TISSUE
 from core.mechanics.force_units import newtons_per_unit
-from core.mechanics.stiffness_sensitivity import Changes, stiffness_rates
+from core.mechanics.sensitivity import Rates
+from core.mechanics.stiffness_sensitivity import Changes, d_sag, stiffness_rates
 from core.pipeline.build import line_targets
 
 
@@ -51,6 +52,9 @@ class Propagation:
         self.trials, self.stages = trials, trials.base
         stages = trials.base
         self.ratios = np.array(line_targets(stages.design, stages).ratios)
+        self._meant = {
+            line.name: float(ratio) for line, ratio in zip(stages.model.lines, self.ratios, strict=True)
+        }
         self.points = trials.points
         self.answer, self._kept = trials.equilibrium.solution, trials.equilibrium.kept
         self.places = deform(stages.binding, self.points)
@@ -65,6 +69,8 @@ class Propagation:
         """Return what a knob does. Raises the UserError of a fit that fails to both sides."""
         if knob.source == SCAN:
             return self._of_scan(knob)
+        if knob.source == MODEL:
+            return self._of_model(knob)
         if knob is PLACING:
             return self._of_placing()
         return self._of_landmark(knob) if knob.source == LANDMARKS else self._of_lines(knob)
@@ -109,6 +115,17 @@ class Propagation:
         skin = normal_distance(self.stages.body, other.places, one.places, self.normals) / whole
         return Effect(knob, _per(one.values, other.values, whole), skin)
 
+    def _of_model(self, knob: UncertainParameter) -> Effect:
+        stages, trials, found, places = self.stages, self.trials, [], []
+        for turn in (-1.0, 1.0):
+            points = self.points + perturb(stages, {knob: turn}).shift
+            figures = line_values(stages, points, line_tensions(stages, points), self._meant)
+            found.append(figures | measurement_values(stages, trials.steps, trials.original, points))
+            places.append(deform(stages.binding, points))
+        return Effect(
+            knob, _half(*found), normal_distance(stages.body, places[1], places[0], self.normals) / 2.0
+        )
+
     def _of_lines(self, knob: UncertainParameter) -> Effect:
         moved, pulls = self._answered(knob)
         found, places = [], []
@@ -120,10 +137,7 @@ class Propagation:
             }
             design = perturb(self.stages, {knob: turn}).design
             stages = replace(self.stages, design=design)
-            meant = {
-                line.name: float(ratio) for line, ratio in zip(stages.model.lines, self.ratios, strict=True)
-            }
-            figures = line_values(stages, points, tensions, meant)
+            figures = line_values(stages, points, tensions, self._meant)
             if np.abs(moved).max() > _STILL:
                 figures |= measurement_values(stages, self.trials.steps, self.trials.original, points)
             found.append(figures)
@@ -138,11 +152,13 @@ class Propagation:
         elastics = design.active_elastics()
         names = [line.name for line in model.lines]
         stiffer, ratios = np.zeros((len(names), 1)), np.zeros((len(names), 1))
-        newtons = knob.sd if knob.source == TISSUE else 0.0
+        solid = design.tissue == "solid"
+        newtons = knob.sd if knob.source == TISSUE and not solid else 0.0
         for at, name in enumerate(names):
             elastic = elastics.get(name)
-            if knob.source == TISSUE and elastic:
-                stiffer[at] = -knob.sd
+            if knob.source == TISSUE:
+                # Elastics have newtons of their own on a net, whose unit changes; on a solid other lines do.
+                stiffer[at] = -knob.sd if solid != (elastic is not None) else 0.0
             elif (knob.source == LINE and not elastic) or (
                 knob.source == ELASTIC and elastic and elastic.name == knob.name
             ):
@@ -150,13 +166,24 @@ class Propagation:
             elif knob.source == TAPE and name == knob.name:
                 ratios[at] = knob.sd / model.lines[at].whole_length
         made = {names.index(name): elastic for name, elastic in elastics.items()}
-        answers = stiffness_rates(self.answer, Changes(stiffer, ratios), made, self.ratios, self._kept)
+        softer = self._softer(knob.sd if knob.source == TISSUE and solid else 0.0)
+        answers = stiffness_rates(
+            self.answer, Changes(stiffer, ratios), made, self.ratios, self._kept, softer.moved
+        )
         moved = np.zeros_like(self.points)
         moved[model.tensegric.free] = answers.moved[:, 0].reshape(-1, 3)
-        return moved, self._pulls(knob, answers.pulls[:, 0], newtons, ratios)
+        return moved, self._pulls(knob, answers.pulls[:, 0], newtons, ratios, softer)
+
+    def _softer(self, off: float) -> Rates:
+        """Return what a sag larger by ``off`` in its logarithm does to a solid; 0 does nothing."""
+        if off:
+            return self._kept(d_sag(self.answer)).summed([[0]], off)
+        return Rates(
+            np.zeros((self.answer.place.gradient.size, 1)), np.zeros((len(self.answer.place.held), 1))
+        )
 
     def _pulls(
-        self, knob: UncertainParameter, pulls: Floats, newtons: float, ratios: Floats
+        self, knob: UncertainParameter, pulls: Floats, newtons: float, ratios: Floats, softer: Rates
     ) -> dict[str, Floats]:
         stages, model = self.stages, self.stages.model
         unit = newtons_per_unit(model, stages.design.tissue_stiffness)
@@ -167,7 +194,7 @@ class Propagation:
                 continue
             segments = self.tensions[line.name].segments
             if held:
-                found[line.name] = newtons * segments + unit * self._held(at, ratios)
+                found[line.name] = newtons * segments + unit * self._held(at, ratios, softer)
             elif (model.owner == at).any():
                 found[line.name] = newtons * segments + unit * pulls[model.owner == at]
             else:
@@ -175,13 +202,14 @@ class Propagation:
                 found[line.name] = np.full(len(segments), gained)
         return found
 
-    def _held(self, line: int, ratios: Floats) -> float:
+    def _held(self, line: int, ratios: Floats, softer: Rates) -> float:
         """Return what the tension of a held line gains, in the model's unit."""
         every = np.arange(len(ratios))
         rates = self._kept(self.answer.by_ratio(every))
         rest = np.array([each.rest_length for each in self.stages.model.lines])
         by_line = self.answer.tensions(rates, np.diag(rest))[1]
-        return float(by_line[line] @ ratios[:, 0])
+        by_tissue = self.answer.tensions(softer, np.zeros((len(rest), 1)))[1]
+        return float(by_line[line] @ ratios[:, 0] + by_tissue[line, 0])
 
     def _on_ribs(self, knob: UncertainParameter, name: str, longer: float) -> float:
         """Return what the tension of an elastic that cannot move gains [N]."""

@@ -10,7 +10,7 @@ import numpy as np
 from core.deformation.tffd import deform
 from core.garment.band_path import band_paths
 from core.garment.pressure import band_pressure
-from core.garment.tension import LineTension, line_tensions
+from core.garment.tension import LineTension, line_tensions, mean_elongation
 from core.geometry.mesh import Floats, Mesh, Points
 from core.measurements.definitions import Measure
 from core.measurements.subject import Subject, subject_of
@@ -120,10 +120,12 @@ def line_values(
         if line.name in elastics:
             elastic, reached = elastics[line.name], line.length(points)
             natural = ratios[line.name] * line.rest_length
+            elongation = mean_elongation(elastic, tensions.get(line.name), reached / natural - 1.0)
             if held and line.name in tensions:
-                natural = reached / (1.0 + elastic.elongation(tensions[line.name].mean))
-            whole = reached + line.back_length
-            found[f"{CUT}:{line.name}"] = whole * natural / reached + elastic.allowance_mm
+                elongation = elastic.elongation(tensions[line.name].mean)
+                natural = reached / (1.0 + elongation)
+            back = line.back_length / (1.0 + elongation)
+            found[f"{CUT}:{line.name}"] = natural + back + elastic.allowance_mm
     for name, course, width in band_paths(stages, points, tensions):
         pressed = band_pressure(course, width)
         found[f"{MEAN_KPA}:{name}"], found[f"{MAX_KPA}:{name}"] = pressed.mean, pressed.largest

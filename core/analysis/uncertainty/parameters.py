@@ -38,13 +38,15 @@ class UncertainParameter:
     """One thing that may be off by ``sd``: in mm, or in the logarithm of a stiffness or force.
 
     ``source`` is one of ``SOURCES``; ``name`` that of a landmark, line or elastic; ``direction`` (3,) is
-    where a landmark goes, None for ``PLACING``.
+    where a landmark goes, None for ``PLACING``; ``shift`` (n, 3) [mm] is how far one ``sd`` of the model
+    error moves the control points.
     """
 
     source: str
     sd: float
     name: str = ""
     direction: Points | None = None
+    shift: Points | None = None
 
 
 PLACING = UncertainParameter(LANDMARKS, 1.0)
@@ -69,7 +71,7 @@ def _of_lines(stages: Stages, assumed: InputUncertainty) -> Iterator[UncertainPa
     )
     moving = [line for line in worn if line.constrains]
     if worn:
-        yield UncertainParameter(TISSUE, assumed.tissue_ln)
+        yield UncertainParameter(TISSUE, assumed.sag_ln if design.tissue == "solid" else assumed.tissue_ln)
     if any(line.name not in elastics for line in moving) and design.line_hold == "spring":
         yield UncertainParameter(LINE, assumed.line_ln)
     for line in worn:
@@ -106,10 +108,13 @@ def unmodelled_measurements(design: Design) -> tuple[str, ...]:
 
 @dataclass(frozen=True, eq=False)
 class Perturbed:
-    """A ``design`` with knobs turned, and how much further out all skin lies [mm]."""
+    """A ``design`` with knobs turned, how much further out all skin lies [mm], and the ``shift`` (n, 3) of
+    the control points by the model error [mm].
+    """
 
     design: Design
     skin: float = 0.0
+    shift: Points | float = 0.0
 
 
 def perturb(stages: Stages, turns: Mapping[UncertainParameter, float]) -> Perturbed:
@@ -118,6 +123,7 @@ def perturb(stages: Stages, turns: Mapping[UncertainParameter, float]) -> Pertur
     Where a landmark is turned all others that have knobs are placed where they are: they do not follow it.
     """
     design, skin = stages.design, 0.0
+    shift: Points | float = 0.0
     marks: dict[str, Points] = {}
     if any(knob.source == LANDMARKS for knob in turns):
         marks = {name: stages.landmarks.position(name) for name in NAMES if name in stages.landmarks.points}
@@ -126,6 +132,8 @@ def perturb(stages: Stages, turns: Mapping[UncertainParameter, float]) -> Pertur
         off = turn * knob.sd
         if knob.source == SCAN:
             skin += off
+        elif knob.shift is not None:
+            shift = shift + off * knob.shift
         elif knob.source == LANDMARKS:
             if knob.direction is not None:
                 marks[knob.name] = marks[knob.name] + off * knob.direction
@@ -133,10 +141,12 @@ def perturb(stages: Stages, turns: Mapping[UncertainParameter, float]) -> Pertur
             design = _TURNS[knob.source](design, knob, off, lines)
     for name, place in marks.items():
         design = design.with_placed(name, in_file(place, stages.body.pose.file_to_mm))
-    return Perturbed(design, skin)
+    return Perturbed(design, skin, shift)
 
 
 def _tissue(design: Design, knob: UncertainParameter, off: float, lines: Mapping[str, Line]) -> Design:
+    if design.tissue == "solid":
+        return replace(design, sag=_within(design.sag * math.exp(off), RANGES["sag"]))
     return replace(design, tissue_stiffness=_within(design.tissue_stiffness * math.exp(off), TISSUE_LIMITS))
 
 

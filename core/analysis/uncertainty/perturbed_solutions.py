@@ -86,7 +86,14 @@ def _pushed(answer: Sensitivities, push: float) -> Callable[[Rates], Rates]:
     return kept
 
 
-_KEPT = ("read scan", "find landmarks", "read template", "fit control mesh")
+_KEPT = (
+    "read scan",
+    "find landmarks",
+    "read template",
+    "fit control mesh",
+    "halve control mesh",
+    "condense tissue",
+)
 """The stages that are slow to make and small to keep."""
 
 
@@ -128,7 +135,7 @@ class PerturbedSolutions:
             self._known[placed] = replace(self.base, design=stages.design, memo=slim), rest
         if turned.skin:
             rest = original_measurements(stages, self.steps, rest.subject, turned.skin)
-        points = converged_solution(stages, self._push).solution.place.points
+        points = converged_solution(stages, self._push).solution.place.points + turned.shift
         ratios = {line.name: self.base.design.ratio(line.name) for line in stages.model.lines}
         figures = {
             **measurement_values(stages, self.steps, rest, points, turned.skin),
