@@ -21,7 +21,7 @@ from scenes import (
     vibrating,
 )
 
-from app.presenters.samples import lifted_sample, sample_design
+from app.presenters.samples import LIFTING_LINE, lifted_sample, sample_design
 from core.document.design import Design
 
 
@@ -60,8 +60,8 @@ def runs() -> Iterator[Design]:
 FIRST: tuple[tuple[str, Callable[[], Design], Scene], ...] = (
     ("first-scan", own_scan, step("scan")),
     ("first-landmarks", own_scan, scenes.pin_selected),
-    ("first-lines", banded, tab("lines", "mid-bust")),
-    ("first-garment", banded, tab("garment", "mid-bust")),
+    ("first-lines", banded, tab("lines", LIFTING_LINE)),
+    ("first-garment", banded, tab("garment", LIFTING_LINE)),
     ("first-pressure", banded, scenes.pressed_most),
     ("first-report", for_customer, scenes.reported),
 )

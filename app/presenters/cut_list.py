@@ -31,7 +31,7 @@ def cut_list_view(frame: Frame, cuts: CutList) -> CutListView:
     return CutListView(
         tuple(views),
         tuple(render_all(cuts.notes, design)) if pieces else (),
-        design.tissue_stiffness,
+        design.tissue_stiffness if design.tissue == "net" else None,
         worn=bool(pieces),
         bare=not any(row.elastic for row in cuts.rows),
     )
@@ -148,7 +148,7 @@ class CutView:
 
 @dataclass(frozen=True)
 class CutListView:
-    """All pieces, and what holds for all of them; ``tissue`` [N/m] is what the newtons rest on.
+    """All pieces, and what holds for all of them; ``tissue`` [N/m] is what the newtons of a net rest on.
 
     ``worn`` tells whether any line is: bands on points that do not move can be cut all the same. ``bare``
     that no line is made of an elastic yet.
@@ -156,6 +156,6 @@ class CutListView:
 
     rows: tuple[CutView, ...]
     notes: tuple[str, ...] = ()
-    tissue: float = 0.0
+    tissue: float | None = None
     worn: bool = False
     bare: bool = False

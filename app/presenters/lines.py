@@ -145,10 +145,10 @@ def _over_shoulder(design: Design, frame: Frame, name: str) -> bool | None:
     control, bust_level = frame.stages.control, frame.stages.landmarks.bust_level
     if own.free:
         ends = embed(control.grid, (own.places[0], own.places[-1])).weights[[0, -1]]
-        heights, held = ends @ control.mesh.vertices[:, 2], ends @ control.fixed > 1.0 - 1e-9
+        heights, held = ends @ control.mesh.vertices[:, 2], ends @ control.held > 1.0 - 1e-9
     else:
         points = [own.points[0], own.points[-1]]
-        heights, held = control.mesh.vertices[points, 2], control.fixed[points]
+        heights, held = control.mesh.vertices[points, 2], control.held[points]
     upper = int(heights.argmax())
     return False if held[upper] and heights[upper] > bust_level else None
 

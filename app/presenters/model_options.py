@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from app.i18n.catalog import number, tr
+from app.i18n.lengths import length_unit, shown_digits, shown_value
 from core.document.design import Design
 from core.mechanics.options import RANGES
 
@@ -73,6 +74,7 @@ def groups() -> tuple[Group, ...]:
     """Return all settings of the model, by what they are about."""
     return (
         (tr("Lines"), (_contact(), _hold(), _stiffness(), _height(), _force())),
+        (tr("Tissue"), (_tissue(), _sag(), _posture())),
         (tr("Body"), (_chest(), _law(), _prestress(), _weights(), _normals())),
         (tr("Volume"), (_control(), _volume_of(), _dense(), _gain())),
     )
@@ -82,6 +84,14 @@ def defaults() -> dict[str, Any]:
     """Return what every setting of the model is in a new design."""
     keys = {setting.key for _, settings in groups() for setting in settings}
     return {field.name: field.default for field in fields(Design) if field.name in keys}
+
+
+def without_effect(present: Mapping[str, Any]) -> frozenset[str]:
+    """Return the settings that change nothing beside the others: those of the other tissue, prestress."""
+    if present["tissue"] == "solid":
+        return frozenset({"firm_chest", "member_law", "prestress", "line_contact"})
+    idle = {"sag", "posture"}
+    return frozenset(idle if present["member_law"] == "prestressed" else {*idle, "prestress"})
 
 
 def consequences(key: str, value: Any, present: Mapping[str, Any]) -> dict[str, Any]:
@@ -97,13 +107,16 @@ def consequences(key: str, value: Any, present: Mapping[str, Any]) -> dict[str, 
 
 def summary(present: Mapping[str, Any]) -> str:
     """Return in a line what is chosen: how lines act always, else what is not as in a new design."""
-    usual = defaults()
+    usual, idle = defaults(), without_effect(present)
     texts = [
         setting.words(present[setting.key])
         for _, settings in groups()
         for setting in settings
-        if setting.key in ("line_contact", "line_hold")
-        or (isinstance(setting, Choice) and present[setting.key] != usual[setting.key])
+        if setting.key not in idle
+        and (
+            setting.key in ("line_contact", "line_hold")
+            or (isinstance(setting, Choice) and present[setting.key] != usual[setting.key])
+        )
     ]
     return " · ".join(texts)
 
@@ -150,6 +163,39 @@ def _force() -> Choice:
     )
     options = (("implicit", tr("Implicit")), ("explicit", tr("Explicit")))
     return Choice("line_force", tr("Line force"), tip, options)
+
+
+def _tissue() -> Choice:
+    tip = tr(
+        "Choose the tissue under the skin. Net: cables along the control mesh, as in the paper. Solid: soft "
+        "tissue with weight between skin and chest wall; its forces are in newtons."
+    )
+    return Choice(
+        "tissue", tr("Tissue"), tip, (("net", tr("Net (paper)")), ("solid", tr("Solid with weight")))
+    )
+
+
+def _sag() -> Amount:
+    tip = tr(
+        "Set how far the bust points rise when the weight of the breasts is taken, as by a hand or lying "
+        "down: the softness of solid tissue. The default is an assumption; half or twice as much is "
+        "plausible."
+    )
+    unit, digits = length_unit(), shown_digits(0)
+    return Amount("sag", tr("Sag"), tip, unit, shown_value(1.0), digits, RANGES["sag"])
+
+
+def _posture() -> Choice:
+    tip = tr(
+        "Choose the posture to compute with solid tissue: standing as scanned, lying on the back, or without "
+        "weight."
+    )
+    options = (
+        ("standing", tr("Standing")),
+        ("lying", tr("Lying on the back")),
+        ("unloaded", tr("Without weight")),
+    )
+    return Choice("posture", tr("Posture"), tip, options)
 
 
 def _chest() -> Choice:

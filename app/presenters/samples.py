@@ -6,7 +6,9 @@ from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 
+from core.control_mesh.template import read_template
 from core.document.design import Design, ScanSource
+from core.document.line_notation import ready_made_lines
 from core.document.lines import ActiveLine
 from core.garment.elastic_library import find_elastic
 
@@ -20,9 +22,8 @@ FIRST_RATIO = 0.95
 FIRST_SAMPLE = "person"
 """The sample body of the first start and of the tour."""
 
-LIFTING_LINE, LIFTING_ELASTIC = "mid-bust", "power-net 80"
-LIFTING_RATIO, LIFTING_HEIGHT = 0.68, 0.7
-"""A wide soft band that slides: it lifts the bust of both samples by about 3 mm, and presses gently."""
+LIFTING_LINE, LIFTING_ELASTIC, LIFTING_RATIO = "strap left", "strap 15", 0.94
+"""Straps of a soft bra on tissue with weight: they lift the bust by about a centimetre, and press gently."""
 
 
 def sample_path(name: str) -> Path:
@@ -38,8 +39,9 @@ def sample_design(name: str = "mannequin") -> Design:
 
 
 def lifted_sample(name: str = FIRST_SAMPLE) -> Design:
-    """Return the design that a sample body opens with: a wide elastic band lifts the bust."""
-    bare = replace(sample_design(name), lines=(), line_contact="sliding", line_height=LIFTING_HEIGHT)
-    return bare.with_elastic(LIFTING_LINE, find_elastic(LIFTING_ELASTIC)).with_line(
-        LIFTING_LINE, LIFTING_RATIO
-    )
+    """Return the design that a sample body opens with: elastic straps lift the bust."""
+    straps = ready_made_lines(read_template("168"))["straps"]
+    design = replace(sample_design(name), lines=(), own_lines=straps, tissue="solid")
+    for strap in straps:
+        design = design.with_elastic(strap.name, find_elastic(LIFTING_ELASTIC))
+    return design.with_linked(LIFTING_LINE, LIFTING_RATIO)

@@ -16,6 +16,7 @@ from core.analysis.calibration.parameters import (
     LENGTH,
     LINE_STIFFNESS,
     PRESTRESS,
+    SAG,
     STIFFNESS,
     TISSUE,
 )
@@ -156,6 +157,7 @@ def parameter_title(name: str, design: Design) -> str:
         FIRM_CHEST: tr("Rib-cage support"),
         PRESTRESS: tr("Spring prestress"),
         TISSUE: tr("Tissue stiffness"),
+        SAG: tr("Sag"),
     }.get(name, name)
 
 
@@ -163,6 +165,8 @@ def formatted_value(of: FittedParameter, value: float) -> str:
     """Return one value of a number, with its unit where it has one."""
     if of.name == TISSUE:
         return f"{number(value, 0)} N/m"
+    if of.name == SAG:
+        return f"{number(value, 1)} mm"
     if of.name.startswith(LENGTH) or of.name == PRESTRESS:
         return f"{number(100.0 * value, 1)} %"
     return number(value, 3 if of.name == FIRM_CHEST else 1)

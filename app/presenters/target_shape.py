@@ -336,8 +336,8 @@ def _sentence(conflict: Conflict) -> str:
             target=name, value=alone
         )
     words = tr(
-        "{target} conflicts with {other}. As the only target, {target} reaches {value}, but "
-        "{other} changes from {kept} to {lost} ({price} {unit} per {unit})."
+        "{target} conflicts with {other}. As the only target, {target} reaches {value}, but {other} "
+        "changes from {kept} to {lost} ({price} {unit} lost per {unit} gained)."
     )
     lost, kept = (_value(conflict.against, value) for value in (conflict.lost, conflict.kept))
     other, price = target_title(conflict.against), number(conflict.price, 2)

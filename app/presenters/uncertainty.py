@@ -28,6 +28,7 @@ def source_text(source: str) -> str:
         "tape": tr("cutting and sewing"),
         "elastic": tr("elastics"),
         "root": tr("upper end of the breast root"),
+        "model": tr("model error"),
     }[source]
 
 

@@ -28,6 +28,7 @@ from core.pipeline.build import Stages, build
 from tests.end_to_end.test_model_options import choose
 from tests.end_to_end.test_scan import pull
 
+STRAP = "strap left"
 DOCS = Path(__file__).parents[2] / "docs"
 
 pytestmark = pytest.mark.usefixtures("empty_house", "own_data")
@@ -92,26 +93,26 @@ def corrected(window: MainWindow) -> Script:
 
 
 def banded(window: MainWindow) -> Script:
-    """Steps 6 to 10: a wide elastic band that slides is put on and dragged shorter; the bust rises."""
+    """Steps 6 to 10: elastic straps are put on and dragged shorter; the bust rises."""
     window.rail.items["lines"].click()
     window.model_controller.show()
-    choose(window, "line_contact", "sliding")
-    choose(window, "line_height", "70")
+    choose(window, "tissue", "solid")
     yield settled(window)
-    design = window.session.design
-    assert (design.line_contact, design.line_height) == ("sliding", 0.7)
+    assert window.session.design.tissue == "solid"
     window.navigation.show_panel("lines")
-    window.selection.select_line("mid-bust")
-    window.lines.rows["mid-bust"].details.findChild(ElasticButton).click()
-    yield from pick(window, "Power-net band 80 mm")
+    window.actions_.add_lines["straps"].trigger()
     yield settled(window)
-    drag(window, "mid-bust", -40)
+    window.selection.select_line(STRAP)
+    window.lines.rows[STRAP].details.findChild(ElasticButton).click()
+    yield from pick(window, "Strap 15 mm")
     yield settled(window)
-    assert window.session.design.active_elastics().keys() == {"mid-bust"}
+    drag(window, STRAP, -4)
+    yield settled(window)
+    assert window.session.design.active_elastics().keys() == {STRAP, "strap right"}
     assert window.session.frame is not None
     lift = bust_shift(window.session.frame).mean.up
     assert lift > 0.2
-    window.lines_controller.commit_length("mid-bust", 0.68)
+    window.lines_controller.commit_length(STRAP, 0.94)
     yield settled(window)
     assert bust_shift(window.session.frame).mean.up > lift + 1.0
     # The word stands a while before another takes its place.
@@ -125,9 +126,9 @@ def cut(window: MainWindow) -> Script:
     """Steps 11 and 12: how long to cut it."""
     window.navigation.show_panel("garment")
     yield at_rest(window)
-    row = cut_rows(window)["mid-bust"]
+    row = cut_rows(window)[STRAP]
     assert row.cut_mm
-    assert window.garment.rows["mid-bust"].cut.text() == f"{row.cut_mm:,.0f}"
+    assert window.garment.rows[STRAP].cut.text() == f"{row.cut_mm:,.0f}"
 
 
 def pressed(window: MainWindow) -> Script:
@@ -138,7 +139,7 @@ def pressed(window: MainWindow) -> Script:
     before = most(window)
     assert before < pressure_limits().red_kpa
     lift = bust_shift(window.session.frame).mean.up
-    window.lines_controller.commit_length("mid-bust", 0.6)
+    window.lines_controller.commit_length(STRAP, 0.9)
     yield lambda: at_rest(window)() and before < most(window) < pressure_limits().red_kpa
     assert bust_shift(window.session.frame).mean.up > lift + 1.0
 
@@ -184,12 +185,12 @@ def test_the_figures_of_the_guide_are_those_of_its_steps() -> None:
     """Of steps 1 and 8 to 14, on the sample as the pictures show it."""
     design = replace(lifted_sample("person"), scan=ScanSource(str(sample_path("person"))))
     band = build(design)
-    (row,) = cut_list(band, reached_points(band)).rows
-    shorter = build(design.with_line("mid-bust", 0.6), band)
-    figures = [f"{row.cut_mm:.0f} mm", f"{100.0 * design.ratio('mid-bust'):.0f} %"]
+    row = next(each for each in cut_list(band, reached_points(band)).rows if each.line == STRAP)
+    shorter = build(design.with_linked(STRAP, 0.9), band)
+    figures = [f"{row.cut_mm:.0f} mm", f"{100.0 * design.ratio(STRAP):.0f} %"]
     for each in (band, shorter):
-        (most,) = pressure_list(each, reached_points(each)).rows
-        figures += [f"{lift(each):.1f} mm", f"{most.max_kpa:.1f} kPa"]
+        most = max(each.max_kpa or 0.0 for each in pressure_list(each, reached_points(each)).rows)
+        figures += [f"{lift(each):.1f} mm", f"{most:.1f} kPa"]
     for page in ("tutorial/quick-start.md", "ja/quick-start.md"):
         text = (DOCS / page).read_text("utf-8")
         assert [each for each in figures if each not in text] == []

@@ -133,7 +133,8 @@ def _line_rows(found: Uncertainties) -> Iterator[Sequence[str]]:
     for value in found.values:
         if value.key.partition(":")[0] not in KINDS:
             other = spread.other.get(value.key)
-            beside = "-" if other is None else f"{max(other, 0.0) if value.unit == 'N' else other:.1f}"
+            blank = "-" if spread.contact else ""
+            beside = blank if other is None else f"{max(other, 0.0) if value.unit == 'N' else other:.1f}"
             yield (value.title, _cell(spread, value), beside, value.unit)
 
 
@@ -155,7 +156,7 @@ def _meaning(found: Uncertainties) -> Iterator[str]:
     yield from (f"  {words.en}" for name, words in origins().items() if name in sources)
     if any(spread.factor(value.key) for value in found.values) and not spread.bare:
         yield "(a to b): asymmetric range of a parameter known to a factor only."
-    if not spread.bare:
+    if spread.contact:
         yield ("The skin contact is a model option and not included in ±: the real value is between the two.")
     yield from map(str, spread.cautions)
     if spread.failed:

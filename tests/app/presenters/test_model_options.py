@@ -1,6 +1,6 @@
 """Texts of the model options."""
 
-from app.presenters.model_options import control_texts
+from app.presenters.model_options import control_texts, defaults, groups, summary, without_effect
 from core.mechanics.volume import CONTROLS
 
 
@@ -12,3 +12,13 @@ def test_every_volume_control_has_its_texts():
         assert text.menu, control
         assert text.curve, control
         assert bool(text.button) == bool(text.tip), control
+
+
+def test_settings_of_the_other_tissue_are_neither_shown_nor_summed_up():
+    net = defaults()
+    solid = {**net, "tissue": "solid", "firm_chest": 0.1, "member_law": "co-rotated"}
+    keys = {setting.key for _, settings in groups() for setting in settings}
+    assert without_effect(net) == {"sag", "posture", "prestress"}
+    assert "prestress" not in without_effect({**net, "member_law": "prestressed"})
+    assert without_effect(solid) == {"firm_chest", "member_law", "prestress", "line_contact"} <= keys
+    assert summary(solid) == "Elastic length · Solid with weight"

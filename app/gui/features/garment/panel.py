@@ -54,17 +54,20 @@ class TissueCard(QWidget):
         column.setContentsMargins(8, 4, 8, 4)
         column.setSpacing(4)
         row = QHBoxLayout()
-        words = label(tr("Tissue stiffness"), "secondary")
-        set_tip(words, self.field.toolTip())
-        row.addWidget(words, 1)
+        self._words = label(tr("Tissue stiffness"), "secondary")
+        set_tip(self._words, self.field.toolTip())
+        row.addWidget(self._words, 1)
         row.addWidget(self.field)
         column.addWidget(hairline())
         column.addLayout(row)
         column.addWidget(self.notes)
 
-    def show_tissue(self, stiffness: float, notes: Sequence[str]) -> None:
-        """Show the stiffness, and what holds for all figures."""
-        self.field.show_value(stiffness)
+    def show_tissue(self, stiffness: float | None, notes: Sequence[str]) -> None:
+        """Show the stiffness, if newtons depend on it, and what holds for all figures."""
+        for each in (self._words, self.field):
+            each.setVisible(stiffness is not None)
+        if stiffness is not None:
+            self.field.show_value(stiffness)
         self.notes.setText("".join(f'<p style="margin:0 0 4px 0">{escape(note)}</p>' for note in notes))
 
 

@@ -52,5 +52,8 @@ def show_page(page: str, notifications: Notifications) -> None:
     if path.is_file():
         hint = tr("Open this file in a browser: {file}").format(file=path)
     else:
-        hint = tr("The user guide has not been built. In a checkout of Busk, build it with 'make docs'.")
+        hint = tr(
+            "The user guide has not been built. When running Busk from source code, build the guide "
+            "with 'make docs'."
+        )
     notifications.info(tr("The user guide could not be opened."), hint, lasting=True)

@@ -70,6 +70,7 @@ class LineDetails(QWidget):
         made.addWidget(label(tr("Elastic"), "caption"))
         made.addWidget(self._elastic, 1)
         outside.addLayout(made)
+        outside.addWidget(self._make_pressed())
         outside.addLayout(self._foot())
 
     def show_lengths(self, view: LineView, ratio: float) -> None:
@@ -153,7 +154,6 @@ class LineDetails(QWidget):
         left.addWidget(label(tr("Stiffness"), "caption"))
         left.addWidget(self._stiffness)
         foot.addWidget(self._pull)
-        foot.addWidget(self._make_pressed())
         foot.addStretch(1)
         self._palette = PaletteMenu(self)
         self._palette.chosen.connect(lambda colour: self.decided.emit("colour", colour))
@@ -167,13 +167,11 @@ class LineDetails(QWidget):
 
     def _make_pressed(self) -> QWidget:
         self._presses = QWidget()
-        column = QVBoxLayout(self._presses)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(1)
+        row = QHBoxLayout(self._presses)
+        row.setContentsMargins(0, 3, 0, 0)
         self._pressed = label("", "body", tabular=True)
-        self._pressed.setFixedHeight(self._stiffness.sizeHint().height())
-        column.addWidget(label(tr("Maximum contact pressure, estimated"), "caption"))
-        column.addWidget(self._pressed)
+        row.addWidget(label(tr("Maximum contact pressure, estimated"), "caption"))
+        row.addWidget(self._pressed, 1)
         return self._presses
 
     def _press(self, name: str) -> None:

@@ -187,7 +187,7 @@ class LineDrawTool(QObject):
         frame = self._context.session.frame
         if frame is None:
             return False
-        control, (pieces, closed) = frame.stages.control, self._wanted
+        control, (pieces, closed) = frame.stages.fitted, self._wanted
         try:
             if self._sketching.card.snap.isChecked():
                 curve = np.concatenate(pieces)
@@ -281,7 +281,7 @@ class LineDrawTool(QObject):
             path = found.shown
         elif found is not None and frame is not None:
             corners = [*found.path, *found.path[:1] * found.closed]
-            path = self._sketching.laid(frame.stages.control.mesh.vertices[corners])
+            path = self._sketching.laid(frame.stages.fitted.mesh.vertices[corners])
         drawn = np.concatenate(curve) if curve else np.empty((0, 3))
         points = np.array(self._places).reshape(-1, 3) if found is None else np.empty((0, 3))
         self._sketching.draw(drawn, path, points, self._colour())

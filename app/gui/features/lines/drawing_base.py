@@ -63,7 +63,7 @@ class DrawingBase(QObject):
 
     def begin(self, frame: Frame) -> None:
         """Take the pointer, and show the card."""
-        self._control = frame.stages.control
+        self._control = frame.stages.fitted
         self.hand.begin()
         self.card.show()
 
@@ -124,7 +124,7 @@ class DrawingBase(QObject):
 
     def _check(self, _: object) -> None:
         """Let go once the control mesh is another: there its points have other numbers and places."""
-        if self.at_work and (self.frame is None or self.frame.stages.control is not self._control):
+        if self.at_work and (self.frame is None or self.frame.stages.fitted is not self._control):
             self.lost.emit()
 
     def _follow(self, _: object) -> None:

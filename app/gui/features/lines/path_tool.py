@@ -122,7 +122,7 @@ class LinePathTool(QObject):
 
     def _points(self) -> Points:
         frame = self._context.session.frame
-        return np.empty((0, 3)) if frame is None else frame.stages.control.mesh.vertices
+        return np.empty((0, 3)) if frame is None else frame.stages.fitted.mesh.vertices
 
     def _grab(self, at: QPointF) -> bool:
         path = self._steps[-1]

@@ -14,7 +14,7 @@ from app.gui.widgets.navigation_row import DOOR_HEIGHT, NavigationRow, page_head
 from app.gui.widgets.option_field import AmountField, Field, field_of
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import colon, number, tr
-from app.presenters.model_options import Setting, consequences, defaults, groups, summary
+from app.presenters.model_options import Setting, consequences, defaults, groups, summary, without_effect
 
 
 class ModelPanel(QWidget):
@@ -46,7 +46,9 @@ class ModelPanel(QWidget):
         self._present = {key: present[key] for key in defaults()}
         for key, field in self.fields.items():
             field.show_value(self._present[key])
-        self._rows["prestress"].setVisible(self._present["member_law"] == "prestressed")
+        idle = without_effect(self._present)
+        for key, row in self._rows.items():
+            row.setVisible(key not in idle)
         self._reset.setEnabled(self._present != defaults())
 
     def set_gain(self, gain: float, limit: float) -> None:

@@ -55,7 +55,7 @@ class ScanEditor(QWidget):
         self.sides = Segment(
             [("", tr("Off")), ("left", tr("Keep left side")), ("right", tr("Keep right side"))], small=True
         )
-        set_tip(self.sides, tr("Replace the other half of the body with a mirror image of this half"))
+        set_tip(self.sides, tr("Replace the other half of the body with a mirror image of the kept half"))
         self.sides.chosen.connect(
             lambda side: self._emit(replace(self._view.edits, kept=side), tr("Mirror scan"))
         )

@@ -125,7 +125,7 @@ class SymmetryCard(QWidget):
         self.fold = Disclosure(tr("More values and sources"))
         self.fold.toggled.connect(lambda _: self._show())
         self.look = button(tr("Show on body"))
-        set_tip(self.look, tr("Show the map Symmetry on the body (C)"))
+        set_tip(self.look, tr("Show the Symmetry map on the body (C)"))
         self.look.clicked.connect(lambda: self.shown.emit(not self._mapped))
         self.make = button(tr("Balance sides…"))
         set_tip(self.make, tr("Compute line lengths that balance left and right"))
