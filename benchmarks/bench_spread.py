@@ -22,6 +22,7 @@ import numpy as np
 
 from core.analysis.uncertainty.estimate import UncertaintyEstimator
 from core.analysis.uncertainty.input_uncertainty import default_uncertainty
+from core.analysis.uncertainty.model_error import model_errors
 from core.analysis.uncertainty.monte_carlo import Samples, sample
 from core.analysis.uncertainty.parameters import perturb, uncertain_parameters
 from core.analysis.uncertainty.perturbed_solutions import PerturbedSolutions
@@ -76,7 +77,9 @@ def measure(name: str, stages: Stages, draws: int) -> str:
     spread = UncertaintyEstimator(trials).estimate()
     told = time.process_time() - begun
     begun = time.process_time()
-    found = sample(trials, uncertain_parameters(stages, default_uncertainty()), draws)
+    sizes = default_uncertainty()
+    turning = [*uncertain_parameters(stages, sizes), *model_errors(trials, sizes)]
+    found = sample(trials, turning, draws)
     drawn = time.process_time() - begun
     sds = found.deviations()
     print(f"\n{name}: propagated in {told:.1f} s of a processor, {draws} draws in {drawn:.0f} s")
@@ -90,7 +93,6 @@ def measure(name: str, stages: Stages, draws: int) -> str:
             print(f"  {key:24} ± {off:7.2f}   sampled {spread.sds * sds[key]:7.2f}")
     cells = {}
     # As in the draws all landmarks are placed: a fold that is placed leads the root another way by itself.
-    turning = uncertain_parameters(stages, default_uncertainty())
     base = trials(perturb(stages, dict.fromkeys(turning, 0.0))).values
     for kind in KINDS:
         of_kind = [(key, ratio) for key, ratio in _ratios(spread, sds) if _kind(key) == kind]
