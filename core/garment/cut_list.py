@@ -161,7 +161,7 @@ def _row(stages: Stages, line: Line, reached: float, tensions: Mapping[str, Line
     if design.line_hold == "held":
         return _held(row, elastic)
     natural = design.ratio(line.name) * line.rest_length
-    elongation = mean_elongation(elastic, tension, reached / natural - 1.0)
+    elongation = mean_elongation(stages, elastic, tension, reached / natural - 1.0)
     return _stretched(row, elastic, natural, elongation, elastic.force(elongation))
 
 

@@ -45,13 +45,15 @@ class LineTension:
         return -self.mean if self.mean < -SLACK else 0.0
 
 
-def mean_elongation(elastic: Elastic, tension: LineTension | None, unslackened: float) -> float:
-    """Return how far a line's elastic is stretched on the mean [1], as the ``tension`` of a line tells.
+def mean_elongation(stages: Stages, elastic: Elastic, tension: LineTension | None, whole: float) -> float:
+    """Return how far a line's elastic is stretched on the mean [1].
 
-    Where it tells nothing the line is stretched by ``unslackened`` [1], which is below 0 if it is slack.
+    It is that of the ``whole`` line, below 0 if it is slack; on solid tissue, where single pieces may be
+    slack, it follows from the ``tension``.
     """
-    pulls = tension is not None and tension.mean > 0.0
-    return elastic.elongation(tension.mean) if tension is not None and pulls else unslackened
+    if stages.tissue is None or tension is None or tension.mean <= 0.0:
+        return whole
+    return elastic.elongation(tension.mean)
 
 
 def divergence_error() -> LineError:

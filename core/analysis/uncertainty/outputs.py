@@ -120,7 +120,7 @@ def line_values(
         if line.name in elastics:
             elastic, reached = elastics[line.name], line.length(points)
             natural = ratios[line.name] * line.rest_length
-            elongation = mean_elongation(elastic, tensions.get(line.name), reached / natural - 1.0)
+            elongation = mean_elongation(stages, elastic, tensions.get(line.name), reached / natural - 1.0)
             if held and line.name in tensions:
                 elongation = elastic.elongation(tensions[line.name].mean)
                 natural = reached / (1.0 + elongation)

@@ -40,15 +40,7 @@ class LineDetails(QWidget):
         column = QVBoxLayout(self._set)
         column.setContentsMargins(0, 6, 0, 0)
         column.setSpacing(3)
-        self._grid = QGridLayout()
-        self._grid.setHorizontalSpacing(8)
-        self._grid.setVerticalSpacing(1)
-        self._heads = [label("", "caption") for _ in range(3)]
-        for place, head in enumerate(self._heads, start=1):
-            self._grid.addWidget(head, 0, place)
-            self._grid.setColumnStretch(place, 1)
-        self._figures = [self._row(1), self._row(2)]
-        column.addLayout(self._grid)
+        column.addLayout(self._make_figures())
         column.addSpacing(5)
         column.addWidget(hairline())
         column.addSpacing(4)
@@ -72,6 +64,17 @@ class LineDetails(QWidget):
         outside.addLayout(made)
         outside.addWidget(self._make_pressed())
         outside.addLayout(self._foot())
+
+    def _make_figures(self) -> QGridLayout:
+        self._grid = QGridLayout()
+        self._grid.setHorizontalSpacing(8)
+        self._grid.setVerticalSpacing(1)
+        self._heads = [label("", "caption") for _ in range(3)]
+        for place, head in enumerate(self._heads, start=1):
+            self._grid.addWidget(head, 0, place)
+            self._grid.setColumnStretch(place, 1)
+        self._figures = [self._row(1), self._row(2)]
+        return self._grid
 
     def show_lengths(self, view: LineView, ratio: float) -> None:
         """Show a set length, as a share of the rest length, and what ``view`` reached."""
