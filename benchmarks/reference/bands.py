@@ -35,7 +35,7 @@ class Bands:
         return np.asarray(np.linalg.norm(_along(self.points(nodes), self.pieces), axis=1))
 
     def tension(self, nodes: Points, load: float = 1.0) -> Floats:
-        """Return the tension of each piece, (m,) [N]; ``load`` is the share of the shortening in force [1]."""
+        """Return the tension of each piece, (m,) [N], with the share ``load`` of the shortening [1]."""
         natural = (1.0 + load * (self.ratio - 1.0)) * self.lengths(self.nodes)
         return self.stiffness_n * np.maximum(self.lengths(nodes) / natural - 1.0, 0.0)
 

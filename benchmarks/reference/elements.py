@@ -20,7 +20,10 @@ EDGES = np.array([(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)])
 def quadrature() -> tuple[Floats, Floats]:
     """Return barycentric places (14, 4) [1] and weights (14,) [1] whose sum is the volume 1/6."""
     places, weights = [], []
-    for inner, weight in ((0.31088591926330061, 0.11268792571801585), (0.09273525031089123, 0.07349304311636195)):
+    for inner, weight in (
+        (0.31088591926330061, 0.11268792571801585),
+        (0.09273525031089123, 0.07349304311636195),
+    ):
         for corner in range(4):
             places.append([1.0 - 3.0 * inner if each == corner else inner for each in range(4)])
             weights.append(weight)
@@ -32,7 +35,7 @@ def quadrature() -> tuple[Floats, Floats]:
 
 
 def quadratic(barycentric: Floats, edges: Indices) -> Floats:
-    """Return the quadratic shape functions at places (k, c) of simplices with ``edges`` (e, 2), (k, c + e)."""
+    """Return quadratic shape functions at places (k, c) of simplices with ``edges`` (e, 2), (k, c + e)."""
     corners = barycentric * (2.0 * barycentric - 1.0)
     return np.concatenate([corners, 4.0 * barycentric[:, edges[:, 0]] * barycentric[:, edges[:, 1]]], axis=1)
 
@@ -53,7 +56,7 @@ def quadratic_slopes(barycentric: Floats) -> Floats:
 class TetMesh:
     """Quadratic tetrahedra with straight edges: ``nodes`` (n, 3) [mm], corners first, then edge middles.
 
-    ``tetrahedra`` (t, 10): four corners and the middles of ``EDGES``; ``corner_count`` nodes carry a pressure.
+    ``tetrahedra`` (t, 10): corners and middles of ``EDGES``; ``corner_count`` nodes carry a pressure.
     """
 
     nodes: Points
@@ -74,7 +77,7 @@ class TetMesh:
 
 
 def quadratic_mesh(corners: Points, tetrahedra: Indices) -> TetMesh:
-    """Return quadratic tetrahedra over linear ones, (n, 3) [mm] and (t, 4), turned so that volumes are positive."""
+    """Return quadratic tetrahedra over linear ones, (n, 3) [mm] and (t, 4), all of positive volume."""
     sides = corners[tetrahedra[:, 1:]] - corners[tetrahedra[:, :1]]
     inverted = np.linalg.det(sides) < 0.0
     turned = tetrahedra.copy()

@@ -56,7 +56,7 @@ def solve(residual: Residual, tangent: Tangent, start: Floats, free: Indices) ->
 def _searched(
     residual: Residual, factors: SuperLU, unknowns: Floats, free: Indices, step: Floats
 ) -> tuple[Floats, Floats]:
-    """Return the unknowns after the longest part of ``step`` that shortens the next one, and their residual."""
+    """Return the unknowns after the longest part of ``step`` that shortens the next, and their residual."""
     share, length = 1.0, np.linalg.norm(step)
     while share >= SHORTEST:
         trial = _added(unknowns, free, share * step)
@@ -80,7 +80,7 @@ def _added(unknowns: Floats, rows: Indices, step: Floats) -> Floats:
 def follow(solved: Callable[[float, Floats], Floats], start: Floats, steps: int) -> Floats:
     """Return the unknowns at load 1 from those at load 0; ``solved`` returns those at a load from near ones.
 
-    Starts with ``steps`` load steps and halves those that fail; raises NoBalanceError when they get too short.
+    Starts with ``steps`` load steps and halves those that fail; raises NoBalanceError at the shortest.
     """
     load, step, unknowns = 0.0, 1.0 / steps, start
     while load < 1.0:

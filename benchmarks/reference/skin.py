@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 import pyacvd
 import pyvista as pv
-from reference.elements import quadratic
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points
+from reference.elements import quadratic
 
 CORNER_EDGES = np.array([(0, 1), (1, 2), (2, 0)])
 """Edges of a triangle in the order of its quadratic nodes."""
@@ -70,16 +70,16 @@ def largest_piece(vertices: Points, faces: Faces) -> Mesh:
 
 
 def remeshed(patch: Mesh, count: int) -> Mesh:
-    """Return ``patch`` with about ``count`` points, evenly spread: the border on its border, others on its skin."""
+    """Return ``patch`` with about ``count`` points on it, evenly spread.
+
+    The border is half the distance of two points within that of ``patch``. Source: Valette and Chassery (2004).
+    """
     clustering = pyacvd.Clustering(surface(patch))
     clustering.subdivide(3)
     clustering.cluster(count)
     drawn = clustering.create_mesh()
     coarse = largest_piece(np.asarray(drawn.points, dtype=np.float64), drawn.regular_faces.astype(np.int64))
     _, places = closest(patch, coarse.vertices)
-    rim = np.concatenate(coarse.boundary_loops)
-    loop = patch.vertices[patch.boundary_loops[0]]
-    places[rim] = loop[np.linalg.norm(places[rim][:, None] - loop, axis=2).argmin(axis=1)]
     return coarse.moved(places)
 
 
@@ -92,7 +92,7 @@ class QuadraticSkin:
     count: int
 
     def weights(self, places: Points) -> sparse.csr_array:
-        """Return the shares of the nodes in the displacement of the skin nearest to ``places``, (k, count)."""
+        """Return the shares of the nodes in the skin nearest to ``places`` (k, 3) [mm], shape (k, count)."""
         face, foot = closest(self.corners, places)
         shares = barycentric(self.corners.vertices[self.corners.faces[face]], foot)
         values = quadratic(shares, CORNER_EDGES)
@@ -108,7 +108,7 @@ class QuadraticSkin:
         number = np.arange(_SAMPLES)
         away = 0.5 * diameter * np.sqrt((number + 0.5) / _SAMPLES)
         turn = number * np.pi * (3.0 - np.sqrt(5.0))
-        one = np.cross(normal, np.roll(normal, 1, axis=1) + [0.1, 0.2, 0.3])
+        one = np.cross(normal, np.eye(3)[np.abs(normal).argmin(axis=1)])
         one /= np.linalg.norm(one, axis=1)[:, None]
         other = np.cross(normal, one)
         flat = one[:, None] * np.cos(turn)[:, None] + other[:, None] * np.sin(turn)[:, None]

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 import tetgen
-from reference.elements import TetMesh, quadratic_mesh
-from reference.skin import closest
 from scipy import sparse
 from scipy.sparse.linalg import spsolve
 
 from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points
+from reference.elements import TetMesh, quadratic_mesh
+from reference.skin import closest
 
 DEPTH = 12.0
 """Depth of the chest wall under skin over fixed control points [mm]."""
 
 ROUNDS = 40
-"""So often the film is relaxed."""
+"""Rounds in which the film is relaxed."""
+
+SMOOTHINGS = 5
+"""Rounds in which each place of the wall moves to the mean of its neighbours."""
 
 
 def over_fixed(skin: Mesh, control: Mesh, fixed: Flags) -> Flags:
@@ -27,31 +30,31 @@ def over_fixed(skin: Mesh, control: Mesh, fixed: Flags) -> Flags:
 def chest_wall(skin: Mesh, held: Flags) -> Points:
     """Return a place on the wall for each vertex of ``skin``, (n, 3) [mm].
 
-    Under the rim and vertices ``held`` it is ``DEPTH`` inward along the normals, evened over neighbours;
-    between them is the film of least area. Source: Pinkall and Polthier (1993).
+    Under the rim and vertices ``held`` it is ``DEPTH`` inward, between them the film of least area; all but
+    the rim is then smoothed. Source: Pinkall and Polthier (1993).
     """
-    rim = np.concatenate(skin.boundary_loops)
-    held = held.copy()
-    held[rim] = True
+    inner = np.ones(len(held), dtype=bool)
+    inner[np.concatenate(skin.boundary_loops)] = False
+    held = held | ~inner
+    mean = _neighbour_mean(skin)
+    normals = mean @ (mean @ skin.vertex_normals)
     wall = np.array(skin.vertices)
-    wall[held] -= DEPTH * _even_normals(skin, 2)[held]
+    wall[held] -= DEPTH * (normals / np.linalg.norm(normals, axis=1)[:, None])[held]
     for _ in range(ROUNDS):
         matrix = _cotangents(skin.moved(wall))
         pull = matrix[~held][:, held] @ wall[held]
         wall[~held] = spsolve(matrix[~held][:, ~held].tocsc(), -pull)
+    for _ in range(SMOOTHINGS):
+        wall[inner] = (mean @ wall)[inner]
     return wall
 
 
-def _even_normals(skin: Mesh, rounds: int) -> Points:
-    """Return vertex normals, each the mean over neighbours taken ``rounds`` times, (n, 3) [1]."""
-    ends, count = skin.edges, len(skin.vertices)
-    pairs = np.concatenate([ends, ends[:, ::-1], np.repeat(np.arange(count)[:, None], 2, axis=1)])
-    mean = sparse.csr_array((np.ones(len(pairs)), pairs.T), shape=(count, count))
-    normals = skin.vertex_normals
-    for _ in range(rounds):
-        normals = mean @ normals
-        normals /= np.linalg.norm(normals, axis=1)[:, None]
-    return np.asarray(normals)
+def _neighbour_mean(skin: Mesh) -> sparse.csr_array:
+    """Return the matrix of means over the neighbours of each vertex, (n, n)."""
+    pairs = np.concatenate([skin.edges, skin.edges[:, ::-1]])
+    count = len(skin.vertices)
+    near = sparse.csr_array((np.ones(len(pairs)), pairs.T), shape=(count, count))
+    return sparse.csr_array(sparse.diags_array(1.0 / near.sum(axis=1)) @ near)
 
 
 def _cotangents(mesh: Mesh) -> sparse.csr_array:
@@ -73,17 +76,26 @@ def closed_surface(skin: Mesh, wall: Points) -> Mesh:
     count = len(skin.vertices)
     loop = skin.boundary_loops[0]
     following = np.roll(loop, -1)
-    sides = [np.stack(each, axis=1) for each in ((following, loop, loop + count), (following, loop + count, following + count))]
+    sides = [
+        np.stack(each, axis=1)
+        for each in ((following, loop, loop + count), (following, loop + count, following + count))
+    ]
     faces = np.concatenate([skin.faces, skin.faces[:, ::-1] + count, *sides])
     return Mesh(np.concatenate([skin.vertices, wall]), faces)
 
 
 def tetrahedra(skin: Mesh, wall: Points, largest: float) -> TetMesh:
-    """Return quadratic tetrahedra of at most ``largest`` [mm^3]; the first nodes are ``skin``, then ``wall``."""
+    """Return quadratic tetrahedra up to ``largest`` [mm^3]; their first nodes are ``skin``, then ``wall``."""
     outside = closed_surface(skin, wall)
     mesher = tetgen.TetGen(np.array(outside.vertices), np.array(outside.faces))
     nodes, tets, *_ = mesher.tetrahedralize(
-        nobisect=True, nomergefacet=True, quality=True, minratio=1.6, mindihedral=5.0, maxvolume=largest, quiet=True
+        nobisect=True,
+        nomergefacet=True,
+        quality=True,
+        minratio=1.6,
+        mindihedral=5.0,
+        maxvolume=largest,
+        quiet=True,
     )
     return quadratic_mesh(np.asarray(nodes), np.asarray(tets).astype(np.int64))
 

@@ -6,19 +6,19 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 
 import numpy as np
-from reference.bands import Bands
-from reference.newton import follow, solve
-from reference.tissue import Tissue
 from scipy import sparse
 
 from core.geometry.mesh import Floats, Points
+from reference.bands import Bands
+from reference.newton import follow, solve
+from reference.tissue import Tissue
 
 STANDING = np.array([0.0, 0.0, -1.0])
 """Direction and size of gravity in the scan [9.81 m/s^2]."""
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class LoadedBody:
     """Tissue in balance under its weight on the scan."""
 
     tissue: Tissue

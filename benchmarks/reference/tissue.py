@@ -11,11 +11,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from reference.elements import TetMesh, quadratic, quadratic_slopes, quadrature
-from reference.elements import EDGES as EDGES_OF_TETRAHEDRON
 from scipy import sparse
 
 from core.geometry.mesh import Flags, Floats, Indices, Points
+from reference.elements import EDGES, TetMesh, quadratic, quadratic_slopes, quadrature
 
 DENSITY = 0.95e-6
 """Density of tissue [kg/mm^3]."""
@@ -29,7 +28,7 @@ BULK = 500.0
 
 @dataclass(frozen=True, eq=False)
 class Kinematics:
-    """Values at the quadrature points of all tetrahedra: F (t, q, 3, 3), its determinant, gradients (t, q, 3, 10)."""
+    """Values at the quadrature points: F (t, q, 3, 3), its determinant (t, q), gradients (t, q, 3, 10)."""
 
     gradient: Floats  # F [1]
     stretch: Floats  # det F [1]
@@ -53,7 +52,7 @@ class Tissue:
     @cached_property
     def _rule(self) -> tuple[Floats, Floats, Floats, Floats]:
         places, weights = quadrature()
-        return weights, quadratic(places, EDGES_OF_TETRAHEDRON), quadratic_slopes(places), places
+        return weights, quadratic(places, EDGES), quadratic_slopes(places), places
 
     @cached_property
     def free(self) -> Indices:
@@ -63,7 +62,7 @@ class Tissue:
 
     @cached_property
     def weight(self) -> Floats:
-        """Return the weight of each node under 1 g, shape (n,) [N]: that of the mass in the shape ``mesh``."""
+        """Return the weight of each node under 1 g, shape (n,) [N]: mass is that of the shape ``mesh``."""
         weights, shape, slopes, _ = self._rule
         jacobian = np.einsum("tai,qxa->tqix", self.mesh.nodes[self.mesh.tetrahedra], slopes)
         volume = weights * np.linalg.det(jacobian)
@@ -152,7 +151,7 @@ class Tissue:
         return self._assembled(moving, mixed, below, k.volume)
 
     def _assembled(self, moving: Floats, mixed: Floats, below: Floats, volume: Floats) -> sparse.csr_array:
-        """Return the sparse matrix of element matrices; that of the pressures follows from ``volume`` (t, q)."""
+        """Return the sparse matrix of element matrices; the pressures' follows from ``volume`` (t, q)."""
         _, _, _, corners = self._rule
         pressures = -self.shear / BULK * np.einsum("tq,qk,ql->tkl", volume, corners, corners, optimize=True)
         element = np.concatenate(
