@@ -3,11 +3,11 @@
 Make:  python benchmarks/make_reference.py BODY.ply --case no-weight sling=95% --shear 0.5 --out DIR
 Check: python benchmarks/make_reference.py --check FILE... --bodies DIR
 
-BODY is a clean, upright body in mm. A case is a state of gravity (no-weight, supine, lean=30, gravity=X,Y,Z),
-lines with their common ratio (mid-bust=95%, sling=95%, strap=95%), or both joined by "+". In place of the shear modulus
-[kPa], ``--rise`` chooses the one with which the bust rises so far [mm] when its weight is removed. A check solves the
-definition that is stored in a file anew, also on a mesh with twice the unknowns. The model and the arrays of the files
-are described in resources/reference/README.md. Needs benchmarks/reference-requirements.txt.
+BODY is a clean, upright body in mm. A case is a state of gravity (no-weight, supine, lean=30,
+gravity=X,Y,Z), lines with their common ratio (mid-bust=95%, sling=95%, strap=95%), or both joined by "+".
+In place of the shear modulus [kPa], ``--rise`` chooses the one with which the bust rises so far [mm] when
+its weight is removed. A check solves the definition that is stored in a file anew, also on a mesh with twice
+the unknowns. Model and files: resources/reference/README.md. Needs benchmarks/reference-requirements.txt.
 """
 
 from __future__ import annotations
@@ -50,10 +50,8 @@ def parsed() -> argparse.Namespace:
     parser.add_argument("--shear", type=float, default=FIRST_SHEAR, help="shear modulus [kPa]")
     parser.add_argument("--rise", type=float, help="rise without weight [mm] that sets the shear modulus")
     parser.add_argument("--out", type=Path, default=Path(), help="folder for the files")
-    parser.add_argument("--check", nargs="+", type=Path, metavar="FILE", help="stored cases to solve anew")
-    parser.add_argument(
-        "--bodies", type=Path, default=Path("resources/samples"), help="folder of their bodies"
-    )
+    parser.add_argument("--check", nargs="+", type=Path, metavar="FILE", help="stored cases to solve")
+    parser.add_argument("--bodies", type=Path, default=Path("resources/samples"), help="their bodies")
     arguments = parser.parse_args()
     if (arguments.body is None) == (arguments.check is None):
         parser.error("give a BODY, or files to --check")
@@ -63,14 +61,14 @@ def parsed() -> argparse.Namespace:
 def make(body: Path, names: list[str], shear_kpa: float, rise: float | None, out: Path) -> None:
     """Solve and write the cases ``names`` of ``body``; a case without a balance is reported and left out."""
     bare, control = bare_case(body, shear_kpa)
-    cases = [named_case(name, bare, control) for name in names]
+    cases = [named_case(name, bare, control) for name in names]  # faults in names show before the work begins
     model = model_of(bare, body.parent, COUNT)
     if rise is not None:
         bare, model = softened(bare, model, body.parent, rise)
+    cases = [replace(case, shear_kpa=bare.shear_kpa) for case in cases]
     out.mkdir(parents=True, exist_ok=True)
     for name, case in zip(names, cases, strict=True):
         start = time.perf_counter()
-        case = replace(case, shear_kpa=bare.shear_kpa)
         try:
             moved, info = solved(case, model)
         except NoBalanceError as problem:
@@ -82,7 +80,7 @@ def make(body: Path, names: list[str], shear_kpa: float, rise: float | None, out
 
 
 def softened(bare: Case, model: BustModel, bodies: Path, rise: float) -> tuple[Case, BustModel]:
-    """Return case and model with the modulus, rounded to 0.01 kPa, whose rise without weight is ``rise`` [mm]."""
+    """Return case and model whose rise without weight is about ``rise`` [mm]: the modulus is rounded."""
     for _ in range(3):
         moved = model.loaded_body.unloaded - model.nodes
         reached = sum(disc_rise(model.nodes, moved, bust) for bust in bare.busts) / 2.0

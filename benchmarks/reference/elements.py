@@ -67,7 +67,8 @@ class TetMesh:
     def middle_of(self) -> dict[tuple[int, int], int]:
         """Return the middle node of each edge by its corners, lower first."""
         ends = np.sort(self.tetrahedra[:, EDGES], axis=2).reshape(-1, 2)
-        return dict(zip(map(tuple, ends.tolist()), self.tetrahedra[:, 4:].ravel().tolist(), strict=True))
+        middles = self.tetrahedra[:, 4:].ravel().tolist()
+        return {(one, other): middle for (one, other), middle in zip(ends.tolist(), middles, strict=True)}
 
     def quadratic_faces(self, faces: Faces) -> Indices:
         """Return the corners and the middles of the edges 01, 12, 20 of ``faces`` (m, 3), shape (m, 6)."""

@@ -38,7 +38,8 @@ def named_case(name: str, bare: Case, control: ControlMesh) -> Case:
 
     Raises ValueError for an unknown part or lines of different ratios.
     """
-    case, ratios, lines = bare, set(), []
+    case, ratios = bare, set()
+    lines: list[Places] = []
     for part in name.split("+"):
         label, _, value = part.partition("=")
         if label in LINES and re.fullmatch(r"\d+(\.\d+)?%", value):
@@ -52,7 +53,7 @@ def named_case(name: str, bare: Case, control: ControlMesh) -> Case:
 
 
 def gravity_of(part: str) -> Floats:
-    """Return gravity (3,) [9.81 m/s^2] of "no-weight", "supine", "lean=DEGREES" (forward) or "gravity=X,Y,Z"."""
+    """Return gravity (3,) [9.81 m/s^2] of "no-weight", "supine", "lean=DEGREES" or "gravity=X,Y,Z"."""
     label, _, value = part.partition("=")
     if part == "no-weight":
         return np.zeros(3)

@@ -74,7 +74,7 @@ class BustModel:
 def bust_model(body: Mesh, control: Mesh, fixed: Flags, shear_kpa: float, count: int = COUNT) -> BustModel:
     """Return the tissue of ``body`` within the outline of ``control``; its skin has ``count`` points."""
     skin = remeshed(within_outline(body, control), count)
-    wall = chest_wall(skin, over_fixed(skin, control, fixed))
+    wall = chest_wall(skin, over_fixed(skin.vertices, control, fixed))
     mesh = tetrahedra(skin, wall, LARGEST * (COUNT / count) ** 1.5)
     tissue = Tissue(mesh, still_nodes(mesh, skin), 1e-3 * shear_kpa)
     surface = QuadraticSkin(skin, mesh.quadratic_faces(skin.faces), len(mesh.nodes))

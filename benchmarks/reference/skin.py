@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
 import pyacvd
 import pyvista as pv
+from pyvista import PyVistaDeprecationWarning
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
@@ -72,12 +74,15 @@ def largest_piece(vertices: Points, faces: Faces) -> Mesh:
 def remeshed(patch: Mesh, count: int) -> Mesh:
     """Return ``patch`` with about ``count`` points on it, evenly spread.
 
-    The border is half the distance of two points within that of ``patch``. Source: Valette and Chassery (2004).
+    The border is half the distance of two points within that of ``patch``.
+    Source: Valette and Chassery (2004).
     """
-    clustering = pyacvd.Clustering(surface(patch))
-    clustering.subdivide(3)
-    clustering.cluster(count)
-    drawn = clustering.create_mesh()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PyVistaDeprecationWarning)  # pyacvd 0.4 with pyvista 0.49
+        clustering = pyacvd.Clustering(surface(patch))
+        clustering.subdivide(3)
+        clustering.cluster(count)
+        drawn = clustering.create_mesh()
     coarse = largest_piece(np.asarray(drawn.points, dtype=np.float64), drawn.regular_faces.astype(np.int64))
     _, places = closest(patch, coarse.vertices)
     return coarse.moved(places)

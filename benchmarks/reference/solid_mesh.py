@@ -21,9 +21,9 @@ SMOOTHINGS = 5
 """Rounds in which each place of the wall moves to the mean of its neighbours."""
 
 
-def over_fixed(skin: Mesh, control: Mesh, fixed: Flags) -> Flags:
-    """Return which vertices of ``skin`` have a nearest control triangle with three fixed corners, (n,)."""
-    face, _ = closest(control, skin.vertices)
+def over_fixed(places: Points, control: Mesh, fixed: Flags) -> Flags:
+    """Return which of ``places`` (n, 3) have a nearest control triangle with three fixed corners, (n,)."""
+    face, _ = closest(control, places)
     return np.asarray(fixed[control.faces[face]].all(axis=1))
 
 

@@ -67,7 +67,9 @@ class Tissue:
         jacobian = np.einsum("tai,qxa->tqix", self.mesh.nodes[self.mesh.tetrahedra], slopes)
         volume = weights * np.linalg.det(jacobian)
         loads = DENSITY * GRAVITY * volume @ shape
-        return np.bincount(self.mesh.tetrahedra.ravel(), loads.ravel(), len(self.mesh.nodes))
+        return np.asarray(
+            np.bincount(self.mesh.tetrahedra.ravel(), loads.ravel(), len(self.mesh.nodes)), float
+        )
 
     @cached_property
     def _rows(self) -> Indices:
@@ -112,7 +114,7 @@ class Tissue:
         forces = np.einsum("tq,tqij,tqja->tai", k.volume, stress, k.original, optimize=True).reshape(-1, 30)
         gap = k.volume * (k.stretch - 1.0 - p / (BULK * self.shear))
         volumes = self.shear * gap @ corners
-        total = np.bincount(self._rows.ravel(), np.hstack([forces, volumes]).ravel())
+        total: Floats = np.bincount(self._rows.ravel(), np.hstack([forces, volumes]).ravel()).astype(float)
         total[: 3 * len(shape)] -= (self.weight[:, None] * gravity).ravel()
         return np.asarray(total)
 
