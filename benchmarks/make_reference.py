@@ -26,6 +26,8 @@ from reference.garments import bare_case, file_label, named_case  # noqa: E402
 from reference.model import COUNT, BustModel  # noqa: E402
 from reference.newton import NoBalanceError  # noqa: E402
 
+from core.geometry.mesh import Points  # noqa: E402
+
 FIRST_SHEAR = 0.5
 """Shear modulus [kPa] with which the search for a rise begins."""
 
@@ -75,15 +77,20 @@ def make(body: Path, names: list[str], shear_kpa: float, rise: float | None, out
             print(f"{body.stem} {name}: {problem}; no file is written", flush=True)
             continue
         write_case(out / f"{body.stem}_{file_label(name)}.npz", case, model, moved, info)
-        rises = [f"{disc_rise(model.nodes, moved - model.nodes, bust):.2f}" for bust in bare.busts]
+        rises = [f"{each:.2f}" for each in skin_rises(bare, model, moved)]
         print(body.stem, name, "rise", *rises, info, f"{time.perf_counter() - start:.0f} s", flush=True)
+
+
+def skin_rises(case: Case, model: BustModel, moved: Points) -> list[float]:
+    """Return the mean rise of the skin around the left and the right bust point at nodes ``moved`` [mm]."""
+    picked, _ = model.skin_nodes()
+    return [disc_rise(picked @ model.nodes, picked @ (moved - model.nodes), bust) for bust in case.busts]
 
 
 def softened(bare: Case, model: BustModel, bodies: Path, rise: float) -> tuple[Case, BustModel]:
     """Return case and model whose rise without weight is about ``rise`` [mm]: the modulus is rounded."""
     for _ in range(3):
-        moved = model.loaded_body.unloaded - model.nodes
-        reached = sum(disc_rise(model.nodes, moved, bust) for bust in bare.busts) / 2.0
+        reached = sum(skin_rises(bare, model, model.loaded_body.unloaded)) / 2.0
         shear = round(bare.shear_kpa * reached / rise, 2)
         print(f"{bare.body}: shear modulus {bare.shear_kpa:.2f} kPa, rise without weight {reached:.2f} mm")
         if shear == bare.shear_kpa:

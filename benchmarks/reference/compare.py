@@ -43,7 +43,8 @@ class Comparison:
         return [
             f"rms difference {error:.2f} of {size:.2f} mm ({100.0 * error / size:.1f} %), "
             f"finer mesh {fine:.2f} mm ({100.0 * fine / size:.1f} %)",
-            f"own error {own:.2f} mm ({100.0 * own / size:.1f} %), {self.unknowns[0]} and {self.unknowns[1]} unknowns",
+            f"own error {own:.2f} mm ({100.0 * own / size:.1f} %), "
+            f"{self.unknowns[0]} and {self.unknowns[1]} unknowns",
             f"skin over free control points: difference {error_free:.2f} of {size_free:.2f} mm "
             f"({100.0 * error_free / size_free:.1f} %)",
             *(
