@@ -6,7 +6,7 @@ Check: python benchmarks/make_reference.py --check FILE... --bodies DIR
 BODY is a clean, upright body in mm. A case is a state of gravity (no-weight, supine, lean=30,
 gravity=X,Y,Z), lines with their common ratio (mid-bust=95%, sling=95%, strap=95%), or both joined by "+".
 In place of the shear modulus [kPa], ``--rise`` chooses the one with which the bust rises so far [mm] when
-its weight is removed. A check solves the definition that is stored in a file anew, also on a mesh with 1.7 times
+its weight is removed. A check solves the definition stored in a file anew, also on a mesh with 1.7 times
 the unknowns. Model and files: resources/reference/README.md. Needs benchmarks/reference-requirements.txt.
 """
 
