@@ -84,10 +84,13 @@ def _text(found: Sequence[CaseComparison], design: Design) -> Iterator[str]:
         f"Rise: mean of the nodes within {DISC_MM:g} mm of a bust point, L: left, R: right; "
         f"limit {RISE_LIMIT_MM:g} mm or {100 * RISE_LIMIT:g} %."
     )
-    yield (
-        f"Lines: stiffness {design.line_stiffness:g} times that of the skin at a point, not the newtons of "
-        "the reference."
-    )
+    if design.tissue == "solid":
+        yield "Tissue and lines: shear modulus, gravity and newtons of the reference."
+    else:
+        yield (
+            f"Lines: stiffness {design.line_stiffness:g} times that of the skin at a point, not the newtons "
+            "of the reference."
+        )
 
 
 def _cells(each: CaseComparison) -> tuple[str, ...]:
