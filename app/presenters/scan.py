@@ -87,6 +87,8 @@ def work_text(what: str) -> str:
         "calming the skin": tr("Detecting landmarks"),
         "find landmarks": tr("Detecting landmarks"),
         "fit control mesh": tr("Fitting control mesh"),
+        "condense tissue": tr("Computing tissue"),
+        "tissue": tr("Computing tissue"),
         "find patch": tr("Binding body to control mesh"),
         "bind body": tr("Binding body to control mesh"),
         "preparing the view": tr("Preparing view"),

@@ -58,6 +58,7 @@ PARTS = {
     "closing holes": (0.45, 0.46),
     "calming the skin": (0.46, 0.5),
     "find landmarks": (0.5, 0.6),
+    "tissue": (0.72, 0.74),
 }
 """Where each part of the first stages begins and ends, as shares of the time of a build, roughly."""
 
@@ -246,7 +247,7 @@ def _stages(
     control, tissue = fitted, None
     if design.tissue == "solid":
         control = stage("halve control mesh", halved, fitted)
-        condensed = partial(condense, progress=stage.inside)
+        condensed = partial(_condensed, progress=stage.inside)
         tissue = stage("condense tissue", condensed, body.smoothed, fitted, control)
     patch = stage("find patch", blend_weights, body.mesh, control)
     weights = design.weights, design.scaled_normals
@@ -326,6 +327,19 @@ def _bind(body: Mesh, control: ControlMesh, fade: Floats, weights: Weights, scal
 
 def _backs(body: Body, control: ControlMesh) -> dict[str, Back]:
     return {name: back_of(body.smoothed, control, name) for name in control.paths}
+
+
+def _condensed(
+    body: Mesh, coarse: ControlMesh, fine: ControlMesh, progress: Progress = quiet
+) -> TissueResponse:
+    """Return what the tissue answers. Raises LineError on a scan that leaves no room for it, Cancelled."""
+    try:
+        return condense(body, coarse, fine, progress)
+    except ValueError as problem:
+        raise LineError(
+            Message("Solid tissue cannot be computed: the scan has holes or deep folds at the breasts."),
+            Message("Fill the holes at the Scan step, or choose the net as tissue."),
+        ) from problem
 
 
 def _model(

@@ -12,7 +12,7 @@ from core.control_mesh.fit import ControlMesh
 from core.geometry.mesh import Floats, Mesh, Points, frozen
 from core.progress import Progress, quiet
 from core.tissue.skin_patch import skin_patch
-from core.tissue.solid import TissueSolid, tissue_solid
+from core.tissue.solid import TissueSolid, means_of, tissue_solid
 
 DISC = 7.5
 """A control point moves as the skin within this distance does on the mean [mm]."""
@@ -51,15 +51,15 @@ def condense(
     """
     solid = tissue_solid(skin_patch(body, coarse.mesh, coarse.fixed), 1.0, progress=progress)
     rows = disc_rows(solid, body, fine.mesh.vertices[~fine.fixed])
-    compliance, _ = solid.compliance(rows)
+    compliance = solid.compliance(rows)
     response = np.stack([solid.weight_response(axis) for axis in np.eye(3)], axis=2)
-    moved = np.stack([rows @ response[:, axis] for axis in range(3)], axis=1)
+    moved = means_of(rows, response)
     give = GIVE * np.median(compliance.diagonal())
     stiffness = np.linalg.inv(compliance + give * np.eye(len(compliance)))
     stiffness = 0.5 * (stiffness + stiffness.T)
     place = np.cumsum(~fine.fixed) - 1
-    rise = float(np.mean([moved[place[point], 2, 2] for point in fine.bust_points]))
-    return TissueResponse(frozen(stiffness), frozen(stiffness @ moved.reshape(-1, 3)), rise)
+    rise = float(np.mean([moved[3 * place[point] + 2, 2] for point in fine.bust_points]))
+    return TissueResponse(frozen(stiffness), frozen(stiffness @ moved), rise)
 
 
 def disc_rows(solid: TissueSolid, body: Mesh, points: Points) -> sparse.csr_array:

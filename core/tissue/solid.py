@@ -71,18 +71,18 @@ class TissueSolid:
             moved[free, :, some] = solved.reshape(free.sum(), 3, -1)
         return moved
 
-    def compliance(self, rows: sparse.csr_array) -> tuple[Floats, Floats]:
-        """Return what unit forces at means of nodes do: at the means, and at all nodes.
+    def compliance(self, rows: sparse.csr_array) -> Floats:
+        """Return how means of nodes move under unit forces at them, shape (3 k, 3 k) [mm/N].
 
-        ``rows`` (k, nodes) are the means. Shapes (3 k, 3 k) and (nodes, 3, 3 k) [mm/N].
+        ``rows`` (k, nodes) are the means.
         """
         count = rows.shape[0]
         loads = np.zeros((self.cells.node_count, 3, count, 3))
         for axis in range(3):
             loads[:, axis, :, axis] = rows.toarray().T
         moved = self.displacements(loads.reshape(-1, 3, 3 * count))
-        at_means = np.stack([rows @ moved[:, axis] for axis in range(3)], axis=1).reshape(3 * count, -1)
-        return 0.5 * (at_means + at_means.T), moved
+        at_means = means_of(rows, moved)
+        return np.asarray(0.5 * (at_means + at_means.T))
 
     @cached_property
     def _factors(self) -> SuperLU:
@@ -116,6 +116,12 @@ class TissueSolid:
             _summed(divergence, corner, motion, (len(cells.corners), count)),
             _summed(volumes[:, None, None] * pressure, corner, corner, (len(cells.corners),) * 2),
         )
+
+
+def means_of(rows: sparse.csr_array, moved: Floats) -> Floats:
+    """Return means (k, nodes) of displacements (nodes, 3, p), shape (3 k, p)."""
+    means = np.stack([rows @ moved[:, axis] for axis in range(3)], axis=1)
+    return np.asarray(means.reshape(3 * rows.shape[0], -1))
 
 
 def tissue_solid(

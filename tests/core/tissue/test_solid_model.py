@@ -147,3 +147,14 @@ def test_own_lines_are_named_by_the_points_of_the_template(person: Stages) -> No
     fitted, halved = person.fitted.mesh.vertices, person.control.mesh.vertices
     assert len(fitted) < len(halved)
     assert np.array_equal(fitted, halved[: len(fitted)])
+
+
+def test_a_scan_without_room_for_tissue_is_refused_in_a_sentence(
+    person: Stages, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def crossed(*_: object) -> None:
+        raise ValueError("the chest wall crosses the skin")
+
+    monkeypatch.setattr("core.pipeline.build.condense", crossed)
+    with pytest.raises(LineError, match="Solid tissue cannot be computed"):
+        build(person.design)
