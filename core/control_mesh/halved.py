@@ -23,8 +23,7 @@ def halved(control: ControlMesh) -> ControlMesh:
     mesh, count = control.mesh, len(control.mesh.vertices)
     ends = mesh.edges
     middles = mesh.vertices[ends].mean(axis=1)
-    number = sparse.csr_array((np.arange(count, count + len(ends)), tuple(ends.T)), shape=(count, count))
-    number = sparse.csr_array(number + number.T)
+    number = _numbers(mesh)
     a, b, c = mesh.faces.T
     ab, bc, ca = (np.asarray(number[one, other]).ravel() for one, other in ((a, b), (b, c), (c, a)))
     parts = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
@@ -51,6 +50,18 @@ def _finer(curve: EmbeddedCurve, grid: Grid) -> EmbeddedCurve:
     """Return a curve on the halved mesh, whose ``grid`` counts rows and columns by halves."""
     finer = embed(grid, [(row, column) for row, column in (2.0 * curve.places).tolist()])
     return replace(finer, places=0.5 * finer.places)
+
+
+def through_middles(path: tuple[int, ...], mesh: Mesh) -> tuple[int, ...]:
+    """Return a path of neighbours in ``mesh`` as it runs over the middles of its edges when it is halved."""
+    return _through(path, _numbers(mesh))
+
+
+def _numbers(mesh: Mesh) -> sparse.csr_array:
+    """Return the number of the middle between each pair of neighbours, (n, n)."""
+    count, ends = len(mesh.vertices), mesh.edges
+    number = sparse.csr_array((np.arange(count, count + len(ends)), tuple(ends.T)), shape=(count, count))
+    return sparse.csr_array(number + number.T)
 
 
 def _through(path: tuple[int, ...], number: sparse.csr_array) -> tuple[int, ...]:

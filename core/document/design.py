@@ -8,6 +8,7 @@ from functools import reduce
 from typing import Any
 
 from core.document.calibration_record import Calibration
+from core.document.cup import Cup
 from core.document.custom_measures import WORN_TIGHT, CustomMeasurement, check_customer, with_measurement
 from core.document.document_limits import (
     MOST_ELASTICS,
@@ -52,7 +53,7 @@ class Design:
     elsewhere. ``tissue_stiffness`` [N/m] tells what the model's forces are in newtons, an estimate (see
     docs/explanation/forces.md). ``customer`` is whom it is for, in whatever words, ``worn_tight_mm`` what
     her sizes take off the under-bust. ``calibration`` names the scan with the garment on that its numbers
-    come from, if any. ``unknown`` keeps what a later version wrote.
+    come from, if any. ``cup`` is what both breasts are worn in, if anything. ``unknown`` keeps what a later version wrote.
     """
 
     scan: ScanSource
@@ -84,6 +85,7 @@ class Design:
     customer: str = ""
     worn_tight_mm: float = 0.0
     calibration: Calibration | None = None
+    cup: Cup | None = None
     unknown: Mapping[str, Any] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:

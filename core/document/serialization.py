@@ -54,7 +54,7 @@ def to_values(design: Design, written: int = 1) -> dict[str, Any]:
         del values["scan"]["edits"]
     if design.tissue_stiffness == TISSUE_STIFFNESS:
         del values["tissue_stiffness"]
-    for key in ("own_measures", "customer", "worn_tight_mm", "calibration"):
+    for key in ("own_measures", "customer", "worn_tight_mm", "calibration", "cup"):
         if not values[key]:
             del values[key]
     return {"format": max(written, _format_of(design)), "length_unit": "mm", **unknown, **values}

@@ -9,9 +9,11 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
+from scipy import sparse
 
-from core.geometry.mesh import Floats, Indices, Points
+from core.geometry.mesh import Flags, Floats, Indices, Points
 from core.mechanics.banded_matrix import Entries
+from core.mechanics.cup_parts import CupPart
 from core.mechanics.options import ModelOptions
 
 RELAXATION = 1.6
@@ -23,16 +25,18 @@ class CondensedTissue:
     """Control points at rest on a condensed solid, and which of them are free to move.
 
     ``rest`` (n, 3) [mm]; ``free`` (f,) indices of the moving points, ascending; ``cables`` (m, 2) the edges
-    of the control mesh with at least one free end, which carry nothing here; ``stiffness`` (3 f, 3 f) [N/mm];
-    ``load`` (f, 3) [N] is what a change of weight adds at the points, 0 on the scan.
+    of the control mesh with at least one free end, which carry nothing here; ``solid`` (3 f, 3 f) [N/mm] is
+    the stiffness of the tissue; ``load`` (f, 3) [N] is what a change of weight adds at the points, 0 on the
+    scan. ``cups`` are the parts of cups that act on the points.
     """
 
     rest: Points
     free: Indices
     cables: Indices
-    stiffness: Floats
+    solid: Floats
     load: Points
     mechanics: ModelOptions = field(default_factory=ModelOptions)
+    cups: tuple[CupPart, ...] = ()
 
     @cached_property
     def place(self) -> Indices:
@@ -56,27 +60,52 @@ class CondensedTissue:
 
         Points that lie close together, as in a crease, are very stiff against each other: no mean.
         """
-        return float(np.median(self.stiffness.diagonal()))
+        return float(np.median(self.solid.diagonal()))
+
+    @cached_property
+    def stiffness(self) -> Floats:
+        """Return the stiffness of tissue and cups in an iteration from rest, (3 f, 3 f) [N/mm]."""
+        return self.stiffness_of(self.touching(np.zeros_like(self.load)))
+
+    def touching(self, moved: Points) -> Flags:
+        """Return which points touch a cup that they may leave, (t,)."""
+        return np.concatenate([np.zeros(0, dtype=np.bool_), *(cup.touching(moved) for cup in self.cups)])
+
+    def stiffness_of(self, touching: Flags) -> Floats:
+        """Return the stiffness in an iteration in which points are ``touching`` (t,), (3 f, 3 f) [N/mm]."""
+        whole, done = self.solid, 0
+        for cup in self.cups:
+            count = len(cup.touching(np.zeros_like(self.load)))
+            figures, at = cup.bound(touching[done : done + count]), cup.entries
+            added = sparse.coo_array((at.value * figures[at.source], (at.row, at.column)), whole.shape)
+            whole, done = whole + added.toarray(), done + count
+        return whole
 
     def energy(self, moved: Points) -> float:
         """Return the energy for displacements of the free points, shape (f, 3) [mm]; 0 at rest [N mm]."""
         along = moved.ravel()
-        return 0.5 * float(along @ (self.stiffness @ along)) - float(np.sum(self.load * moved))
+        tissue = 0.5 * float(along @ (self.solid @ along)) - float(np.sum(self.load * moved))
+        return tissue + sum(cup.energy(moved) for cup in self.cups)
 
     def gradient(self, moved: Points) -> Points:
-        """Return the derivative of the energy, shape (f, 3) [N]: minus the force of the tissue."""
-        return (self.stiffness @ moved.ravel()).reshape(-1, 3) - self.load
+        """Return the derivative of the energy, shape (f, 3) [N]: minus the force of tissue and cups."""
+        return sum((cup.gradient(moved) for cup in self.cups), self.resistance(moved) - self.load)
+
+    def resistance(self, moved: Points) -> Points:
+        """Return the force with which the tissue alone resists displacements, both (f, 3) [N], [mm]."""
+        return (self.solid @ moved.ravel()).reshape(-1, 3)
 
     @cached_property
     def hessian_entries(self) -> tuple[Entries, ...]:
-        """Return the second derivative, which is constant, as one figure that is 1."""
-        row, column = (at.ravel() for at in np.indices(self.stiffness.shape))
+        """Return the second derivative: that of the tissue, which is constant, and of the cups."""
+        row, column = (at.ravel() for at in np.indices(self.solid.shape))
         source = np.zeros(row.size, dtype=np.int64)
-        return (Entries(row, column, source, self.stiffness.ravel(), 1),)
+        tissue = Entries(row, column, source, self.solid.ravel(), 1)
+        return tissue, *(cup.entries for cup in self.cups)
 
     def hessian_figures(self, moved: Points, clip: bool) -> list[Floats]:
-        """Return the figures of all but the constant part of the second derivative: there are none."""
-        return []
+        """Return the figures of all but the constant part of the second derivative."""
+        return [cup.figures(moved, clip) for cup in self.cups]
 
     def expand(self, moved: Points) -> Points:
         """Return all control points, shape (n, 3) [mm], the free ones displaced by ``moved`` (f, 3)."""

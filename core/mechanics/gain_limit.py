@@ -53,8 +53,7 @@ class OscillationLimit:
         slides = model.options.line_contact == "sliding" and len(model.owner) > 0
         self._skin = SlidingSurface(model) if slides else None
         band = model.layout.band
-        lower = _lower_entries(model.tensegric.stiffness if slides else model.stiffness, model.tensegric)
-        self._lower = band.general(lower) @ np.ones(1)
+        self._lower = self._triangle(model.tensegric.stiffness if slides else model.stiffness)
         if slides:
             row, column, weight = sparse.find(sparse.tril(model.line_laplacian))
             self._row, each = row, 9 * np.arange(len(row))[:, None]
@@ -158,9 +157,14 @@ class OscillationLimit:
     def _turn(self, place: Evaluation) -> Floats:
         """Return M, the triangle that a turn solves with, as a general band."""
         if self._skin is None:
-            return self._lower
+            stiffness = self._model.stiffness_at(place.moved)
+            return self._lower if stiffness is self._model.stiffness else self._triangle(stiffness)
         n = self._skin.normals(place)[self._row]
         return np.asarray(self._lower + self._of_lines @ (n[:, :, None] * n[:, None, :]).ravel())
+
+    def _triangle(self, stiffness: Operator) -> Floats:
+        lower = _lower_entries(stiffness, self._model.tensegric)
+        return np.asarray(self._model.layout.band.general(lower) @ np.ones(1))
 
     def _with_held(self, potential: Potential, place: Evaluation, solve: Solve, a: Floats) -> Floats:
         """Solve for ``a`` with what held lines add: each pulls by its excess, less what its tension learns.

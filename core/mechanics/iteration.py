@@ -107,7 +107,7 @@ def step(
     if targets.control != "none":
         inner += (state.pressure.value * model.pressure_unit) * outward
     line = -model.segments.gradient(spans, lengths, natural)
-    shift = model.sweep.solve(inner, line, outward)
+    shift = model.sweep_at(moved).solve(inner, line, outward)
     step = float(np.sqrt(np.max(np.einsum("ij,ij->i", shift, shift), initial=0.0)))
     after = SolverState(moved + shift, state.pressure, state.iteration + 1, tensions)
     measured = record(model, after, step, watch)

@@ -47,7 +47,17 @@ class ConstrainedModel:
     @cached_property
     def stiffness(self) -> Operator:
         """Stiffness of tissue and implicit line segments between free points, (f, f) or (3 f, 3 f) [1]."""
-        own, points = self.tensegric.stiffness, len(self.tensegric.free)
+        return self._with_lines(self.tensegric.stiffness)
+
+    def stiffness_at(self, moved: Points) -> Operator:
+        """Return the stiffness of an iteration from displacements (f, 3) [mm]: cups may touch elsewhere."""
+        tissue = self.tensegric
+        if not isinstance(tissue, CondensedTissue) or not tissue.cups:
+            return self.stiffness
+        return self._with_lines(tissue.stiffness_of(tissue.touching(moved)))
+
+    def _with_lines(self, own: Operator) -> Operator:
+        points = len(self.tensegric.free)
         if own.shape[0] == points:
             return compact(sparse.csr_array(sparse.csr_array(own) + self.line_laplacian))
         return np.asarray(own + over_axes(self.line_laplacian, points))
@@ -67,6 +77,22 @@ class ConstrainedModel:
         if self.options.line_contact == "glued" or not len(self.owner):
             return bonded_sweep(self.stiffness, len(self.tensegric.free), self.tensegric.relaxation)
         return sliding_sweep(self.tensegric.stiffness, self.line_laplacian, self.segments.nodes)
+
+    def sweep_at(self, moved: Points) -> GaussSeidelSweep:
+        """Return how the iteration from displacements (f, 3) [mm] answers: it depends on what cups touch."""
+        tissue = self.tensegric
+        if not isinstance(tissue, CondensedTissue) or not tissue.cups:
+            return self.sweep
+        touching = tissue.touching(moved).tobytes()
+        if touching not in self._sweeps:
+            self._sweeps.clear()  # it changes in the first iterations, and hardly returns
+            stiffness = self.stiffness_at(moved)
+            self._sweeps[touching] = bonded_sweep(stiffness, len(tissue.free), tissue.relaxation)
+        return self._sweeps[touching]
+
+    @cached_property
+    def _sweeps(self) -> dict[bytes, GaussSeidelSweep]:
+        return {}
 
     @cached_property
     def rest_gradient(self) -> Points:

@@ -135,7 +135,7 @@ def d_sag(answer: Sensitivities) -> Rates:
     """
     solid = answer.potential.model.tensegric
     assert isinstance(solid, CondensedTissue)
-    return answer.by_forces(-(solid.gradient(answer.place.moved) + solid.load).reshape(-1, 1))
+    return answer.by_forces(-solid.resistance(answer.place.moved).reshape(-1, 1))
 
 
 def d_tissue(prestress: float) -> float:

@@ -18,6 +18,7 @@ from core.control_mesh.template import read_template
 from core.deformation.blend_region import BlendRegion, blend_weights
 from core.deformation.incremental_normals import MovingFaces, moving_faces
 from core.deformation.tffd import Binding, Weights, bind, movable_border_triangles
+from core.document.cup import Cup
 from core.document.design import Design, ScanSource
 from core.document.line_notation import with_custom_lines
 from core.document.storage.project_file import ScanFile, read_scan_file
@@ -27,11 +28,13 @@ from core.landmarks.detect import FINDING, find_landmarks
 from core.landmarks.manual import PLACED, PlacedMark, in_mm
 from core.landmarks.types import Landmark, Landmarks
 from core.mechanics.condensed_tissue import CondensedTissue
+from core.mechanics.cup_parts import CupPart
 from core.mechanics.gain_limit import gain_limit
 from core.mechanics.iteration import LineTargets, Observables
 from core.mechanics.model import ConstrainedModel, constrained_model
 from core.mechanics.options import ModelOptions
 from core.messages import LineName, Message
+from core.pipeline.cup_parts import CupLayout
 from core.pipeline.elastic_model import solve_elastic_model
 from core.pipeline.line_routes import LineRoute, line_routes, strap_tails
 from core.pipeline.observables import BodyObservables
@@ -262,8 +265,9 @@ def _stages(
     tails = stage("lead straps", strap_tails, body.mesh, laid, design.own_lines, backs)
     routes = stage("trace lines", line_routes, body.mesh, laid, backs, tails)
     lengths = (*({name: part.length for name, part in each.items()} for each in (backs, tails)),)
+    cups = () if design.cup is None else stage("place cups", _cups, design.cup, fitted, control, tissue)
     chosen = design.active_lines(), design.model_options, design.line_stiffnesses()
-    model = stage("build model", _model, laid, *lengths, *chosen, tissue)
+    model = stage("build model", _model, laid, *lengths, *chosen, tissue, cups)
     elastics = design.active_elastics()
     if elastics and design.line_hold == "spring":  # a held line has its length, whatever it is made of
         change = stage("follow body", DenseVolumeChange, binding, moving) if design.dense_volume else None
@@ -350,6 +354,7 @@ def _model(
     mechanics: ModelOptions,
     own_stiffness: Mapping[str, float],
     tissue: TissueResponse | None,
+    cups: tuple[CupPart, ...],
 ) -> ConstrainedModel:
     unknown = sorted(worn - set(control.line_names))
     if unknown:
@@ -369,8 +374,20 @@ def _model(
         tail_lengths=tails,
         mechanics=mechanics,
         own_stiffness=own_stiffness,
-        solid=None if tissue is None else solid_tissue(control, tissue, mechanics),
+        solid=None if tissue is None else solid_tissue(control, tissue, mechanics, cups),
     )
+
+
+def _cups(
+    cup: Cup, fitted: ControlMesh, control: ControlMesh, tissue: TissueResponse | None
+) -> tuple[CupPart, ...]:
+    """Return the parts of cups. Raises LineError on a net of cables."""
+    if tissue is None:
+        raise LineError(
+            Message("Cups cannot be computed on the net as tissue."),
+            Message("Choose solid tissue, or remove the cups."),
+        )
+    return CupLayout(cup, fitted, control, tissue.depth).parts()
 
 
 GRAVITY = {"standing": (0.0, 0.0, -1.0), "lying": (0.0, 1.0, 0.0), "unloaded": (0.0, 0.0, 0.0)}
@@ -381,9 +398,10 @@ def solid_tissue(
     control: ControlMesh,
     tissue: TissueResponse,
     mechanics: ModelOptions,
+    cups: tuple[CupPart, ...] = (),
     gravity: tuple[float, ...] | None = None,
 ) -> CondensedTissue:
-    """Return the solid under a control mesh, as soft as its sag tells.
+    """Return the solid under a control mesh, as soft as its sag tells, in the parts of ``cups``.
 
     ``gravity`` [g] is that of its posture unless it is told.
     """
@@ -397,4 +415,5 @@ def solid_tissue(
         frozen(tissue.shear_modulus(mechanics.sag) * tissue.stiffness),
         frozen((tissue.weight @ change).reshape(-1, 3)),
         mechanics,
+        cups,
     )

@@ -9,10 +9,12 @@ from scipy import sparse
 from scipy.spatial import cKDTree
 
 from core.control_mesh.fit import ControlMesh
+from core.geometry.closest_point import barycentric, nearest_faces
 from core.geometry.mesh import Floats, Mesh, Points, frozen
 from core.progress import Progress, quiet
 from core.tissue.skin_patch import skin_patch
 from core.tissue.solid import TissueSolid, means_of, tissue_solid
+from core.tissue.wall_film import DEPTH
 
 DISC = 7.5
 """A control point moves as the skin within this distance does on the mean [mm]."""
@@ -29,12 +31,14 @@ class TissueResponse:
     """What tissue of a shear modulus of 1 kPa answers at the free control points.
 
     ``stiffness`` (3 f, 3 f) [N/mm] goes with the modulus; ``weight`` (3 f, 3) [N/g] does not. ``rise`` [mm]
-    is how far the bust points rise when all weight is taken.
+    is how far the bust points rise when all weight is taken; ``depth`` (n,) [mm] that of the tissue at each
+    control point, beyond that under skin that does not move.
     """
 
     stiffness: Floats
     weight: Floats
     rise: float
+    depth: Floats
 
     def shear_modulus(self, sag: float) -> float:
         """Return the modulus [kPa] of a person whose bust points rise by ``sag`` [mm] without weight."""
@@ -59,7 +63,17 @@ def condense(
     stiffness = 0.5 * (stiffness + stiffness.T)
     place = np.cumsum(~fine.fixed) - 1
     rise = float(np.mean([moved[3 * place[point] + 2, 2] for point in fine.bust_points]))
-    return TissueResponse(frozen(stiffness), frozen(stiffness @ moved), rise)
+    depth = frozen(tissue_depth(solid, fine.mesh.vertices))
+    return TissueResponse(frozen(stiffness), frozen(stiffness @ moved), rise, depth)
+
+
+def tissue_depth(solid: TissueSolid, places: Points) -> Floats:
+    """Return how much deeper than at the rim the tissue is at places (k, 3) of the skin, (k,) [mm]."""
+    skin = solid.cells.skin
+    deep = np.linalg.norm(skin.vertices - solid.cells.corners[: len(skin.vertices)], axis=1) - DEPTH
+    face, foot = nearest_faces(skin, places)
+    share = np.clip(barycentric(skin.vertices[skin.faces[face]], foot), 0.0, 1.0)
+    return np.asarray(np.maximum((share * deep[skin.faces[face]]).sum(axis=1), 0.0))
 
 
 def disc_rows(solid: TissueSolid, body: Mesh, points: Points) -> sparse.csr_array:

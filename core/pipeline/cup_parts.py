@@ -1,0 +1,170 @@
+"""Cups of a design on a body: where they lie, the shape that they give, and their parts in the model (ours)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from core.control_mesh.fit import ControlMesh
+from core.control_mesh.halved import through_middles
+from core.document.cup import Cup
+from core.geometry.mesh import Floats, Indices, Mesh, Points
+from core.mechanics.cup_parts import CupCloth, CupContact, CupPart, SmoothSurface, Underwire
+from core.mechanics.springs import springs
+
+CUP_STIFFNESS = 1.0
+"""How hard the shell of a moulded cup is at a point: far stiffer than tissue [N/mm]."""
+
+WIRE_STIFFNESS = 10.0
+"""How hard a wire holds a point of the root to its form [N/mm]."""
+
+REACH = 0.6
+"""Standard deviation of the means that make a cup smooth, over the distance between its points [1]."""
+
+UPPER_EDGE = {"half": 0.0, "three-quarter": 1.0 / 3.0, "full": 2.0 / 3.0}
+"""Where the upper edge of a cup lies, from the row of the bust points (0) to the last free row (1)."""
+
+SIDES = (1, -1)
+"""The left and the right side of the person, as the sign of x."""
+
+
+@dataclass(frozen=True, eq=False)
+class CupLayout:
+    """Where both cups of a design lie on a control mesh; ``fitted`` is the one that ``control`` has halved.
+
+    ``depth`` (n,) [mm] is that of the tissue under each point, beyond that under skin that does not move.
+    """
+
+    cup: Cup
+    fitted: ControlMesh
+    control: ControlMesh
+    depth: Floats
+
+    @cached_property
+    def _row(self) -> Floats:
+        return _with_middles(self.fitted.row, self.fitted)
+
+    @cached_property
+    def _column(self) -> Floats:
+        return _with_middles(self.fitted.column, self.fitted)
+
+    def points(self, side: int) -> Indices:
+        """Return the control points that the cup of a side covers and that can move, (c,), ascending."""
+        free = ~self.control.fixed
+        last = float(self._row[free].max())
+        upper = self._bust_row + UPPER_EDGE[self.cup.coverage] * (last - self._bust_row)
+        across = (side * self._column >= 0.5) & (side * self._column <= self._outer_root)
+        covered = free & across & (self._row >= self._fold_row) & (self._row <= upper)
+        return np.flatnonzero(covered)
+
+    @property
+    def _outer_root(self) -> float:
+        return float(self.fitted.column.max() - 1)
+
+    @property
+    def _bust_row(self) -> float:
+        return float(self.fitted.row[self.fitted.bust_points[0]])
+
+    @property
+    def _fold_row(self) -> float:
+        return float(self.fitted.row[self.fitted.paths["under-bust"][0]])
+
+    @cached_property
+    def target(self) -> Points:
+        """Return where a moulded cup would have each control point, shape (n, 3) [mm].
+
+        The apex goes all the way, other places as much less as their tissue is less deep.
+        """
+        rest, cup = self.control.mesh.vertices, self.cup
+        target = rest.copy()
+        for side, bust in zip(SIDES, self.control.bust_points, strict=True):
+            share = np.clip(self.depth / self.depth[bust], 0.0, 1.0)
+            way = np.array([-side * cup.gather, -cup.forward, cup.lift])
+            here = side * self._column >= 0.5
+            target[here] += share[here, None] * way
+        return target
+
+    def root(self, side: int) -> Indices:
+        """Return the control points of the root from its inner to its outer end, free or not, (w,)."""
+        fold, bust, outer = int(self._fold_row), int(self._bust_row), int(self._outer_root)
+        number = {place: at for at, place in enumerate(zip(self.fitted.row, self.fitted.column, strict=True))}
+        down = [(row, 1) for row in range(bust, fold, -1)]
+        up = [(row, outer) for row in range(fold + 1, bust + 1)]
+        places = [*down, *((fold, column) for column in range(1, outer + 1)), *up]
+        path = tuple(number[row, side * column] for row, column in places)
+        return np.array(through_middles(path, self.fitted.mesh))
+
+    def wire_shape(self, side: int) -> Points:
+        """Return the form of the wire less that of the root, shape (w, 3) [mm]: wider in its own plane."""
+        rest = self.control.mesh.vertices[self.root(side)]
+        return (self.cup.wire_width - 1.0) * (rest - rest.mean(axis=0)) * np.array([1.0, 1.0, 0.0])
+
+    def parts(self) -> tuple[CupPart, ...]:
+        """Return the parts of both cups in the model."""
+        made: list[CupPart] = []
+        for side in SIDES:
+            made.append(self._cloth(side) if self.cup.kind == "sewn" else self._contact(side))
+            if self.cup.wire:
+                made.append(self._wire(side))
+        return tuple(made)
+
+    @cached_property
+    def _place(self) -> Indices:
+        place = np.full(len(self.control.fixed), -1, dtype=np.int64)
+        place[~self.control.fixed] = np.arange(int((~self.control.fixed).sum()))
+        return place
+
+    def _contact(self, side: int) -> CupContact:
+        points = self.points(side)
+        shape = self.control.mesh.moved(self.target)
+        nodes = np.union1d(points, shape.edges[np.isin(shape.edges, points).any(axis=1)])
+        nodes = nodes[side * self._column[nodes] >= 0.0]
+        apart, _ = cKDTree(self.target[points]).query(self.target[points], k=2)
+        surface = SmoothSurface(
+            self.target[nodes], shape.vertex_normals[nodes], REACH * float(np.mean(apart[:, 1]))
+        )
+        rest = self.control.mesh.vertices[points]
+        return CupContact(self._place[points], rest, self.target[points], surface, CUP_STIFFNESS)
+
+    def _cloth(self, side: int) -> CupCloth:
+        points = self.points(side)
+        edges = self.control.mesh.edges
+        pairs = edges[np.isin(edges, points).all(axis=1)]
+        rows, columns = (np.ptp(place[pairs], axis=1) for place in (self._row, self._column))
+        pairs = pairs[(rows == 0.0) | (columns == 0.0)]
+        across = self._row[pairs[:, 0]] == self._row[pairs[:, 1]]
+        ratio = np.where(across, self.cup.across, self.cup.upright)
+        rest = self.control.mesh.vertices
+        length = np.linalg.norm(rest[pairs[:, 0]] - rest[pairs[:, 1]], axis=1)
+        natural = ratio * length
+        stiffness = 1e-3 * self.cup.cloth * _strip_widths(self.control.mesh, pairs) / natural
+        return CupCloth(springs(rest, self._place, pairs, stiffness), natural)
+
+    def _wire(self, side: int) -> Underwire:
+        root = self.root(side)
+        free = ~self.control.fixed[root]
+        rest = self.control.mesh.vertices[root[free]]
+        return Underwire(self._place[root[free]], rest, self.wire_shape(side)[free], WIRE_STIFFNESS)
+
+
+def _with_middles(values: Indices, fitted: ControlMesh) -> Floats:
+    """Return rows or columns (m,) of a control mesh with those of the middles of its edges, (n,)."""
+    return np.concatenate([values, values[fitted.mesh.edges].mean(axis=1)])
+
+
+def _strip_widths(mesh: Mesh, pairs: Indices) -> Floats:
+    """Return how wide a strip of cloth each of ``pairs`` (s, 2) of neighbours stands for, (s,) [mm]."""
+    area: dict[tuple[int, int], float] = {}
+    for face, size in zip(mesh.faces.tolist(), mesh.face_areas.tolist(), strict=True):
+        for pair in pairwise([*face, face[0]]):
+            key = (min(pair), max(pair))
+            area[key] = area.get(key, 0.0) + size
+    rest = mesh.vertices
+    # A square of two triangles lies between two strips of each direction: each has half of it on each side.
+    return np.array(
+        [area[min(a, b), max(a, b)] / np.linalg.norm(rest[a] - rest[b]) for a, b in pairs.tolist()]
+    )
