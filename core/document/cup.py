@@ -30,10 +30,10 @@ CUP_RANGES: Mapping[str, tuple[float, float]] = MappingProxyType(
 class Cup:
     """Both cups of a garment.
 
-    A "moulded" cup keeps its shape: that of the breast with the apex raised by ``lift``, moved ``forward`` and
-    inward by ``gather`` [mm]. A "sewn" cup is of cloth as long ``across`` and ``upright`` as the skin under it
-    times these ratios [1], of stiffness ``cloth`` [N/m] both ways. ``coverage`` tells how far up it goes.
-    With a ``wire`` the root of the breast keeps its form, ``wire_width`` [1] times as wide as it is.
+    A "moulded" cup keeps its shape: that of the breast with the apex raised by ``lift``, moved ``forward``
+    and inward by ``gather`` [mm]. A "sewn" cup is of cloth as long ``across`` and ``upright`` as the skin
+    under it times these ratios [1], of stiffness ``cloth`` [N/m] both ways. ``coverage`` tells how far up
+    it goes. With a ``wire`` the root of the breast keeps its form, ``wire_width`` [1] times as wide as it is.
     Raises UserError for what no cup can be.
     """
 

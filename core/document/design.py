@@ -53,7 +53,8 @@ class Design:
     elsewhere. ``tissue_stiffness`` [N/m] tells what the model's forces are in newtons, an estimate (see
     docs/explanation/forces.md). ``customer`` is whom it is for, in whatever words, ``worn_tight_mm`` what
     her sizes take off the under-bust. ``calibration`` names the scan with the garment on that its numbers
-    come from, if any. ``cup`` is what both breasts are worn in, if anything. ``unknown`` keeps what a later version wrote.
+    come from, if any. ``cup`` is what both breasts are worn in, if anything. ``unknown`` keeps what a later
+    version wrote.
     """
 
     scan: ScanSource

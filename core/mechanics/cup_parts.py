@@ -1,13 +1,13 @@
-"""What a cup does to control points, by its parts: a surface that holds back, cloth that pulls, a wire (ours).
+"""Parts of a cup that act on control points: a surface that holds back, cloth that pulls, a wire (ours).
 
 Each is an energy of the displacements of the free points, shape (f, 3) [mm], with exact derivatives.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -51,20 +51,53 @@ class SmoothSurface:
     normals: Points
     reach: float
 
-    def distance(self, places: Points) -> tuple[Floats, Points, Floats]:
-        """Return how far places (k, 3) lie outside, shape (k,) [mm], with first and second derivatives."""
-        away = ((places[:, None, :] - self.nodes) ** 2).sum(axis=2)
+    def distance(self, places: Points) -> SurfaceDistance:
+        """Return how far places (k, 3) [mm] lie outside."""
+        away = (places**2).sum(axis=1)[:, None] - 2.0 * places @ self.nodes.T + (self.nodes**2).sum(axis=1)
         weight = np.exp(-0.5 * (away - away.min(axis=1, keepdims=True)) / self.reach**2)
         share = weight / weight.sum(axis=1, keepdims=True)
         plane = places @ self.normals.T - np.einsum("ij,ij->i", self.normals, self.nodes)
-        out = np.einsum("ij,ij->i", share, plane)
-        side = (self.nodes[None] - (share @ self.nodes)[:, None]) / self.reach**2
-        weighed = share[:, :, None] * side
-        uneven = plane - out[:, None]
-        slope = share @ self.normals + np.einsum("km,kma->ka", uneven, weighed)
-        turn = np.einsum("ma,kmb->kab", self.normals, weighed)
-        bend = turn + turn.transpose(0, 2, 1) + np.einsum("km,kma,kmb->kab", uneven, weighed, side)
-        return out, slope, bend
+        return SurfaceDistance(self, share, plane)
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceDistance:
+    """How far places lie outside a surface, with derivatives.
+
+    ``share`` (k, m) [1] is the weight of each node at each place, ``plane`` (k, m) [mm] the distance from its
+    plane.
+    """
+
+    surface: SmoothSurface
+    share: Floats
+    plane: Floats
+
+    @cached_property
+    def out(self) -> Floats:
+        """Return the distance, shape (k,) [mm]."""
+        return np.asarray(np.einsum("ij,ij->i", self.share, self.plane))
+
+    @cached_property
+    def _side(self) -> Floats:
+        """Return the slopes of the logarithms of the shares, shape (k, m, 3) [1/mm]."""
+        nodes = self.surface.nodes
+        return np.asarray((nodes - (self.share @ nodes)[:, None]) / self.surface.reach**2)
+
+    @cached_property
+    def _uneven(self) -> Floats:
+        return self.share * (self.plane - self.out[:, None])
+
+    @cached_property
+    def slope(self) -> Points:
+        """Return the first derivative, shape (k, 3) [1]."""
+        return self.share @ self.surface.normals + (self._uneven[:, None] @ self._side)[:, 0]
+
+    @cached_property
+    def bend(self) -> Floats:
+        """Return the second derivative, shape (k, 3, 3) [1/mm]."""
+        turn = (self.share[:, None] * self.surface.normals.T) @ self._side
+        spread = (self._uneven[:, :, None] * self._side).transpose(0, 2, 1) @ self._side
+        return np.asarray(turn + turn.transpose(0, 2, 1) + spread)
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +113,7 @@ class CupContact:
     target: Points
     surface: SmoothSurface
     stiffness: float
+    _last: list[Any] = field(default_factory=list, init=False, repr=False)
 
     @cached_property
     def entries(self) -> Entries:
@@ -88,43 +122,46 @@ class CupContact:
 
     @cached_property
     def _level(self) -> Floats:
-        return frozen(self.surface.distance(self.target)[0])
+        return frozen(self.surface.distance(self.target).out)
 
-    def _gaps(self, moved: Points) -> tuple[Floats, Points, Floats]:
-        """Return how far each point lies outside, shape (c,) [mm], with first and second derivatives."""
-        out, slope, bend = self.surface.distance(self.rest + moved[self.points])
-        return out - self._level, slope, bend
+    def _at(self, moved: Points) -> tuple[Floats, SurfaceDistance]:
+        """Return how far each point lies outside, shape (c,) [mm]: not less than 0."""
+        if self._last[:1] != [id(moved)]:
+            there = self.surface.distance(self.rest + moved[self.points])
+            # Energy, slope and second derivative are asked for one after the other, with the same array.
+            self._last[:] = id(moved), moved, np.maximum(there.out - self._level, 0.0), there
+        return self._last[2], self._last[3]
 
     def forces(self, moved: Points) -> Floats:
         """Return how hard the surface presses on each point, shape (c,) [N]."""
-        return self.stiffness * np.maximum(self._gaps(moved)[0], 0.0)
+        return self.stiffness * self._at(moved)[0]
 
     def energy(self, moved: Points) -> float:
         """Return the energy [N mm]."""
-        return 0.5 * self.stiffness * float(np.sum(np.maximum(self._gaps(moved)[0], 0.0) ** 2))
+        return 0.5 * self.stiffness * float(np.sum(self._at(moved)[0] ** 2))
 
     def gradient(self, moved: Points) -> Points:
         """Return its derivative, shape (f, 3) [N]."""
-        out, slope, _ = self._gaps(moved)
+        out, there = self._at(moved)
         gradient = np.zeros_like(moved)
-        gradient[self.points] = self.stiffness * np.maximum(out, 0.0)[:, None] * slope
+        gradient[self.points] = self.stiffness * out[:, None] * there.slope
         return gradient
 
     def figures(self, moved: Points, clip: bool) -> Floats:
         """Return the second derivative as a block for each point, (9 c,) [N/mm]."""
-        out, slope, bend = self._gaps(moved)
-        blocks = (out > 0.0)[:, None, None] * (slope[:, :, None] * slope[:, None, :])
+        out, there = self._at(moved)
+        blocks = (out > 0.0)[:, None, None] * (there.slope[:, :, None] * there.slope[:, None, :])
         if not clip:
-            blocks = blocks + np.maximum(out, 0.0)[:, None, None] * bend
+            blocks = blocks + out[:, None, None] * there.bend
         return np.asarray(self.stiffness * blocks.ravel())
 
     def touching(self, moved: Points) -> Flags:
         """Return which points touch, shape (c,)."""
-        return self._gaps(moved)[0] > 0.0
+        return self._at(moved)[0] > 0.0
 
     def bound(self, touching: Flags) -> Floats:
         """Return the blocks of the points that touch, as the surface lies at their rest."""
-        slope = self.surface.distance(self.rest)[1] * touching[:, None]
+        slope = self.surface.distance(self.rest).slope * touching[:, None]
         return np.asarray(self.stiffness * (slope[:, :, None] * slope[:, None, :]).ravel())
 
 

@@ -1,4 +1,4 @@
-"""Cups of a design on a body: where they lie, the shape that they give, and their parts in the model (ours)."""
+"""Cups of a design on a body: where they lie, their shape, and their parts in the model (ours)."""
 
 from __future__ import annotations
 
@@ -12,9 +12,11 @@ from scipy.spatial import cKDTree
 from core.control_mesh.fit import ControlMesh
 from core.control_mesh.halved import through_middles
 from core.document.cup import Cup
+from core.errors import LineError
 from core.geometry.mesh import Floats, Indices, Mesh, Points
 from core.mechanics.cup_parts import CupCloth, CupContact, CupPart, SmoothSurface, Underwire
 from core.mechanics.springs import springs
+from core.messages import Message
 
 CUP_STIFFNESS = 1.0
 """How hard the shell of a moulded cup is at a point: far stiffer than tissue [N/mm]."""
@@ -27,6 +29,9 @@ REACH = 0.6
 
 UPPER_EDGE = {"half": 0.0, "three-quarter": 1.0 / 3.0, "full": 2.0 / 3.0}
 """Where the upper edge of a cup lies, from the row of the bust points (0) to the last free row (1)."""
+
+MOST_LACK = 0.12
+"""Cups that hold so much less than the breasts are a press and no garment [1]: they are refused."""
 
 SIDES = (1, -1)
 """The left and the right side of the person, as the sign of x."""
@@ -59,7 +64,7 @@ class CupLayout:
         upper = self._bust_row + UPPER_EDGE[self.cup.coverage] * (last - self._bust_row)
         across = (side * self._column >= 0.5) & (side * self._column <= self._outer_root)
         covered = free & across & (self._row >= self._fold_row) & (self._row <= upper)
-        return np.flatnonzero(covered)
+        return np.asarray(np.flatnonzero(covered))
 
     @property
     def _outer_root(self) -> float:
@@ -101,16 +106,39 @@ class CupLayout:
     def wire_shape(self, side: int) -> Points:
         """Return the form of the wire less that of the root, shape (w, 3) [mm]: wider in its own plane."""
         rest = self.control.mesh.vertices[self.root(side)]
-        return (self.cup.wire_width - 1.0) * (rest - rest.mean(axis=0)) * np.array([1.0, 1.0, 0.0])
+        away = rest - rest.mean(axis=0)
+        return np.asarray((self.cup.wire_width - 1.0) * away * np.array([1.0, 1.0, 0.0]))
 
     def parts(self) -> tuple[CupPart, ...]:
-        """Return the parts of both cups in the model."""
+        """Return the parts of both cups in the model. Raises LineError for cups that hold too little."""
+        if self.cup.kind == "moulded" and (lack := self._lack) > MOST_LACK:
+            raise LineError(
+                Message("The cups hold {percent} % less than the breasts.", percent=f"{100.0 * lack:.0f}"),
+                Message("Move the cups forward, gather them less, or choose sewn cups."),
+            )
         made: list[CupPart] = []
         for side in SIDES:
             made.append(self._cloth(side) if self.cup.kind == "sewn" else self._contact(side))
             if self.cup.wire:
                 made.append(self._wire(side))
         return tuple(made)
+
+    @property
+    def _lack(self) -> float:
+        """Return how much less the smaller cup holds than its breast, over the volume of that [1]."""
+        mesh = self.control.mesh
+        middle = mesh.vertices[mesh.faces].mean(axis=1)
+        deep = self.depth[mesh.faces].mean(axis=1)
+        # What the skin sweeps on its way to the shape of the cup, to first and second order.
+        way = (self.target - mesh.vertices)[mesh.faces].mean(axis=1)
+        halfway = mesh.moved(0.5 * (self.target + mesh.vertices))
+        swept = np.einsum("ij,ij->i", way, halfway.face_normals) * halfway.face_areas
+        sides = [side * middle[:, 0] > side * self._middle for side in SIDES]
+        return max(-float(swept[own].sum() / (deep * mesh.face_areas)[own].sum()) for own in sides)
+
+    @property
+    def _middle(self) -> float:
+        return float(self.control.mesh.vertices[self._column == 0.0, 0].mean())
 
     @cached_property
     def _place(self) -> Indices:
@@ -123,7 +151,7 @@ class CupLayout:
         shape = self.control.mesh.moved(self.target)
         nodes = np.union1d(points, shape.edges[np.isin(shape.edges, points).any(axis=1)])
         nodes = nodes[side * self._column[nodes] >= 0.0]
-        apart, _ = cKDTree(self.target[points]).query(self.target[points], k=2)
+        apart = np.asarray(cKDTree(self.target[points]).query(self.target[points], k=2)[0])
         surface = SmoothSurface(
             self.target[nodes], shape.vertex_normals[nodes], REACH * float(np.mean(apart[:, 1]))
         )
@@ -153,7 +181,7 @@ class CupLayout:
 
 def _with_middles(values: Indices, fitted: ControlMesh) -> Floats:
     """Return rows or columns (m,) of a control mesh with those of the middles of its edges, (n,)."""
-    return np.concatenate([values, values[fitted.mesh.edges].mean(axis=1)])
+    return np.asarray(np.concatenate([values, values[fitted.mesh.edges].mean(axis=1)]))
 
 
 def _strip_widths(mesh: Mesh, pairs: Indices) -> Floats:

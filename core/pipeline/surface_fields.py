@@ -58,7 +58,7 @@ class StrainOnBody:
         )
         total = np.maximum(gather.sum(axis=1), 1e-12)
         self._carry = sparse.csr_array(
-            _between(control.mesh, places, fade) @ gather.multiply(1.0 / total[:, None])
+            between_control_points(control.mesh, places, fade) @ gather.multiply(1.0 / total[:, None])
         )
 
     def __call__(self, points: Points) -> Floats:
@@ -66,8 +66,11 @@ class StrainOnBody:
         return np.asarray(self._carry @ np.abs(strains(self._mesh, points)).max(axis=1))
 
 
-def _between(control: Mesh, places: Points, fade: Floats) -> sparse.csr_array:
-    """Return the matrix that goes evenly between control points, at the nearest place of each, (k, n)."""
+def between_control_points(control: Mesh, places: Points, fade: Floats) -> sparse.csr_array:
+    """Return the matrix that goes evenly between control points, at the nearest place of each, (k, n).
+
+    ``fade`` (k,) lets values end where the body no longer follows the control mesh.
+    """
     frames = Frames.of(control)
     index, weight = np.zeros((len(places), 3), dtype=np.int64), np.zeros((len(places), 3))
     for rows, triangles in neighbourhoods(places, control):
