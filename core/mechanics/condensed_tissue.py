@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 from scipy import sparse
 
-from core.geometry.mesh import Flags, Floats, Indices, Points
+from core.geometry.mesh import Floats, Indices, Points
 from core.mechanics.banded_matrix import Entries
 from core.mechanics.cup_parts import CupPart
 from core.mechanics.options import ModelOptions
@@ -65,18 +65,20 @@ class CondensedTissue:
     @cached_property
     def stiffness(self) -> Floats:
         """Return the stiffness of tissue and cups in an iteration from rest, (3 f, 3 f) [N/mm]."""
-        return self.stiffness_of(self.touching(np.zeros_like(self.load)))
+        return self.stiffness_of(self.contacts(np.zeros_like(self.load)))
 
-    def touching(self, moved: Points) -> Flags:
-        """Return which points touch a cup that they may leave, (t,)."""
-        return np.concatenate([np.zeros(0, dtype=np.bool_), *(cup.touching(moved) for cup in self.cups)])
+    def contacts(self, moved: Points) -> Points:
+        """Return the direction out where points touch a cup that they may leave, else 0, (c, 3) [1]."""
+        return np.concatenate([np.empty((0, 3)), *(cup.contacts(moved) for cup in self.cups)])
 
-    def stiffness_of(self, touching: Flags) -> Floats:
-        """Return the stiffness in an iteration in which points are ``touching`` (t,), (3 f, 3 f) [N/mm]."""
+    def stiffness_of(self, contacts: Points) -> Floats:
+        """Return the stiffness in an iteration with ``contacts`` (c, 3), (3 f, 3 f) [N/mm]."""
         whole, done = self.solid, 0
         for cup in self.cups:
-            count = len(cup.touching(np.zeros_like(self.load)))
-            figures, at = cup.bound(touching[done : done + count]), cup.entries
+            count = len(cup.contacts(np.zeros_like(self.load)))
+            figures, at = cup.bound(contacts[done : done + count]), cup.entries
+            # A point that a surface holds back goes to its balance there and not beyond.
+            figures = RELAXATION * figures if count else figures
             added = sparse.coo_array((at.value * figures[at.source], (at.row, at.column)), whole.shape)
             whole, done = whole + added.toarray(), done + count
         return whole
@@ -90,6 +92,11 @@ class CondensedTissue:
     def gradient(self, moved: Points) -> Points:
         """Return the derivative of the energy, shape (f, 3) [N]: minus the force of tissue and cups."""
         return sum((cup.gradient(moved) for cup in self.cups), self.resistance(moved) - self.load)
+
+    def forces(self, moved: Points) -> Points:
+        """Return the forces that an iteration answers to, (f, 3) [N]: those of cups are limited."""
+        cups = sum((cup.limited_gradient(moved) for cup in self.cups), np.zeros_like(moved))
+        return self.load - self.resistance(moved) - cups
 
     def resistance(self, moved: Points) -> Points:
         """Return the force with which the tissue alone resists displacements, both (f, 3) [N], [mm]."""

@@ -11,9 +11,12 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from core.geometry.mesh import Flags, Floats, Indices, Points, frozen
+from core.geometry.mesh import Floats, Indices, Points, frozen
 from core.mechanics.banded_matrix import Entries
 from core.mechanics.springs import Springs, stretch_blocks
+
+NEAR = 1.0
+"""An iteration answers to a point as if it were no farther outside a cup than this [mm]."""
 
 
 class CupPart(Protocol):
@@ -29,14 +32,17 @@ class CupPart(Protocol):
     def gradient(self, moved: Points) -> Points:
         """Return its derivative, shape (f, 3) [N]: minus the force on the points."""
 
+    def limited_gradient(self, moved: Points) -> Points:
+        """Return the derivative, shape (f, 3) [N], no larger than an iteration can answer to."""
+
     def figures(self, moved: Points, clip: bool) -> Floats:
         """Return the second derivative [N/mm]; ``clip`` leaves out what may make it indefinite."""
 
-    def touching(self, moved: Points) -> Flags:
-        """Return which points touch, where a part may come off; else nothing."""
+    def contacts(self, moved: Points) -> Points:
+        """Return the direction out at each point that may touch, 0 where it does not, (c, 3) [1]."""
 
-    def bound(self, touching: Flags) -> Floats:
-        """Return figures for an iteration, which depend on what touches alone."""
+    def bound(self, contacts: Points) -> Floats:
+        """Return figures for an iteration, which depend on ``contacts`` (c, 3) alone."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,6 +153,15 @@ class CupContact:
         gradient[self.points] = self.stiffness * out[:, None] * there.slope
         return gradient
 
+    def limited_gradient(self, moved: Points) -> Points:
+        """Return the derivative, shape (f, 3) [N], as of a point no farther out than ``NEAR``."""
+        out, there = self._at(moved)
+        steep = np.sqrt(np.einsum("ij,ij->i", there.slope, there.slope))
+        gradient = np.zeros_like(moved)
+        held = np.where(out > NEAR, NEAR / steep, out)
+        gradient[self.points] = self.stiffness * held[:, None] * there.slope
+        return gradient
+
     def figures(self, moved: Points, clip: bool) -> Floats:
         """Return the second derivative as a block for each point, (9 c,) [N/mm]."""
         out, there = self._at(moved)
@@ -155,14 +170,14 @@ class CupContact:
             blocks = blocks + out[:, None, None] * there.bend
         return np.asarray(self.stiffness * blocks.ravel())
 
-    def touching(self, moved: Points) -> Flags:
-        """Return which points touch, shape (c,)."""
-        return self._at(moved)[0] > 0.0
+    def contacts(self, moved: Points) -> Points:
+        """Return the direction out at each point, 0 where it does not touch, shape (c, 3) [1]."""
+        out, there = self._at(moved)
+        return np.asarray((out > 0.0)[:, None] * there.slope)
 
-    def bound(self, touching: Flags) -> Floats:
-        """Return the blocks of the points that touch, as the surface lies at their rest."""
-        slope = self.surface.distance(self.rest).slope * touching[:, None]
-        return np.asarray(self.stiffness * (slope[:, :, None] * slope[:, None, :]).ravel())
+    def bound(self, contacts: Points) -> Floats:
+        """Return the blocks of the points that touch."""
+        return np.asarray(self.stiffness * (contacts[:, :, None] * contacts[:, None, :]).ravel())
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,6 +209,10 @@ class CupCloth:
         spans, lengths = self.strips.spans(moved)
         return self.strips.sum((self.strips.stiffness * self._stretch(lengths) / lengths)[:, None] * spans)
 
+    def limited_gradient(self, moved: Points) -> Points:
+        """Return the derivative, shape (f, 3) [N]."""
+        return self.gradient(moved)
+
     def figures(self, moved: Points, clip: bool) -> Floats:
         """Return the second derivative as a block for each strip, (9 s,) [N/mm]."""
         spans, lengths = self.strips.spans(moved)
@@ -201,11 +220,11 @@ class CupCloth:
         along = self.strips.stiffness * (lengths > self.natural)
         return stretch_blocks(spans / lengths[:, None], along, across).ravel()
 
-    def touching(self, moved: Points) -> Flags:
+    def contacts(self, moved: Points) -> Points:
         """Return nothing: what the cloth adds to an iteration does not depend on it."""
-        return np.zeros(0, dtype=np.bool_)
+        return np.empty((0, 3))
 
-    def bound(self, touching: Flags) -> Floats:
+    def bound(self, contacts: Points) -> Floats:
         """Return the blocks of strips that all pull, the upper bound."""
         stiff = self.strips.stiffness
         return stretch_blocks(
@@ -260,15 +279,19 @@ class Underwire:
         gradient[self.points] = -self.forces(moved)
         return gradient
 
+    def limited_gradient(self, moved: Points) -> Points:
+        """Return the derivative, shape (f, 3) [N]."""
+        return self.gradient(moved)
+
     def figures(self, moved: Points, clip: bool) -> Floats:
         """Return 1: the second derivative is constant."""
         return np.ones(1)
 
-    def touching(self, moved: Points) -> Flags:
+    def contacts(self, moved: Points) -> Points:
         """Return nothing: a wire never comes off."""
-        return np.zeros(0, dtype=np.bool_)
+        return np.empty((0, 3))
 
-    def bound(self, touching: Flags) -> Floats:
+    def bound(self, contacts: Points) -> Floats:
         """Return 1 as well."""
         return np.ones(1)
 

@@ -103,7 +103,7 @@ def step(
     spans, lengths = model.segments.spans(moved)
     natural, tensions = natural_lengths_for(model, targets, state, lengths)
     outward = volume.gradient(model.tensegric.expand(moved))
-    inner = -model.tensegric.gradient(moved)
+    inner = model.tensegric.forces(moved)
     if targets.control != "none":
         inner += (state.pressure.value * model.pressure_unit) * outward
     line = -model.segments.gradient(spans, lengths, natural)

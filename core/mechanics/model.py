@@ -6,6 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
+from typing import Any, cast
 
 import numpy as np
 from scipy import sparse
@@ -21,6 +22,9 @@ from core.mechanics.options import ModelOptions
 from core.mechanics.springs import Springs, members
 from core.mechanics.tensegrity import TissueModel, tensegrity_model
 from core.mechanics.volume import VolumeMeasure, volume_measure
+
+_TURNED = 0.02
+"""An iteration answers anew to cups when a place where one presses has turned by this [1]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +58,7 @@ class ConstrainedModel:
         tissue = self.tensegric
         if not isinstance(tissue, CondensedTissue) or not tissue.cups:
             return self.stiffness
-        return self._with_lines(tissue.stiffness_of(tissue.touching(moved)))
+        return self._with_lines(tissue.stiffness_of(tissue.contacts(moved)))
 
     def _with_lines(self, own: Operator) -> Operator:
         points = len(self.tensegric.free)
@@ -83,16 +87,17 @@ class ConstrainedModel:
         tissue = self.tensegric
         if not isinstance(tissue, CondensedTissue) or not tissue.cups:
             return self.sweep
-        touching = tissue.touching(moved).tobytes()
-        if touching not in self._sweeps:
-            self._sweeps.clear()  # it changes in the first iterations, and hardly returns
-            stiffness = self.stiffness_at(moved)
-            self._sweeps[touching] = bonded_sweep(stiffness, len(tissue.free), tissue.relaxation)
-        return self._sweeps[touching]
+        contacts = tissue.contacts(moved)
+        known = self._last_sweep[0] if self._last_sweep else None
+        if known is None or not _alike(known, contacts):
+            stiffness = self._with_lines(tissue.stiffness_of(contacts))
+            sweep = bonded_sweep(stiffness, len(tissue.free), tissue.relaxation)
+            self._last_sweep[:] = [contacts, sweep]
+        return cast(GaussSeidelSweep, self._last_sweep[1])
 
     @cached_property
-    def _sweeps(self) -> dict[bytes, GaussSeidelSweep]:
-        return {}
+    def _last_sweep(self) -> list[Any]:
+        return []
 
     @cached_property
     def rest_gradient(self) -> Points:
@@ -228,6 +233,12 @@ def assemble(
     across, still = _joined([line for _, line in pulling], len(tensegric.rest))
     segments = members(tensegric.rest, tensegric.place, across, np.repeat(each, counts) / tapes, still)
     return ConstrainedModel(tensegric, lines, volume, segments, owner, frozen(beyond))
+
+
+def _alike(known: Points, contacts: Points) -> bool:
+    """Return whether the same places touch as when a sweep was made, and have hardly turned."""
+    same = np.array_equal(known.any(axis=1), contacts.any(axis=1))
+    return same and bool(np.abs(known - contacts).max(initial=0.0) <= _TURNED)
 
 
 def _joined(lines: Sequence[Line], count: int) -> tuple[sparse.csr_array, Points]:

@@ -69,6 +69,9 @@ class TissueModel(Protocol):
     def energy(self, moved: Points) -> float:
         """Return the elastic energy for displacements of the free points, shape (f, 3) [mm]; 0 at rest."""
 
+    def forces(self, moved: Points) -> Points:
+        """Return the forces that an iteration answers to, shape (f, 3)."""
+
     def gradient(self, moved: Points) -> Points:
         """Return the derivative of the energy, shape (f, 3)."""
 
@@ -182,6 +185,10 @@ class TensegrityModel:
             spans = self._cells.spans(self.expand(moved))
             energy += self._cells.energy(spans, self._cells.rotations(spans))
         return energy
+
+    def forces(self, moved: Points) -> Points:
+        """Return the forces that an iteration answers to, shape (f, 3)."""
+        return -self.gradient(moved)
 
     def gradient(self, moved: Points) -> Points:
         """Return the derivative of the energy, shape (f, 3): minus the force of all cables at each point."""

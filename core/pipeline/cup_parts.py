@@ -21,10 +21,10 @@ from core.messages import Message
 CUP_STIFFNESS = 1.0
 """How hard the shell of a moulded cup is at a point: far stiffer than tissue [N/mm]."""
 
-WIRE_STIFFNESS = 10.0
+WIRE_STIFFNESS = 3.0
 """How hard a wire holds a point of the root to its form [N/mm]."""
 
-REACH = 0.6
+REACH = 0.8
 """Standard deviation of the means that make a cup smooth, over the distance between its points [1]."""
 
 UPPER_EDGE = {"half": 0.0, "three-quarter": 1.0 / 3.0, "full": 2.0 / 3.0}
