@@ -30,7 +30,7 @@ from core.analysis.inverse_design.profile_curve import profile_goals
 from core.analysis.inverse_design.quantities import GIRTH, NAMES, Goal, profile_name, reading
 from core.analysis.inverse_design.solve import solve_targets
 from core.document.design import Design, ScanSource
-from core.document.presets import built_in, with_preset
+from core.garment.presets import built_in, with_preset
 from core.errors import UserError
 from core.garment.elastic_library import find_elastic
 from core.garment.pressure import pressure_limits, pressures

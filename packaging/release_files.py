@@ -31,7 +31,7 @@ from core.document.design import Design, ScanSource
 from core.document.document import Document
 from core.document.line_notation import parse_line
 from core.document.lines import LineSettings
-from core.document.presets import built_in, with_preset
+from core.garment.presets import built_in, with_preset
 from core.document.storage.project_file import ScanFile, open_project, save_project
 from core.export.mesh import write_mesh
 from core.export.units_and_axes import FileSpace

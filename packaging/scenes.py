@@ -22,7 +22,7 @@ from app.gui.session.settings import set_setting
 from app.i18n.catalog import language
 from app.presenters.samples import lifted_sample, sample_design, sample_path
 from core.document.design import Design, ScanSource
-from core.document.presets import built_in, with_preset
+from core.garment.presets import built_in, with_preset
 from core.garment.elastic_library import find_elastic
 
 Scene = Callable[[MainWindow], QWidget | None]

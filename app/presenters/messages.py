@@ -9,8 +9,8 @@ from app.i18n.catalog import joined, listed, template, tr, tr_context
 from app.i18n.lengths import length, length_number, width
 from core.document.design import Design
 from core.document.lines import partner_of
-from core.document.presets import Preset
 from core.garment.elastic_library import built_in
+from core.garment.presets import Preset
 from core.messages import ElasticName, Length, LengthRange, LineName, Message, Name, Parameter
 
 Text = Message | str

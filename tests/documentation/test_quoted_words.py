@@ -12,8 +12,8 @@ from page_commands import PAGES, ROOT
 from app.i18n.catalog import tr_context, translations, using_language
 from app.presenters.messages import elastic_kind, preset_title
 from app.presenters.samples import SAMPLES
-from core.document.presets import built_in as presets
 from core.garment.elastic_library import built_in as elastics
+from core.garment.presets import built_in as presets
 
 CODE = re.compile(r"^```.*?^```|`[^`\n]*`", re.DOTALL | re.MULTILINE)
 LABEL = re.compile(r"(?<![*\w])\*(\w[^*]*)\*(?!\*)")

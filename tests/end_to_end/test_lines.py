@@ -17,7 +17,7 @@ from core.analysis.length_limits.zones import LengthLimits, Reason, Zone
 from core.document.design import Design, ScanSource
 from core.document.document import Document
 from core.document.lines import CustomLine, LineSettings
-from core.document.presets import built_in, preset_from
+from core.garment.presets import built_in, preset_from
 
 FOLDS_BELOW_93 = LengthLimits(
     "mid-bust", (Zone("red", 0.5, 0.93, (Reason("folded", 0.5, 0.93),)), Zone("green", 0.93, 1.3))

@@ -10,7 +10,7 @@ from window_tools import Script, run_main, settled, undrawn
 from app.gui.features.lines import presets as preset_desk
 from app.gui.main_window import MainWindow
 from core.document.design import Design, ScanSource
-from core.document.presets import built_in, is_active, user_file, with_preset
+from core.garment.presets import built_in, is_active, user_file, with_preset
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

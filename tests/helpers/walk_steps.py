@@ -16,8 +16,8 @@ from window_walk import Step
 from app.gui.widgets.option_field import AmountField, MenuField, SegmentField
 from app.presenters.model_options import Amount, Choice, consequences, defaults, groups
 from core.document.design import TEMPLATES, Design
-from core.document.presets import built_in, with_preset
 from core.document.storage.project_file import with_scan
+from core.garment.presets import built_in, with_preset
 from core.landmarks.manual import nearest_skin
 
 SETTINGS = [setting for _, settings in groups() for setting in settings]

@@ -53,7 +53,7 @@ def shipped_files(bench: SelfTestFixture) -> str:
     from app.i18n.catalog import translations  # noqa: PLC0415 (this part reports what cannot be imported)
     from app.i18n.licences import licences  # noqa: PLC0415
     from core.control_mesh.template import TEMPLATES, read_template  # noqa: PLC0415
-    from core.document import presets  # noqa: PLC0415
+    from core.garment import presets  # noqa: PLC0415
     from core.garment.elastic_library import built_in as elastics  # noqa: PLC0415
     from core.garment.pressure import pressure_limits  # noqa: PLC0415
     from core.measurements.sizes import built_in as sizes  # noqa: PLC0415

@@ -13,9 +13,9 @@ from PySide6.QtGui import QDesktopServices
 
 from app.gui.application import log_folder
 from app.i18n.catalog import tr
-from core.document.presets import user_folder
 from core.document.storage.backups import backups_folder
 from core.document.storage.recovery import recovery_folder
+from core.garment.presets import user_folder
 
 
 def open_outside(path: Path, heading: str = "") -> bool:

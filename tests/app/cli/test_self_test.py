@@ -18,7 +18,7 @@ from PIL import Image
 from PySide6.QtCore import QSettings, qWarning
 from PySide6.QtWidgets import QApplication
 
-import core.document.presets
+import core.garment.presets
 from app.cli.commands import picture
 from app.cli.commands.self_test import LINES, PARTS
 from app.cli.self_test import checks, window
@@ -144,7 +144,7 @@ def test_without_isolation_the_self_test_does_not_start(
 def test_a_missing_file_is_named(bench: SelfTestFixture, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "3 presets" in checks.shipped_files(bench)
     with monkeypatch.context() as patch:
-        patch.setattr(core.document.presets, "built_in", lambda: core.document.presets.preset_of("{"))
+        patch.setattr(core.garment.presets, "built_in", lambda: core.garment.presets.preset_of("{"))
         with pytest.raises(PartError, match=r"^presets "):
             checks.shipped_files(bench)
     monkeypatch.setattr(checks, "is_frozen", lambda: True)

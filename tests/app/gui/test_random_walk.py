@@ -18,9 +18,9 @@ from core.control_mesh.template import read_template
 from core.document.design import Design
 from core.document.document import Document
 from core.document.line_notation import ready_made_lines
-from core.document.presets import built_in, with_preset
 from core.document.storage.project_file import open_project, with_scan
 from core.errors import LineError, UserError
+from core.garment.presets import built_in, with_preset
 from core.messages import Message
 from core.pipeline.converged import converged_frame
 from core.pipeline.live_solver import Failure, Frame

@@ -9,9 +9,9 @@ from app.i18n.lengths import use_unit, using_unit
 from app.presenters.messages import elastic_kind, elastic_title, line_title, preset_title, render
 from core.document.design import Design
 from core.document.lines import LineSettings
-from core.document.presets import Preset, PresetLine
-from core.document.presets import built_in as presets
 from core.garment.elastic_library import built_in as elastics
+from core.garment.presets import Preset, PresetLine
+from core.garment.presets import built_in as presets
 from core.landmarks.types import NAMES, SIDES
 from core.messages import (
     ElasticName,

@@ -14,8 +14,8 @@ from app.presenters.lines import bands
 from app.rendering.appearance import rgb
 from app.rendering.scene import Scene
 from app.rendering.vertex_colors import Ramp
-from core.document.presets import built_in, with_preset
 from core.garment.elastic_library import find_elastic
+from core.garment.presets import built_in, with_preset
 from core.garment.pressure import LinePressure, pressures
 from core.pipeline.build import Stages, build, line_targets
 from core.pipeline.solve import Solution, solve

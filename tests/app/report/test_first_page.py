@@ -15,8 +15,8 @@ from app.report.cut_rows import line_notes
 from app.report.document import SHOTS, ReportDocument
 from app.report.pages import pages_of, write_pdf
 from core.document.lines import LineSettings
-from core.document.presets import built_in, with_preset
 from core.export.report_data import Heading, Report, make_report
+from core.garment.presets import built_in, with_preset
 from core.pipeline.build import Stages, build
 from core.pipeline.solve import solve
 

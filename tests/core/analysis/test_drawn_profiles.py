@@ -16,7 +16,7 @@ from core.analysis.inverse_design.profile_curve import (
     profile_points,
 )
 from core.analysis.inverse_design.quantities import profile_name, reading
-from core.document.presets import built_in, with_preset
+from core.garment.presets import built_in, with_preset
 from core.pipeline.build import Stages, build
 from core.pipeline.solve import exact_solution
 

@@ -11,7 +11,7 @@ from slopes import doubled, slope
 from app.presenters.samples import sample_design
 from core.analysis.inverse_design.quantities import QuantityReaders
 from core.analysis.inverse_design.sensitivities import LinearizedSolutions
-from core.document.presets import built_in, with_preset
+from core.garment.presets import built_in, with_preset
 from core.pipeline.active_lines import free_lines
 from core.pipeline.build import Stages, build
 

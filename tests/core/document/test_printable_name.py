@@ -19,7 +19,6 @@ from core.document.calibration_record import Calibration
 from core.document.custom_measures import CustomMeasurement
 from core.document.elastic import Elastic
 from core.document.lines import ActiveLine, CustomLine, LineSettings
-from core.document.presets import Preset, PresetLine, preset_of
 from core.document.printable_name import is_printable, printable, repeated, shown
 from core.document.serialization import from_json, to_json
 from core.errors import UserError
@@ -28,6 +27,7 @@ from core.export.csv_cells import cell, csv_text
 from core.export.drawings import write_strips
 from core.export.measurement_files import MeasurementTable, write_measurements
 from core.garment.elastic_csv import elastic_from_csv
+from core.garment.presets import Preset, PresetLine, preset_of
 from core.messages import EMPTY
 
 BAD = ("a\ud800b", "a\x01b", "a\x1b[31mb", "a\nb", "a\x7f", "a\x9bb", "\u202egnp.exe", "\u2066a")

@@ -22,10 +22,10 @@ from app.report.cut_rows import force_range_warning, line_notes
 from app.report.document import SHOTS, ReportDocument
 from app.report.pages import pages_of
 from app.report.text import note_groups
-from core.document.presets import built_in, with_preset
 from core.export.report_data import Heading, Report, make_report, with_uncertainty
 from core.export.report_data_file import report_csv, report_json
 from core.garment.elastic_library import find_elastic
+from core.garment.presets import built_in, with_preset
 from core.measurements.uncertain_value import (
     AFTER,
     BEFORE,

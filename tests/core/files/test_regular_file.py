@@ -10,12 +10,12 @@ import pytest
 from app.research.ground_truth import read_truths
 from core.analysis.inverse_design.profile_curve import read_profile
 from core.document.design import ScanSource
-from core.document.presets import read_preset
 from core.document.storage.project_file import open_project, picture_bytes, read_scan_file
 from core.document.storage.recovery import load_unsaved
 from core.errors import UserError
 from core.files.regular_file import read_regular
 from core.garment.elastic_library import read_elastic
+from core.garment.presets import read_preset
 from core.measurements.size_table import read_table
 
 READERS: dict[str, tuple[str, Callable[[Path], object]]] = {

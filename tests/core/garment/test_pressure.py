@@ -12,9 +12,9 @@ from shapes import SAMPLES
 
 from core.deformation.tffd import deform
 from core.document.design import Design, ScanSource
-from core.document.presets import built_in, with_preset
 from core.garment.band_path import BandPath, band_path
 from core.garment.curve_smoothing import LocalPlanes
+from core.garment.presets import built_in, with_preset
 from core.garment.pressure import LinePressure, band_pressure, mmhg, pressures
 from core.garment.tension import LineTension, line_tensions
 from core.geometry.mesh import Mesh, unit

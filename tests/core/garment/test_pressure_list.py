@@ -17,10 +17,10 @@ from app.cli.main import main
 from app.research.sphere import sphere
 from core.document.design import Design, ScanSource
 from core.document.document import Document
-from core.document.presets import built_in, with_preset
 from core.document.storage.project_file import read_scan_file, save_project
 from core.garment.body_location import SHOULDERS, SIDES, body_location
 from core.garment.elastic_library import find_elastic
+from core.garment.presets import built_in, with_preset
 from core.garment.pressure import LEFT_OUT, pressure_limits, pressures
 from core.garment.pressure_list import pressure_list
 from core.garment.tension import line_tensions

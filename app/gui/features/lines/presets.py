@@ -17,7 +17,8 @@ from app.presenters.lines import row_title
 from app.presenters.messages import preset_note, preset_title, render
 from core.document.design import Design
 from core.document.lines import LONGEST_TITLE
-from core.document.presets import (
+from core.errors import UserError
+from core.garment.presets import (
     Preset,
     built_in,
     is_active,
@@ -27,7 +28,6 @@ from core.document.presets import (
     user_presets,
     with_preset,
 )
-from core.errors import UserError
 
 if TYPE_CHECKING:
     from app.gui.context import AppContext

@@ -8,7 +8,9 @@ import pytest
 from core.control_mesh.template import read_template
 from core.document.line_notation import format_path, ready_made_lines
 from core.document.lines import CustomLine, LineSettings
-from core.document.presets import (
+from core.errors import LineError
+from core.garment.elastic_library import find_elastic
+from core.garment.presets import (
     FORMAT,
     Preset,
     PresetLine,
@@ -21,8 +23,6 @@ from core.document.presets import (
     user_presets,
     with_preset,
 )
-from core.errors import LineError
-from core.garment.elastic_library import find_elastic
 from core.mechanics.exact_solution import solve_exact
 from core.mechanics.solver_comparison import shape_of
 from core.pipeline.build import build, line_targets

@@ -1,4 +1,4 @@
-"""Presets: named sets of lines as data files, ours and those that a designer saves."""
+"""Presets: named garments as data files, ours and those that a designer saves: lines, elastics and cups."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ from typing import Any
 import platformdirs
 
 from core.control_mesh.template import Template, read_template
+from core.document.cup import Cup
 from core.document.design import Design, ScanSource
+from core.document.json_values import value_of
 from core.document.line_notation import format_path, parse_line, ready_made_lines
 from core.document.lines import LONGEST_TITLE, CustomLine, LineSettings
 from core.document.printable_name import is_blank, is_printable
@@ -21,10 +23,11 @@ from core.document.storage.project_file import safe_name
 from core.errors import LineError, UserError, reason_of
 from core.files.atomic_write import private_folder, write_text
 from core.files.regular_file import read_text
-from core.messages import LineName, Message, join
+from core.garment.elastic_library import find_elastic, library
+from core.messages import ElasticName, LineName, Message, join
 
-FORMAT = 1
-"""The newest format of a preset that is read."""
+FORMAT = 2
+"""The newest format of a preset that is read: 2 has tissue, cups and elastics. All else is written as 1."""
 
 _LARGEST = 1_000_000  # bytes of a preset's file
 _REMEDY = Message("Correct the file or remove it.")
@@ -36,7 +39,8 @@ class PresetLine:
     """A line of a preset: one of the template, a ready-made pair ("straps"), or one through ``places``.
 
     ``places`` are written as for ``parse_line``. ``length`` [1] is where it starts, None leaves it off;
-    ``width`` [mm], ``stiffness`` [1], ``title``, ``colour`` and ``linked`` as in ``LineSettings``.
+    ``width`` [mm], ``stiffness`` [1], ``title``, ``colour`` and ``linked`` as in ``LineSettings``;
+    ``elastic`` names one of the library.
     """
 
     line: str
@@ -47,20 +51,23 @@ class PresetLine:
     colour: str = ""
     stiffness: float | None = None
     linked: bool = True
+    elastic: str = ""
 
 
 @dataclass(frozen=True)
 class Preset:
-    """A set of lines by its ``title``; ``leaves_out`` says what it cannot hold.
+    """A garment by its ``title``: lines, and the ``cup`` of both breasts; ``leaves_out`` says what it lacks.
 
-    ``template`` is that of the places, empty if it names none: then it goes with every template.
-    Raises LineError for a title that cannot be shown.
+    ``template`` is that of the places, empty if it names none: then it goes with every template. ``tissue``
+    is what it is worn on, empty for that of the design. Raises LineError for a title that cannot be shown.
     """
 
     title: str
     lines: tuple[PresetLine, ...]
     leaves_out: str = ""
     template: str = ""
+    tissue: str = ""
+    cup: Cup | None = None
 
     def __post_init__(self) -> None:
         if not is_printable(self.title, LONGEST_TITLE) or not is_printable(self.leaves_out, _LONGEST):
@@ -105,10 +112,13 @@ def preset_of(text: str) -> Preset:
     """Return the preset that a file's text describes. Raises ValueError or LineError if it is none."""
     try:
         values = dict(json.loads(text))
-        if values.pop("format") != FORMAT:
+        if values.pop("format") not in (1, FORMAT):
             raise ValueError(f"it is not of format {FORMAT}")
         lines = tuple(_line(each) for each in values.pop("lines"))
-        preset = Preset(str(values.pop("title")), lines, **{key: str(text) for key, text in values.items()})
+        told = values.pop("cup", None)
+        cup = None if told is None else value_of(Cup, told, "cup")
+        texts = {key: str(text) for key, text in values.items()}
+        preset = Preset(texts.pop("title"), lines, cup=cup, **texts)
     except (KeyError, TypeError, AttributeError, RecursionError) as problem:
         raise ValueError(f"{type(problem).__name__} {problem}") from problem
     if is_blank(preset.title) or not preset.lines:
@@ -121,7 +131,7 @@ def preset_of(text: str) -> Preset:
 
 def _line(values: Mapping[str, Any]) -> PresetLine:
     line = PresetLine(**values)
-    texts = (line.line, line.places, line.title, line.colour)
+    texts = (line.line, line.places, line.title, line.colour, line.elastic)
     numbers = (line.length, line.width, line.stiffness)
     fit = all(isinstance(text, str) for text in texts) and isinstance(line.linked, bool)
     if not fit or not all(each is None or type(each) in (int, float) for each in numbers):
@@ -162,19 +172,32 @@ def save_preset(preset: Preset) -> Path:
     """Write a preset into the designer's own folder, over one of the same name. Raises ProjectError."""
     path = user_file(preset.title)
     private_folder(path.parent)
-    text = json.dumps({"format": FORMAT, **asdict(preset)}, indent=1, ensure_ascii=False)
+    text = json.dumps(_as_values(preset), indent=1, ensure_ascii=False)
     write_text(path, text, private=True)
     return path
+
+
+def _as_values(preset: Preset) -> dict[str, Any]:
+    """Return a preset as values of JSON: one that an older Busk can hold is one that it reads."""
+    values = asdict(preset)
+    newer = preset.tissue, preset.cup, *(line.elastic for line in preset.lines)
+    if any(newer):
+        return {"format": FORMAT, **values}
+    del values["tissue"], values["cup"]
+    for line in values["lines"]:
+        del line["elastic"]
+    return {"format": 1, **values}
 
 
 def preset_from(design: Design, title: str) -> Preset:
     """Return the lines of a design as a preset: those that are worn, and all own ones."""
     template = read_template(design.template)
     own = {line.name: line for line in design.own_lines}
-    if design.active_elastics():
+    known = library()
+    if strange := [each for each in design.active_elastics().values() if known.get(each.name) != each]:
         raise LineError(
-            Message("Elastic lengths are specific to one body and cannot be saved in a preset."),
-            Message("Choose “No elastic” for all lines first: the preset then contains lengths on the body."),
+            Message("The elastic {name} is not in the library.", name=ElasticName(strange[0].name)),
+            Message("Save it in the library first, or choose another elastic."),
         )
     names = sorted(design.active_lines() - own.keys()) + list(own)
     lines = tuple(_as_preset(name, design, own.get(name), template) for name in names)
@@ -183,23 +206,26 @@ def preset_from(design: Design, title: str) -> Preset:
             Message("The design has no lines to save as a preset."),
             Message("Shorten or add a line first."),
         )
-    return Preset(title, lines, template=design.template if own else "")
+    # Lengths of elastics, and cups, mean something on the tissue that they were chosen on.
+    tissue = design.tissue if design.active_elastics() or design.cup else ""
+    return Preset(title, lines, template=design.template if own else "", tissue=tissue, cup=design.cup)
 
 
 def _as_preset(name: str, design: Design, line: CustomLine | None, template: Template) -> PresetLine:
     traits = design.line_settings(name)
     places = "" if line is None else format_path(line, template)
     length = design.ratio(name) if name in design.active_lines() else None
-    dress = (traits.width, traits.title, traits.colour, traits.stiffness, traits.linked)
+    elastic = traits.elastic if name in design.active_lines() else ""
+    dress = (traits.width, traits.title, traits.colour, traits.stiffness, traits.linked, elastic)
     return PresetLine(name, places, length, *dress)
 
 
 def with_preset(design: Design, preset: Preset) -> Design:
-    """Return the design with the lines of a preset; its other lines stay, and are taken off unless locked.
+    """Return the design in a preset; its other lines stay, and are taken off unless locked; so are its cups.
 
-    Ready-made lines that are there stay as they were led; those through places are led through these. Its
-    lengths are those of lines of the model: elastics are chosen anew. Raises LineError if the preset's places
-    are those of another template, or a line of it is locked.
+    Ready-made lines that are there stay as they were led; those through places are led through these. Lines
+    have the elastics of the preset, else none. Raises LineError if the preset's places are those of another
+    template, an elastic of it is not in the library, or a line of it is locked.
     """
     if preset.template not in ("", design.template):
         raise LineError(
@@ -210,7 +236,7 @@ def with_preset(design: Design, preset: Preset) -> Design:
             ),
             Message("Choose that control mesh first."),
         )
-    after = design.with_lines_reset()
+    after = replace(design.with_lines_reset(), cup=preset.cup, tissue=preset.tissue or design.tissue)
     for line, own in preset.lines_on_template(read_template(design.template)):
         names = [each.name for each in own] or [line.line]
         present = {each.name: each for each in after.own_lines}
@@ -222,6 +248,8 @@ def with_preset(design: Design, preset: Preset) -> Design:
                 continue
             usual = after.line_settings(name)
             after = after.with_line(name, line.length).with_line_settings(_dressed(usual, line))
+            if line.elastic:
+                after = after.with_elastic(name, find_elastic(line.elastic))
     return after
 
 
@@ -236,7 +264,16 @@ def is_active(design: Design, preset: Preset) -> bool:
             return False
         if line.length is not None:
             wanted.update([each.name for each in own] or [line.line])
-    return bool(wanted) and design.active_lines() == wanted
+    same_cup = (
+        preset.cup is None
+        if design.cup is None
+        else preset.cup is not None
+        and (
+            (design.cup.kind, design.cup.wire, design.cup.gather > 0.0)
+            == (preset.cup.kind, preset.cup.wire, preset.cup.gather > 0.0)
+        )
+    )
+    return bool(wanted) and design.active_lines() == wanted and same_cup
 
 
 def _dressed(traits: LineSettings, line: PresetLine) -> LineSettings:
