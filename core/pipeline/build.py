@@ -267,7 +267,7 @@ def _stages(
     lengths = (*({name: part.length for name, part in each.items()} for each in (backs, tails)),)
     cups = () if design.cup is None else stage("place cups", _cups, design.cup, fitted, control, tissue)
     chosen = design.active_lines(), design.model_options, design.line_stiffnesses()
-    model = stage("build model", _model, laid, *lengths, *chosen, tissue, cups)
+    model = stage("build model", _model, laid, *lengths, *chosen, fitted, tissue, cups)
     elastics = design.active_elastics()
     if elastics and design.line_hold == "spring":  # a held line has its length, whatever it is made of
         change = stage("follow body", DenseVolumeChange, binding, moving) if design.dense_volume else None
@@ -353,6 +353,7 @@ def _model(
     worn: frozenset[str],
     mechanics: ModelOptions,
     own_stiffness: Mapping[str, float],
+    fitted: ControlMesh,
     tissue: TissueResponse | None,
     cups: tuple[CupPart, ...],
 ) -> ConstrainedModel:
@@ -374,7 +375,7 @@ def _model(
         tail_lengths=tails,
         mechanics=mechanics,
         own_stiffness=own_stiffness,
-        solid=None if tissue is None else solid_tissue(control, tissue, mechanics, cups),
+        solid=None if tissue is None else solid_tissue(fitted, control, tissue, mechanics, cups),
     )
 
 
@@ -395,19 +396,20 @@ GRAVITY = {"standing": (0.0, 0.0, -1.0), "lying": (0.0, 1.0, 0.0), "unloaded": (
 
 
 def solid_tissue(
+    fitted: ControlMesh,
     control: ControlMesh,
     tissue: TissueResponse,
     mechanics: ModelOptions,
     cups: tuple[CupPart, ...] = (),
     gravity: tuple[float, ...] | None = None,
 ) -> CondensedTissue:
-    """Return the solid under a control mesh, as soft as its sag tells, in the parts of ``cups``.
+    """Return the solid under a ``control`` mesh, as soft as its sag tells, in the parts of ``cups``.
 
-    ``gravity`` [g] is that of its posture unless it is told.
+    ``fitted`` is the mesh that ``control`` has halved, whose edges tell the strain. ``gravity`` [g] is that of its posture unless it is told.
     """
     change = np.subtract(gravity or GRAVITY[mechanics.posture], GRAVITY["standing"])
     free = np.flatnonzero(~control.fixed)
-    edges = control.mesh.edges
+    edges = fitted.mesh.edges
     return CondensedTissue(
         control.mesh.vertices,
         free,

@@ -135,7 +135,7 @@ def _on_solid(case: ReferenceCase, stages: Stages, tissue: TissueResponse) -> St
     """Return stages whose solid has the modulus, the gravity and the newtons of the lines of a case."""
     model, sag = stages.model, tissue.rise / case.shear_modulus_kpa
     options = replace(stages.design.model_options, sag=sag)
-    solid = solid_tissue(stages.control, tissue, options, gravity=case.gravity)
+    solid = solid_tissue(stages.fitted, stages.control, tissue, options, gravity=case.gravity)
     own = {
         line.name: case.line_stiffness_n / (solid.mean_stiffness * line.spacing)
         for line in model.lines
