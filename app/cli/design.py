@@ -10,6 +10,7 @@ from typing import Any
 
 from app.cli.options import NUMBERS, SWITCHES, WORDS, shown_text, stored_word
 from core.control_mesh.template import read_template
+from core.document.cup import CUP_RANGES, Cup
 from core.document.design import Design, ScanSource
 from core.document.document import Document
 from core.document.line_notation import parse_line
@@ -17,6 +18,7 @@ from core.document.storage.backups import backup_before_write
 from core.document.storage.project_file import SUFFIX, is_project, open_project, save_project
 from core.errors import LineError, UserError
 from core.garment.elastic_library import find_elastic, read_elastic
+from core.garment.presets import find_preset, with_preset
 from core.landmarks.manual import placed_mark
 from core.mechanics.constraint_lines import Line, length_ratio
 from core.messages import Message
@@ -38,6 +40,12 @@ def design_of(options: argparse.Namespace) -> Design:
     design = replace(design.with_template(settings.pop("template", design.template)), **settings)
     for text in getattr(options, "path", None) or []:
         design = design.with_custom_line(parse_line(text, read_template(design.template)))
+    if getattr(options, "preset", None):
+        design = with_preset(design, find_preset(options.preset))
+    if getattr(options, "cup", None):
+        # Cups need solid tissue: who asks for them asks for it.
+        tissue = settings.get("tissue", "solid") if options.cup != "none" else design.tissue
+        design = replace(design, cup=cup_of(options.cup, design.cup), tissue=tissue)
     for mark in map(placed_mark, getattr(options, "landmark", None) or []):
         design = design.with_placed(mark.name, mark.position)
     return replace(design, volume=getattr(options, "volume", None) or design.volume)
@@ -114,6 +122,23 @@ def settings_of(pairs: Sequence[str]) -> dict[str, Any]:
     return values
 
 
+def cup_of(text: str, cup: Cup | None) -> Cup | None:
+    """Return cups changed by ``text``, ``KEY=VALUE,...``; "none" for none. Raises UserError."""
+    if text.strip().lower() == "none":
+        return None
+    values: dict[str, Any] = {}
+    for pair in text.split(","):
+        key, equals, value = (part.strip().lower() for part in pair.partition("="))
+        key = key.replace("-", "_")
+        if not equals or key not in _CUP_READERS:
+            raise UserError(
+                Message("'{pair}' is not a setting of a cup.", pair=pair.strip()),
+                Message("Enter KEY=VALUE. Keys: {choices}.", choices=", ".join(_CUP_READERS)),
+            )
+        values[key] = _CUP_READERS[key](key, value)
+    return replace(cup or Cup(), **values)
+
+
 def _word(key: str, value: str) -> str:
     plain = stored_word(value.replace("_", "-").replace(" ", "-"))
     if plain not in WORDS[key]:
@@ -157,6 +182,13 @@ _READERS: dict[str, Callable[[str, str], Any]] = {
     **dict.fromkeys(SWITCHES, _switch),
     "gain": _gain,
     "firm_chest": _firm_chest,
+}
+
+
+_CUP_READERS: dict[str, Callable[[str, str], Any]] = {
+    **dict.fromkeys(("kind", "coverage"), lambda _, value: value),
+    **dict.fromkeys(CUP_RANGES, _number),
+    "wire": _switch,
 }
 
 

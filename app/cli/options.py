@@ -6,7 +6,9 @@ import argparse
 import re
 from argparse import ArgumentParser
 
-from app.presenters.scan import KINDS, PACKED
+from app.presenters.scan import KINDS as SCAN_KINDS
+from app.presenters.scan import PACKED
+from core.document.cup import COVERAGES, CUP_RANGES, KINDS
 from core.document.design import TEMPLATES, WEIGHTS
 from core.document.line_notation import HELP as LINE_HELP
 from core.landmarks.manual import HELP as LANDMARK_HELP
@@ -36,12 +38,17 @@ ELASTIC_HELP = (
     "a measured table ('mid-bust=roll.csv'). The line length is then the unstretched length of the elastic. "
     "An unknown name prints all names"
 )
+PRESET_HELP = (
+    "garment preset, by title or unique words ('soft-bra'), or a preset file (.json): its lines, elastics "
+    "and cups replace those of the design; --line, --elastic and --cup then change them. An unknown name "
+    "prints all names"
+)
 _AXIS = "such as {axis}, or a direction x,y,z of the file for a tilted body"
 
 
 def add_scan(parser: ArgumentParser) -> None:
     """Add the input file, and the options that orient, edit and mark a scan."""
-    kinds = f"a scan ({KINDS}, each also compressed as {PACKED}) or a project (.busk)"
+    kinds = f"a scan ({SCAN_KINDS}, each also compressed as {PACKED}) or a project (.busk)"
     parser.add_argument("input", metavar="SCAN_OR_PROJECT", help=kinds)
     units = tuple(MILLIMETRES)
     parser.add_argument("--unit", type=str.lower, choices=units, help="unit of the scan (default: detected)")
@@ -59,6 +66,8 @@ def add_scan(parser: ArgumentParser) -> None:
 def add_settings(parser: ArgumentParser) -> None:
     """Add the model options and the custom lines of a design."""
     add_model_settings(parser)
+    parser.add_argument("--preset", metavar="NAME", help=PRESET_HELP)
+    parser.add_argument("--cup", metavar="KEY=VALUE,...", help=cup_help())
     parser.add_argument("--path", action="append", metavar="NAME=POINTS", help=LINE_HELP)
 
 
@@ -129,3 +138,14 @@ def settings_help() -> str:
     numbers = f"{', '.join(NUMBERS)} (a number; firm_chest also on, off; gain also auto)"
     words = [f"{key} ({', '.join(shown_text(key))})" for key in WORDS]
     return ", ".join([numbers, *words, *(f"{key} (yes, no)" for key in SWITCHES)])
+
+
+def cup_help() -> str:
+    """Return the keys of ``--cup`` with the values that each takes."""
+    ranges = [f"{key} ({low:g} to {high:g})" for key, (low, high) in CUP_RANGES.items()]
+    return (
+        f"cups of both breasts, on solid tissue: kind ({', '.join(KINDS)}), coverage "
+        f"({', '.join(COVERAGES)}), {', '.join(ranges)}, wire (yes, no); lift, forward and gather in mm, "
+        "across, upright and wire_width as ratios, cloth in N/m, as in kind=moulded,lift=20,wire=yes; 'none' "
+        "removes cups"
+    )

@@ -180,6 +180,12 @@ class Design:
         """Return the names of the lines that are worn."""
         return frozenset(line.name for line in self.lines)
 
+    @property
+    def is_bare(self) -> bool:
+        """Return whether nothing reshapes the body: no line, no cup, and it stands as it was scanned."""
+        lies = self.tissue == "solid" and self.posture != "standing"
+        return not self.lines and self.cup is None and not lies
+
     def line_stiffnesses(self) -> dict[str, float]:
         """Return the stiffness [1] of each worn line that has its own."""
         own = {each.name: each.stiffness for each in self.traits if each.name in self.active_lines()}

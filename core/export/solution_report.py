@@ -16,6 +16,7 @@ from core import __version__
 from core.document.serialization import to_json
 from core.export.mesh import write_control_points, write_mesh
 from core.files.atomic_write import atomic_path, write_text
+from core.garment.cup_fit import WornCups
 from core.mechanics.constraint_lines import Line
 from core.mechanics.iteration import Observables, Record
 from core.mechanics.mesh_quality import MeshQuality
@@ -96,6 +97,7 @@ def report(solution: Solution) -> dict[str, Any]:
             "rest": _marks(solution.rest.marks, _lowest(stages)),
             "final": _marks(last.marks, _lowest(stages)),
         },
+        **_cup_report(solution),
         "fit": _fit_report(stages),
         "settings": _settings(stages),
         "notes": plain([*shape_warnings(solution), *notes(stages)]),
@@ -110,6 +112,13 @@ def report(solution: Solution) -> dict[str, Any]:
         },
         "design": json.loads(to_json(stages.design)),
     }
+
+
+def _cup_report(solution: Solution) -> dict[str, Any]:
+    """Return the figures of the cups, if the design has any."""
+    if solution.stages.design.cup is None:
+        return {}
+    return {"cups": WornCups(solution.stages).fit(solution.control_points).as_data()}
 
 
 def _volume_report(solution: Solution) -> dict[str, Any]:

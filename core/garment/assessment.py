@@ -63,7 +63,7 @@ class Assessment:
     """The overall verdict: ``findings`` are ranked, the worst first.
 
     ``pending`` names what is not known yet, "convergence" or "pressure", or is empty. ``active`` tells
-    whether any line is.
+    whether anything reshapes the body.
     """
 
     findings: tuple[Finding, ...]
@@ -102,7 +102,7 @@ def assess_with(
     While it is ``running`` it may still converge; ``failed``: computing its pressures did, and they stay
     unknown. A run without a valid shape has neither.
     """
-    stages, verdict, active = shown.stages, shown.verdict, bool(shown.stages.design.active_lines())
+    stages, verdict, active = shown.stages, shown.verdict, not shown.stages.design.is_bare
     found = [*_run(shown, running), *_foundations(stages)]
     if verdict.is_valid:
         found += [*_bands(cuts), *([UNKNOWN_PRESSURE] if failed else _pressures(pressed))]

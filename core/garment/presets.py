@@ -168,6 +168,29 @@ def user_presets() -> tuple[list[Preset], list[LineError]]:
     return presets, problems
 
 
+def find_preset(text: str) -> Preset:
+    """Find the preset of this title, of all these words, or in this file. Raises LineError."""
+    if text.lower().endswith(".json"):
+        return read_preset(Path(text))
+    presets = (*built_in(), *user_presets()[0])
+    words, titles = _words(text), [_words(each.title) for each in presets]
+    exact = [preset for preset, title in zip(presets, titles, strict=True) if title == words]
+    alike = [preset for preset, title in zip(presets, titles, strict=True) if set(words) <= set(title)]
+    found = exact or (alike if words else [])
+    if len(found) != 1:
+        raise LineError(
+            Message("Several presets match '{text}'.", text=text)
+            if found
+            else Message("No preset matches '{text}'.", text=text),
+            Message("Choose one of: {choices}.", choices="; ".join(each.title for each in found or presets)),
+        )
+    return found[0]
+
+
+def _words(text: str) -> list[str]:
+    return text.casefold().replace("-", " ").replace(",", "").split()
+
+
 def save_preset(preset: Preset) -> Path:
     """Write a preset into the designer's own folder, over one of the same name. Raises ProjectError."""
     path = user_file(preset.title)

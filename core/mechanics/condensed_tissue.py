@@ -25,9 +25,9 @@ class CondensedTissue:
     """Control points at rest on a condensed solid, and which of them are free to move.
 
     ``rest`` (n, 3) [mm]; ``free`` (f,) indices of the moving points, ascending; ``cables`` (m, 2) the edges
-    whose strain is judged, with at least one free end, which carry nothing here; ``solid`` (3 f, 3 f) [N/mm] is
-    the stiffness of the tissue; ``load`` (f, 3) [N] is what a change of weight adds at the points, 0 on the
-    scan. ``cups`` are the parts of cups that act on the points.
+    whose strain is judged, with at least one free end, which carry nothing here; ``solid`` (3 f, 3 f) [N/mm]
+    is the stiffness of the tissue; ``load`` (f, 3) [N] is what a change of weight adds at the points, 0 on
+    the scan. ``cups`` are the parts of cups that act on the points.
     """
 
     rest: Points

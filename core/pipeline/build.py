@@ -267,7 +267,10 @@ def _stages(
     lengths = (*({name: part.length for name, part in each.items()} for each in (backs, tails)),)
     cups = () if design.cup is None else stage("place cups", _cups, design.cup, fitted, control, tissue)
     chosen = design.active_lines(), design.model_options, design.line_stiffnesses()
-    model = stage("build model", _model, laid, *lengths, *chosen, fitted, tissue, cups)
+    solid = None
+    if tissue is not None:
+        solid = stage("dress solid", solid_tissue, fitted, control, tissue, design.model_options, cups)
+    model = stage("build model", _model, laid, *lengths, *chosen, solid)
     elastics = design.active_elastics()
     if elastics and design.line_hold == "spring":  # a held line has its length, whatever it is made of
         change = stage("follow body", DenseVolumeChange, binding, moving) if design.dense_volume else None
@@ -353,9 +356,7 @@ def _model(
     worn: frozenset[str],
     mechanics: ModelOptions,
     own_stiffness: Mapping[str, float],
-    fitted: ControlMesh,
-    tissue: TissueResponse | None,
-    cups: tuple[CupPart, ...],
+    solid: CondensedTissue | None,
 ) -> ConstrainedModel:
     unknown = sorted(worn - set(control.line_names))
     if unknown:
@@ -363,7 +364,7 @@ def _model(
             Message("There is no line '{line}'.", line=LineName(unknown[0])),
             Message("Available lines: {lines}.", lines=", ".join(control.line_names)),
         )
-    if tissue is not None and mechanics.line_contact == "sliding":
+    if solid is not None and mechanics.line_contact == "sliding":
         raise LineError(
             Message("Sliding lines cannot be computed on solid tissue."),
             Message("Choose bonded lines, or the net as tissue."),
@@ -375,7 +376,7 @@ def _model(
         tail_lengths=tails,
         mechanics=mechanics,
         own_stiffness=own_stiffness,
-        solid=None if tissue is None else solid_tissue(fitted, control, tissue, mechanics, cups),
+        solid=solid,
     )
 
 
@@ -405,7 +406,8 @@ def solid_tissue(
 ) -> CondensedTissue:
     """Return the solid under a ``control`` mesh, as soft as its sag tells, in the parts of ``cups``.
 
-    ``fitted`` is the mesh that ``control`` has halved, whose edges tell the strain. ``gravity`` [g] is that of its posture unless it is told.
+    ``fitted`` is the mesh that ``control`` has halved, whose edges tell the strain. ``gravity`` [g] is that
+    of its posture unless it is told.
     """
     change = np.subtract(gravity or GRAVITY[mechanics.posture], GRAVITY["standing"])
     free = np.flatnonzero(~control.fixed)

@@ -66,6 +66,13 @@ def _lines(values: Mapping[str, Any]) -> Iterator[str]:
                 f"({line['set_percent']:.1f} %), reached {line['reached_mm']:.1f} mm"
                 + (f"; full length {line['whole_band_reached_mm']:.1f} mm" if closed else "")
             )
+    for cup in values.get("cups", ()):
+        more = f", holds {cup['more_ml']:+z.0f} ml" if cup["more_ml"] is not None else ""
+        wire = f", wire {cup['wire_n']:.1f} N" if cup["wire_n"] else ""
+        yield (
+            f"cup {cup['side']}: bears {cup['up_n']:.1f} N, presses {cup['max_kpa']:.1f} kPa at most on "
+            f"{100.0 * cup['contact']:.0f} % of its area{wire}{more}"
+        )
 
 
 def _end(values: Mapping[str, Any], solution: Solution, out: Path) -> str:

@@ -79,7 +79,7 @@ class UncertaintyEstimator:
         marks = [knob for knob in self._knobs if knob.source == LANDMARKS]
         whole = self._by([*marks, *([PLACING] if marks else [])], progress)
         design = self.trials.base.design
-        if self.trials.has_no_active_lines or design.tissue == "solid":  # there is but one contact
+        if self.trials.is_bare or design.tissue == "solid":  # there is but one contact
             return replace(whole, sources=SOURCES)
         progress("the other contact", 1.0)
         with threadpool_limits(1):
@@ -164,7 +164,7 @@ def _spread(
         contact="",
         failed=failed,
         values=MappingProxyType(propagation.trials.values),
-        bare=propagation.trials.has_no_active_lines,
+        bare=propagation.trials.is_bare,
         cautions=tuple(cautions(propagation.stages.design, doubts)),
     )
 

@@ -79,7 +79,7 @@ class Propagation:
         """Return the effect of placement: a root at a placed fold may differ from that at a detected one."""
         trials, stages = self.trials, self.stages
         here = original_values(trials.original)
-        if not trials.has_no_active_lines:
+        if not trials.is_bare:
             here = measurement_values(stages, trials.steps, trials.original, self.points) | trials.values
         there = trials(perturb(stages, {PLACING: 0.0}))
         skin = normal_distance(stages.body, there.places, self.places, self.normals)
@@ -87,7 +87,7 @@ class Propagation:
 
     def _of_scan(self, knob: UncertainParameter) -> Effect:
         rest, steps = self.trials.original.subject, self.trials.steps
-        if self.trials.has_no_active_lines:
+        if self.trials.is_bare:
             sides = [original_measurements(self.stages, steps, rest, skin) for skin in (-knob.sd, knob.sd)]
             return Effect(knob, _half(*map(original_values, sides)), np.full(len(self.places), knob.sd))
         found = [

@@ -31,7 +31,7 @@ def model_errors(trials: PerturbedSolutions, assumed: InputUncertainty) -> tuple
     One standard deviation moves the control point of a breast that yields most by ``model_error_mm``.
     Raises NoEquilibriumError.
     """
-    if trials.has_no_active_lines:
+    if trials.is_bare:
         return ()
     amplitudes = model_error_mm(trials, assumed)
     if not amplitudes.any():

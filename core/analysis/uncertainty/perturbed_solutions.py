@@ -124,7 +124,7 @@ class PerturbedSolutions:
 
         Raises the UserError of a stage that fails.
         """
-        if self.has_no_active_lines:
+        if self.is_bare:
             return self._unworn(turned)
         placed = turned.design.placed
         near, rest = self._known.get(placed, (self.base, None))
@@ -151,14 +151,14 @@ class PerturbedSolutions:
         return PerturbedSolution(self.base, self.points, self.base.body.mesh.vertices, original_values(rest))
 
     @property
-    def has_no_active_lines(self) -> bool:
-        """Return whether no line is worn, so that the body stays as it is."""
-        return not self.base.design.active_lines()
+    def is_bare(self) -> bool:
+        """Return whether nothing reshapes the body, so that it stays as it is."""
+        return self.base.design.is_bare
 
     @cached_property
     def values(self) -> Figures:
         """Return the figures of lines and bust points where the run rests. Raises NoEquilibriumError."""
-        return {} if self.has_no_active_lines else output_values(self.base, self.points)
+        return {} if self.is_bare else output_values(self.base, self.points)
 
     @cached_property
     def original(self) -> OriginalMeasurements:

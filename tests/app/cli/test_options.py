@@ -6,10 +6,12 @@ from dataclasses import fields, replace
 
 import pytest
 
-from app.cli.design import settings_of
+from app.cli.design import cup_of, settings_of
 from app.cli.options import NUMBERS, SWITCHES, WORDS
 from app.presenters.model_options import defaults
+from core.document.cup import CUP_RANGES, Cup
 from core.document.design import Design, ScanSource
+from core.errors import UserError
 from core.mechanics.options import ModelOptions
 
 
@@ -38,7 +40,7 @@ def test_settings_are_read_with_hyphens_and_underscores(pairs: list[str], fields
 
 def test_every_choice_of_the_design_can_be_set() -> None:
     not_settings = {"scan", "placed", "lines", "own_lines", "own_measures", "traits", "volume", "unknown"}
-    not_settings |= {"elastics", "customer", "worn_tight_mm", "calibration"}
+    not_settings |= {"elastics", "customer", "worn_tight_mm", "calibration", "cup"}
     assert {*WORDS, *NUMBERS, *SWITCHES} == {field.name for field in fields(Design)} - not_settings
 
 
@@ -47,3 +49,18 @@ def test_every_model_option_is_in_the_design_and_in_the_window() -> None:
     saved = {field.name: field.default for field in fields(Design)}
     assert options.items() <= saved.items(), "give Design a field of the same name and default"
     assert options.keys() <= defaults().keys(), "describe it in groups() of app/presenters/model_options.py"
+
+
+def test_a_cup_is_read_key_by_key_and_changes_the_one_that_is_there() -> None:
+    cup = cup_of("kind=moulded, lift=20,wire=yes,Wire-Width=1,1".replace("1,1", "1.1"), None)
+    assert cup == Cup(lift=20.0, wire=True, wire_width=1.1)
+    assert cup_of("gather=12", cup) == replace(cup, gather=12.0)
+    assert cup_of("none", cup) is None
+    every = ",".join(f"{key}={low}" for key, (low, _) in CUP_RANGES.items())
+    assert cup_of(every, None) == Cup(**{key: low for key, (low, _) in CUP_RANGES.items()})
+
+
+@pytest.mark.parametrize("text", ["lift", "lyft=3", "lift=high", "wire=perhaps", "kind=tin", "lift=400"])
+def test_a_cup_that_is_none_is_refused(text: str) -> None:
+    with pytest.raises(UserError):
+        cup_of(text, None)

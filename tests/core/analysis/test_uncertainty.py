@@ -358,7 +358,7 @@ def test_without_a_line_on_the_breasts_there_is_no_model_error(plain: Stages) ->
 def test_a_bare_body_is_neither_fitted_nor_solved(plain: Stages, monkeypatch: pytest.MonkeyPatch) -> None:
     bare = build(plain.design.with_line("mid-bust", None), plain)
     known = PerturbedSolutions(bare)
-    assert known.has_no_active_lines
+    assert known.is_bare
     assert known.points is not None
     monkeypatch.setattr("core.analysis.uncertainty.perturbed_solutions.build", None)
     monkeypatch.setattr("core.analysis.uncertainty.perturbed_solutions.converged_solution", None)

@@ -32,10 +32,11 @@ from core.pipeline.build import build, line_targets
 GOOD = {"format": FORMAT, "title": "X", "lines": [{"line": "mid-bust", "length": 0.97}]}
 
 
+LINES = [each for each in built_in() if not each.tissue]
+
+
 @pytest.mark.parametrize("sample", ["mannequin", "person"])
-@pytest.mark.parametrize(
-    "preset", [each for each in built_in() if not each.tissue], ids=lambda preset: preset.title
-)
+@pytest.mark.parametrize("preset", LINES, ids=lambda each: each.title)
 def test_every_preset_of_lines_can_be_worn(preset, sample, built):
     stages = built(sample)
     bare = replace(stages.design, lines=())
