@@ -36,15 +36,16 @@ def over_axes(matrix: Operator, points: int) -> sparse.csr_array:
     return whole if whole.shape[0] == 3 * points else sparse.csr_array(sparse.kron(whole, np.eye(3)))
 
 
-def lower_points(matrix: Operator, points: int, relaxation: float = 1.0) -> sparse.csr_array:
+def lower_points(matrix: Operator, points: int, relaxation: float = 1.0) -> Operator:
     """Return the lower triangle of a stiffness over all coordinates, (3 f, 3 f), each point's block whole.
 
-    Each block on the diagonal is divided by ``relaxation`` [1]: the points then go so much further.
+    Each block on the diagonal is divided by ``relaxation`` [1]: the points then go so much further. A full
+    matrix over the coordinates remains one.
     """
     if isinstance(matrix, np.ndarray) and len(matrix) == 3 * points:
         point = np.arange(3 * points) // 3
         lower = np.where(point[:, None] >= point, matrix, 0.0)
-        return sparse.csr_array(np.where(point[:, None] == point, lower / relaxation, lower))
+        return np.where(point[:, None] == point, lower / relaxation, lower)
     whole = sparse.coo_array(over_axes(matrix, points))
     row, column = whole.row // 3, whole.col // 3
     below = row >= column

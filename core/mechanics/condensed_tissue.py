@@ -5,6 +5,7 @@ It takes the place of the net of cables in a model: linear, in balance with its 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -73,14 +74,25 @@ class CondensedTissue:
 
     def stiffness_of(self, contacts: Points) -> Floats:
         """Return the stiffness in an iteration with ``contacts`` (c, 3), (3 f, 3 f) [N/mm]."""
-        whole, done = self.solid, 0
+        figures, done = [], 0
         for cup in self.cups:
             count = len(cup.contacts(np.zeros_like(self.load)))
-            figures, at = cup.bound(contacts[done : done + count]), cup.entries
+            bound = cup.bound(contacts[done : done + count])
             # A point that a surface holds back goes to its balance there and not beyond.
-            figures = RELAXATION * figures if count else figures
-            added = sparse.coo_array((at.value * figures[at.source], (at.row, at.column)), whole.shape)
-            whole, done = whole + added.toarray(), done + count
+            figures.append(RELAXATION * bound if count else bound)
+            done += count
+        return self._with_cups(figures)
+
+    def hessian(self, moved: Points) -> Floats:
+        """Return the second derivative of the energy as a full matrix, shape (3 f, 3 f) [N/mm]."""
+        return self._with_cups(self.hessian_figures(moved, clip=False))
+
+    def _with_cups(self, figures: Sequence[Floats]) -> Floats:
+        whole = self.solid
+        for cup, values in zip(self.cups, figures, strict=True):
+            at = cup.entries
+            added = sparse.coo_array((at.value * values[at.source], (at.row, at.column)), whole.shape)
+            whole = whole + added.toarray()
         return whole
 
     def energy(self, moved: Points) -> float:

@@ -16,11 +16,12 @@ from scipy.sparse import linalg as sparse_linalg
 
 from core.geometry.mesh import Floats, unit
 from core.mechanics.banded_matrix import Entries, Operator, Solve, lower_points, over_axes
+from core.mechanics.condensed_tissue import CondensedTissue
 from core.mechanics.iteration import HELD_GROWTH
 from core.mechanics.model import ConstrainedModel
 from core.mechanics.newton import LONGEST_STEP, Equilibrium, SlidingSurface, equilibrium_at
 from core.mechanics.potential import Evaluation, Potential
-from core.mechanics.springs import stretch_blocks
+from core.mechanics.springs import Springs, stretch_blocks
 from core.mechanics.tensegrity import TissueModel
 
 _NEAR_ENOUGH = 1e-6  # largest unbalanced force over the mean stiffness [mm]: the limit does not see less
@@ -34,6 +35,9 @@ def gain_limit(model: ConstrainedModel) -> float:
     The tension of held lines, which also changes from turn to turn, is left out.
     """
     a = model.rest_gradient
+    if isinstance(model.tensegric, CondensedTissue):
+        d = np.linalg.solve(_solid_double_lower_less_true(model, model.tensegric), a.ravel())
+        return model.probe / abs(float(a.ravel() @ d))
     cables, lines = _double_lower_less_true(model)
     if model.options.line_contact == "sliding":
         n = unit(a)
@@ -207,14 +211,26 @@ def _double_lower_less_true(model: ConstrainedModel) -> tuple[sparse.csr_array, 
     true = over_axes(tensegric.stiffness, len(rest))  # it is the true one where nothing else is
     if figures:
         true = weighted_sum(tensegric.hessian_entries, [np.ones(1), *figures], rest.size)
-    u = segments.rest_spans / segments.rest_lengths[:, None]
-    blocks = stretch_blocks(u, segments.stiffness, np.zeros(len(u)))
-    line_true = weighted_sum([segments.entries], [blocks.ravel()], rest.size)
+    line_true = _line_stiffness(segments, rest.size)
     points = len(tensegric.free)
     return (
         sparse.csr_array(2.0 * lower_points(tensegric.stiffness, points, tensegric.relaxation) - true),
         sparse.csr_array(2.0 * lower_points(model.line_laplacian, points, tensegric.relaxation) - line_true),
     )
+
+
+def _solid_double_lower_less_true(model: ConstrainedModel, solid: CondensedTissue) -> Floats:
+    """Return 2 M - H at rest on a solid, all of it full, (3 f, 3 f)."""
+    true = solid.hessian(np.zeros_like(solid.load))
+    lower = lower_points(model.stiffness, len(solid.free), solid.relaxation)
+    return np.asarray(2.0 * lower - true - _line_stiffness(model.segments, solid.load.size))
+
+
+def _line_stiffness(segments: Springs, size: int) -> sparse.csr_array:
+    """Return the stiffness of all segments at rest, where none is taut, shape (3 f, 3 f)."""
+    u = segments.rest_spans / segments.rest_lengths[:, None]
+    blocks = stretch_blocks(u, segments.stiffness, np.zeros(len(u)))
+    return weighted_sum([segments.entries], [blocks.ravel()], size)
 
 
 def weighted_sum(parts: Sequence[Entries], figures: Sequence[Floats], size: int) -> sparse.csr_array:

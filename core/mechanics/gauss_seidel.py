@@ -62,7 +62,8 @@ def bonded_sweep(stiffness: Operator, points: int, relaxation: float = 1.0) -> G
 
 def _forward_of_blocks(stiffness: Operator, points: int, relaxation: float) -> Solve:
     """Return the solver of the lower triangle of a stiffness (3 f, 3 f): each point solves its own block."""
-    lower = lower_points(stiffness, points, relaxation).toarray()
+    triangle = lower_points(stiffness, points, relaxation)
+    lower = triangle if isinstance(triangle, np.ndarray) else triangle.toarray()
     blocks = lower.reshape(points, 3, points, 3)[np.arange(points), :, np.arange(points)]
     own = np.linalg.inv(blocks)
     # Each point's rows over its own block: what is left has ones on the diagonal, and is inverted quickly.

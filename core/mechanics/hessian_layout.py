@@ -80,9 +80,13 @@ def layout_of(tensegric: TissueModel, segments: Springs, volume: VolumeMeasure) 
     fixed, *parts = tensegric.hessian_entries
     corners = volume.curvature(tensegric.place)
     parts = [*parts, segments.entries, corners]
-    coupled = [(part.row // 3, part.column // 3) for part in (fixed, *parts)]
-    first, second = (np.concatenate(ends) for ends in zip(*coupled, strict=True))
-    band = band_of(len(tensegric.free), first, second)
+    count = len(tensegric.free)
+    if len(fixed.row) == (3 * count) ** 2:  # all points are joined: there is no narrow order to look for
+        band = Band(np.arange(3 * count), 3 * count - 1)
+    else:
+        coupled = [(part.row // 3, part.column // 3) for part in (fixed, *parts)]
+        first, second = (np.concatenate(ends) for ends in zip(*coupled, strict=True))
+        band = band_of(count, first, second)
     maps = [sparse.csr_array(band.lower(part)) for part in parts]
     changing = sparse.csr_array(sparse.hstack(maps, format="csr"))
     trace = 1e-8 * tensegric.mean_stiffness

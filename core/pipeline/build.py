@@ -32,6 +32,7 @@ from core.mechanics.cup_parts import CupPart
 from core.mechanics.gain_limit import gain_limit
 from core.mechanics.iteration import LineTargets, Observables
 from core.mechanics.model import ConstrainedModel, constrained_model
+from core.mechanics.newton import Equilibrium
 from core.mechanics.options import ModelOptions
 from core.messages import LineName, Message
 from core.pipeline.cup_parts import CupLayout
@@ -83,9 +84,10 @@ class Stages:
     ``fitted`` is the control mesh whose points own lines are named by, which ``control`` may have halved.
     ``backs`` complete the lines of the template to whole bands, ``tails`` own lines to straps; ``routes`` are
     where all of them run at rest. ``tissue`` is what the solid under the skin answers, where the model has
-    one. ``gain`` is the conventional gain in force,
-    ``gain_limit`` the one at which it begins to vibrate at rest (probe units [1]); ``seconds`` what each
-    stage took when it was last made; ``memo`` holds each stage's inputs and result for reuse.
+    one. ``balance`` is the exact answer where the elastics of lines were fitted to it. ``gain`` is the
+    conventional gain in force, ``gain_limit`` the one at which it begins to vibrate at rest (probe units
+    [1]); ``seconds`` what each stage took when it was last made; ``memo`` holds each stage's inputs and
+    result for reuse.
     """
 
     design: Design
@@ -102,6 +104,7 @@ class Stages:
     tails: Mapping[str, Tail]
     routes: Mapping[str, LineRoute]
     model: ConstrainedModel
+    balance: Equilibrium | None
     gain_limit: float
     tissue: TissueResponse | None
     seconds: Mapping[str, float]
@@ -190,6 +193,10 @@ class _StageCache:
         self.memo[name] = (inputs, result)
         return result
 
+    def former(self, name: str) -> Any:
+        """Return what a stage made in the previous build, or None."""
+        return self._old[name][1] if name in self._old else None
+
     def landmarks(self, body: Body, design: Design) -> Mapping[str, Landmark]:
         """Return what was found before it went wrong; of landmarks those at least that were placed."""
         if "find landmarks" in self.memo:
@@ -271,14 +278,18 @@ def _stages(
     if tissue is not None:
         solid = stage("dress solid", solid_tissue, fitted, control, tissue, design.model_options, cups)
     model = stage("build model", _model, laid, *lengths, *chosen, solid)
-    elastics = design.active_elastics()
+    elastics, balance = design.active_elastics(), None
     if elastics and design.line_hold == "spring":  # a held line has its length, whatever it is made of
         change = stage("follow body", DenseVolumeChange, binding, moving) if design.dense_volume else None
         made = design.lines, elastics, design.tissue_stiffness, design.line_stiffnesses()
-        model = stage("fit elastics", solve_elastic_model, model, *made, change)
+        solve = partial(solve_elastic_model, former=stage.former("fit elastics"))
+        fitted_model = stage("fit elastics", solve, model, *made, change)
+        model, balance = fitted_model.model, fitted_model.balance
     limit = stage("probe gain", gain_limit, model)
     made_of = scan, body, landmarks, control, fitted, patch, binding, moving, watch
-    return Stages(design, *made_of, backs, tails, routes, model, limit, tissue, stage.seconds, stage.memo)
+    return Stages(
+        design, *made_of, backs, tails, routes, model, balance, limit, tissue, stage.seconds, stage.memo
+    )
 
 
 def line_targets(design: Design, stages: Stages) -> LineTargets:

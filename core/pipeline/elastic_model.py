@@ -22,25 +22,35 @@ def solve_elastic_model(
     tissue_stiffness: float,
     own_stiffness: Mapping[str, float],
     body_change: BodyChange | None = None,
-) -> ConstrainedModel:
-    """Return the model in which worn ``lines`` pull as their ``elastics`` do, by line.
+    *,
+    former: FittedModel | None = None,
+) -> FittedModel:
+    """Return the model in which worn ``lines`` pull as their ``elastics`` do, by line, and its balance.
 
     The natural length of such a line is what its elastic measures unstretched. ``tissue_stiffness`` [N/m]
     gives the newtons; see ``core.mechanics.elastic_lines``. ``body_change`` is for answers that hold the
-    volume of the body itself. Raises LineError where an elastic would be stretched beyond its curve, or
+    volume of the body itself. On a solid, which has one balance, the search begins at the stiffnesses of a
+    ``former`` model. Raises LineError where an elastic would be stretched beyond its curve, or
     nothing balances.
     """
     worn = {line.name: line.ratio for line in lines}
     ratios = {line.name: worn.get(line.name, 1.0) for line in model.lines}
     newtons = newtons_per_unit(model, tissue_stiffness)
     wish = ElasticLines(model, ratios, elastics, newtons, own_stiffness)
-    fitted = fit_elastics(wish, _solver(tuple(ratios.values()), body_change))
+    begin = None
+    if (
+        former is not None
+        and model.options.tissue == "solid"
+        and former.elongations.keys() == elastics.keys()
+    ):
+        begin = former.log_ea
+    fitted = fit_elastics(wish, _solver(tuple(ratios.values()), body_change), begin)
     for name, elongation in fitted.elongations.items():
         if elongation > elastics[name].max_elongation:
             raise elastics[name].overstretch_error(elongation, LineName(name), worn.get(name))
     if not fitted.agreed:
         raise _no_agreement(fitted)
-    return fitted.model
+    return fitted
 
 
 def _solver(ratios: tuple[float, ...], change: BodyChange | None) -> Solve:

@@ -76,7 +76,10 @@ def exact_equilibrium(
     ``ratios`` [1] are other lengths than the design's, one per line of the model. After ``limit`` steps it is
     given up.
     """
-    ratios = line_targets(stages.design, stages).ratios if ratios is None else ratios
+    own = line_targets(stages.design, stages).ratios
+    if stages.balance is not None and ratios in (None, own):
+        return stages.balance
+    ratios = own if ratios is None else ratios
     if stages.design.dense_volume:
         return solve_body_exact(stages.model, ratios, stages.body_change, limit, near=near)
     return solve_exact(stages.model, ratios, limit, near=near)

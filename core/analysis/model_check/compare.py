@@ -142,7 +142,7 @@ def _on_solid(case: ReferenceCase, stages: Stages, tissue: TissueResponse) -> St
         if line.name in stages.design.active_lines()
     }
     made = assemble(solid, model.lines, model.volume, stages.design.active_lines(), own)
-    return replace(stages, model=made)
+    return replace(stages, model=made, balance=None)
 
 
 def control_displacement(case: ReferenceCase, stages: Stages) -> tuple[Points, tuple[Message, ...]]:
