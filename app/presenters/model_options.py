@@ -74,7 +74,7 @@ def groups() -> tuple[Group, ...]:
     """Return all settings of the model, by what they are about."""
     return (
         (tr("Lines"), (_contact(), _hold(), _stiffness(), _height(), _force())),
-        (tr("Tissue"), (_tissue(), _sag(), _posture())),
+        (tr("Tissue"), (_tissue(), _sag(), _density(), _posture())),
         (tr("Body"), (_chest(), _law(), _prestress(), _weights(), _normals())),
         (tr("Volume"), (_control(), _volume_of(), _dense(), _gain())),
     )
@@ -90,7 +90,7 @@ def without_effect(present: Mapping[str, Any]) -> frozenset[str]:
     """Return the settings that change nothing beside the others: those of the other tissue, prestress."""
     if present["tissue"] == "solid":
         return frozenset({"firm_chest", "member_law", "prestress", "line_contact"})
-    idle = {"sag", "posture"}
+    idle = {"sag", "density", "posture"}
     return frozenset(idle if present["member_law"] == "prestressed" else {*idle, "prestress"})
 
 
@@ -185,13 +185,19 @@ def _sag() -> Amount:
     return Amount("sag", tr("Sag"), tip, unit, shown_value(1.0), digits, RANGES["sag"])
 
 
+def _density() -> Amount:
+    tip = tr("Set the density of solid tissue: fat has 0.92 kg/l. Forces are proportional to it.")
+    return Amount("density", tr("Density"), tip, "kg/l", 1.0, 2, RANGES["density"])
+
+
 def _posture() -> Choice:
     tip = tr(
-        "Choose the posture to compute with solid tissue: standing as scanned, lying on the back, or without "
-        "weight."
+        "Choose the posture to compute with solid tissue: standing as scanned, leaning forward by 30 degrees, "
+        "lying on the back, or without weight."
     )
     options = (
         ("standing", tr("Standing")),
+        ("leaning", tr("Leaning forward")),
         ("lying", tr("Lying on the back")),
         ("unloaded", tr("Without weight")),
     )

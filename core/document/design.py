@@ -27,7 +27,7 @@ from core.document.printable_name import repeated
 from core.errors import LandmarkError, LineError, UserError
 from core.landmarks.manual import PlacedMark
 from core.mechanics.constraint_lines import RATIO_LIMITS
-from core.mechanics.options import CHOICES, DEFAULT_LINE_STIFFNESS, RANGES, SAG, ModelOptions
+from core.mechanics.options import CHOICES, DEFAULT_LINE_STIFFNESS, DENSITY, RANGES, SAG, ModelOptions
 from core.mechanics.volume import CONTROLS
 from core.messages import LineName, Message, SettingName
 from core.scan.source import ScanSource
@@ -76,6 +76,7 @@ class Design:
     volume_of: str = "each"
     tissue: str = "net"
     sag: float = SAG
+    density: float = DENSITY
     posture: str = "standing"
     own_lines: tuple[CustomLine, ...] = ()
     traits: tuple[LineSettings, ...] = ()

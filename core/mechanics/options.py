@@ -13,10 +13,13 @@ CONTACTS = ("glued", "sliding")
 LINE_HOLDS = ("spring", "held")
 VOLUMES = ("each", "both")
 TISSUES = ("net", "solid")
-POSTURES = ("standing", "lying", "unloaded")
+POSTURES = ("standing", "leaning", "lying", "unloaded")
 
 SAG = 20.0
 """Rise of the bust points when their weight is taken, where nothing is known of the person [mm]: assumed."""
+
+DENSITY = 0.95
+"""Density of breast tissue where nothing is known of the person, between fat and gland [kg/l]: assumed."""
 
 DEFAULT_LINE_STIFFNESS = 16.0
 """Stiffness of a line segment in units of the cables' mean stiffness at a point [1]; ours."""
@@ -37,7 +40,8 @@ class ModelOptions:
     the thinner the tissue below; 0 not at all, 0.1 firm. ``volume_of`` tells what the exact answer holds:
     "each" breast, or the sum of "both". ``tissue`` is the "net" of cables (paper section 2) or a "solid"
     with weight under the skin (ours), as soft as its ``sag`` [mm] tells: the rise of the bust points when
-    their weight is taken. ``posture``: the person stands as scanned, lies on the back, or has no weight.
+    their weight is taken; its ``density`` [kg/l] makes the weight. ``posture``: the person stands as scanned,
+    leans forward by 30 degrees, lies on the back, or has no weight.
     """
 
     member_law: str = "force-density"
@@ -50,6 +54,7 @@ class ModelOptions:
     volume_of: str = "each"
     tissue: str = "net"
     sag: float = SAG
+    density: float = DENSITY
     posture: str = "standing"
 
 
@@ -69,5 +74,6 @@ RANGES = {
     "line_stiffness": (0.1, 500.0),
     "firm_chest": (0.0, 1.0),
     "sag": (1.0, 100.0),
+    "density": (0.85, 1.15),
 }
 """The least and the largest number that each setting allows."""

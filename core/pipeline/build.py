@@ -44,6 +44,7 @@ from core.scan.body import Body, ImplausibleScanError, body_of
 from core.scan.edited_body import KEEP_MORE, NO_BUST, apply_edits
 from core.scan.source import UNEDITED
 from core.tissue.condensed import TissueResponse, condense
+from core.tissue.solid import DENSITY as CONDENSED_DENSITY
 
 SHARES = {
     "read scan": 0.46,
@@ -403,7 +404,12 @@ def _cups(
     return CupLayout(cup, fitted, control, tissue.depth).parts()
 
 
-GRAVITY = {"standing": (0.0, 0.0, -1.0), "lying": (0.0, 1.0, 0.0), "unloaded": (0.0, 0.0, 0.0)}
+GRAVITY = {
+    "standing": (0.0, 0.0, -1.0),
+    "leaning": (0.0, -0.5, -(0.75**0.5)),
+    "lying": (0.0, 1.0, 0.0),
+    "unloaded": (0.0, 0.0, 0.0),
+}
 """Gravity in each posture, in the axes of the body [g]."""
 
 
@@ -421,14 +427,15 @@ def solid_tissue(
     of its posture unless it is told.
     """
     change = np.subtract(gravity or GRAVITY[mechanics.posture], GRAVITY["standing"])
+    heavier = mechanics.density / CONDENSED_DENSITY  # and as much stiffer, if it sags as far
     free = np.flatnonzero(~control.fixed)
     edges = fitted.mesh.edges
     return CondensedTissue(
         control.mesh.vertices,
         free,
         edges[~control.fixed[edges].all(axis=1)],
-        frozen(tissue.shear_modulus(mechanics.sag) * tissue.stiffness),
-        frozen((tissue.weight @ change).reshape(-1, 3)),
+        frozen(heavier * tissue.shear_modulus(mechanics.sag) * tissue.stiffness),
+        frozen(heavier * (tissue.weight @ change).reshape(-1, 3)),
         mechanics,
         cups,
     )

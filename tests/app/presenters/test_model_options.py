@@ -18,7 +18,7 @@ def test_settings_of_the_other_tissue_are_neither_shown_nor_summed_up():
     net = defaults()
     solid = {**net, "tissue": "solid", "firm_chest": 0.1, "member_law": "co-rotated"}
     keys = {setting.key for _, settings in groups() for setting in settings}
-    assert without_effect(net) == {"sag", "posture", "prestress"}
+    assert without_effect(net) == {"sag", "density", "posture", "prestress"}
     assert "prestress" not in without_effect({**net, "member_law": "prestressed"})
     assert without_effect(solid) == {"firm_chest", "member_law", "prestress", "line_contact"} <= keys
     assert summary(solid) == "Elastic length · Solid with weight"
