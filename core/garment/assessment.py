@@ -184,7 +184,7 @@ def _slack(row: CutRow) -> Finding:
 
 
 def _pressures(pressed: PressureList | None) -> Iterator[Finding]:
-    """Yield lines and cups that press more than the green light allows, the hardest first, and those not known."""
+    """Yield lines and cups that press more than the green light allows, the hardest first, and unknown."""
     rows = [row for row in pressed.rows if row.light != GREEN] if pressed is not None else []
     for row in sorted(rows, key=lambda row: -(row.max_kpa or 0.0)):
         yield _pressure(row)

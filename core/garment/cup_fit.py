@@ -32,8 +32,8 @@ class CupSide:
 
     ``more_ml`` [ml] is how much more a moulded cup holds than the breast that it covers, None of a sewn one;
     ``up_n``, ``back_n`` and ``inward_n`` [N] are the force on the breast, ``wire_n`` that of the wire's
-    points taken together. ``max_kpa`` and ``mean_kpa`` are of the skin that is pressed, ``force_n`` [N] all of
-    that, whichever way, ``contact`` the share of the cup's area that presses, ``place`` [mm] where most.
+    points taken together. ``max_kpa`` and ``mean_kpa`` are of the skin that is pressed, ``force_n`` [N] is
+    all of that, whichever way, ``contact`` the share of the cup's area that presses, ``place`` [mm] where.
     """
 
     side: str

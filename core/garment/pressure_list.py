@@ -54,7 +54,7 @@ class PressureRow:
 
 @dataclass(frozen=True, eq=False)
 class PressureList:
-    """All worn lines in the order of the model, then cups; ``worn`` holds place by place what is known, by line."""
+    """All worn lines in the order of the model, then cups; ``worn`` holds places of lines, by name."""
 
     rows: tuple[PressureRow, ...]
     worn: Mapping[str, LinePressure]
