@@ -127,11 +127,10 @@ class Report:
     ``sizes`` those of ``sizes_text``, the chosen system first, or none and ``no_size`` says why;
     ``pressures`` follow the cut list row by row, those of ``cups`` are apart, ``limits`` are those of their
     lights; ``doubts`` say what should be looked at before landmarks are trusted; ``assessment`` is the
-    overall verdict. ``off`` is how far figures may be off, by the keys of ``uncertain_value``, in their units: nothing where that
-    was not worked out; see ``with_uncertainty``. ``off_factor`` tells of others how many times smaller or
-    larger
-    they may be [1], ``off_notes`` where all of this says less than it seems to, ``off_sources`` what any of
-    it comes from. ``strain`` is that of the verdict.
+    overall verdict. ``off`` is how far figures may be off, by the keys of ``uncertain_value``, in their
+    units: nothing where that was not worked out; see ``with_uncertainty``. ``off_factor`` tells of others how
+    many times smaller or larger they may be [1], ``off_notes`` where all of this says less than it seems to,
+    ``off_sources`` what any of it comes from. ``strain`` is that of the verdict.
     """
 
     heading: Heading
