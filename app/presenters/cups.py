@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-from app.i18n.catalog import colon, number, tr
+from app.i18n.catalog import colon, number, tr, tr_context
 from app.i18n.lengths import length_unit, shown_digits, shown_value
 from app.presenters.bust_shift import bust_shift, step_text
 from app.presenters.messages import render_all
@@ -40,13 +40,18 @@ def kind_choice() -> Choice:
     return Choice("kind", tr("Cups"), tip, options)
 
 
+def kind_titles() -> dict[str, str]:
+    """Return what the kinds of cups are called in the menu."""
+    return {NO_CUPS: tr("No cups"), "moulded": tr("Moulded cups"), "sewn": tr("Sewn cups")}
+
+
 def coverage_choice() -> Choice:
     """Return the choice of how far up cups go."""
     tip = tr("Choose the upper edge of the cups: at the bust points, above, or near the upper chest.")
     options = (
-        ("half", tr("Half")),
-        ("three-quarter", tr("Three-quarter")),
-        ("full", tr("Full")),
+        ("half", tr_context("coverage", "Half")),
+        ("three-quarter", tr_context("coverage", "Three-quarter")),
+        ("full", tr_context("coverage", "Full")),
     )
     return Choice("coverage", tr("Coverage"), tip, options)
 

@@ -48,6 +48,9 @@ BOTH_WAYS = ("displacement", "sides", "worn")
 """Maps whose values go both ways from zero, all of them lengths."""
 
 _LEAST = {"sides": 5.0, "worn": 5.0, "pressure": 5.0}  # no map shows less [mm, kPa]; both limits are seen
+LEAST_OF_CUPS = 3.0
+"""Cups press softly on much of the skin: of both limits only the first is always seen [kPa]."""
+
 _ROUND = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 
 
@@ -166,13 +169,13 @@ def ramp_of(name: str, low: float, high: float, clay: str) -> Ramp:
     return Ramp((clay, *MAP_AMOUNT), low, high, clay)
 
 
-def automatic_range(name: str, values: Floats) -> tuple[float, float]:
-    """Return the range that holds all values, up to a round number; at least one worth a look."""
+def automatic_range(name: str, values: Floats, least: float = 0.0) -> tuple[float, float]:
+    """Return the range that holds all values, up to a round number; at least ``least``, or one worth a look."""
     if name == "pull":
         return 0.0, 100.0
     seen = np.abs(values[np.isfinite(values)])
     one = 1.0 / shown_value(1.0, "mm" if name in BOTH_WAYS else "")  # of the unit in which it is written
-    high = one * rounded_up(max(float(seen.max(initial=0.0)), _LEAST.get(name, 1.0)) / one)
+    high = one * rounded_up(max(float(seen.max(initial=0.0)), least or _LEAST.get(name, 1.0)) / one)
     return (-high, high) if name in BOTH_WAYS else (0.0, high)
 
 

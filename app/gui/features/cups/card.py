@@ -54,7 +54,7 @@ class AmountRow(QWidget):
         self.slider.previewed.connect(self.edit.show_value)
         self.slider.committed.connect(self.committed)
         self.slider.cancelled.connect(self.cancelled)
-        self.edit.entered.connect(lambda value: self.committed.emit(value))
+        self.edit.entered.connect(self.committed.emit)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(4)

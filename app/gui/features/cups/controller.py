@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 
 from app.gui.features.cups.card import CupCard
-from app.presenters.cups import change_text, fit_view, kind_text, with_kind
+from app.i18n.catalog import tr
+from app.presenters.cups import NO_CUPS, change_text, fit_view, kind_text, kind_titles, with_kind
 from core.document.design import Design
 from core.pipeline.live_solver import Frame
 
@@ -30,13 +31,14 @@ class CupsController(QObject):
     def __init__(self, context: AppContext, card: CupCard) -> None:
         super().__init__(context.session)
         self._session, self._card = context.session, card
-        context.session.design_changed.connect(card.show_design)
+        context.session.design_changed.connect(self._show_design)
         context.session.failed.connect(lambda _: self._show_present())
         card.kind_chosen.connect(self.choose)
         card.previewed.connect(self.preview)
         card.changed.connect(self.change)
         card.cancelled.connect(context.session.cancel_preview)
         card.map_requested.connect(lambda on: self.map_requested.emit(MAP if on else ""))
+        self._add_actions(context)
 
     def choose(self, kind: str) -> None:
         """Choose a kind of cups, or none."""
@@ -61,7 +63,23 @@ class CupsController(QObject):
 
     def _show_present(self) -> None:
         if self._session.design is not None:
-            self._card.show_design(self._session.design)
+            self._show_design(self._session.design)
+
+    def _show_design(self, design: Design) -> None:
+        self._card.show_design(design)
+        self.kinds[NO_CUPS if design.cup is None else design.cup.kind].setChecked(True)
+
+    def _add_actions(self, context: AppContext) -> None:
+        """List the kinds of cups in the menu: each can be chosen by its name."""
+        do = context.actions
+        do.submenu("lines", "cups", tr("Cups"))
+        self.kinds = do.group("cups", kind_titles())
+        for kind, action in self.kinds.items():
+            action.triggered.connect(lambda _=False, kind=kind: self._choose_and_show(context, kind))
+
+    def _choose_and_show(self, context: AppContext, kind: str) -> None:
+        context.navigation.show_step("lines")
+        self.choose(kind)
 
 
 def _with(design: Design, key: str, value: object) -> Design:

@@ -16,7 +16,16 @@ from app.gui.viewport.body_view import BodyView
 from app.gui.viewport.value_labels import ValueFlag, ValueFlags
 from app.i18n.catalog import number
 from app.i18n.lengths import length
-from app.presenters.maps import LINE_MAPS, MAPS, BodyState, automatic_range, bridge_text, map_kinds, ramp_of
+from app.presenters.maps import (
+    LEAST_OF_CUPS,
+    LINE_MAPS,
+    MAPS,
+    BodyState,
+    automatic_range,
+    bridge_text,
+    map_kinds,
+    ramp_of,
+)
 from app.rendering.appearance import appearance_of
 from app.rendering.camera import framing_place
 from app.rendering.vertex_colors import Ramp
@@ -230,7 +239,8 @@ class MapsController(QObject):
             self._values = self._seen.on_skin(self.name, self.now)
         beside += [self._values_of(view) for view in bodies]
         values = np.concatenate([np.empty(0), *beside])
-        by_hand, (low, high) = self._by_hand.get(self.name), automatic_range(self.name, values)
+        least = LEAST_OF_CUPS if self.name in LINE_MAPS and len(self._values) else 0.0
+        by_hand, (low, high) = self._by_hand.get(self.name), automatic_range(self.name, values, least)
         if frame.is_running and self._range_of == self.name:  # while a body moves the colours only widen
             low, high = min(low, self._range[0]), max(high, self._range[1])
         self._range, self._range_of = by_hand or (low, high), "" if by_hand else self.name
