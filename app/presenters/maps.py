@@ -170,7 +170,7 @@ def ramp_of(name: str, low: float, high: float, clay: str) -> Ramp:
 
 
 def automatic_range(name: str, values: Floats, least: float = 0.0) -> tuple[float, float]:
-    """Return the range that holds all values, up to a round number; at least ``least``, or one worth a look."""
+    """Return the range that holds all values, up to a round number; it holds ``least``, or some default."""
     if name == "pull":
         return 0.0, 100.0
     seen = np.abs(values[np.isfinite(values)])
