@@ -18,6 +18,8 @@ from PySide6.QtWidgets import (
 from app.gui.actions import Actions
 from app.gui.context import AppContext, Navigation, Selection
 from app.gui.features.convergence.controller import ConvergenceController
+from app.gui.features.cups.card import CupCard
+from app.gui.features.cups.controller import CupsController
 from app.gui.features.diagnosis.assessment import AssessmentController
 from app.gui.features.diagnosis.controller import DiagnosisController
 from app.gui.features.export.controller import ExportController
@@ -133,7 +135,8 @@ class MainWindow(QMainWindow):
         )
         self.scan, self.landmarks = ScanPanel(), LandmarksPanel()
         self.lines, self.result, self.garment = LinesPanel(), MeasurementsPanel(), GarmentPanel()
-        self.model, self.door = ModelPanel(), ModelRow()
+        self.model, self.door, self.cups = ModelPanel(), ModelRow(), CupCard()
+        self.lines.cards.addWidget(self.cups)
         self.ask_door = NavigationRow(
             tr("Target shape"), tr("Set target positions; Busk computes the line lengths")
         )
@@ -229,6 +232,7 @@ class MainWindow(QMainWindow):
         self.draw_tool = LineDrawTool(context, panel, self.add_lines_controller)
         self.path_tool = LinePathTool(context, panel, self.draw_tool.begin_again)
         self.presets_controller = PresetsController(context, panel)
+        self.cups_controller = CupsController(context, self.cups)
         self.band_drag_controller = BandDragController(
             context,
             panel,
@@ -329,6 +333,7 @@ class MainWindow(QMainWindow):
             [
                 self.model_controller.show_frame,
                 self.lines_controller.show_frame,
+                self.cups_controller.show_frame,
                 self._show_status,
                 self.assessment_controller.show_frame,
                 self.convergence_controller.show_frame,
@@ -414,10 +419,20 @@ class MainWindow(QMainWindow):
         selection.line_selected.connect(self.garment.select)
         selection.line_selected.connect(view.select_line)
         maps, sections = self.maps_controller, self.sections_controller
-        for changed in (sections, self.symmetry_controller, self.scan_comparison_controller):
+        for changed in (
+            sections,
+            self.symmetry_controller,
+            self.scan_comparison_controller,
+            self.cups_controller,
+        ):
             maps.chosen.connect(changed.show_map)
         maps.chosen.connect(self.view_controller.show_map)
-        for source in (self.symmetry_controller, self.scan_comparison_controller, self.view_controller):
+        for source in (
+            self.symmetry_controller,
+            self.scan_comparison_controller,
+            self.view_controller,
+            self.cups_controller,
+        ):
             source.map_requested.connect(maps.choose)
         self.view_controller.material_shown.connect(maps.refresh)
         self.preferences_controller.material_chosen.connect(self.view_controller.choose_material)

@@ -23,7 +23,9 @@ SYNONYMS = {
     "Before and after side by side": "compare 比較",
     "Fit all": "zoom centre whole ズーム 全体",
     "Zoom to selection": "zoom close ズーム 拡大",
-    "Bands": "tapes elastic garment belt ベルト テープ ゴム",
+    "Bands and cups": "tapes elastic garment belt cloth ベルト テープ ゴム 布",
+    "Moulded cups": "cup bra push-up lift カップ ブラ リフト",
+    "Sewn cups": "cup bra cloth pattern カップ ブラ 縫製 布",
     "Section plane": "cut cross-section profile contour slice 断面 輪郭 カット",
     "Scan colours": "texture photo skin color nipple bra edge テクスチャ 写真 カラー 乳頭",
     "Map on the body": "displacement strain pressure tension colour lift raised heat "

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy import sparse
 
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length, shown_value
@@ -22,6 +23,7 @@ from app.presenters.bust_shift import (
 from app.presenters.pressure import limit_marks
 from app.rendering.palette import MAP_AMOUNT, MAP_LESS, MAP_MORE
 from app.rendering.vertex_colors import Ramp
+from core.garment.cup_fit import WornCups
 from core.garment.pressure import mmhg, pressure_limits
 from core.garment.pressure_list import PressureList
 from core.geometry.mesh import Floats, Indices, Mesh, Points
@@ -29,10 +31,15 @@ from core.geometry.mirror_plane import SideComparison, mirror_plane
 from core.measurements.uncertain_value import OutputUncertainties
 from core.pipeline.build import Stages, line_targets
 from core.pipeline.live_solver import Frame
-from core.pipeline.surface_fields import StrainOnBody, line_forces, normal_displacement
+from core.pipeline.surface_fields import (
+    StrainOnBody,
+    between_control_points,
+    line_forces,
+    normal_displacement,
+)
 
 LINE_MAPS = ("pull", "pressure")
-"""Maps that lie on the bands."""
+"""Maps that lie on the bands; that of the pressure lies on the skin below cups too."""
 
 MAPS = ("displacement", "strain", "sides", "worn", *LINE_MAPS)
 """Maps in the order in which a key goes through them, the first one first seen."""
@@ -41,6 +48,9 @@ BOTH_WAYS = ("displacement", "sides", "worn")
 """Maps whose values go both ways from zero, all of them lengths."""
 
 _LEAST = {"sides": 5.0, "worn": 5.0, "pressure": 5.0}  # no map shows less [mm, kPa]; both limits are seen
+LEAST_OF_CUPS = 3.0
+"""Cups press softly on much of the skin: of both limits only the first is always seen [kPa]."""
+
 _ROUND = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 
 
@@ -117,7 +127,7 @@ def _line_maps() -> list[MapKind]:
             tr("Contact pressure"),
             "kPa",
             _pressure_tip(),
-            tr("Upper estimate. Dashed: across hollows."),
+            tr("Bands, and skin below cups. Dashed: across hollows."),
             marks=limit_marks(),
         ),
     ]
@@ -130,7 +140,8 @@ def _pressure_tip() -> str:
     )
     return tr(
         "Shows the contact pressure of the bands on the skin: tension divided by width and "
-        "radius of curvature. 1 kPa is 7.5 mmHg. Marks: snug from {amber}, too tight from {red}. "
+        "radius of curvature; and that of cups, on the skin. 1 kPa is 7.5 mmHg. Marks: snug from {amber}, "
+        "too tight from {red}. "
         "Estimate: tissue yields, and sensors measure lower values."
     ).format(amber=amber, red=red)
 
@@ -141,7 +152,7 @@ def pressure_note(listed: PressureList | None, stale: bool) -> str:
         return tr("Computed when the solver has converged.")
     if stale:
         return tr("For the previous shape; recomputed when the solver has converged.")
-    if not listed.worn:
+    if not listed.worn and listed.highest is None:
         return tr("No active line with known tension presses on the skin.")
     return ""
 
@@ -158,13 +169,13 @@ def ramp_of(name: str, low: float, high: float, clay: str) -> Ramp:
     return Ramp((clay, *MAP_AMOUNT), low, high, clay)
 
 
-def automatic_range(name: str, values: Floats) -> tuple[float, float]:
-    """Return the range that holds all values, up to a round number; at least one worth a look."""
+def automatic_range(name: str, values: Floats, least: float = 0.0) -> tuple[float, float]:
+    """Return the range that holds all values, up to a round number; it holds ``least``, or some default."""
     if name == "pull":
         return 0.0, 100.0
     seen = np.abs(values[np.isfinite(values)])
     one = 1.0 / shown_value(1.0, "mm" if name in BOTH_WAYS else "")  # of the unit in which it is written
-    high = one * rounded_up(max(float(seen.max(initial=0.0)), _LEAST.get(name, 1.0)) / one)
+    high = one * rounded_up(max(float(seen.max(initial=0.0)), least or _LEAST.get(name, 1.0)) / one)
     return (-high, high) if name in BOTH_WAYS else (0.0, high)
 
 
@@ -270,6 +281,8 @@ class BodyState:
             return normal_displacement(self.stages.moving.rest, self._rest_normals, self.frame.points)
         if name == "strain":
             return 100.0 * self._strain(self.frame.control_points)
+        if name == "pressure":
+            return self._cup_pressures()
         return self.sides.protrusion_difference(self.places, self.normals, self.sides.rows)
 
     @cached_property
@@ -281,6 +294,21 @@ class BodyState:
         if name == "sides":
             return self._sides_at_rest.copy()
         return np.full(len(self.rest.vertices), np.nan if name == "worn" else 0.0)
+
+    def lies_on_skin(self, name: str) -> bool:
+        """Return whether a map has values on the skin of this body."""
+        return name not in LINE_MAPS or (name == "pressure" and self.stages.design.cup is not None)
+
+    def _cup_pressures(self) -> Floats:
+        """Return the pressures of the cups at the moving vertices, (r,) [kPa]."""
+        kpa = WornCups(self.stages).fit(self.frame.control_points).kpa
+        return np.asarray(self._from_control_points @ kpa)
+
+    @cached_property
+    def _from_control_points(self) -> sparse.csr_array:
+        stages = self.stages
+        places, fade = stages.moving.rest, stages.patch.fade[stages.moving.vertices]
+        return between_control_points(stages.control.mesh, places, fade)
 
     def pulls(self) -> dict[str, Floats]:
         """Return how the segments of the worn lines pull, by line, each (k,) [%]."""

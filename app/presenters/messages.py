@@ -90,6 +90,8 @@ def line_title(name: str, design: Design | None = None) -> str:
         "oblique right": tr("Oblique right"),
         "ring left": tr("Ring left"),
         "ring right": tr("Ring right"),
+        "cup left": tr("Cup left"),
+        "cup right": tr("Cup right"),
     }
     kind = kind_of(name)
     usual = _with_side(titles.get(kind) or _generated(kind), name)

@@ -8,6 +8,7 @@ from app.i18n.catalog import colon, joined, language, listed, number, tr
 from app.i18n.lengths import length
 from app.presenters.lines import LineView, line_colours
 from app.presenters.messages import line_title, render, render_all
+from app.rendering.palette import CUP_COLOUR
 from core.document.design import Design
 from core.garment.assessment import UNKNOWN_PRESSURE
 from core.garment.pressure import AMBER, GREEN, LEFT_OUT, NOT_FOR_STRAPS, RED, mmhg, pressure_limits
@@ -123,6 +124,7 @@ def pressure_summary(listed: PressureList | None, design: Design, doubt: str = "
     if most is None or most.max_kpa is None:
         return _nothing(tr("No active line with known tension presses on the skin."))
     colours = line_colours([row.line for row in listed.rows], design)
+    colours |= {row.line: CUP_COLOUR for row in listed.rows if row.is_cup}
     marks = tuple(
         (line_title(row.line, design), colours[row.line], row.max_kpa)
         for row in listed.rows

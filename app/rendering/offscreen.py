@@ -83,7 +83,9 @@ class OffscreenRenderer:
         yield 0.5
         scene.show_bands(bands)
         yield 0.7
-        scene.move_body(stages.moving.vertices, *stages.shape(control_points))
+        shape = stages.shape(control_points)
+        scene.move_body(stages.moving.vertices, *shape)
+        scene.show_cups(stages, *shape)
         yield 1.0
 
     def __enter__(self) -> OffscreenRenderer:

@@ -141,6 +141,9 @@ LINE_COLORS = (
 )
 """Colours of the constraining lines in both themes; the first seven stay apart for colour-blind eyes."""
 
+CUP_COLOUR = "#8D94C4"
+"""Colour of a mark that stands for a cup, in both themes."""
+
 MAP_LESS = ("#1D4E8F", "#4C8CCB", "#A9C8E6")
 """Colours of a map below zero, the least first; zero is the clay of the body."""
 

@@ -14,6 +14,7 @@ from app.rendering.band_actors import Bands
 from app.rendering.body_actor import BodyActor, GhostActor
 from app.rendering.camera import NOBODY, View, aim, depth_range, framing_bust
 from app.rendering.control_mesh_actor import ControlActor
+from app.rendering.cup_actors import Cups
 from app.rendering.curve_actors import MeasureTrace, Trace
 from app.rendering.lights_and_floor import LightsAndFloor
 from app.rendering.render_mesh import NONE
@@ -21,6 +22,7 @@ from app.rendering.ribbon_mesh import RibbonSurface
 from app.rendering.section_actor import SectionSheet
 from app.rendering.vertex_colors import Colours
 from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points
+from core.pipeline.build import Stages
 
 PARTS = ("body", "bands", "control", "floor", "ghost", "colours")
 """What ``Scene.set_visible`` knows; the ghost is the body at rest as a fringe, the colours are the scan's."""
@@ -39,6 +41,7 @@ class Scene:
         self._pixel_ratio = pixel_ratio
         self._stage = LightsAndFloor(plotter)
         self.bands = Bands(plotter)
+        self.cups = Cups(plotter, pixel_ratio)
         self._trace, self.measure = Trace(plotter), MeasureTrace(plotter)
         self.section = SectionSheet(plotter, pixel_ratio)
         self._surface: RibbonSurface | None = None
@@ -57,6 +60,7 @@ class Scene:
     def show_body(self, mesh: Mesh, moving: Indices = NONE, scanned: Colours | None = None) -> None:
         """Show a body at rest alone; vertices ``moving`` (k,) may move, ``scanned`` (n, 4) its colours."""
         self.bands.clear()
+        self.cups.clear()
         self._trace.show()
         self._drop_control()
         self.body = BodyActor(self.plotter, mesh, self._look, moving, scanned)
@@ -84,6 +88,10 @@ class Scene:
         """Show these lines on the body in place of the former ones."""
         self.bands.show(bands, self._laying_ground())
         self._follow()
+
+    def show_cups(self, stages: Stages, points: Points, normals: Points) -> None:
+        """Show the cups of a design, if any, on its worn body: (r, 3) places and normals of what moves."""
+        self.cups.show(stages, points, normals)
 
     def show_trace(self, points: Points) -> None:
         """Draw a curve of the body at rest, shape (k, 3) [mm], where it is on the shown one; or no curve."""
@@ -151,7 +159,7 @@ class Scene:
         self._dark = dark
         look = self._look
         self._stage.set_appearance(look)
-        for each in (self._trace, self.measure, self.section):
+        for each in (self._trace, self.measure, self.section, self.cups):
             each.set_dark(dark)
         if self.body is not None:
             self.body.set_appearance(look)
@@ -289,6 +297,7 @@ class Scene:
         if self._control is not None:
             self._control.set_visible(self._visible["control"])
         self.bands.set_visible(self._visible["bands"])
+        self.cups.set_visible(self._visible["bands"] and not self._before)
 
     def _box(self) -> Floats:
         return NOBODY if self.body is None else self.body.box

@@ -125,13 +125,12 @@ class Report:
     ``state`` is the word of the verdict ("strained" where skin strains though all has settled); ``lift`` is
     None in any state that is not ``SOUND``. ``measures`` are rows of ``measure_rows``,
     ``sizes`` those of ``sizes_text``, the chosen system first, or none and ``no_size`` says why;
-    ``pressures`` follow the cut list row by row, ``limits`` are those of their lights; ``doubts`` say what
-    should be looked at before landmarks are trusted; ``assessment`` is the overall verdict. ``off`` is how
-    far figures may be off, by the keys of ``uncertain_value``, in their units: nothing where that
-    was not worked out; see ``with_uncertainty``. ``off_factor`` tells of others how many times smaller or
-    larger
-    they may be [1], ``off_notes`` where all of this says less than it seems to, ``off_sources`` what any of
-    it comes from. ``strain`` is that of the verdict.
+    ``pressures`` follow the cut list row by row, those of ``cups`` are apart, ``limits`` are those of their
+    lights; ``doubts`` say what should be looked at before landmarks are trusted; ``assessment`` is the
+    overall verdict. ``off`` is how far figures may be off, by the keys of ``uncertain_value``, in their
+    units: nothing where that was not worked out; see ``with_uncertainty``. ``off_factor`` tells of others how
+    many times smaller or larger they may be [1], ``off_notes`` where all of this says less than it seems to,
+    ``off_sources`` what any of it comes from. ``strain`` is that of the verdict.
     """
 
     heading: Heading
@@ -145,6 +144,7 @@ class Report:
     no_size: Message
     cuts: CutList
     pressures: tuple[PressureRow, ...]
+    cups: tuple[PressureRow, ...]
     limits: Mapping[str, Any]
     sections: tuple[SectionCurves, ...]
     turns: IterationCurve
@@ -201,7 +201,8 @@ def make_report(
         sizes=found,
         no_size=why,
         cuts=cuts,
-        pressures=pressed.rows,
+        pressures=tuple(row for row in pressed.rows if not row.is_cup),
+        cups=tuple(row for row in pressed.rows if row.is_cup),
         limits=pressed.as_data()["limits"],
         sections=_sections(stages, points),
         turns=_turns(stages, records),

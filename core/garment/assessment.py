@@ -184,7 +184,7 @@ def _slack(row: CutRow) -> Finding:
 
 
 def _pressures(pressed: PressureList | None) -> Iterator[Finding]:
-    """Yield lines that press more than the green light allows, the hardest first, and those not known."""
+    """Yield lines and cups that press more than the green light allows, the hardest first, and unknown."""
     rows = [row for row in pressed.rows if row.light != GREEN] if pressed is not None else []
     for row in sorted(rows, key=lambda row: -(row.max_kpa or 0.0)):
         yield _pressure(row)
@@ -207,6 +207,9 @@ def _pressure(row: PressureRow) -> Finding:
     unwearable = kpa >= pressure_limits().beyond[-1][0]
     action = Message("Make the line longer, wider or softer.")
     much = Message("Not wearable: make the line much longer, wider or softer.")
+    if row.is_cup:
+        action = Message("Lift the cups less, or make them larger.")
+        much = Message("Not wearable: lift the cups much less, or make them much larger.")
     return Finding("pressure", BAD, message, much if unwearable else action, (row.line,), kpa)
 
 

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from core.deformation.tffd import deform
-from core.geometry.mesh import Faces, Floats, Points
+from core.geometry.mesh import Floats, Points
 from core.mechanics.condensed_tissue import CondensedTissue
 from core.mechanics.cup_parts import CupCloth, CupContact, CupPart, Underwire
 from core.messages import Message
@@ -19,6 +18,9 @@ from core.pipeline.surface_fields import between_control_points
 
 SMALL_ML = 20.0
 """A cup that holds so much less than the breast presses hard all over, or lets it spill [ml]."""
+
+_STANDS_OUT = 40.0
+"""No skin stands further out from the control mesh than this [mm]."""
 
 _STANDS_OFF = 1.0
 """So far is cloth drawn outside the skin that it covers [mm]."""
@@ -30,8 +32,8 @@ class CupSide:
 
     ``more_ml`` [ml] is how much more a moulded cup holds than the breast that it covers, None of a sewn one;
     ``up_n``, ``back_n`` and ``inward_n`` [N] are the force on the breast, ``wire_n`` that of the wire's
-    points taken together. ``max_kpa`` and ``mean_kpa`` are of the skin that is pressed, ``contact`` the share
-    of the cup's area that presses, ``place`` [mm] where most.
+    points taken together. ``max_kpa`` and ``mean_kpa`` are of the skin that is pressed, ``force_n`` [N] is
+    all of that, whichever way, ``contact`` the share of the cup's area that presses, ``place`` [mm] where.
     """
 
     side: str
@@ -40,6 +42,7 @@ class CupSide:
     back_n: float
     inward_n: float
     wire_n: float
+    force_n: float
     max_kpa: float
     mean_kpa: float
     contact: float
@@ -139,7 +142,7 @@ class WornCups:
         total, area = force.sum(axis=0), self._areas[points]
         pressed = kpa[points] > 0.0
         most = points[int(kpa[points].argmax())]
-        mean = float(kpa[points][pressed] @ area[pressed] / max(area[pressed].sum(), 1e-9))
+        whole = float(kpa[points] @ area) / 1000.0
         inward = -total[0] if side == "left" else total[0]
         return CupSide(
             side=side,
@@ -148,8 +151,9 @@ class WornCups:
             back_n=float(total[1]),
             inward_n=float(inward),
             wire_n=wire,
+            force_n=whole,
             max_kpa=float(kpa[most]),
-            mean_kpa=mean,
+            mean_kpa=1000.0 * whole / max(float(area[pressed].sum()), 1e-9),
             contact=float(area[pressed].sum() / area.sum()),
             place=tuple(map(float, places[most])) if pressed.any() else (),
         )
@@ -162,20 +166,27 @@ class WornCups:
         return float(left), float(right)
 
     @cached_property
-    def faces(self) -> Faces:
-        """Return the triangles of the body that the cups cover, shape (m, 3)."""
+    def share(self) -> Floats:
+        """Return how far each vertex of the body is covered, shape (n,) [1]: from 0.5 on cloth lies on it."""
         body, patch = self.stages.body.mesh, self.stages.patch
-        covered = np.zeros(len(self.stages.control.fixed))
-        covered[np.concatenate([self.layout.points(1), self.layout.points(-1)])] = 1.0
-        rows = np.flatnonzero(patch.fade > 0.0)
-        share = np.zeros(len(body.vertices))
-        mesh = self.stages.control.mesh
+        covered = np.maximum(self.layout.inside(1), self.layout.inside(-1))
+        mesh, share = self.stages.control.mesh, np.zeros(len(body.vertices))
+        near = mesh.vertices[mesh.edges[(covered[mesh.edges] > 0.0).any(axis=1)].ravel()]
+        low, high = near.min(axis=0) - _STANDS_OUT, near.max(axis=0) + _STANDS_OUT
+        within = (body.vertices >= low) & (body.vertices <= high)
+        rows = np.flatnonzero((patch.fade > 0.0) & within.all(axis=1))
         share[rows] = between_control_points(mesh, body.vertices[rows], np.ones(len(rows))) @ covered
-        return body.faces[(share > 0.5)[body.faces].all(axis=1)]
+        return share
 
-    def places(self, body: Points) -> Points:
-        """Return where the cloth lies, shape (n, 3) [mm], for all vertices of the body as worn, (n, 3)."""
-        rest = self.stages.body.mesh
-        moulded = self.layout.cup.kind == "moulded"
-        places = deform(self.stages.binding, self.layout.target) if moulded else body
-        return np.asarray(places + _STANDS_OFF * rest.moved(places).vertex_normals)
+    def cloth(self, places: Points, normals: Points) -> tuple[Points, Points]:
+        """Return where cloth lies [mm], and its normals [1], at the moving vertices of the body, (r, 3) each.
+
+        Those of the body are given, as in ``Stages.shape``: a moulded cup keeps its own shape.
+        """
+        if self.layout.cup.kind == "moulded":
+            places, normals = self._moulded
+        return places + _STANDS_OFF * normals, normals
+
+    @cached_property
+    def _moulded(self) -> tuple[Points, Points]:
+        return self.stages.shape(self.layout.target)

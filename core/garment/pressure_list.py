@@ -1,4 +1,4 @@
-"""Contact pressures of all active lines, a row for each line, and totals."""
+"""Contact pressures of all active lines and of cups, a row for each, and totals."""
 
 from __future__ import annotations
 
@@ -6,8 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from core.deformation.tffd import deform
 from core.garment.body_location import body_location
+from core.garment.cup_fit import CupSide, WornCups
 from core.garment.pressure import LEFT_OUT, LinePressure, mmhg, pressure_limits, pressures
 from core.garment.tension import LineTension, line_tensions
 from core.geometry.mesh import Mesh, Points
@@ -22,7 +25,8 @@ class PressureRow:
 
     ``where`` is the place that is pressed most, see ``body_location``, ``height_mm`` that above the
     lowest point of the scan, ``place`` the same as x, y, z [mm]. ``light`` is "green", "amber" or "red".
-    ``force_n`` is all that the band presses with, whichever way; ``notes`` are sentences.
+    ``force_n`` is all that the band presses with, whichever way; ``notes`` are sentences. The ``line`` of a
+    cup is "cup left" or "cup right", and it has no width and no tension.
     """
 
     line: str
@@ -42,17 +46,22 @@ class PressureRow:
     bridged_mm: float | None = None
     notes: tuple[Message, ...] = ()
 
+    @property
+    def is_cup(self) -> bool:
+        """Return whether this is a cup, and no line."""
+        return self.max_kpa is not None and self.width_mm is None
+
 
 @dataclass(frozen=True, eq=False)
 class PressureList:
-    """All worn lines in the order of the model; ``worn`` holds place by place what is known, by line."""
+    """All worn lines in the order of the model, then cups; ``worn`` holds places of lines, by name."""
 
     rows: tuple[PressureRow, ...]
     worn: Mapping[str, LinePressure]
 
     @property
     def force_n(self) -> float | None:
-        """Return the sum of all contact forces of bands of known tension [N]; None without any."""
+        """Return the sum of all contact forces that are known [N]; None without any."""
         known = [row.force_n for row in self.rows if row.force_n is not None]
         return sum(known) if known else None
 
@@ -63,7 +72,7 @@ class PressureList:
 
     @property
     def highest(self) -> PressureRow | None:
-        """Return the line with the largest pressure, if any presses."""
+        """Return the line or cup with the largest pressure, if any presses."""
         pressing = [row for row in self.rows if row.max_kpa]
         return max(pressing, key=lambda row: row.max_kpa or 0.0, default=None)
 
@@ -86,7 +95,7 @@ class PressureList:
 
 
 def pressure_list(stages: Stages, control_points: Points) -> PressureList:
-    """Compute the contact pressures of the active lines at ``control_points``, shape (n, 3) [mm].
+    """Compute the contact pressures of lines and cups at ``control_points``, shape (n, 3) [mm].
 
     Raises LineError for control points that are not a valid shape.
     """
@@ -97,6 +106,9 @@ def pressure_list(stages: Stages, control_points: Points) -> PressureList:
         for line in stages.model.lines
         if line.name in stages.design.active_lines()
     ]
+    if stages.design.cup is not None:
+        cups = WornCups(stages).fit(control_points)
+        rows += [_cup_row(stages, body, side) for side in cups.sides]
     return PressureList(tuple(rows), worn)
 
 
@@ -126,6 +138,26 @@ def _row(
         force_n=worn.force,
         bridged_mm=worn.bridged_length,
         notes=worn.notes,
+    )
+
+
+def _cup_row(stages: Stages, body: Mesh, side: CupSide) -> PressureRow:
+    name, place = f"cup {side.side}", np.array(side.place)
+    at = None
+    if side.place:
+        nearest = int(np.linalg.norm(body.vertices - place, axis=1).argmin())
+        at = body_location(body, stages.moving.middle, place, body.vertex_normals[nearest])
+    return PressureRow(
+        *(name, name, ""),
+        mean_kpa=side.mean_kpa,
+        mean_mmhg=mmhg(side.mean_kpa),
+        max_kpa=side.max_kpa,
+        max_mmhg=mmhg(side.max_kpa),
+        where="" if at is None else at.side,
+        height_mm=None if at is None else at.height_mm,
+        place=side.place,
+        light=pressure_limits().rating(side.max_kpa),
+        force_n=side.force_n,
     )
 
 

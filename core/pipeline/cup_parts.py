@@ -30,6 +30,9 @@ REACH = 0.8
 UPPER_EDGE = {"half": 0.0, "three-quarter": 1.0 / 3.0, "full": 2.0 / 3.0}
 """Where the upper edge of a cup lies, from the row of the bust points (0) to the last free row (1)."""
 
+ROUNDNESS = 3.0
+"""Exponent of the superellipse that a cup is drawn as: 2 is an ellipse, more is nearer to a rectangle."""
+
 MOST_LACK = 0.12
 """Cups that hold so much less than the breasts are a press and no garment [1]: they are refused."""
 
@@ -65,6 +68,17 @@ class CupLayout:
         across = (side * self._column >= 0.5) & (side * self._column <= self._outer_root)
         covered = free & across & (self._row >= self._fold_row) & (self._row <= upper)
         return np.asarray(np.flatnonzero(covered))
+
+    def inside(self, side: int) -> Floats:
+        """Return how far inside the outline of a side's cup each control point is, (n,) [1], 0.5 at the edge.
+
+        The outline is that of the covered points with round corners, where a cup hardly acts.
+        """
+        points, way = self.points(side), np.zeros(len(self.control.fixed))
+        for place in (side * self._column, self._row):
+            low, high = place[points].min() - 0.25, place[points].max() + 0.25
+            way += np.abs((2.0 * place - low - high) / (high - low)) ** ROUNDNESS
+        return np.asarray(np.clip(1.5 - way ** (1.0 / ROUNDNESS), 0.0, 1.0))
 
     @property
     def _outer_root(self) -> float:

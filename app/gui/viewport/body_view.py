@@ -46,6 +46,7 @@ class BodyView:
             self.show_bands()
         scene.move_body(stages.moving.vertices, frame.points, frame.normals)
         scene.move_control_mesh(frame.control_points)
+        scene.show_cups(stages, frame.points, frame.normals)
         self.frame = frame
         self._show_label()
         if self.after or fresh or laid or redrawn:

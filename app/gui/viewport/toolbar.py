@@ -88,7 +88,7 @@ class ViewTools(Toolbar):
         self._rule()
         self._add_layer("control-mesh", "control-mesh", tr("Control mesh"), "K")
         self._add_layer("landmarks", "map-pin", tr("Landmarks"), "M")
-        self._add_layer("bands", "bands", tr("Bands"), "B")
+        self._add_layer("bands", "bands", tr("Bands and cups"), "B")
         self._add("section", "section-plane", tr("Section plane"), "P", checkable=True)
         self._add("map", "palette", tr("Map on the body"), "C", checkable=True)
         self._add_action("next-map", tr("Next map"), "Shift+C")

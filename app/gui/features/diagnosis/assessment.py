@@ -63,7 +63,7 @@ class AssessmentController(QObject):
         design = frame.stages.design
         moves = frame is self._session.frame and not self._session.is_at_rest
         running, failed, cuts, pressed = frame.is_running or moves, False, None, None
-        if not running and frame.verdict.is_valid and design.active_lines():
+        if not running and frame.verdict.is_valid and not design.is_bare:
             cuts = self._cuts.get(frame)
             if cuts is None:
                 cuts = self._cuts[frame] = cut_list(frame.stages, frame.control_points)
@@ -96,5 +96,5 @@ class AssessmentController(QObject):
         """Return what the convergence panel shows; girth and pressure only once the body has converged."""
         if not frame.verdict.is_valid or frame.is_running or not self._session.is_at_rest:
             return convergence_view(frame, view)
-        pressed = self._pressures.of(frame) if frame.stages.design.active_lines() else None
+        pressed = self._pressures.of(frame) if not frame.stages.design.is_bare else None
         return convergence_view(frame, view, self._girths.request(frame), pressed)

@@ -59,8 +59,8 @@ class PressureController(QObject):
         return self._cache.request(frame)
 
     def of_active(self, frame: Frame) -> PressureList | None:
-        """Return the pressures of a frame that is a result and has active lines."""
-        return self.of(frame) if frame.stages.design.active_lines() and not invalid_reason(frame) else None
+        """Return the pressures of a frame that is a result and not of a bare body."""
+        return self.of(frame) if not frame.stages.design.is_bare and not invalid_reason(frame) else None
 
     def has_failed(self, frame: Frame) -> bool:
         """Return whether the pressures of a frame were not computed, and will not be."""
@@ -95,7 +95,7 @@ class PressureController(QObject):
         listed = None if self._doubt else self._shown
         self._panel.set_pressures(pressure_views(listed, design, stale) if listed else {})
         self.card.show_summary(pressure_summary(listed, design, self._doubt), stale and listed is not None)
-        self.card.setVisible(bool(design.active_lines()))
+        self.card.setVisible(not design.is_bare)
 
     def _open(self) -> None:
         """Compute again what the user stopped: it is looked at again."""

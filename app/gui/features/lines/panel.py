@@ -134,6 +134,7 @@ def _no_lines() -> tuple[str, str]:
 class LinesPanel(QWidget):
     """All lines, one row each, a linked pair in one; lengths in the signals are shares of those at rest [1].
 
+    ``cards`` takes what stands above them in the list.
     Signals name a line, a pair by its left one; ``decided`` carries one of its traits and the value,
     ``elastic_requested`` one whose elastic is to be chosen; ``opened`` when the list comes to be seen.
     """
@@ -250,15 +251,18 @@ class LinesPanel(QWidget):
 
     def _scroll_area(self) -> ScrollColumn:
         self._scroll = ScrollColumn("", (8, 0, 8, 12), 2, keys=False)
-        self._list = self._scroll.column
+        self.cards, self._list = QVBoxLayout(), QVBoxLayout()
+        self._list.setSpacing(2)
+        self._scroll.column.addLayout(self.cards)
+        self._scroll.column.addLayout(self._list)
         # Lasting, and before anybody looks for a waist to lock.
         message = tr(
             "Lines run on the control mesh, from under-bust to armpits. Waist, hip and shoulders are outside."
         )
         self._reach = sentence(message, "caption")
         self._reach.setContentsMargins(10, 10, 10, 0)
-        self._list.addWidget(self._reach)
-        self._list.addStretch(1)
+        self._scroll.column.addWidget(self._reach)
+        self._scroll.column.addStretch(1)
         return self._scroll
 
     def _rebuild(self, lines: Sequence[LineView]) -> None:

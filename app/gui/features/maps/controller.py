@@ -16,11 +16,20 @@ from app.gui.viewport.body_view import BodyView
 from app.gui.viewport.value_labels import ValueFlag, ValueFlags
 from app.i18n.catalog import number
 from app.i18n.lengths import length
-from app.presenters.maps import LINE_MAPS, MAPS, BodyState, automatic_range, bridge_text, map_kinds, ramp_of
+from app.presenters.maps import (
+    LEAST_OF_CUPS,
+    LINE_MAPS,
+    MAPS,
+    BodyState,
+    automatic_range,
+    bridge_text,
+    map_kinds,
+    ramp_of,
+)
 from app.rendering.appearance import appearance_of
 from app.rendering.camera import framing_place
 from app.rendering.vertex_colors import Ramp
-from core.geometry.mesh import Floats
+from core.geometry.mesh import Floats, Points
 from core.pipeline.live_solver import Frame
 
 if TYPE_CHECKING:
@@ -125,15 +134,14 @@ class MapsController(QObject):
     def pin(self, place: Floats, line: str) -> None:
         """Pin the value at a place of the shown body, (3,) [mm], or of the line that lies there."""
         body = self._view.viewport.scene.body
-        on_lines = self.name in LINE_MAPS
-        if self.now is None or body is None or (line and not on_lines):
+        if self.now is None or body is None:
             return
-        if on_lines:
+        if line and self.name in LINE_MAPS:
             at = self._row_near(line, place)
-        else:
-            at = int(np.linalg.norm(body.shown_points - place, axis=1).argmin())
-        if at is not None:
-            self._add(Pinned(at, line))
+            if at is not None:
+                self._add(Pinned(at, line))
+        elif not line and self.now.lies_on_skin(self.name):
+            self._add(Pinned(_nearest(body.shown_points, place)))
 
     def _add(self, pinned: Pinned) -> None:
         if pinned not in self.pinned:
@@ -144,16 +152,22 @@ class MapsController(QObject):
         listed = self._pressures.shown
         if listed is None or listed.highest is None:
             return
-        line = listed.highest.line
-        worn = listed.worn[line]
         self._view.set_after(True)
         self.choose("pressure")
-        values = self._on_bands[self._view.beside.bodies[0]].values.get(line)
-        if values is not None:
-            self._add(Pinned(int(values.argmax()), line))
-        view, place = self._view.viewport, worn.places[worn.peak]
+        assert self.now is not None
+        line = listed.highest.line
+        if listed.highest.is_cup:
+            at = _nearest(self.now.places, np.array(listed.highest.place))
+            self._add(Pinned(at))
+            place, normal = self.now.places[at], self.now.normals[at]
+        else:
+            values, worn = self._on_bands[self._view.beside.bodies[0]].values.get(line), listed.worn[line]
+            if values is not None:
+                self._add(Pinned(int(values.argmax()), line))
+            place, normal = worn.places[worn.peak], worn.normals[worn.peak]
+        view = self._view.viewport
         aspect = view.width() / max(view.height(), 1)
-        view.glide_to(framing_place(view.scene.view, place, worn.normals[worn.peak], aspect))
+        view.glide_to(framing_place(view.scene.view, place, normal, aspect))
 
     def unpin(self, number: int) -> None:
         """Remove a flag that is shown: those of lines are not while a map lies on the skin."""
@@ -204,26 +218,29 @@ class MapsController(QObject):
 
     def _values_of(self, view: BodyView) -> Floats:
         now = self._seen.now_of(view)
-        return self._values if now is None or now is self.now else self._seen.on_skin(self.name, now)
+        if now is None or now is self.now:
+            return self._values
+        return self._seen.on_skin(self.name, now) if now.lies_on_skin(self.name) else np.empty(0)
 
     def _read(self, frame: Frame) -> None:
         """Read the values off the bodies and choose the range that they are shown in."""
         assert self.now is not None
         bodies = self._view.beside.bodies
         # Bodies beside each other are compared: the same colour is the same value on all of them.
+        self._values, self._on_bands, beside = np.empty(0), {}, []
         if self.name in LINE_MAPS:
-            self._values = np.empty(0)
             self._on_bands = {view: self._seen.on_bands(self.name, view) for view in bodies}
             beside = [each for shown in self._on_bands.values() for each in shown.values.values()]
             text = self._seen.note(self.name, self._on_bands[bodies[0]])
-            self.legend.show_note(text or self._kinds[self.name].note)
         else:
             text = self._seen.skin_note(self.name, frame, self._view.after)
-            self.legend.show_note(text or self._kinds[self.name].note)
-            self._values, self._on_bands = self._seen.on_skin(self.name, self.now), {}
-            beside = [self._values] + [self._values_of(view) for view in bodies[1:]]
+        self.legend.show_note(text or self._kinds[self.name].note)
+        if self.now.lies_on_skin(self.name):
+            self._values = self._seen.on_skin(self.name, self.now)
+        beside += [self._values_of(view) for view in bodies]
         values = np.concatenate([np.empty(0), *beside])
-        by_hand, (low, high) = self._by_hand.get(self.name), automatic_range(self.name, values)
+        least = LEAST_OF_CUPS if self.name in LINE_MAPS and len(self._values) else 0.0
+        by_hand, (low, high) = self._by_hand.get(self.name), automatic_range(self.name, values, least)
         if frame.is_running and self._range_of == self.name:  # while a body moves the colours only widen
             low, high = min(low, self._range[0]), max(high, self._range[1])
         self._range, self._range_of = by_hand or (low, high), "" if by_hand else self.name
@@ -239,7 +256,9 @@ class MapsController(QObject):
         body = scene.body
         if body is None or now is None:
             return
-        if self.name in ("", *LINE_MAPS) or not (view.after or self.name == "sides"):
+        on_skin = bool(self.name) and now.lies_on_skin(self.name)
+        scene.cups.bare(on_skin)  # cloth would tint what lies on the skin
+        if not on_skin or not (view.after or self.name == "sides"):
             if self._painted.pop(body, None) is not None:
                 body.show_map(None)
             return
@@ -278,7 +297,7 @@ class MapsController(QObject):
         scene, now = self._view.viewport.scene, self.now
         assert now is not None
         assert scene.body is not None
-        if bool(pinned.line) != (self.name in LINE_MAPS):
+        if not (self.name in LINE_MAPS if pinned.line else now.lies_on_skin(self.name)):
             return None
         if pinned.line:
             shown = self._on_bands[self._view.beside.bodies[0]]
@@ -300,3 +319,8 @@ class MapsController(QObject):
         if kind.unit == "mm":
             return length(value, kind.digits, kind.both_ways)
         return f"{number(value, kind.digits, kind.both_ways)} {kind.unit}"
+
+
+def _nearest(points: Points, place: Floats) -> int:
+    """Return which of points (n, 3) is nearest to a place, (3,)."""
+    return int(np.linalg.norm(points - place, axis=1).argmin())
