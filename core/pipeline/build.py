@@ -260,6 +260,7 @@ def _stages(
         control = stage("halve control mesh", halved, fitted)
         condensed = partial(_condensed, progress=stage.inside)
         tissue = stage("condense tissue", condensed, body.smoothed, fitted, control)
+    cups = () if design.cup is None else stage("place cups", _cups, design.cup, fitted, control, tissue)
     patch = stage("find patch", blend_weights, body.mesh, control)
     weights = design.weights, design.scaled_normals
     binding = stage("bind body", _bind, body.mesh, control, patch.fade, *weights)
@@ -273,24 +274,29 @@ def _stages(
     tails = stage("lead straps", strap_tails, body.mesh, laid, design.own_lines, backs)
     routes = stage("trace lines", line_routes, body.mesh, laid, backs, tails)
     lengths = (*({name: part.length for name, part in each.items()} for each in (backs, tails)),)
-    cups = () if design.cup is None else stage("place cups", _cups, design.cup, fitted, control, tissue)
-    chosen = design.active_lines(), design.model_options, design.line_stiffnesses()
     solid = None
     if tissue is not None:
         solid = stage("dress solid", solid_tissue, fitted, control, tissue, design.model_options, cups)
-    model = stage("build model", _model, laid, *lengths, *chosen, solid)
-    elastics, balance = design.active_elastics(), None
-    if elastics and design.line_hold == "spring":  # a held line has its length, whatever it is made of
+    chosen = design.active_lines(), design.model_options, design.line_stiffnesses()
+    model, balance = stage("build model", _model, laid, *lengths, *chosen, solid), None
+    # A held line has its length, whatever it is made of.
+    if design.active_elastics() and design.line_hold == "spring":
         change = stage("follow body", DenseVolumeChange, binding, moving) if design.dense_volume else None
-        made = design.lines, elastics, design.tissue_stiffness, design.line_stiffnesses()
-        solve = partial(solve_elastic_model, former=stage.former("fit elastics"))
-        fitted_model = stage("fit elastics", solve, model, *made, change)
-        model, balance = fitted_model.model, fitted_model.balance
+        model, balance = _with_elastics(stage, design, model, change)
     limit = stage("probe gain", gain_limit, model)
     made_of = scan, body, landmarks, control, fitted, patch, binding, moving, watch
     return Stages(
         design, *made_of, backs, tails, routes, model, balance, limit, tissue, stage.seconds, stage.memo
     )
+
+
+def _with_elastics(
+    stage: _StageCache, design: Design, model: ConstrainedModel, change: DenseVolumeChange | None
+) -> tuple[ConstrainedModel, Equilibrium]:
+    made = design.lines, design.active_elastics(), design.tissue_stiffness, design.line_stiffnesses()
+    solve = partial(solve_elastic_model, former=stage.former("fit elastics"))
+    fitted = stage("fit elastics", solve, model, *made, change)
+    return fitted.model, fitted.balance
 
 
 def line_targets(design: Design, stages: Stages) -> LineTargets:
