@@ -250,11 +250,7 @@ def _stages(
     stage: _StageCache, design: Design, scan: ScanFile, body: Body, control_points: Points | None
 ) -> Stages:
     landmarks = stage(FINDING, partial(detect_landmarks, progress=stage.inside), body, design.placed)
-    template = stage("read template", read_template, design.template)
-    if control_points is None:
-        fitted = stage("fit control mesh", fit_control_mesh, template, body, landmarks, design.line_height)
-    else:
-        fitted = stage("place control mesh", control_mesh_at, template, control_points)
+    fitted = _fitted(stage, design, body, landmarks, control_points)
     control, tissue = fitted, None
     if design.tissue == "solid":
         control = stage("halve control mesh", halved, fitted)
@@ -288,6 +284,15 @@ def _stages(
     return Stages(
         design, *made_of, backs, tails, routes, model, balance, limit, tissue, stage.seconds, stage.memo
     )
+
+
+def _fitted(
+    stage: _StageCache, design: Design, body: Body, landmarks: Landmarks, control_points: Points | None
+) -> ControlMesh:
+    template = stage("read template", read_template, design.template)
+    if control_points is None:
+        return stage("fit control mesh", fit_control_mesh, template, body, landmarks, design.line_height)
+    return stage("place control mesh", control_mesh_at, template, control_points)
 
 
 def _with_elastics(
