@@ -38,7 +38,7 @@ NOT_MODELLED = (
         "Friction between garment and skin, breathing and movement are not modelled; gravity and posture "
         "only with solid tissue."
     ),
-    Message("Only lines shape the body: fabric between them, seams, wires and hooks are not modelled."),
+    Message("Only lines and cups shape the body: fabric between them, seams and hooks are not modelled."),
 )
 """What no figure of a sheet takes into account."""
 
