@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy import sparse
 
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length, shown_value
@@ -33,7 +32,7 @@ from core.pipeline.build import Stages, line_targets
 from core.pipeline.live_solver import Frame
 from core.pipeline.surface_fields import (
     StrainOnBody,
-    between_control_points,
+    carrier,
     line_forces,
     normal_displacement,
 )
@@ -302,13 +301,13 @@ class BodyState:
     def _cup_pressures(self) -> Floats:
         """Return the pressures of the cups at the moving vertices, (r,) [kPa]."""
         kpa = WornCups(self.stages).fit(self.frame.control_points).kpa
-        return np.asarray(self._from_control_points @ kpa)
+        return self._carry(kpa)
 
     @cached_property
-    def _from_control_points(self) -> sparse.csr_array:
+    def _carry(self) -> Callable[[Floats], Floats]:
         stages = self.stages
         places, fade = stages.moving.rest, stages.patch.fade[stages.moving.vertices]
-        return between_control_points(stages.control.mesh, places, fade)
+        return carrier(stages.control.mesh, places, fade)
 
     def pulls(self) -> dict[str, Floats]:
         """Return how the segments of the worn lines pull, by line, each (k,) [%]."""

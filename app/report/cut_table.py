@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from app.i18n.catalog import tr
 from app.i18n.lengths import length_unit
-from app.rendering.palette import LIGHT
+from app.presenters.messages import line_title
+from app.presenters.pressure import rating_text
+from app.rendering.palette import CUP_COLOUR, LIGHT
 from app.report.cut_rows import CutRowText, cut_views
 from app.report.document import ReportDocument
 from app.report.header import WIDE
@@ -20,7 +22,8 @@ from app.report.painter import (
     wrap,
 )
 from app.report.tables import heading, paragraph
-from app.report.text import pressure_legend
+from app.report.text import NOTHING, pressure_legend, value_text
+from core.garment.pressure_list import PressureRow
 
 _ROW, _REMARK = 5.6, 4.0
 EDGES = {
@@ -42,12 +45,14 @@ _ELASTIC, _LIGHT, _WORD = 35.0, 165.0, 168.0
 def cut_blocks(handout: ReportDocument) -> list[Block]:
     """Return the cut list with what each band presses with, or what is missing for it."""
     title = heading(tr("Cut list"), WIDE)
-    if not handout.report.cuts.rows:
+    sheet = handout.report
+    cups = [_cup_row(row, sheet.is_valid) for row in sheet.cups]
+    if not (sheet.cuts.rows or cups):
         text = tr("No active lines. Shorten a line to add it to this list.")
         return [title, paragraph(text, "body", WIDE)]
-    views = cut_views(handout.report, list(handout.colours))
+    views = cut_views(sheet, list(handout.colours))
     rows = (_cut_row(view, handout.colours.get(view.line, "")) for view in views)
-    return [title, _cut_head(), *rows, _legend()]
+    return [title, _cut_head(), *rows, *cups, _legend()]
 
 
 def _cut_head() -> Block:
@@ -107,6 +112,24 @@ def _cut_row(view: CutRowText, colour: str) -> Block:
         paper.rule(x, y + high + (_REMARK if remark else 0.0), WIDE)
 
     return Block(high + (_REMARK if remark else 0.0), paint)
+
+
+def _cup_row(row: PressureRow, valid: bool) -> Block:
+    """Return what a cup presses with, under the columns of the lines: it is no piece of this list."""
+    title, kpa = line_title(row.line), value_text(row.max_kpa, 1) if valid else NOTHING
+    word = elide(rating_text(row.light), "body", WIDE - _WORD) if valid else ""
+
+    def paint(paper: PagePainter, x: float, y: float) -> None:
+        base, middle = y + 3.75, y + 2.8
+        paint_chip(paper, x, middle, CUP_COLOUR)
+        paper.text(x + 4.6, base, title, "strong")
+        paper.text(x + EDGES["pressure"], base, kpa, "figure", align="right")
+        if word:
+            paint_light(paper, x + _LIGHT, middle, row.light)
+            paper.text(x + _WORD, base, word, "body")
+        paper.rule(x, y + _ROW, WIDE)
+
+    return Block(_ROW, paint)
 
 
 def _legend() -> Block:

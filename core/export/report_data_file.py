@@ -103,7 +103,7 @@ def _cut_rows(sheet: Report) -> Iterator[Row]:
 
 
 def _pressure_rows(sheet: Report) -> Iterator[Row]:
-    for row in sheet.pressures:
+    for row in (*sheet.pressures, *sheet.cups):
         note = " ".join(filter(None, (row.light, row.where, *map(str, row.notes))))
         for key, unit, value, kind in (
             ("largest pressure", "kPa", row.max_kpa, MAX_KPA),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from scipy import sparse
@@ -83,6 +83,12 @@ def between_control_points(control: Mesh, places: Points, fade: Floats) -> spars
     return sparse.csr_array(
         (weight.ravel(), index.ravel(), start), shape=(len(places), len(control.vertices))
     )
+
+
+def carrier(control: Mesh, places: Points, fade: Floats) -> Callable[[Floats], Floats]:
+    """Return what carries values at control points, (n,), to places, (k,); see ``between_control_points``."""
+    matrix = between_control_points(control, places, fade)
+    return lambda values: np.asarray(matrix @ values)
 
 
 def line_forces(model: ConstrainedModel, points: Points, ratios: tuple[float, ...]) -> Mapping[str, Floats]:
