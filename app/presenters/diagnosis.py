@@ -14,6 +14,7 @@ from core.analysis.diagnosis.candidate_changes import Change, Fix
 from core.analysis.diagnosis.diagnose import Diagnosis
 from core.analysis.diagnosis.opposing_constraints import ConstraintForce
 from core.garment.assessment import BAD, Assessment, Finding
+from core.garment.pressure import pressure_limits
 
 BUTTONS = 2
 """Fixes that have a button at most."""
@@ -80,14 +81,21 @@ def hint(found: Diagnosis) -> str:
 
 
 def _leading(found: Diagnosis) -> str:
-    """Return what the changes on the buttons leave to be checked: all of them were tried."""
+    """Return what the changes on the buttons leave: only what leaves nothing bad is called a verified fix."""
     shown = shown_fixes(found)
     first, *others = (_left(cure) for cure in shown)
     if not any(cure.remains for cure in shown):
         return tr("Verified fixes:") if others else tr("Verified fix:")
+    partial = all(cure.level == BAD for cure in shown)
     if others:
-        return tr("Verified fixes (remaining problems: {one}; {other}):").format(one=first, other=others[0])
-    return tr("Verified fix (remaining problem: {what}):").format(what=first)
+        words = (
+            tr("Partial fixes. Remaining with the first: {one}; with the second: {other}.")
+            if partial
+            else tr("Fixes. Remaining with the first: {one}; with the second: {other}.")
+        )
+        return words.format(one=first, other=others[0])
+    words = tr("Partial fix. Remaining: {what}.") if partial else tr("Verified fix. Remaining: {what}.")
+    return words.format(what=first)
 
 
 def shown_fixes(found: Diagnosis) -> tuple[Fix, ...]:
@@ -102,17 +110,25 @@ def _wide(words: str) -> int:
 
 
 def _left(cure: Fix) -> str:
-    return listed(dict.fromkeys(_topic(each) for each in cure.remains)) or tr("no problems")
+    """Return what remains with a fix: the worst finding of each topic."""
+    worst = {each.topic: each for each in reversed(cure.remains)}
+    order = dict.fromkeys(each.topic for each in cure.remains)
+    return listed(_amount(cure, worst[topic]) for topic in order) or tr("no problems")
 
 
-def _topic(finding: Finding) -> str:
-    """Return what a finding is about in a word or two."""
-    return {
-        "convergence": tr("no convergence"),
-        "shape": tr("high skin strain"),
-        "band": tr("slack or overstretched band"),
-        "pressure": tr("high contact pressure") if finding.level == BAD else tr("snug contact pressure"),
-    }[finding.topic]
+def _amount(cure: Fix, finding: Finding) -> str:
+    """Return what remains with a fix in a few words, and how much."""
+    if finding.topic == "pressure" and finding.level == BAD:
+        words, limit = tr("contact pressure {kpa} kPa (limit {most} kPa)"), pressure_limits().red_kpa
+        return words.format(kpa=number(finding.value), most=number(limit))
+    if finding.topic == "pressure":
+        return tr("snug contact pressure {kpa} kPa").format(kpa=number(finding.value))
+    condition = cure.trial.verdict.condition
+    if finding.topic == "shape" and condition is not None:
+        low, high = (100.0 * (each - 1.0) for each in (condition.shortest, condition.longest))
+        words = tr("skin strain {low} to {high} %")
+        return words.format(low=number(low, 0, signed=True), high=number(high, 0, signed=True))
+    return tr("slack or overstretched band")
 
 
 def change_text(found: Diagnosis, change: Change) -> str:

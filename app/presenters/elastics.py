@@ -8,9 +8,11 @@ from dataclasses import dataclass
 from app.i18n.catalog import joined, number, tr, tr_context
 from app.i18n.lengths import length, length_number, width_number
 from app.presenters.messages import elastic_title, render
+from app.presenters.pressure import rating_text
 from core.document.design import Design
 from core.document.elastic import Elastic
 from core.garment.elastic_options import KEEP_CUT, KEEP_FIT, ElasticOption, Outcome, nearest, strongest
+from core.garment.pressure import pressure_limits
 
 
 def elastic_views(
@@ -126,12 +128,16 @@ def choice_view(
     stretch = [row.elongation for row in rows if row.elongation is not None]
     one = rows[0] if rows and set(names) <= set(design.linked_pair(names[0])) else None
     name = one.line if one is not None else ""
+    kpa = max((outcome.kpa[each] for each in names if each in outcome.kpa), default=None)
+    light = "" if kpa is None else pressure_limits().rating(kpa)
     return ChoiceView(
         title,
         number(100.0 * max(stretch), 0) if stretch else "",
         length_number(one.cut_mm, 0) if one is not None and one.cut_mm is not None else "",
         length_number(one.reached_front_mm) if one is not None else "",
         length_number(outcome.lift, signed=True),
+        "" if kpa is None else f"{rating_text(light)} · {number(kpa)}",
+        light,
         _note(option, rigid, far, name) if usable else render(option.reason, design),
         usable,
         far and usable,
@@ -242,7 +248,8 @@ def title_of(elastic: Elastic | None) -> str:
 class ChoiceView:
     """One elastic as it is read: stretch [%], lengths to cut and on the body, lift, and a note on it.
 
-    One that is not ``usable`` is grey, and its note states why. A value that is not known is an empty text.
+    ``pressure`` is the contact pressure with the word of its ``light``, see ``core.garment.pressure``. One
+    that is not ``usable`` is grey, and its note states why. A value that is not known is an empty text.
     """
 
     title: str
@@ -250,6 +257,8 @@ class ChoiceView:
     cut: str = ""
     reached: str = ""
     lift: str = ""
+    pressure: str = ""
+    light: str = ""
     note: str = ""
     usable: bool = False
     far: bool = False

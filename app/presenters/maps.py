@@ -28,6 +28,7 @@ from core.garment.pressure_list import PressureList
 from core.geometry.mesh import Floats, Indices, Mesh, Points
 from core.geometry.mirror_plane import SideComparison, mirror_plane
 from core.measurements.uncertain_value import OutputUncertainties
+from core.mechanics.mesh_quality import STRAIN_RANGE, STRAINED_RANGE
 from core.pipeline.build import Stages, line_targets
 from core.pipeline.live_solver import Frame
 from core.pipeline.surface_fields import (
@@ -74,11 +75,26 @@ def _skin_maps() -> list[MapKind]:
             "%",
             tr(
                 "Shows the maximum strain of the control mesh: principal strain of its "
-                "triangles, averaged at each control point and interpolated on the skin."
+                "triangles, averaged at each control point and interpolated on the skin. The verdict "
+                "uses the edges of the control mesh, whose strain can be higher."
             ),
-            tr("of the control mesh"),
+            strain_note(),
+            marks=strain_marks(),
         ),
     ]
+
+
+def strain_marks() -> tuple[Mark, ...]:
+    """Return the limits of strain as marks on a legend: strain [%], tone and word."""
+    strained, overstrained = (100.0 * (longest - 1.0) for _, longest in (STRAINED_RANGE, STRAIN_RANGE))
+    return (strained, "warn", tr("strained")), (overstrained, "bad", tr("overstrained"))
+
+
+def strain_note() -> str:
+    """Return the note below the legend of strain: its limits, which can be beyond the range."""
+    strained, overstrained = (number(limit, 0) for limit, _, _ in strain_marks())
+    words = tr("Of the control mesh. Strained from {strained} %, overstrained from {overstrained} %.")
+    return words.format(strained=strained, overstrained=overstrained)
 
 
 def _comparison_maps() -> list[MapKind]:

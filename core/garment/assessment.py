@@ -7,7 +7,7 @@ scan, landmarks and the fit of the control mesh.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from core.garment.cut_list import CutList, CutRow, cut_list
@@ -50,6 +50,11 @@ class Finding:
     action: Message = EMPTY
     lines: tuple[str, ...] = ()
     value: float = 0.0
+
+    @property
+    def is_unwearable(self) -> bool:
+        """Return whether it is a pressure above all that were measured under garments."""
+        return self.topic == "pressure" and self.value >= pressure_limits().beyond[-1][0]
 
 
 UNKNOWN_PRESSURE = Finding(
@@ -204,13 +209,14 @@ def _pressure(row: PressureRow) -> Finding:
     if row.light == AMBER:
         action = Message("Test the garment while sitting and breathing in.")
         return Finding("pressure", CAUTION, message, action, (row.line,), kpa)
-    unwearable = kpa >= pressure_limits().beyond[-1][0]
-    action = Message("Make the line longer, wider or softer.")
+    found = Finding(
+        "pressure", BAD, message, Message("Make the line longer, wider or softer."), (row.line,), kpa
+    )
     much = Message("Not wearable: make the line much longer, wider or softer.")
     if row.is_cup:
-        action = Message("Lift the cups less, or make them larger.")
+        found = replace(found, action=Message("Lift the cups less, or make them larger."))
         much = Message("Not wearable: lift the cups much less, or make them much larger.")
-    return Finding("pressure", BAD, message, much if unwearable else action, (row.line,), kpa)
+    return replace(found, action=much) if found.is_unwearable else found
 
 
 def _foundations(stages: Stages) -> Iterator[Finding]:

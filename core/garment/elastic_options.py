@@ -20,6 +20,7 @@ from core.garment.match_shape import (
     too_weak_error,
     with_line_ratios,
 )
+from core.garment.pressure import pressures
 from core.garment.tension import line_tensions
 from core.geometry.mesh import Points
 from core.messages import EMPTY, LineName, Message
@@ -36,12 +37,14 @@ FIRST_STRETCH = 0.2
 class Outcome:
     """A solved ``design`` with lines of elastic: its pieces to cut, by line.
 
-    ``lift`` is how far the bust points are above those of the original body, mean of both [mm].
+    ``lift`` is how far the bust points are above those of the original body, mean of both [mm]. ``kpa`` are
+    the largest contact pressures of the lines whose tension is known [kPa].
     """
 
     design: Design
     rows: Mapping[str, CutRow]
     lift: float
+    kpa: Mapping[str, float]
 
 
 @dataclass(frozen=True)
@@ -105,7 +108,8 @@ def outcome_of(stages: Stages) -> Outcome:
         float(np.mean(stages.watch.bust_points(each)[:, 2]))
         for each in (stages.control.mesh.vertices, points)
     )
-    return Outcome(stages.design, rows, lifted - original)
+    pressed = {name: band.largest for name, band in pressures(stages, points).items()}
+    return Outcome(stages.design, rows, lifted - original, pressed)
 
 
 def nearest(options: Iterable[ElasticOption], elastic: Elastic) -> ElasticOption | None:

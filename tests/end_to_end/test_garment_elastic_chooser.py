@@ -11,6 +11,7 @@ from garment_tools import at_rest, chooser_of, cut_rows, made_of, mark
 from window_tools import PATIENCE, Script, run_undrawn, settled
 
 from app.gui.features.garment import elastic_offer
+from app.gui.features.garment.elastic_chooser import PRESSURE
 from app.gui.main_window import MainWindow
 from app.i18n.catalog import number
 from app.presenters.bust_shift import bust_shift
@@ -84,10 +85,15 @@ def test_the_loss_of_lift_is_shown_before_it_is_chosen() -> None:
         off = float(view.reached) - float(chooser.views()[0].reached)
         assert float(longer.removesuffix(" mm longer on body")) == pytest.approx(off, abs=0.11)
         assert f"{view.lift} mm" in chooser.advice.text()
+        assert chooser.table.topLevelItem(chooser.current).text(PRESSURE) == view.pressure  # type: ignore[union-attr]
+        word, kpa = view.pressure.split(" · ")
         chooser.use.click()
         yield made_of(window, "strap left", "strap right")
         assert window.session.frame is not None
         assert bust_shift(window.session.frame).mean.up == pytest.approx(float(view.lift), abs=0.15)
+        shown = [window.garment.rows[each].pressure.view for each in ("strap left", "strap right")]
+        most = max(shown, key=lambda each: float(each.kpa))
+        assert (float(most.kpa), most.word) == (pytest.approx(float(kpa), abs=0.15), word)
 
     run_undrawn([], script)
 

@@ -83,6 +83,14 @@ def test_a_line_that_is_folded_is_told_so_and_its_slider_says_how_far_it_reaches
         )
         assert "Folded below 67.7 %: a triangle" in plain(hint(leeway, 0.55))
         assert row.slider.toolTip().startswith("Set the front length, 50 to 112 % of the original.")
+        row.slider.setValue(90_000)
+        row.slider.committed.emit(0.9)
+        yield settled(window)
+        assert (row.view.ratio, row.slider.ends()) == (0.9, (0.5, 1.12)), "it keeps still under the hand"
+        window.session.undo_stack.undo()
+        window.session.undo_stack.undo()
+        yield settled(window)
+        assert row.slider.ends() == (0.8, 1.12)
 
     run_main([], script)
 
@@ -166,7 +174,11 @@ def test_the_groove_shows_what_lies_between_its_ends() -> None:
         ("slack", 0.981, 1.12),
     ]
     assert [zone[0] for zone in _zones(LEEWAY, (0.9, 1.12))] == ["amber", "green", "slack"]
-    assert (wall_of(LEEWAY, 0.95), wall_of(LEEWAY, 0.85), wall_of(None, 0.9)) == (0.86, None, None)
+    assert (wall_of(LEEWAY, 0.95, 0.8), wall_of(LEEWAY, 0.85, 0.8), wall_of(None, 0.9, 0.8)) == (
+        0.86,
+        None,
+        None,
+    )
 
 
 @pytest.fixture

@@ -169,6 +169,16 @@ def _together(design: Design, groups: Sequence[LineGroup], steps: int) -> Change
     return Change("together", design, size, reduce(tuple.__add__, groups, ()))
 
 
+SEVERITIES = range(len(LEVELS) + 1)
+"""How bad findings are: as the index of their level, and beyond it for a pressure that nobody can wear."""
+
+
+def severity(findings: tuple[Finding, ...]) -> int:
+    """Return how bad ranked findings are: one of SEVERITIES."""
+    level = findings[0].level if findings else GOOD
+    return LEVELS.index(level) + any(each.is_unwearable for each in findings)
+
+
 FIXABLE = ("convergence", "shape", "band", "pressure")
 """Topics of findings that a change of lines or model can end."""
 
@@ -196,13 +206,18 @@ class Fix:
         return self.remains[0].level if self.remains else GOOD
 
     @property
+    def severity(self) -> int:
+        """Return how bad what remains is: one of SEVERITIES."""
+        return severity(self.remains)
+
+    @property
     def rank(self) -> tuple[int, int, float]:
         """How it compares to other changes, the best first: what remains, how many changes, how large [%]."""
         change = self.change
         of_lines = {"together": max(len(change.lines), 2), "off": 2, "length": 1, "width": 1, "gain": 1}.get(
             change.kind, 0
         )
-        return LEVELS.index(self.level), of_lines + bool(change.setting[0]), change.size
+        return self.severity, of_lines + bool(change.setting[0]), change.size
 
 
 def fixable_findings(standing: TrialResult) -> tuple[Finding, ...]:

@@ -113,8 +113,9 @@ def diagnose(stages: Stages, progress: Progress = quiet) -> Diagnosis:
 
     First the adaptive control where the conventional one vibrates, a single line, and the gain; if none does,
     a choice of the model, then that and a line; then all lines nearer to rest, alone or with such a choice;
-    last a line taken off. Where all of these leave something to be checked, more is tried. A design whose run
-    is well may press too much, or have slack lines. ``progress`` hears each step; raises Cancelled.
+    last a line taken off. Where all of these leave something to be checked, what leaves less is tried. A
+    design whose run is well may press too much, or have slack lines. ``progress`` hears each step; raises
+    Cancelled.
     """
     # Two BLAS threads make these small products many times slower.
     with threadpool_limits(1):
@@ -135,7 +136,7 @@ def diagnose(stages: Stages, progress: Progress = quiet) -> Diagnosis:
 def _treated(found: Diagnosis, search: Search) -> Diagnosis:
     """Return the diagnosis with the changes that end its complaint, each run, the best first."""
     fixes = _ending(found, search)
-    if fixes and found.problem != "unreachable" and all(fix.remains for fix in fixes):
+    if fixes and all(fix.remains for fix in fixes):
         fixes += complete_fix(search, rank_fixes(fixes)[0])
     if fixes:
         return replace(found, fixes=rank_fixes(fixes))

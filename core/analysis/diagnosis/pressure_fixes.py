@@ -1,4 +1,4 @@
-"""Changes that leave nothing to be checked: of lines that press too much or are slack, of strain (ours)."""
+"""Changes that leave less to be checked: of lines that press too much or are slack, of strain (ours)."""
 
 from __future__ import annotations
 
@@ -8,17 +8,19 @@ from dataclasses import replace
 from itertools import chain
 
 from core.analysis.diagnosis.candidate_changes import (
+    SEVERITIES,
     Change,
     ChangePath,
     Fix,
     common_paths,
     deactivations,
     line_paths,
+    severity,
     wider_bands,
     with_option,
 )
 from core.analysis.diagnosis.search import Search
-from core.garment.assessment import BAD, CAUTION, GOOD, Finding
+from core.garment.assessment import Finding
 from core.garment.curve_smoothing import USUAL_WIDTH
 from core.garment.pressure import pressure_limits
 from core.pipeline.build import Stages
@@ -54,29 +56,38 @@ def pressure_changes(search: Search, findings: tuple[Finding, ...]) -> tuple[Fix
 
     Those that end all of them come first, then those that end the worst.
     """
-    stages, worst = search.stages, findings[0].level
+    stages, worst = search.stages, severity(findings)
     known = chain(_offs(stages, findings), _widths(stages, findings))
     fixes = [
-        cure for cure in search.run_changes(known) if cure.level != worst or len(cure.remains) < len(findings)
+        cure
+        for cure in search.run_changes(known)
+        if cure.severity < worst or (cure.severity == worst and len(cure.remains) < len(findings))
     ]
     for way in _ways(stages, findings):
-        cure = search.fewest_steps(way, _FIRST[way.at(1).kind])
-        if cure is None and worst == BAD:
-            cure = search.fewest_steps(way, _FIRST[way.at(1).kind], CAUTION)
+        cure = _mildest(search, [way], worst)
         fixes += [] if cure is None else [cure]
     return rank_fixes(fixes)
 
 
 def complete_fix(search: Search, fix: Fix) -> list[Fix]:
-    """Return what ends a complaint like ``fix`` and leaves nothing behind, if a few runs find it."""
+    """Return what ends a complaint like ``fix`` and leaves less behind, if a few runs find it."""
     change, stages = fix.change, search.stages
-    chosen = bool(change.setting[0]) and change.kind != "length"
+    chosen = bool(change.setting[0])
     base = replace(stages, design=replace(stages.design, **dict([change.setting]))) if chosen else stages
     ways = _ways(base, fix.remains)
     if chosen:
         ways = with_option(replace(change, design=base.design), ways)
-    found = (search.fewest_steps(way, _FIRST[way.at(1).kind]) for way in ways)
-    return [cure for cure in found if cure is not None and cure.level == GOOD][:1]
+    found = _mildest(search, list(ways), fix.severity)
+    return [] if found is None else [search.simplify(found)]
+
+
+def _mildest(search: Search, ways: list[ChangePath], worst: int) -> Fix | None:
+    """Return the fix on any of some ways that leaves the least, None if none is milder than ``worst``."""
+    for most in (each for each in SEVERITIES if each < worst):
+        found = (search.fewest_steps(way, _FIRST[way.at(1).kind], most) for way in ways)
+        if (cure := next((each for each in found if each is not None), None)) is not None:
+            return cure
+    return None
 
 
 def _ways(stages: Stages, findings: tuple[Finding, ...]) -> Iterator[ChangePath]:

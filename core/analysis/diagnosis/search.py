@@ -18,7 +18,6 @@ from core.analysis.diagnosis.stability import StabilityForecast, forecast, forec
 from core.analysis.diagnosis.trial_run import RunResult, TrialResult, continue_run, run_trial, severity_rank
 from core.document.design import Design
 from core.errors import UserError
-from core.garment.assessment import GOOD, LEVELS
 from core.mechanics.mesh_quality import STRAIN_RANGE, STRAINED_RANGE
 from core.mechanics.volume import KEEPS_VOLUME
 from core.pipeline.build import Stages, build, line_targets
@@ -233,7 +232,7 @@ class Search:
         before, after = self._sick.stages.design, change.design
         as_before = {key: getattr(before, key)}
         lengths = self._once(replace(change, design=replace(after, **as_before), setting=("", None)))
-        if lengths.ends:
+        if lengths.ends and lengths.severity <= cure.severity:
             return lengths
         alone = Change("setting", replace(after, lines=before.lines), setting=change.setting)
         if key == "gain":
@@ -242,20 +241,20 @@ class Search:
         choice = self._once(alone)
         return (
             choice
-            if choice.ends
+            if choice.ends and choice.severity <= cure.severity
             else replace(
                 cure, option_result=lengths.remaining_problem, lengths_result=choice.remaining_problem
             )
         )
 
-    def fewest_steps(self, way: ChangePath, first: int, level: str = GOOD) -> Fix | None:
-        """Return about the fewest steps on a way that leave nothing worse than ``level``, None if none do.
+    def fewest_steps(self, way: ChangePath, first: int, most: int = 0) -> Fix | None:
+        """Return about the fewest steps on a way that leave a severity of at ``most`` that, None if none do.
 
         Steps are doubled from the ``first`` on, then closed in on: a few runs.
         """
 
         def does(cure: Fix | None) -> TypeGuard[Fix]:
-            return cure is not None and cure.ends and LEVELS.index(cure.level) <= LEVELS.index(level)
+            return cure is not None and cure.ends and cure.severity <= most
 
         short, steps, found = 0, min(first, way.most), None
         for _ in range(_DOUBLED):
@@ -268,7 +267,7 @@ class Search:
             short, steps = steps, min(2 * steps, way.most)
         for _ in range(_CLOSER if found else 0):
             middle = (short + steps) // 2
-            if middle - short < _FURTHER * steps:
+            if middle == short:
                 break
             closer = self._allowed(way.at(middle))
             short, steps, found = (short, middle, closer) if does(closer) else (middle, steps, found)

@@ -117,6 +117,22 @@ def test_a_key_commits_once(
     assert said == [("committed", pytest.approx(ratio))]
 
 
+def test_a_groove_that_a_typed_length_widened_keeps_still_under_the_hand(slider: LengthSlider) -> None:
+    slider.set_ratio(0.7)
+    wide = slider.ends()
+    assert wide[0] < 0.7
+    x = slider.x_of(0.7)
+    hold(slider, QEvent.Type.MouseButtonPress, x)
+    hold(slider, QEvent.Type.MouseMove, slider.x_of(0.85))
+    hold(slider, QEvent.Type.MouseButtonRelease, slider.x_of(0.85))
+    slider.set_ratio(0.85)  # as the view does with the new design
+    QTest.keyClick(slider, Qt.Key.Key_Right, Qt.KeyboardModifier.ShiftModifier)
+    slider.set_ratio(0.86)
+    assert (slider.ratio(), slider.ends()) == (pytest.approx(0.86), wide)
+    slider.set_ratio(0.9)  # typed, or undone
+    assert slider.ends() == (SHORTEST, LONGEST)
+
+
 def test_the_slider_keeps_its_range(slider: LengthSlider) -> None:
     slider.set_ratio(0.8)
     said = heard(slider)

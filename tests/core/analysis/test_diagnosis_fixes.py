@@ -140,3 +140,14 @@ def test_fixes_that_leave_nothing_have_no_remaining_problem() -> None:
     assert hint(replace(clean, fixes=clean.fixes[:1])) == "Verified fix:"
     assert len(shown_fixes(clean)) == 2
     assert hint(clean) == "Verified fixes:"
+
+
+def test_a_fix_is_named_with_how_much_it_leaves() -> None:
+    found = diagnose(made("mannequin", {"mid-bust": 0.848}))
+    good, bad = found.fixes[:2]
+    assert (good.level, bad.level) == ("good", "bad")
+    (pressed,) = (each.value for each in bad.remains if each.topic == "pressure")
+    left = f"contact pressure {pressed:.1f} kPa (limit 4.0 kPa), skin strain \N{MINUS SIGN}"
+    assert hint(found).startswith(f"Fixes. Remaining with the first: no problems; with the second: {left}")
+    assert hint(replace(found, fixes=(bad,))).startswith(f"Partial fix. Remaining: {left}")
+    assert hint(replace(found, fixes=(bad, bad))).startswith("Partial fixes. ")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
@@ -57,6 +58,29 @@ def test_a_fix_without_a_warning_stands_before_one_with_another(
     assert found.fixes[-1].level == BAD, "the smallest change alone leaves what nobody can wear"
     for cure in found.fixes:
         assert level_of(cure.change.design, stages) == cure.level, "it is told as it ends"
+
+
+@pytest.mark.parametrize(
+    ("ratios", "settings", "most"),
+    [
+        ({"mid-bust": 0.7}, {"volume": "conventional", "gain": 1.7}, 0.0),
+        ({"mid-bust": 0.6}, {"line_hold": "held", "volume": "exact"}, 0.0),
+        ({"mid-bust": 0.6, "full-bust": 0.6}, {}, 9.2),
+        ({"mid-bust": 0.93, "full-bust": 0.93}, {}, 9.2),
+    ],
+)
+def test_a_fix_that_leaves_far_too_much_pressure_is_never_the_best(
+    built: Built, ratios: dict[str, float], settings: dict[str, Any], most: float
+) -> None:
+    """What ends an oscillation, a fold or a refusal alone would leave up to 56 kPa."""
+    stages = built("mannequin")
+    design = replace(stages.design, lines=(), **settings)
+    for name, ratio in ratios.items():
+        design = design.with_line(name, ratio)
+    best = diagnose(build(design, stages)).best_fix
+    assert best is not None
+    pressures = [each.value for each in best.remains if each.topic == "pressure"]
+    assert max(pressures, default=0.0) <= most
 
 
 def test_a_calm_design_that_presses_too_much_is_widened_or_lengthened(built: Built) -> None:

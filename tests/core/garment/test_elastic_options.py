@@ -26,6 +26,7 @@ from core.garment.elastic_options import (
     strongest,
 )
 from core.garment.match_shape import match_reached_lengths, reached_points
+from core.garment.pressure import pressures
 from core.messages import LineName
 from core.pipeline.build import Stages, build
 
@@ -48,6 +49,9 @@ def test_the_effect_is_what_its_design_gives(built: Callable[[str], Stages], con
     assert option.outcome is not None
     again, before = outcome_of(build(option.outcome.design, stages)), outcome_of(stages)
     assert again == option.outcome
+    pressed = pressures(build(again.design, stages), reached_points(build(again.design, stages)))
+    assert again.kpa == {name: band.largest for name, band in pressed.items()}
+    assert again.kpa["mid-bust"] > 0.0
     reached, former = (each.rows["mid-bust"].reached_front_mm for each in (again, before))
     if mode == KEEP_FIT:
         assert reached == pytest.approx(former, rel=2e-5)

@@ -22,8 +22,9 @@ from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 from app.i18n.lengths import length_unit
 from app.presenters.elastics import AdviceView, ChoiceView
+from app.presenters.pressure import TONES
 
-TITLE, STRETCH, CUT, REACHED, LIFT, NOTE = range(6)
+TITLE, STRETCH, CUT, REACHED, LIFT, PRESSURE, NOTE = range(7)
 """The columns of the table."""
 
 _RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
@@ -168,10 +169,11 @@ class _Table(ElasticTable):
             tr("cut {unit}"),
             tr("on body {unit}"),
             tr("lift {unit}"),
+            tr("pressure kPa"),
             "",
         )
         super().__init__([each.format(unit=unit) for each in heads], NOTE)
-        for column in (STRETCH, CUT, REACHED, LIFT):
+        for column in (STRETCH, CUT, REACHED, LIFT, PRESSURE):
             self.headerItem().setTextAlignment(column, _RIGHT)
 
     def show_row(self, row: int, view: ChoiceView) -> None:
@@ -179,12 +181,14 @@ class _Table(ElasticTable):
         item = self.topLevelItem(row)
         if item is None:
             item = QTreeWidgetItem()
-            for column in (STRETCH, CUT, REACHED, LIFT):
+            for column in (STRETCH, CUT, REACHED, LIFT, PRESSURE):
                 item.setTextAlignment(column, _RIGHT)
             self.addTopLevelItem(item)
         tokens = tokens_of(self)
         tones = {NOTE: tokens.text_quiet, STRETCH: tokens.warn if view.far else tokens.text}
-        texts = (view.title, view.stretch, view.cut, view.reached, view.lift, view.note)
+        if view.light:
+            tones[PRESSURE] = getattr(tokens, TONES[view.light])
+        texts = (view.title, view.stretch, view.cut, view.reached, view.lift, view.pressure, view.note)
         model = self.model()
         model.blockSignals(True)  # Else all columns are measured anew for each cell.
         for column, text in enumerate(texts):

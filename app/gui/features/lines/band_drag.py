@@ -10,7 +10,7 @@ from PySide6.QtGui import QCursor, QHelpEvent
 
 from app.gui.features.lines.panel import LinesPanel
 from app.gui.features.lines.row import LineRow, locked_tip
-from app.gui.features.lines.slider import LONGEST, RESISTANCE, SHORTEST, resisted_ratio, wall_of
+from app.gui.features.lines.slider import LONGEST, RESISTANCE, SHORTEST, ends_for, resisted_ratio, wall_of
 from app.gui.viewport.interaction import BandHandle
 from app.gui.widgets.tooltip import hide_tip, show_tip
 from app.i18n.catalog import tr
@@ -105,7 +105,7 @@ class BandDragController(QObject):
         self._name, self._way = name, 0.0
         self._start = self._ratio = design.ratio(name)
         self._leeway = None if row.view.stale else row.view.leeway
-        self._wall = wall_of(self._leeway, self._start)
+        self._wall = wall_of(self._leeway, self._start, ends_for(self._start)[0])
         self.carrying_changed.emit()
 
     def _pull(self, pixels: float, fine: bool) -> None:

@@ -60,10 +60,10 @@ def ends_for(ratio: float) -> tuple[float, float]:
     )
 
 
-def wall_of(leeway: LengthLimits | None, ratio: float) -> float | None:
-    """Return the ratio at which a pull that begins at ``ratio`` meets the red, if it does [1]."""
+def wall_of(leeway: LengthLimits | None, ratio: float, short: float) -> float | None:
+    """Return the ratio at which a pull from ``ratio`` towards ``short`` meets the red, if it does [1]."""
     red = leeway.red_below if leeway is not None else None
-    return red if red is not None and ends_for(ratio)[0] < red <= ratio else None
+    return red if red is not None and short < red <= ratio else None
 
 
 def resisted_ratio(ratio: float, wall: float | None, more: float) -> float:
@@ -146,8 +146,9 @@ def _tick(painter: QPainter, x: float, colour: QColor) -> None:
 class LengthSlider(QAbstractSlider):
     """A slider from 80 to 112 % with a wedge under the groove at the reached length.
 
-    It is wider where a length beyond these was typed. The groove shows how far the line can go, and tells
-    why where the pointer rests; a hand meets resistance in the red.
+    It is wider where a length beyond these was typed, until another length comes from elsewhere: what the
+    slider sets itself never changes its range. The groove shows how far the line can go, and tells why where
+    the pointer rests; a hand meets resistance in the red.
 
     ``previewed`` (share of the rest length) while the handle is dragged; ``committed`` once on release or at
     a key; ``cancelled`` when Esc ends a drag and the old value is back.
@@ -192,8 +193,11 @@ class LengthSlider(QAbstractSlider):
         return self.value() / STEPS_TO_ONE
 
     def set_ratio(self, ratio: float) -> None:
-        """Show a set length; nothing is emitted, and a handle in the user's hand stays where it is."""
-        if self.isSliderDown():
+        """Show a set length; nothing is emitted, and a handle in the user's hand stays where it is.
+
+        The length that it has already, such as one that was dragged to, leaves the range as it is.
+        """
+        if self.isSliderDown() or round(ratio * STEPS_TO_ONE) == self.value():
             return
         self._ends = ends_for(ratio)
         self.setRange(*(round(end * STEPS_TO_ONE) for end in self._ends))
@@ -236,7 +240,7 @@ class LengthSlider(QAbstractSlider):
             return
         self._before_drag, self._previewed = self.value(), False
         self._grip = event.position().x() - self.x_of(self.ratio())
-        self._wall = wall_of(None if self._stale else self._leeway, self.ratio())
+        self._wall = wall_of(None if self._stale else self._leeway, self.ratio(), self._ends[0])
         self.setSliderDown(True)
         if abs(self._grip) > _HANDLE_RADIUS + 3:
             self._grip = 0.0

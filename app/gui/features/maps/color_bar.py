@@ -133,7 +133,7 @@ class LegendBar(QWidget):
         """Paint the limits that lie within the range: a line over the colours, and a word that has room."""
         tokens, above = tokens_of(self), self._bar.bottom() + _WORD
         for value, tone, word in self._marks:
-            if self.range_[0] < value < self.range_[1]:
+            if self.range_[0] < value <= self.range_[1]:
                 y = self.y_of(value)
                 above = min(y, above - _WORD)
                 painter.setPen(QPen(QColor(getattr(tokens, tone)), 2.0))
