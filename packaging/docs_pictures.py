@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import shutil
 import sys
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -27,7 +28,8 @@ import guide_pictures  # noqa: E402
 import measure_pictures  # noqa: E402
 from guide_pictures import SHOTS, WIDE  # noqa: E402
 
-from app.cli.commands.picture import save_window, settled_window  # noqa: E402
+from app.cli.commands.picture import draw_picture, save_window, settled_window  # noqa: E402
+from app.presenters.samples import lifted_sample  # noqa: E402
 from app.report.pages import pages_of  # noqa: E402
 from app.report.painter import A4, UNITS  # noqa: E402
 from app.research.commands.figures import make_figures  # noqa: E402
@@ -113,7 +115,24 @@ def printed_sheets() -> None:
             image.save(str(PICTURES / f"{name}.png"))
 
 
+def unloaded() -> None:
+    """Show the breasts from the side as scanned and without their weight, side by side."""
+    standing = replace(lifted_sample(), lines=(), own_lines=(), traits=(), elastics=())
+    with TemporaryDirectory() as folder:
+        drawn = []
+        for posture in ("standing", "unloaded"):
+            path = Path(folder) / f"{posture}.png"
+            draw_picture(replace(standing, posture=posture), path, view="left", size=(700, 800))
+            drawn.append(Image.open(path).convert("RGB"))
+        both = Image.new("RGB", (1400, 800))
+        for place, image in enumerate(drawn):
+            both.paste(image, (700 * place, 0))
+        both.save(PICTURES / "unloaded.png")
+    with_few_colours(PICTURES / "unloaded.png")
+
+
 OTHERS = {
+    "unloaded": unloaded,
     "measures": lambda: measure_pictures.draw(PICTURES / "measures"),
     "verdicts": verdicts,
     "sheets": printed_sheets,
