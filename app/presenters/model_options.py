@@ -106,7 +106,7 @@ def consequences(key: str, value: Any, present: Mapping[str, Any]) -> dict[str, 
 
 
 def summary(present: Mapping[str, Any]) -> str:
-    """Return in a line what is chosen: how lines act always, else what is not as in a new design."""
+    """Return in a line what is chosen: tissue and lines always, else what is not as in a new design."""
     usual, idle = defaults(), without_effect(present)
     texts = [
         setting.words(present[setting.key])
@@ -114,7 +114,7 @@ def summary(present: Mapping[str, Any]) -> str:
         for setting in settings
         if setting.key not in idle
         and (
-            setting.key in ("line_contact", "line_hold")
+            setting.key in ("line_contact", "line_hold", "tissue")
             or (isinstance(setting, Choice) and present[setting.key] != usual[setting.key])
         )
     ]

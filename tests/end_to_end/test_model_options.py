@@ -212,10 +212,11 @@ def test_every_choice_has_its_words_and_the_door_says_what_is_not_usual() -> Non
     elsewhere = {"scan", "lines", "own_lines", "traits", "placed", "unknown", "template"}
     # Measures and elastics have parts of their own, and are no choice of the model.
     elsewhere |= {"own_measures", "elastics", "tissue_stiffness", "customer", "worn_tight_mm", "calibration"}
+    elsewhere.add("cup")
     assert {setting.key for setting in settings} == set(values) - elsewhere
     assert all(setting.tip.endswith(".") and setting.words(values[setting.key]) for setting in settings)
-    assert summary(values) == "Bonded · Elastic length"
-    assert summary(values | {"firm_chest": 0.3}) == "Bonded · Elastic length · Rib-cage support"
+    assert summary(values) == "Bonded · Elastic length · Net (paper)"
+    assert summary(values | {"firm_chest": 0.3}) == "Bonded · Elastic length · Net (paper) · Rib-cage support"
 
 
 def test_another_body_is_opened_with_its_lines_in_sight() -> None:
