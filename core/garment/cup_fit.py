@@ -32,8 +32,9 @@ class CupSide:
 
     ``more_ml`` [ml] is how much more a moulded cup holds than the breast that it covers, None of a sewn one;
     ``up_n``, ``back_n`` and ``inward_n`` [N] are the force on the breast, ``wire_n`` that of the wire's
-    points taken together. ``max_kpa`` and ``mean_kpa`` are of the skin that is pressed, ``force_n`` [N] is
-    all of that, whichever way, ``contact`` the share of the cup's area that presses, ``place`` [mm] where.
+    points taken together and ``root_mm`` [mm] the length of the root that it follows. ``max_kpa`` and
+    ``mean_kpa`` are of the skin that is pressed, ``force_n`` [N] is all of that, whichever way, ``contact``
+    the share of the cup's area that presses, ``place`` [mm] where.
     """
 
     side: str
@@ -42,6 +43,7 @@ class CupSide:
     back_n: float
     inward_n: float
     wire_n: float
+    root_mm: float
     force_n: float
     max_kpa: float
     mean_kpa: float
@@ -151,6 +153,7 @@ class WornCups:
             back_n=float(total[1]),
             inward_n=float(inward),
             wire_n=wire,
+            root_mm=self.layout.root_length(1 if side == "left" else -1),
             force_n=whole,
             max_kpa=float(kpa[most]),
             mean_kpa=1000.0 * whole / max(float(area[pressed].sum()), 1e-9),

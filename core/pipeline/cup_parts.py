@@ -117,6 +117,11 @@ class CupLayout:
         path = tuple(number[row, side * column] for row, column in places)
         return np.array(through_middles(path, self.fitted.mesh))
 
+    def root_length(self, side: int) -> float:
+        """Return the length of the root from its inner to its outer end [mm]."""
+        path = self.control.mesh.vertices[self.root(side)]
+        return float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+
     def wire_shape(self, side: int) -> Points:
         """Return the form of the wire less that of the root, shape (w, 3) [mm]: wider in its own plane."""
         rest = self.control.mesh.vertices[self.root(side)]

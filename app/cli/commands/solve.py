@@ -15,6 +15,7 @@ from app.cli.solved_design import is_converged
 from app.presenters.assessment import assessment_lines
 from core.export.solution_report import write_solution
 from core.garment.assessment import assess
+from core.garment.wires import nearest_wires
 from core.landmarks.warnings import collect_warnings
 from core.pipeline.solve import NoEquilibriumError, Solution, solve
 from core.pipeline.warnings import immovable_lines, shape_warnings
@@ -68,7 +69,10 @@ def _lines(values: Mapping[str, Any]) -> Iterator[str]:
             )
     for cup in values.get("cups", ()):
         more = f", holds {cup['more_ml']:+z.0f} ml" if cup["more_ml"] is not None else ""
-        wire = f", wire {cup['wire_n']:.1f} N" if cup["wire_n"] else ""
+        wire = ""
+        if values["design"]["cup"]["wire"]:
+            sizes = " or ".join(f"{each.kind.lower()} {each.size}" for each in nearest_wires(cup["root_mm"]))
+            wire = f", wire {cup['wire_n']:.1f} N (root {cup['root_mm']:.0f} mm: {sizes})"
         yield (
             f"cup {cup['side']}: bears {cup['up_n']:.1f} N, presses {cup['max_kpa']:.1f} kPa at most on "
             f"{100.0 * cup['contact']:.0f} % of its area{wire}{more}"
