@@ -192,8 +192,8 @@ def _density() -> Amount:
 
 def _posture() -> Choice:
     tip = tr(
-        "Choose the posture to compute with solid tissue: standing as scanned, leaning forward by 30 degrees, "
-        "lying on the back, or without weight."
+        "Choose the posture to compute with solid tissue: standing as scanned, leaning forward by 30 "
+        "degrees, lying on the back, or without weight."
     )
     options = (
         ("standing", tr("Standing")),
