@@ -4,7 +4,8 @@ Make:  python benchmarks/make_reference.py BODY.ply --case no-weight sling=95% -
 Check: python benchmarks/make_reference.py --check FILE... --bodies DIR
 
 BODY is a clean, upright body in mm. A case is a state of gravity (no-weight, supine, lean=30,
-gravity=X,Y,Z), lines with their common ratio (mid-bust=95%, sling=95%, strap=95%), or both joined by "+".
+gravity=X,Y,Z), lines with their common ratio (mid-bust=95%, sling=95%, strap=95%), rigid cups of both
+breasts (cup=COVERAGE,lift:25,forward:5,gather:15 [mm]), or several joined by "+".
 In place of the shear modulus [kPa], ``--rise`` chooses the one with which the bust rises so far [mm] when
 its weight is removed. A check solves the definition stored in a file anew, also on a mesh with 1.7 times
 the unknowns. Model and files: resources/reference/README.md. Needs benchmarks/reference-requirements.txt.
@@ -62,8 +63,8 @@ def parsed() -> argparse.Namespace:
 
 def make(body: Path, names: list[str], shear_kpa: float, rise: float | None, out: Path) -> None:
     """Solve and write the cases ``names`` of ``body``; a case without a balance is reported and left out."""
-    bare, control = bare_case(body, shear_kpa)
-    cases = [named_case(name, bare, control) for name in names]  # faults in names show before the work begins
+    bare, stages = bare_case(body, shear_kpa)
+    cases = [named_case(name, bare, stages) for name in names]  # faults in names show before the work begins
     model = model_of(bare, body.parent, COUNT)
     if rise is not None:
         bare, model = softened(bare, model, body.parent, rise)

@@ -1,8 +1,9 @@
-"""Cases: a body in a state of gravity and lines, and the file that keeps its displacement."""
+"""Cases: a body in a state of gravity, lines and cups, and the file that keeps its displacement."""
 
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,8 @@ import numpy as np
 import pyvista as pv
 
 from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points
+from reference.bands import Bands
+from reference.contact import Cup, CupContact
 from reference.model import BustModel, bust_model
 from reference.states import STANDING
 
@@ -28,7 +31,8 @@ class Case:
     """Definition of a case: a body, its control mesh, gravity [9.81 m/s^2] and lines.
 
     ``rows`` and ``columns`` (l, k) are the control points of each line in the template, ``points`` (l, k, 3)
-    [mm] their places; a line shorter than others ends with rows of -1. ``busts`` (2, 3): left, right.
+    [mm] their places; a line shorter than others ends with rows of -1. ``busts`` (2, 3): left, right. ``cup``
+    is that of both breasts, if any.
     """
 
     body: str
@@ -43,6 +47,7 @@ class Case:
     points: Points | None = None
     tape_ea_n: float = TAPE_EA_N
     band_mm: float = BAND_MM
+    cup: Cup | None = None
 
     def lines(self) -> tuple[Points, ...]:
         """Return the places of each line's control points, (k, 3) [mm]."""
@@ -74,6 +79,8 @@ def read_case(path: Path) -> tuple[Case, Points, Points]:
         if stored["line_rows"].size:
             rows, columns, points = (stored[f"line_{each}"] for each in ("rows", "columns", "points"))
             case = replace(case, rows=rows, columns=columns, points=points.astype(np.float64))
+        if "cup" in stored:
+            case = replace(case, cup=_read_cup(stored))
         return case, stored["rest"].astype(np.float64), stored["displacement"].astype(np.float64)
 
 
@@ -103,7 +110,26 @@ def write_case(path: Path, case: Case, model: BustModel, moved: Points, info: di
         info=np.array(repr(info)),
         wall=model.wall.astype(small),
         wall_triangles=model.skin.faces.astype(np.int32),
+        **({} if case.cup is None else _cup_arrays(case.cup)),
     )
+
+
+def _cup_arrays(cup: Cup) -> dict[str, Any]:
+    return {
+        "cup": np.array([cup.lift, cup.forward, cup.gather]),
+        "cup_coverage": np.array(cup.coverage),
+        "cup_rest": cup.rest.vertices.astype(np.float32),
+        "cup_points": cup.target.astype(np.float32),
+        "cup_triangles": cup.rest.faces.astype(np.int32),
+        "cup_side": cup.side.astype(np.int8),
+    }
+
+
+def _read_cup(stored: Mapping[str, Any]) -> Cup:
+    rest = Mesh(stored["cup_rest"].astype(np.float64), stored["cup_triangles"].astype(np.int64))
+    lift, forward, gather = stored["cup"].tolist()
+    target = stored["cup_points"].astype(np.float64)
+    return Cup(lift, forward, gather, str(stored["cup_coverage"]), rest, target, stored["cup_side"])
 
 
 def model_of(case: Case, bodies: Path, count: int) -> BustModel:
@@ -113,21 +139,39 @@ def model_of(case: Case, bodies: Path, count: int) -> BustModel:
     return bust_model(body, case.control, case.fixed, case.shear_kpa, count)
 
 
+CUP_STEPS = 8
+"""Load steps of a case with cups: in each they move so little that skin in touch stays near them."""
+
+
 def solved(case: Case, model: BustModel) -> tuple[Points, dict[str, Any]]:
-    """Return the nodes of ``model`` in ``case``, (n, 3) [mm], and the tensions [N] and lengths [1]."""
+    """Return the nodes of ``model`` in ``case``, (n, 3) [mm], and what lines and cups do."""
     start = time.perf_counter()
-    lines = case.lines()
-    if not lines:
+    lines, cups = case.lines(), () if case.cup is None else model.contacts(case.cup)
+    held = tuple(map(case.held, lines))
+    bands = [model.bands(lines, held, case.ratio, case.tape_ea_n, case.band_mm)] if lines else []
+    if bands or cups:
+        moved = model.loaded_body.loaded(case.gravity, [*bands, *cups], CUP_STEPS if cups else 4)
+    else:
         moved = model.loaded_body.loaded(case.gravity) if case.gravity.any() else model.loaded_body.unloaded
-        return moved, {"ok": True, "s": round(time.perf_counter() - start, 1)}
-    bands = model.bands(lines, tuple(map(case.held, lines)), case.ratio, case.tape_ea_n, case.band_mm)
-    moved = model.loaded_body.loaded(case.gravity, bands)
-    tension = bands.tension(moved)
-    reached = bands.lengths(moved).sum() / bands.lengths(model.nodes).sum()
-    return moved, {
-        "ok": True,
-        "reached": round(float(reached), 4),
-        "T_mean": round(float(tension.mean()), 3),
-        "T_max": round(float(tension.max()), 3),
-        "s": round(time.perf_counter() - start, 1),
-    }
+    seconds = round(time.perf_counter() - start, 1)
+    return moved, {"ok": True, **_line_info(bands, model, moved), **_cup_info(cups, moved), "s": seconds}
+
+
+def _line_info(bands: Sequence[Bands], model: BustModel, moved: Points) -> dict[str, Any]:
+    """Return the reached length [1] and the tensions [N] of lines."""
+    info = {}
+    for each in bands:
+        tension = each.tension(moved)
+        reached = each.lengths(moved).sum() / each.lengths(model.nodes).sum()
+        info = {"reached": round(float(reached), 4)}
+        info |= {"T_mean": round(float(tension.mean()), 3), "T_max": round(float(tension.max()), 3)}
+    return info
+
+
+def _cup_info(cups: Sequence[CupContact], moved: Points) -> dict[str, Any]:
+    """Return the force of the left and the right cup on the breast [N], and the largest penetration [mm]."""
+    if not cups:
+        return {}
+    left, right = (cup.total(moved).round(3).tolist() for cup in cups)
+    deepest = max(float(cup.outside(moved).max()) for cup in cups)
+    return {"cup_left_n": left, "cup_right_n": right, "penetration": round(deepest, 3)}

@@ -1,4 +1,4 @@
-"""Names of cases: states of gravity and lines of the template, and the definitions that they stand for."""
+"""Names of cases: states of gravity, lines of the template and cups, and what they stand for."""
 
 from __future__ import annotations
 
@@ -9,10 +9,14 @@ from pathlib import Path
 import numpy as np
 
 from core.control_mesh.fit import ControlMesh
+from core.document.cup import COVERAGES
+from core.document.cup import Cup as CupSettings
 from core.document.design import Design, ScanSource
 from core.geometry.mesh import Floats, Points
-from core.pipeline.build import build
+from core.pipeline.build import Stages, build
+from core.pipeline.cup_parts import CupLayout
 from reference.cases import Case
+from reference.contact import Cup
 
 Places = tuple[tuple[int, int], ...]
 """Row and column in the template of each control point of a line."""
@@ -25,16 +29,21 @@ LINES: dict[str, tuple[Places, ...]] = {
 """Lines by name; rows count from the fold upward, column 0 is the centre, positive the subject's left."""
 
 
-def bare_case(path: Path, shear_kpa: float) -> tuple[Case, ControlMesh]:
-    """Return the case of the standing body in file ``path`` [mm] and the control mesh that is laid on it."""
-    stages = build(Design(ScanSource(str(path))))
-    control = stages.control
+WAYS = ("lift", "forward", "gather")
+"""Ways of a cup's apex [mm]."""
+
+
+def bare_case(path: Path, shear_kpa: float) -> tuple[Case, Stages]:
+    """Return the case of the standing body in file ``path`` [mm] and the stages that lay its control mesh."""
+    stages = build(Design(ScanSource(str(path)), tissue="solid"))
+    control = stages.fitted
     busts = np.stack([stages.landmarks.position(f"bust_point_{side}") for side in ("left", "right")])
-    return Case(path.name, control.mesh, control.fixed, busts, shear_kpa), control
+    return Case(path.name, control.mesh, control.fixed, busts, shear_kpa), stages
 
 
-def named_case(name: str, bare: Case, control: ControlMesh) -> Case:
-    """Return ``bare`` in the state ``name``: parts joined by "+", as "supine", "lean=30" or "sling=95%".
+def named_case(name: str, bare: Case, stages: Stages) -> Case:
+    """Return ``bare`` in the state ``name``: parts joined by "+", as "supine", "lean=30", "sling=95%" or
+    "cup=half,lift:25,forward:5".
 
     Raises ValueError for an unknown part or lines of different ratios.
     """
@@ -45,11 +54,13 @@ def named_case(name: str, bare: Case, control: ControlMesh) -> Case:
         if label in LINES and re.fullmatch(r"\d+(\.\d+)?%", value):
             ratios.add(float(value[:-1]) / 100.0)
             lines += LINES[label]
+        elif label == "cup":
+            case = replace(case, cup=cup_of(value, stages))
         else:
             case = replace(case, gravity=gravity_of(part))
     if len(ratios) > 1:
         raise ValueError(f"{name}: all lines of a case have the same ratio")
-    return _with_lines(case, control, lines, ratios.pop()) if lines else case
+    return _with_lines(case, stages.fitted, lines, ratios.pop()) if lines else case
 
 
 def gravity_of(part: str) -> Floats:
@@ -70,6 +81,25 @@ def gravity_of(part: str) -> Floats:
     )
 
 
+def cup_of(value: str, stages: Stages) -> Cup:
+    """Return the cup of "half,lift:25,forward:5": its coverage, and the way of the apex [mm]."""
+    coverage, *ways = value.split(",")
+    way = dict.fromkeys(WAYS, 0.0) | {
+        label: float(number) for label, _, number in (part.partition(":") for part in ways)
+    }
+    if coverage not in COVERAGES or len(way) > len(WAYS):
+        raise ValueError(f"cup={value}: give {', '.join(COVERAGES)}, then lift, forward or gather")
+    assert stages.tissue is not None
+    control = stages.control
+    lift, forward, gather = (way[each] for each in WAYS)
+    settings = CupSettings(coverage=coverage, lift=lift, forward=forward, gather=gather)
+    layout = CupLayout(settings, stages.fitted, control, stages.tissue.depth)
+    side = np.zeros(len(control.fixed), dtype=np.int64)
+    for each in (1, -1):
+        side[layout.points(each)] = each
+    return Cup(lift, forward, gather, coverage, control.mesh, layout.target, side)
+
+
 def _with_lines(case: Case, control: ControlMesh, lines: list[Places], ratio: float) -> Case:
     """Return ``case`` with ``lines``, the shorter ones filled up with rows of -1."""
     longest = max(map(len, lines))
@@ -85,4 +115,4 @@ def _with_lines(case: Case, control: ControlMesh, lines: list[Places], ratio: fl
 
 def file_label(name: str) -> str:
     """Return the part of a file's name that stands for the case ``name``."""
-    return name.replace("%", "").replace("=", "-").replace("+", "_").replace(",", "_")
+    return name.replace("%", "").replace("=", "-").replace("+", "_").replace(",", "_").replace(":", "-")

@@ -9,6 +9,7 @@ from scipy import sparse
 
 from core.geometry.mesh import Faces, Flags, Mesh, Points
 from reference.bands import Bands, cut
+from reference.contact import Cup, CupContact
 from reference.skin import QuadraticSkin, closest, remeshed, within_outline
 from reference.solid_mesh import chest_wall, over_fixed, still_nodes, tetrahedra
 from reference.states import LoadedBody
@@ -57,6 +58,11 @@ class BustModel:
         rest[fixed] = points[fixed]
         follow = self.surface.discs(rest, band_mm, fixed)
         return Bands(rest, self.nodes, follow, pieces, np.full(len(pieces), ratio), stiffness_n)
+
+    def contacts(self, cup: Cup) -> tuple[CupContact, ...]:
+        """Return the contact with the left and the right ``cup``."""
+        picked, triangles = self.skin_nodes()
+        return cup.contacts(picked @ self.nodes, triangles, picked)
 
     def skin_nodes(self) -> tuple[sparse.csr_array, Faces]:
         """Return the matrix that picks the skin's nodes, (s, n), and their triangles, four to a face."""

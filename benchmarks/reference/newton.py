@@ -40,7 +40,7 @@ def factorised(matrix: sparse.csr_array) -> SuperLU:
 def solve(residual: Residual, tangent: Tangent, start: Floats, free: Indices) -> Floats:
     """Return unknowns near ``start`` (n,) whose residual is 0 in the rows ``free``; others keep their values.
 
-    Raises NoBalanceError after too many or too short steps.
+    Raises NoBalanceError after too many steps, or where any would turn a tetrahedron inside out.
     """
     unknowns = start
     force = residual(unknowns)[free]
@@ -56,8 +56,12 @@ def solve(residual: Residual, tangent: Tangent, start: Floats, free: Indices) ->
 def _searched(
     residual: Residual, factors: SuperLU, unknowns: Floats, free: Indices, step: Floats
 ) -> tuple[Floats, Floats]:
-    """Return the unknowns after the longest part of ``step`` that shortens the next, and their residual."""
+    """Return the unknowns after the longest part of ``step`` that shortens the next, and their residual.
+
+    Where skin meets a cup none may, as the cup was not yet in the tangent: then it is the longest possible.
+    """
     share, length = 1.0, np.linalg.norm(step)
+    longest: tuple[Floats, Floats] | None = None
     while share >= SHORTEST:
         trial = _added(unknowns, free, share * step)
         try:
@@ -67,8 +71,11 @@ def _searched(
             continue
         if np.linalg.norm(factors.solve(force)) <= (1.0 - share / 4.0) * length + STILL:
             return trial, force
+        longest = longest or (trial, force)
         share /= 2.0
-    raise NoBalanceError("no part of a Newton step comes nearer to balance")
+    if longest is None:
+        raise NoBalanceError("every part of a Newton step turns a tetrahedron inside out")
+    return longest
 
 
 def _added(unknowns: Floats, rows: Indices, step: Floats) -> Floats:
@@ -80,7 +87,8 @@ def _added(unknowns: Floats, rows: Indices, step: Floats) -> Floats:
 def follow(solved: Callable[[float, Floats], Floats], start: Floats, steps: int) -> Floats:
     """Return the unknowns at load 1 from those at load 0; ``solved`` returns those at a load from near ones.
 
-    Starts with ``steps`` load steps and halves those that fail; raises NoBalanceError at the shortest.
+    Starts with ``steps`` load steps, halves those that fail and doubles them after success; raises
+    NoBalanceError at the shortest.
     """
     load, step, unknowns = 0.0, 1.0 / steps, start
     while load < 1.0:
@@ -92,5 +100,5 @@ def follow(solved: Callable[[float, Floats], Floats], start: Floats, steps: int)
             if step < SHORTEST / steps:
                 raise
             continue
-        load = following
+        load, step = following, min(2.0 * step, 1.0 / steps)
     return unknowns

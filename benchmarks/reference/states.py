@@ -2,19 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
+from typing import Protocol
 
 import numpy as np
 from scipy import sparse
 
 from core.geometry.mesh import Floats, Points
-from reference.bands import Bands
 from reference.newton import follow, solve
 from reference.tissue import Tissue
 
 STANDING = np.array([0.0, 0.0, -1.0])
 """Direction and size of gravity in the scan [9.81 m/s^2]."""
+
+
+class Worn(Protocol):
+    """What is worn, as an energy of the nodes (n, 3) [mm] at a share of its load [1]."""
+
+    def forces(self, nodes: Points, load: float) -> Floats:
+        """Return the derivatives of the energy by the nodes, (3 n,) [N]."""
+
+    def stiffness(self, nodes: Points, load: float) -> sparse.csr_array:
+        """Return the second derivatives of the energy by the nodes, (3 n, 3 n) [N/mm]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,32 +60,33 @@ class LoadedBody:
         """Return the pressures in the scan, (c,) [shear modulus]."""
         return self._unloaded[self.tissue.mesh.nodes.size :]
 
-    def loaded(self, gravity: Floats, bands: Bands | None = None, start: Floats | None = None) -> Points:
-        """Return the nodes, (n, 3) [mm], under ``gravity`` (3,) [9.81 m/s^2] with ``bands`` worn.
+    def loaded(self, gravity: Floats, worn: Sequence[Worn] = (), steps: int = 4) -> Points:
+        """Return the nodes, (n, 3) [mm], under ``gravity`` (3,) [9.81 m/s^2] with garments ``worn``.
 
-        The load goes in steps from the scan, or from nodes ``start`` (n, 3), to gravity and lengths at once.
+        The load goes in ``steps`` from the scan to gravity and garments at once.
         Raises NoBalanceError.
         """
-        nodes = self.tissue.mesh.nodes if start is None else start
+        nodes = self.tissue.mesh.nodes
         unknowns = np.concatenate([nodes.ravel(), self.pressure])
-        return follow(partial(self._at, gravity, bands), unknowns, 4)[: nodes.size].reshape(-1, 3)
+        return follow(partial(self._at, gravity, worn), unknowns, steps)[: nodes.size].reshape(-1, 3)
 
-    def _at(self, gravity: Floats, bands: Bands | None, load: float, unknowns: Floats) -> Floats:
+    def _at(self, gravity: Floats, worn: Sequence[Worn], load: float, unknowns: Floats) -> Floats:
         tissue, unloaded, size = self.tissue, self.unloaded, self.tissue.mesh.nodes.size
         now = STANDING + load * (gravity - STANDING)
 
         def residual(z: Floats) -> Floats:
             total = tissue.residual(unloaded, *_split(z, size), now)
-            if bands is not None:
-                total[:size] += bands.forces(z[:size].reshape(-1, 3), load)
+            for each in worn:
+                total[:size] += each.forces(z[:size].reshape(-1, 3), load)
             return total
 
         def tangent(z: Floats) -> sparse.csr_array:
             matrix = tissue.tangent(unloaded, *_split(z, size))
-            if bands is None:
-                return matrix
-            worn = bands.stiffness(z[:size].reshape(-1, 3), load)
-            return sparse.csr_array(matrix + sparse.block_diag([worn, _nothing(len(z) - size)], format="csr"))
+            for each in worn:
+                added = each.stiffness(z[:size].reshape(-1, 3), load)
+                added.resize(matrix.shape)
+                matrix = matrix + added
+            return matrix
 
         return solve(residual, tangent, unknowns, tissue.free)
 
@@ -87,7 +99,3 @@ def _swap(unknowns: Floats, shape: Points) -> tuple[Points, Points, Floats]:
     """Return unloaded shape, loaded ``shape`` and pressures where the unloaded one is unknown."""
     original, pressure = _split(unknowns, shape.size)
     return original, shape, pressure
-
-
-def _nothing(count: int) -> sparse.csr_array:
-    return sparse.csr_array((count, count))

@@ -11,6 +11,7 @@ import numpy as np
 
 from core.control_mesh.template import read_template
 from core.deformation.tffd import deform
+from core.document.cup import Cup
 from core.document.design import Design, ScanSource
 from core.document.lines import CustomLine
 from core.pipeline.build import build
@@ -24,7 +25,10 @@ BOTH = [MID_BUST[0], SLINGS[0]]
 def case_arrays(
     body: Path, lines: list[list[tuple[int, int]]], ratio: float = 0.95, **settings: Any
 ) -> dict[str, Any]:
-    """Return what a case holds on a body with lines through rows and columns, by a design's own answer."""
+    """Return what a case holds on a body with lines through rows and columns, by a design's own answer.
+
+    Without lines the design has a cup, and solid tissue.
+    """
     design = replace(Design(ScanSource(str(body))), **settings)
     template = read_template(design.template)
     for number, cells in enumerate(lines):
@@ -33,13 +37,13 @@ def case_arrays(
     stages = build(design)
     binding, points = stages.binding, stages.model.tensegric.expand(exact_equilibrium(stages).state.moved)
     longest = max(map(len, lines), default=0)
-    table = np.array([[*line, *[(-1, 0)] * (longest - len(line))] for line in lines]).reshape(-1, longest, 2)
+    table = np.array([[*line, *[(-1, 0)] * (longest - len(line))] for line in lines] or np.empty((0, 0, 2)))
     bust = {f"bust_{side}": stages.landmarks.position(f"bust_point_{side}") for side in ("left", "right")}
     return {
         "body": body.name,
         "rest": binding.rest_moving,
         "displacement": (deform(binding, points) - binding.body.vertices)[binding.moving],
-        "control_points": stages.control.mesh.vertices,
+        "control_points": stages.fitted.mesh.vertices,
         "control_faces": template.faces,
         "control_fixed": template.fixed,
         "gravity": np.array([0.0, 0.0, -1.0]),
@@ -47,9 +51,15 @@ def case_arrays(
         "line_columns": table[..., 1],
         "ratio": ratio,
         "tape_ea_n": 1000.0,
-        "shear_modulus_kpa": 0.5,
+        "shear_modulus_kpa": 0.5 if stages.tissue is None else stages.tissue.shear_modulus(design.sag),
         **bust,
+        **({} if design.cup is None else cup_arrays(design.cup)),
     }
+
+
+def cup_arrays(cup: Cup) -> dict[str, Any]:
+    """Return what tells the cup of a case."""
+    return {"cup": np.array([cup.lift, cup.forward, cup.gather]), "cup_coverage": cup.coverage}
 
 
 def write_case(folder: Path, arrays: dict[str, Any], body: Path | None = None, /, **changed: Any) -> Path:

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from core.control_mesh.template import TEMPLATES, Template, read_template
+from core.document.cup import Cup
 from core.errors import UserError, reason_of
 from core.files.regular_file import read_regular
 from core.geometry.mesh import MAX_COORDINATE, Floats, Points, frozen
@@ -42,8 +43,9 @@ class ReferenceCase:
     file of the body, which is looked for beside the case, in ``folder``. ``control_points`` (c, 3) are those
     of the ``template`` on that body; ``lines`` are sequences of them, all worn at ``ratio`` [1] of their rest
     length piece by piece, with ``line_stiffness_n`` [N] per unit of strain. ``gravity`` (3,) is in units of
-    9.81 m/s^2; ``bust_points`` (2, 3) are the left and the right one. ``kind`` is "weight", "sling" (lines
-    along a column), "mid-bust" (along a row) or "other".
+    9.81 m/s^2; ``bust_points`` (2, 3) are the left and the right one. ``cup`` is that of both breasts, if
+    any. ``kind`` is "weight", "sling" (lines along a column), "mid-bust" (along a row), "cup" (without lines)
+    or "other".
     """
 
     name: str
@@ -56,6 +58,7 @@ class ReferenceCase:
     line_stiffness_n: float
     shear_modulus_kpa: float
     gravity: tuple[float, ...]
+    cup: Cup | None
     kind: str
     rest: Points
     displacement: Points
@@ -90,8 +93,11 @@ def read_case(path: Path) -> ReferenceCase:
     if not displacement.any():
         raise reader.error(Message("no node moves"))
     gravity = tuple(reader.numbers("gravity", (3,)).tolist())
-    if not lines and gravity == STANDING:
-        raise reader.error(Message("it has neither lines nor another gravity than standing"))
+    cup = _cup(reader)
+    if cup is not None:
+        kind = "other" if lines else "cup"
+    elif not lines and gravity == STANDING:
+        raise reader.error(Message("it has neither lines nor cups nor another gravity than standing"))
     points = len(template.row), 3
     return ReferenceCase(
         path.stem,
@@ -104,6 +110,7 @@ def read_case(path: Path) -> ReferenceCase:
         reader.positive("tape_ea_n"),
         reader.positive("shear_modulus_kpa"),
         gravity,
+        cup,
         kind,
         rest,
         displacement,
@@ -187,6 +194,18 @@ def _template(reader: _Reader) -> Template:
         if np.array_equal(faces, template.faces) and np.array_equal(fixed, template.fixed):
             return template
     raise reader.error(Message("its control mesh is not that of a template"))
+
+
+def _cup(reader: _Reader) -> Cup | None:
+    """Return the cup of a case, None if it has none: the way of the apex, and how far up it goes."""
+    if "cup" not in reader.arrays:
+        return None
+    lift, forward, gather = reader.numbers("cup", (3,)).tolist()
+    coverage = str(reader.array("cup_coverage", "U", ()))
+    try:
+        return Cup(coverage=coverage, lift=lift, forward=forward, gather=gather)
+    except UserError as problem:
+        raise reader.error(Message("its cup is not one that Busk can compute")) from problem
 
 
 def _lines(reader: _Reader, template: Template) -> tuple[tuple[tuple[int, ...], ...], str]:

@@ -8,10 +8,18 @@ from typing import Any
 import numpy as np
 import pytest
 from coarse_bodies import coarse_body
-from reference_cases import BOTH, MID_BUST, SLINGS, case_arrays, write_case
+from reference_cases import BOTH, MID_BUST, SLINGS, case_arrays, cup_arrays, write_case
 
-from core.analysis.model_check.compare import NO_WEIGHT, CaseComparison, Rise, body_file, check_model
-from core.analysis.model_check.reference_case import case_file, read_case
+from core.analysis.model_check.compare import (
+    NO_CUPS,
+    NO_WEIGHT,
+    CaseComparison,
+    Rise,
+    body_file,
+    check_model,
+)
+from core.analysis.model_check.reference_case import case_file, included_cases, read_case
+from core.document.cup import Cup
 from core.document.design import Design, ScanSource
 from core.errors import UserError
 
@@ -70,6 +78,33 @@ def test_a_net_does_not_respond_to_gravity(body: Path, sling: Arrays, tmp_path: 
     found = compared(write_case(tmp_path, sling, body, **none))
     assert (found.kind, found.ratio, found.passed) == ("weight", 1.0, False)
     assert found.notes == (NO_WEIGHT,)
+
+
+def test_solid_tissue_wears_the_cup_of_a_case(body: Path, tmp_path: Path) -> None:
+    cup = Cup(coverage="half", lift=20.0, forward=5.0, gather=10.0)
+    arrays = case_arrays(body, [], tissue="solid", sag=15.0, cup=cup)
+    case = write_case(tmp_path, arrays, body)
+    assert read_case(case).cup == cup
+    own = compared(case, tissue="solid", sag=30.0, cup=Cup("sewn"))  # those of the case count
+    assert (own.kind, own.limit) == ("cup", 0.30)
+    assert own.ratio < 1e-6
+    assert own.left.model > 4.0  # it lifts
+    lower = cup_arrays(Cup(coverage="half", lift=15.0, forward=5.0, gather=10.0))
+    assert compared(write_case(tmp_path, arrays, body, **lower), tissue="solid").ratio > 0.1
+    net = compared(write_case(tmp_path, arrays, body))
+    assert (net.ratio, net.notes) == (1.0, (NO_CUPS,))
+
+
+def test_cups_beside_lines_make_another_kind(sling: Arrays, tmp_path: Path) -> None:
+    assert read_case(write_case(tmp_path, sling, **cup_arrays(Cup(lift=10.0)))).kind == "other"
+
+
+def test_cup_cases_that_come_with_the_program_are_met() -> None:
+    cases = [read_case(file) for name, file in included_cases().items() if name.startswith("mannequin_cup")]
+    assert len(cases) == 3
+    for found in check_model(cases, Design(ScanSource(""), tissue="solid")):
+        assert found.passed, found
+        assert min(found.left.reference, found.right.reference) > 7.0
 
 
 def test_nodes_away_from_movable_skin_are_left_out(body: Path, sling: Arrays, tmp_path: Path) -> None:
@@ -131,6 +166,7 @@ def test_a_rise_may_be_off_by_half_a_millimetre_or_a_share(
         *(("weight", 0.15, True), ("weight", 0.151, False)),
         *(("sling", 0.25, True), ("sling", 0.251, False)),
         *(("mid-bust", 0.40, True), ("mid-bust", 0.401, False)),
+        *(("cup", 0.30, True), ("cup", 0.301, False)),
         *(("other", 0.40, True), ("other", 0.401, False)),
     ],
 )
@@ -157,7 +193,13 @@ WRONG: dict[str, Arrays] = {
     "its control mesh is not that of a template": {"control_faces": np.array([[0, 1, 2]])},
     "a line leaves the control mesh": {"line_rows": np.array([[2, 99]]), "line_columns": np.array([[0, 0]])},
     "'line_columns' does not have": {"line_columns": np.array([[0, 0]])},
-    "neither lines nor another gravity": {"line_rows": np.empty(0)},
+    "neither lines nor cups nor another gravity": {"line_rows": np.empty(0)},
+    "'cup' does not have": {"cup": np.zeros(4), "cup_coverage": "half"},
+    "'cup' contains values that are not finite": {"cup": np.full(3, np.nan), "cup_coverage": "half"},
+    "'cup_coverage' is missing": {"cup": np.zeros(3)},
+    "'cup_coverage' does not have": {"cup": np.zeros(3), "cup_coverage": np.array(["half", "full"])},
+    "its cup is not one": {"cup": np.zeros(3), "cup_coverage": "double"},
+    "its cup is not one that Busk can compute": {"cup": np.array([99.0, 0.0, 0.0]), "cup_coverage": "half"},
     "'body' is not a file name": {"body": "../mannequin.ply"},
     "is not a reference case": {"body": np.array({"an": "object"})},
 }
