@@ -80,8 +80,9 @@ def _ml(told: SideDifference) -> float:
 
 def _breasts(stages: Stages) -> float:
     """Return by how much the left breast is larger within its root [ml], if that is known."""
-    found = measures(stages.body.smoothed, stages.landmarks)["asymmetry_volume"].value
-    return np.nan if found is None else found
+    found = measures(stages.body.smoothed, stages.landmarks)
+    left, right = (found[f"breast_volume_{side}"].value for side in ("left", "right"))
+    return np.nan if left is None or right is None else left - right
 
 
 def at_rest(stages: Stages) -> SideDifference:

@@ -46,6 +46,9 @@ def marks_of(key: str, found: Measures, landmarks: Landmarks) -> Marks:
     special = {
         "bust_height": lambda: _heights(left, np.array([*left[:2], landmarks.underbust_level])),
         "bust_protrusion": lambda: _depths(*curves[0]),
+        "asymmetry_volume": lambda: Marks(
+            curves=tuple(each for side in SIDES for each in found[f"breast_volume_{side}"].curves)
+        ),
         "apex_lift": lambda: _heights(*curves[0][::-1]),
     }
     return special.get(key, lambda: Marks(curves=curves))()

@@ -14,7 +14,7 @@ from core.geometry.mesh import Mesh, Points
 from core.geometry.plane_sections import arc_length
 from core.landmarks.types import SIDES, Landmark
 from core.measurements.breast_volume import foremost
-from core.measurements.definitions import Measure, definition_of, missing
+from core.measurements.definitions import Measure, missing
 from core.measurements.girths import UNSURE_LEVEL
 from core.measurements.subject import Subject, shows_breast
 from core.messages import EMPTY, Message
@@ -29,6 +29,7 @@ OPEN_ROOT = Message("The skin around the breast root is incomplete in the scan."
 UNSEEN_CHEST = Message(
     "The chest wall behind the breast and the top of the breast root are not visible: estimate."
 )
+NO_CONTROL_MESH = Message("This value needs a control mesh: measure a project.")
 HOLED = Message("The path crosses a hole in the scan: estimate.")
 
 
@@ -184,23 +185,14 @@ def _volume(subject: Subject, side: str) -> Measure:
 
 
 def _sides(subject: Subject) -> Iterator[Measure]:
-    """Yield by how much the left side exceeds the right one."""
+    """Yield by how much the left side exceeds the right one; the excess volume needs a control mesh."""
     left, right = _busts(subject)
-    for axis, sign, key in ((2, 1.0, "asymmetry_height"), (1, -1.0, "asymmetry_forward")):
-        if left is None or right is None or not all(shows_breast(subject.landmarks, each) for each in SIDES):
-            yield missing(key, NO_BREAST)
-            continue
-        more = sign * float(left.position[axis] - right.position[axis])
-        line = np.array([left.position, right.position])
-        yield Measure(key, more, "mm", (line,), min(left.confidence, right.confidence))
-    volumes = [_volume(subject, side) for side in SIDES]
-    values = [each.value for each in volumes if each.value is not None]
-    if len(values) < len(SIDES):
-        yield missing("asymmetry_volume", next(each.note for each in volumes if each.value is None))
+    keys = "asymmetry_height", "asymmetry_forward", "asymmetry_volume"
+    if left is None or right is None or not all(shows_breast(subject.landmarks, each) for each in SIDES):
+        yield from (missing(key, NO_BREAST) for key in keys)
         return
-    curves = tuple(curve for each in volumes for curve in each.curves)
-    sure, unit = min(each.confidence for each in volumes), definition_of("asymmetry_volume")[0].unit
-    note = next((each.note for each in volumes if each.note != UNSEEN_CHEST), UNSEEN_CHEST)
-    # No ± is told: a root hangs on the height of its bust point, and a breast that sits lower was told up to
-    # 92 ml smaller (docs/how-to/symmetry.md), far more than what is known to be unsure of both volumes.
-    yield Measure("asymmetry_volume", values[0] - values[1], unit, curves, sure, True, 0.0, note)
+    line, sure = np.array([left.position, right.position]), min(left.confidence, right.confidence)
+    _, forward, up = (left.position - right.position) * (1.0, -1.0, 1.0)
+    yield Measure(keys[0], float(up), "mm", (line,), sure)
+    yield Measure(keys[1], float(forward), "mm", (line,), sure)
+    yield missing(keys[2], NO_CONTROL_MESH)

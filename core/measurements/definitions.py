@@ -292,12 +292,12 @@ _TABLE = (
     ),
     Definition(
         "asymmetry_volume",
-        Message("Left breast larger"),
+        Message("Excess volume, left minus right"),
         "ml",
         "",
         Message(
-            "Defined by Busk, estimate: volume of the left breast minus that of the right one. The error "
-            "is unknown; the values under Symmetry are more reliable."
+            "Defined by Busk: net volume by which the left breast protrudes beyond the mirror image of the "
+            "right one; negative where the right one protrudes more. The same value as under Symmetry."
         ),
         BOTH,
     ),

@@ -19,6 +19,7 @@ from core.landmarks.types import Landmarks
 from core.measurements.bust import NO_MARK, NO_ROOT, apexes, cup_measures, over_skin, straight
 from core.measurements.definitions import KEYS, Measure, definition_of, missing
 from core.measurements.girths import girth_measures, over_gaps, tape_ring
+from core.measurements.mirrored_surface import SkinGap, mirrored_breasts
 from core.measurements.subject import Subject, subject_of
 from core.messages import Message
 from core.pipeline.build import Stages
@@ -79,7 +80,23 @@ def before_after(stages: Stages, control_points: Points) -> tuple[Measures, Meas
     mesh, landmarks, own = stages.body.smoothed, stages.landmarks, stages.design.own_measures
     rest, before = original_subject(mesh, landmarks), _at_rest(mesh, landmarks)
     after = reshaped_subject(rest, stages, control_points)
-    return _with_own(before, rest, own), of_subject(after, own, rest)
+    found = _with_own(before, rest, own), of_subject(after, own, rest)
+    skin = mirrored_breasts(stages.body, stages.control, stages.patch)
+    first, last = (
+        _with_excess(each, of, skin.gap(of.mesh.vertices))
+        for each, of in zip(found, (rest, after), strict=True)
+    )
+    return first, last
+
+
+def _with_excess(found: Measures, subject: Subject, gap: SkinGap | None) -> Measures:
+    """Return the measures with the excess volume of one breast over the mirrored other one."""
+    key, height = "asymmetry_volume", found["asymmetry_height"]
+    if gap is None or height.value is None:
+        return found
+    curves = tuple(root.closed for root in subject.roots.values()) or height.curves
+    excess = Measure(key, gap.total, found[key].unit, curves, height.confidence)
+    return MappingProxyType({**found, key: excess})
 
 
 def of_subject(

@@ -3,23 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 from math import hypot
 
-import numpy as np
-from scipy.spatial import cKDTree
-
-from core.analysis.symmetry.mirrored_surface import MirroredSurface, SkinGap
-from core.control_mesh.fit import ControlMesh
-from core.deformation.blend_region import BlendRegion
 from core.deformation.tffd import deform
 from core.geometry.mesh import Points
 from core.landmarks.types import SIDES
+from core.measurements.mirrored_surface import SkinGap, mirrored_breasts
 from core.measurements.subject import shows_breast
 from core.measurements.table import smoothed_moves
 from core.messages import Message
 from core.pipeline.build import Stages
-from core.scan.body import Body
 
 NO_BREAST = Message("One side has no breast protrusion: its bust point is mirrored from the other side.")
 
@@ -69,7 +62,7 @@ def compare_sides(stages: Stages, control_points: Points) -> BeforeAfter:
 
 
 def _of(stages: Stages, control_points: Points) -> SideDifference:
-    mirrored = _mirrored(stages.body, stages.control, stages.patch)
+    mirrored = mirrored_breasts(stages.body, stages.control, stages.patch)
     left, right = stages.watch.bust_points(control_points)
     aside = (left[0] - mirrored.middle) - (mirrored.middle - right[0])
     calm = stages.body.smoothed.vertices
@@ -80,18 +73,6 @@ def _of(stages: Stages, control_points: Points) -> SideDifference:
         float(aside),
         mirrored.gap(calm + smoothed_moves(stages.body, moves)),
     )
-
-
-@lru_cache(maxsize=2)  # while lines change, the body at rest and what of it moves are the same
-def _mirrored(body: Body, control: ControlMesh, patch: BlendRegion) -> MirroredSurface:
-    """Return the breasts of a body: its skin nearest to control points that can move."""
-    calm, fade = body.smoothed, patch.fade
-    if len(calm.vertices) != len(fade):  # of a giant scan the calm skin is coarser
-        fade = fade[cKDTree(body.mesh.vertices).query(calm.vertices)[1]]
-    nearest = np.asarray(cKDTree(control.mesh.vertices).query(calm.vertices)[1])
-    breasts = ~control.held[nearest] & (fade > 0.0)
-    middle = float(control.mesh.vertices[control.border, 0].mean())
-    return MirroredSurface(calm, fade == 0.0, breasts, middle)
 
 
 @dataclass(frozen=True)

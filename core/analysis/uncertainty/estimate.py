@@ -52,9 +52,6 @@ WAIST = Message(
     "may differ by several centimetres, which ± does not include."
 )
 
-_UNTOLD = tuple(f"{kind}:asymmetry_volume" for kind in (BEFORE, AFTER))
-"""Figures whose ± is known not to hold: a root goes with its bust point, see docs/how-to/symmetry.md."""
-
 
 class UncertaintyEstimator:
     """Finds how far the figures of a design may be off, the ``estimate_partial`` part, then the ``estimate``.
@@ -142,7 +139,7 @@ def _spread(
         for kind in (BEFORE, AFTER)
         for key in unmodelled_measurements(propagation.stages.design)
     ]
-    for key in (*_UNTOLD, *unsure):
+    for key in unsure:
         doubts.pop(key, None)
     for key, sd in _of_roots(propagation, sizes).items():
         doubts.setdefault(key, {})[ROOT] = sd

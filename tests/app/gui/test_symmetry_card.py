@@ -15,7 +15,7 @@ from app.i18n.catalog import using_language
 from app.presenters.samples import sample_design
 from app.presenters.symmetry import symmetry_view
 from core.analysis.symmetry.compare import BeforeAfter, SideDifference
-from core.analysis.symmetry.mirrored_surface import SkinGap
+from core.measurements.mirrored_surface import SkinGap
 from core.pipeline.build import build
 
 NARROWEST = 296

@@ -19,11 +19,11 @@ from app.presenters.symmetry import (
 from core.analysis.inverse_design.quantities import Goal
 from core.analysis.inverse_design.solve import InverseResult
 from core.analysis.symmetry.compare import BeforeAfter, SideDifference, compare_sides
-from core.analysis.symmetry.mirrored_surface import SkinGap
 from core.control_mesh.template import read_template
 from core.document.line_notation import ready_made_lines
 from core.document.lines import LineSettings
 from core.document.split_lines import split
+from core.measurements.mirrored_surface import SkinGap
 from core.measurements.uncertain_value import SOURCES, OutputUncertainties, Uncertainty
 from core.pipeline.build import Stages, build
 

@@ -12,7 +12,6 @@ from shapes import mirrored as mirrored_control
 from app.presenters.samples import sample_design
 from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER, reading
 from core.analysis.symmetry.compare import NO_BREAST, compare_sides
-from core.analysis.symmetry.mirrored_surface import MirroredSurface
 from core.deformation.blend_region import blend_weights
 from core.deformation.incremental_normals import moving_faces
 from core.deformation.tffd import bind
@@ -20,6 +19,8 @@ from core.geometry.mesh import Mesh, Points
 from core.geometry.mirror_plane import MIRROR
 from core.landmarks.bust_point import ACROSS
 from core.landmarks.types import Landmarks
+from core.measurements.mirrored_surface import MirroredSurface
+from core.measurements.table import before_after
 from core.pipeline.build import Stages, build
 from core.pipeline.observables import BodyObservables
 from core.pipeline.solve import solve
@@ -140,6 +141,8 @@ def test_figures_are_those_of_marks_measures_and_what_can_be_asked_for(person: S
     assert told.after.skin is not None
     # Where one breast sits 12 mm lower, the volume between the skins is known within 4 ml.
     assert told.after.skin.total - told.before.skin.total == pytest.approx(left - right, abs=4.0)
+    table = [each["asymmetry_volume"].value for each in before_after(person, points)]
+    assert table == [told.before.skin.total, told.after.skin.total], "one value in table, report and card"
     assert told.before.largest_difference == abs(told.before.higher)
     assert told.notes == ()
 

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
+from scipy.spatial import cKDTree
 
+from core.control_mesh.fit import ControlMesh
+from core.deformation.blend_region import BlendRegion
 from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points
 from core.geometry.mirror_plane import SideComparison, mirror_plane
+from core.scan.body import Body
 
 MM3_PER_ML = 1000.0
 
@@ -81,6 +85,18 @@ class MirroredSurface:
             float(np.maximum(-ahead, 0.0).sum()),
             float(seen.sum() / area.sum()),
         )
+
+
+@lru_cache(maxsize=2)  # while lines change, the body at rest and what of it moves are the same
+def mirrored_breasts(body: Body, control: ControlMesh, patch: BlendRegion) -> MirroredSurface:
+    """Return the breasts of a body: its skin nearest to control points that can move."""
+    calm, fade = body.smoothed, patch.fade
+    if len(calm.vertices) != len(fade):  # of a giant scan the calm skin is coarser
+        fade = fade[cKDTree(body.mesh.vertices).query(calm.vertices)[1]]
+    nearest = np.asarray(cKDTree(control.mesh.vertices).query(calm.vertices)[1])
+    breasts = ~control.held[nearest] & (fade > 0.0)
+    middle = float(control.mesh.vertices[control.border, 0].mean())
+    return MirroredSurface(calm, fade == 0.0, breasts, middle)
 
 
 def _areas(mesh: Mesh) -> Floats:
