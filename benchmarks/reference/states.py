@@ -60,13 +60,16 @@ class LoadedBody:
         """Return the pressures in the scan, (c,) [shear modulus]."""
         return self._unloaded[self.tissue.mesh.nodes.size :]
 
-    def loaded(self, gravity: Floats, worn: Sequence[Worn] = (), steps: int = 4) -> Points:
+    def loaded(
+        self, gravity: Floats, worn: Sequence[Worn] = (), steps: int = 4, start: Points | None = None
+    ) -> Points:
         """Return the nodes, (n, 3) [mm], under ``gravity`` (3,) [9.81 m/s^2] with garments ``worn``.
 
-        The load goes in ``steps`` from the scan to gravity and garments at once.
+        The load goes in ``steps`` from the scan, or from nodes ``start`` (n, 3), to gravity and garments at
+        once.
         Raises NoBalanceError.
         """
-        nodes = self.tissue.mesh.nodes
+        nodes = self.tissue.mesh.nodes if start is None else start
         unknowns = np.concatenate([nodes.ravel(), self.pressure])
         return follow(partial(self._at, gravity, worn), unknowns, steps)[: nodes.size].reshape(-1, 3)
 

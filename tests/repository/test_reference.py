@@ -119,10 +119,10 @@ def test_a_shorter_band_lifts_and_a_longer_one_does_nothing() -> None:
     body = LoadedBody(block(1))
     nodes = body.tissue.mesh.nodes
     shorter, longer = band(nodes, 0.95), band(nodes, 1.05)
-    lifted = body.loaded(STANDING, shorter)
+    lifted = body.loaded(STANDING, [shorter])
     assert shorter.tension(lifted)[0] > 0.0
     assert shorter.points(lifted)[1, 2] > shorter.points(nodes)[1, 2] + 1.0
-    np.testing.assert_allclose(body.loaded(STANDING, longer), nodes, rtol=0.0, atol=1e-9)
+    np.testing.assert_allclose(body.loaded(STANDING, [longer]), nodes, rtol=0.0, atol=1e-9)
 
 
 def test_a_line_is_cut_and_ends_at_the_first_held_point() -> None:
