@@ -11,7 +11,7 @@ from app.i18n.lengths import length, length_number, length_unit, shown_digits, s
 from app.presenters.lines import row_title
 from app.presenters.measurements import length_uncertainty, plus_minus
 from app.presenters.messages import render
-from app.presenters.target_shape import is_met, is_signed, reasons_text, target_title
+from app.presenters.target_shape import is_met, is_signed, stop_text, target_title
 from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER, LIFT, OUT, Goal, section_of
 from core.analysis.symmetry.compare import BeforeAfter, SideDifference, SymmetryRow, symmetry_rows
 from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, splittable_lines
@@ -221,7 +221,7 @@ def balance_result_texts(
     beside = tr("{quantity} {before} → {after}")
     price = listed(_way(name, now[name], come[name], beside) for name, by in nearer.items() if by > _SEEN)
     costs = tr("Trade-off: {values}").format(values=price) if price else ""
-    why = "\n".join(filter(None, ("" if met else _why(reply), _by_turns(reply.design))))
+    why = "\n".join(filter(None, ("" if met else stop_text(reply), _by_turns(reply.design))))
     return "\n".join((_outcome(reply, met), *lines)), costs, why
 
 
@@ -240,12 +240,6 @@ def _outcome(reply: InverseResult, met: bool) -> str:
     if met:
         return tr("All targets reached.")
     return tr("Not reachable. Closest result:") if reply.agreed else tr("Closest result:")
-
-
-def _why(reply: InverseResult) -> str:
-    if not reply.agreed:
-        return tr("The iteration over lengths, elastics and contact pressure did not converge.")
-    return tr("Reasons: {reasons}.").format(reasons=reasons_text(reply))
 
 
 def _way(name: str, before: float, after: float, text: str) -> str:

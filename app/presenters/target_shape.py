@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.i18n.catalog import colon, listed, number, tr
+from app.i18n.catalog import colon, joined, listed, number, tr
 from app.i18n.lengths import length, length_number, length_unit
 from app.presenters.lines import told_title
 from core.analysis.inverse_design.quantities import (
@@ -22,6 +22,7 @@ from core.analysis.inverse_design.quantities import (
 )
 from core.document.design import Design
 from core.geometry.mesh import Floats
+from core.mechanics.mesh_quality import STRAINED_RANGE
 
 if TYPE_CHECKING:
     from core.analysis.inverse_design.conflicts import Conflict
@@ -107,14 +108,10 @@ def result_text(
     if is_near(reply, goals):
         return _near_text(reply, goals, now or {})
     nearest = closest_result_text(reply, goals, now or {})
-    if not reply.agreed:
-        text = tr(
-            "Closest result: {nearest}. The iteration over lengths, elastics and contact "
-            "pressure did not converge."
-        )
-        return text.format(nearest=nearest)
-    text = tr("Not reachable. Closest result: {nearest}. Reasons: {reasons}.")
-    return text.format(nearest=nearest, reasons=reasons_text(reply))
+    text = (
+        tr("Not reachable. Closest result: {nearest}.") if reply.agreed else tr("Closest result: {nearest}.")
+    )
+    return joined((text.format(nearest=nearest), stop_text(reply)))
 
 
 def _near_text(reply: InverseResult, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
@@ -123,10 +120,12 @@ def _near_text(reply: InverseResult, goals: Sequence[Goal], now: Mapping[str, fl
     section = max(offs, key=lambda each: float(np.abs(offs[each]).mean()))
     before = _off_before(goals, now, section)
     if before is None or float(np.abs(offs[section]).mean()) <= _MUCH * before:
-        text = tr("Reached with a mean deviation of {mean}, maximum {most}.")
+        text, why = tr("Reached with a mean deviation of {mean}, maximum {most}."), ""
     else:
         text = tr("Closest result: mean deviation {mean}, maximum {most} (before: {before}).")
-    return text.format(**_mean_and_most(offs[section]), before=length(before or 0.0))
+        why = stop_text(reply)
+    values = {**_mean_and_most(offs[section]), "before": length(before or 0.0)}
+    return joined((text.format(**values), why))
 
 
 def _off_before(goals: Sequence[Goal], now: Mapping[str, float], section: str) -> float | None:
@@ -215,30 +214,42 @@ def _mean_and_most(off: Floats) -> dict[str, str]:
     return {"mean": length(float(np.abs(off).mean())), "most": length(float(np.abs(off).max()))}
 
 
-def reasons_text(reply: InverseResult) -> str:
-    """Return why an answer is not what was asked for, as part of a sentence."""
-    return tr("; ").join(reasons(reply))
+def stop_text(reply: InverseResult) -> str:
+    """Return why the search ended before the targets, in one sentence."""
+    if not reply.agreed:
+        return tr("The iteration over lengths, elastics and contact pressure did not converge.")
+    if limits := _limits(reply):
+        return tr("Stopped at a limit: {limits}.").format(limits=tr("; ").join(limits))
+    return tr("No limit is reached: the active lines cannot produce this movement.")
 
 
 def reasons(reply: InverseResult) -> list[str]:
     """Return why an answer is not what was asked for, as parts of a sentence."""
-    long = [name for name in reply.at_limit if reply.may_not_be_longer(name)]
-    short = [name for name in reply.at_limit if name not in long]
+    return _limits(reply) or [tr("the active lines cannot produce this movement")]
+
+
+def _limits(reply: InverseResult) -> list[str]:
+    """Return the limits that an answer has reached, with their values."""
+    limits = []
+    for title, name in _rows(reply.at_limit, reply.design):
+        long = reply.may_not_be_longer(name)
+        text = (
+            tr("{line}: longest length, {percent} %") if long else tr("{line}: shortest length, {percent} %")
+        )
+        limits.append(text.format(line=title, percent=number(100.0 * reply.design.ratio(name))))
     slack = [name for name in reply.slack if name not in reply.at_limit]
-    kpa = number(reply.limit)
-    causes = [
-        text.format(lines=_titles(names, reply.design), kpa=kpa)
+    limits += [
+        text.format(lines=_titles(names, reply.design), kpa=number(reply.limit))
         for names, text in (
-            (short, tr("{lines}: lower length limit")),
-            (long, tr("{lines}: upper length limit, a longer line would be slack")),
             (slack, tr("{lines}: slack, the tension would be negative")),
             (reply.at_pressure_limit, tr("{lines}: contact pressure limit of {kpa} kPa")),
         )
         if names
     ]
     if reply.strained:
-        causes.append(tr("the skin strain would exceed its limit"))
-    return causes or [tr("the active lines cannot produce this movement")]
+        percent = 100.0 * (STRAINED_RANGE[1] - 1.0)
+        limits.append(tr("skin strain limit of {percent} %").format(percent=number(percent, 0)))
+    return limits
 
 
 def change_text(before: Design, reply: InverseResult) -> list[str]:

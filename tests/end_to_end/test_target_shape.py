@@ -108,7 +108,7 @@ def tells_what_keeps_a_wish_from_being_met(window: MainWindow) -> Script:
     desk.wish("girth", 1200.0)
     yield answered(window)
     assert card.answer.text().startswith("Not reachable. Closest result: Bust girth ")
-    assert "Reasons: Mid-bust, Full bust: upper length limit" in card.answer.text()
+    assert "Stopped at a limit: Mid-bust: longest length, 99.9 %" in card.answer.text()
     assert set(ratios(desk.answer.reply.design).values()) == {0.999}, "no line is off"
     desk.drop("girth")
     yield answered(window)

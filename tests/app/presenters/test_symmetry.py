@@ -152,13 +152,13 @@ def test_what_makes_it_even_is_told_from_where_to_where_with_its_price() -> None
         "point, forward +1.2 → −3.0 mm"
     )
     assert why == (
-        "Reasons: Strap (right), Mid-bust (left): upper length limit, a longer line would be slack; "
-        f"the skin strain would exceed its limit.\n{BY_TURNS}"
+        "Stopped at a limit: Strap (right): longest length, 99.9 %; Mid-bust (left): longest length, "
+        f"99.9 %; skin strain limit of 20 %.\n{BY_TURNS}"
     )
     with using_language("ja"):
         said, _, why = balance_result_texts(evened(), EVEN, NOW, {"out": -3.0})
         assert said.splitlines()[1] == "右が高い：11.5 → 2.7 mm"
-        assert "ストラップ（右）、バスト下部（左）：" in why
+        assert "ストラップ（右）：最長の長さ" in why
 
 
 def test_a_side_that_changes_is_named_and_what_is_even_has_none() -> None:

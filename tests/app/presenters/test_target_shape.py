@@ -49,33 +49,33 @@ GOALS = (Goal("lift", 5.0),)
         (
             {"at_limit": ("full-bust", "mid-bust")},
             (
-                "Not reachable. Closest result: Bust point lift +2.0 mm. Reasons: Mid-bust: lower "
-                "length limit; Full bust: upper length limit, a longer line would be slack."
+                "Not reachable. Closest result: Bust point lift +2.0 mm. Stopped at a "
+                "limit: Full bust: longest length, 99.9 %; Mid-bust: shortest length, 93.0 %."
             ),
             (
-                "到達できません。最も近い結果：BPの上昇 +2.0 mm。理由：バスト下部：長さの下限；"
-                "トップバスト：長さの上限（長くするとたるみます）。"
+                "到達できません。最も近い結果：BPの上昇 +2.0 mm。限界に達しました：トップバスト：最長の"
+                "長さ 99.9 %；バスト下部：最短の長さ 93.0 %。"
             ),
         ),
         (
             {"at_pressure_limit": ("mid-bust",), "strained": True},
             (
-                "Not reachable. Closest result: Bust point lift +2.0 mm. Reasons: Mid-bust: contact "
-                "pressure limit of 4.0 kPa; the skin strain would exceed its limit."
+                "Not reachable. Closest result: Bust point lift +2.0 mm. Stopped at a "
+                "limit: Mid-bust: contact pressure limit of 4.0 kPa; skin strain limit of 20 %."
             ),
             (
-                "到達できません。最も近い結果：BPの上昇 +2.0 mm。理由：バスト下部：接触圧の上限 4.0 "
-                "kPa；肌のひずみが限界を超えます。"
+                "到達できません。最も近い結果：BPの上昇 +2.0 mm。限界に達しました：バスト下部：接触圧"
+                "の上限 4.0 kPa；肌のひずみの限界 20 %。"
             ),
         ),
         (
             {"slack": ("full-bust",)},
             (
-                "Not reachable. Closest result: Bust point lift +2.0 mm. Reasons: Full bust: slack, "
-                "the tension would be negative."
+                "Not reachable. Closest result: Bust point lift +2.0 mm. Stopped at a "
+                "limit: Full bust: slack, the tension would be negative."
             ),
             (
-                "到達できません。最も近い結果：BPの上昇 +2.0 mm。理由：トップバスト："
+                "到達できません。最も近い結果：BPの上昇 +2.0 mm。限界に達しました：トップバスト："
                 "たるみ（張力が負になります）。"
             ),
         ),
@@ -100,11 +100,11 @@ def test_of_a_profile_it_is_told_how_far_it_is_off() -> None:
     heights = [profile_name("left", 300.0), profile_name("left", 310.0)]
     goals = [Goal(name, 100.0) for name in heights]
     answer = reply(reached={heights[0]: 103.0, heights[1]: 96.0})
-    because = "Reasons: the active lines cannot produce this movement."
+    because = "No limit is reached: the active lines cannot produce this movement."
     said = "Not reachable. Closest result: profile deviation 3.5 mm on average (4.0 mm maximum). "
     assert result_text(answer, goals) == said + because
     with using_language("ja"):
-        assert "最も近い結果：輪郭のずれが平均 3.5 mm（最大 4.0 mm）。理由：" in result_text(answer, goals)
+        assert "最も近い結果：輪郭のずれが平均 3.5 mm（最大 4.0 mm）。限界には" in result_text(answer, goals)
     both = [*goals, Goal(profile_name("right", 300.0), 100.0)]
     answer = replace(answer, reached={**answer.reached, both[-1].name: 106.0})
     assert "Closest result: Profile through the left bust point: deviation 3.5 mm on " in result_text(
@@ -169,8 +169,8 @@ def test_what_a_hand_draws_is_met_on_average() -> None:
     now = {goal.name: 200.9 for goal in goals}
     assert result_text(near, goals, None, now) == "Reached with a mean deviation of 0.4 mm, maximum 3.0 mm."
     now = {goal.name: 200.5 for goal in goals}
-    said = "Closest result: mean deviation 0.4 mm, maximum 3.0 mm (before: 0.5 mm)."
-    assert result_text(near, goals, None, now) == said, "what hardly comes nearer is not met"
+    said = "Closest result: mean deviation 0.4 mm, maximum 3.0 mm (before: 0.5 mm). No limit is reached: "
+    assert result_text(near, goals, None, now).startswith(said), "what hardly comes nearer is not met"
     assert not is_near(off_by(1.1, 1.0), goals), "a millimetre is seen"
     assert not is_near(off_by(0.1, 5.2), goals), "nor is one place far off"
     assert not is_near(replace(near, agreed=False), goals)
@@ -192,7 +192,7 @@ def test_of_a_drawn_profile_it_is_told_what_it_was_off_and_how_the_bust_point_mo
     )
     assert bust_movement_text(goals, now, then) == "Other changes: Bust point lift +7.3 → +6.5 mm"
     with using_language("ja"):
-        assert "（変更前 2.0 mm）。理由：" in result_text(off, goals, None, now)
+        assert "（変更前 2.0 mm）。限界に達しました：" in result_text(off, goals, None, now)
         assert bust_movement_text(goals, now, then) == "あわせて変わる値：BPの上昇 +7.3 → +6.5 mm"
     assert bust_movement_text([*goals, Goal("lift", 6.5)], now, then) == "", "it is asked for"
     assert bust_movement_text([Goal("out", -4.0)], now, then) == "", "no profile is"
