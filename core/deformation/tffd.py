@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,7 +15,7 @@ from scipy import sparse
 from scipy.spatial.distance import cdist
 
 from core.geometry import kernels
-from core.geometry.closest_point import Frames, centroids, corner_reach, is_usable, neighbourhoods
+from core.geometry.closest_point import Frames, centroids, corner_reach, grouped, is_usable, neighbourhoods
 from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points, frozen
 
 Weights = Literal["paper", "smooth"]
@@ -68,35 +69,63 @@ class Operator:
 
 
 @dataclass(frozen=True, eq=False)
-class Binding:
+class Binding(ABC):
     """How the vertices of a body follow its control mesh: a linear operator on what the control mesh changes.
 
-    ``moving`` are the vertices that can move, shape (k,): the rows of ``operator``, neighbours together. Its
-    columns are what can change: the control points ``points`` (p,), then the normals of the control triangles
-    ``triangles`` (t,).
+    ``moving`` are the vertices that can move, shape (k,): the rows of ``operator``, neighbours together.
     """
 
     body: Mesh
-    control: Mesh
     moving: Indices
-    points: Indices
-    triangles: Indices
     operator: Operator
-    scaled_normals: bool
 
     @cached_property
     def rest_moving(self) -> Points:
         """Return the moving vertices at rest, shape (k, 3) [mm]."""
         return frozen(self.body.vertices[self.moving])
 
+    @abstractmethod
+    def change(self, control_points: Points) -> Floats:
+        """Return what the operator applies to, (columns, 3), for ``control_points`` (n, 3) [mm]; 0 at rest."""
+
+    def gradient(self, control_points: Points, slopes: Points) -> Points:
+        """Return slopes by the control points of what has ``slopes`` (k, 3) by the places of ``moving``.
+
+        Both at ``control_points`` (n, 3) [mm]; the result has their shape. Those that are fixed have none.
+        """
+        return self.gradient_by_points(control_points, self.operator.apply_transposed(slopes))
+
+    @abstractmethod
+    def gradient_by_points(self, control_points: Points, slopes: Points) -> Points:
+        """Return slopes by the control points, (n, 3), of what has ``slopes`` (c, 3) by the first columns.
+
+        Of several figures at once, (k, c, 3), they are (k, n, 3).
+        """
+
+    @abstractmethod
+    def directional_derivative(self, control_points: Points, moved: Points) -> Floats:
+        """Return how fast ``change`` changes at ``control_points`` as they move by ``moved``, both (n, 3)."""
+
+
+@dataclass(frozen=True, eq=False)
+class FrameBinding(Binding):
+    """A body that follows the frames of the control triangles.
+
+    The columns of the operator are the control points ``points`` (p,) that can move, then the normals of the
+    control triangles ``triangles`` (t,).
+    """
+
+    control: Mesh
+    points: Indices
+    triangles: Indices
+    scaled_normals: bool
+
     def change(self, control_points: Points) -> Floats:
         """Return by how much ``points`` and the normals of ``triangles`` changed, shape (p + t, 3).
 
         Raises ValueError unless there are as many ``control_points`` as the control mesh has, (n, 3) [mm].
         """
-        wanted, got = self.control.vertices.shape, np.shape(control_points)
-        if got != wanted:
-            raise ValueError(f"control points of shape {got} for a control mesh of shape {wanted}")
+        _require_shape(control_points, self.control.vertices)
         return self._frames(control_points) - self._rest_frames
 
     def _frames(self, control_points: Points) -> Floats:
@@ -114,18 +143,8 @@ class Binding:
             spans *= np.sqrt(length / np.where(rest > 0.0, rest, 1.0))
         return np.concatenate([control_points[self.points], spans.T])
 
-    def gradient(self, control_points: Points, slopes: Points) -> Points:
-        """Return slopes by the control points of what has ``slopes`` (k, 3) by the places of ``moving``.
-
-        Both at ``control_points`` (n, 3) [mm]; the result has their shape. Those that are fixed have none.
-        """
-        return self.gradient_by_points(control_points, self.operator.apply_transposed(slopes))
-
     def gradient_by_points(self, control_points: Points, slopes: Points) -> Points:
-        """Return slopes by the control points, (n, 3), of what has ``slopes`` (c, 3) by the first columns.
-
-        Of several figures at once, (k, c, 3), they are (k, n, 3).
-        """
+        """Return slopes by the control points: see ``Binding``."""
         columns = np.zeros((*slopes.shape[:-2], len(self.points) + len(self.triangles), 3))
         columns[..., : slopes.shape[-2], :] = slopes
         points, by_normal = np.split(columns, [len(self.points)], axis=-2)
@@ -140,7 +159,7 @@ class Binding:
         return np.asarray(np.moveaxis(found, 0, -2))
 
     def directional_derivative(self, control_points: Points, moved: Points) -> Floats:
-        """Return how fast ``change`` changes at ``control_points`` as they move by ``moved``, both (n, 3)."""
+        """Return how fast ``change`` changes as the control points move: see ``Binding``."""
         v0, v1, v2 = control_points[self._corners]
         w0, w1, w2 = moved[self._corners]
         across = np.cross(v1 - v0, v2 - v0)
@@ -178,7 +197,7 @@ def bind(
     scaled_normals: bool = False,
     fixed: Flags | None = None,
     single: bool = False,
-) -> Binding:
+) -> FrameBinding:
     """Bind the vertices of ``body`` to the triangles of ``control``.
 
     ``fade`` scales the motion of each vertex, shape (N,), 0 still .. 1 full; vertices without fade or without
@@ -191,15 +210,70 @@ def bind(
     can_change = np.concatenate([free, free[control.faces].any(axis=1)])
     candidates = np.flatnonzero(fade > 0.0)
     groups = list(_groups(body.vertices[candidates], fade[candidates], control, weights, can_change))
+    moving, operator = _joined_groups(groups, candidates, single)
+    points, triangles = np.split(np.flatnonzero(can_change), [int(free.sum())])
+    return FrameBinding(body, moving, operator, control, points, triangles - len(free), scaled_normals)
+
+
+def _joined_groups(groups: Sequence[_Group], vertices: Indices, single: bool) -> tuple[Indices, Operator]:
+    """Return the ``vertices`` (v,) that are rows of the groups, and the operator; see ``bind``."""
     sizes = [(*group.table.shape[::-1], group.table.size) for group in groups]
     operator = Operator(
         _joined([group.table.ravel() for group in groups], np.float32 if single else np.float64),
         frozen(np.cumsum([(0, 0, 0), *sizes], axis=0), np.int64).view(np.int64),
         _joined([group.columns for group in groups], np.int64),
     )
-    points, triangles = np.split(np.flatnonzero(can_change), [int(free.sum())])
-    moving = _joined([candidates[group.rows] for group in groups], np.int64)
-    return Binding(body, control, moving, points, triangles - len(free), operator, scaled_normals)
+    return _joined([vertices[group.rows] for group in groups], np.int64), operator
+
+
+@dataclass(frozen=True, eq=False)
+class CarriedBinding(Binding):
+    """A body that follows places between control points, which ``carried`` (3 s, 3 f) [1] tells of.
+
+    The columns of the operator are the places. ``rest`` (n, 3) [mm] are the control points at rest, of which
+    ``free`` (f,) can move.
+    """
+
+    rest: Points
+    free: Indices
+    carried: Floats
+
+    def change(self, control_points: Points) -> Floats:
+        """Return how far the places moved, (s, 3) [mm]. Raises ValueError for a wrong number of points."""
+        _require_shape(control_points, self.rest)
+        return (self.carried @ (control_points - self.rest)[self.free].ravel()).reshape(-1, 3)
+
+    def gradient_by_points(self, control_points: Points, slopes: Points) -> Points:
+        """Return slopes by the control points: see ``Binding``."""
+        few = slopes.reshape(*slopes.shape[:-2], -1)
+        found = np.zeros((*slopes.shape[:-2], *self.rest.shape))
+        found[..., self.free, :] = (few @ self.carried[: few.shape[-1]]).reshape(*few.shape[:-1], -1, 3)
+        return found
+
+    def directional_derivative(self, control_points: Points, moved: Points) -> Floats:
+        """Return how fast ``change`` changes as the control points move: see ``Binding``."""
+        return (self.carried @ moved[self.free].ravel()).reshape(-1, 3)
+
+
+def bind_carried(
+    body: Mesh, vertices: Indices, shares: sparse.csr_array, rest: Points, free: Indices, carried: Floats
+) -> CarriedBinding:
+    """Bind ``vertices`` (v,) of ``body`` to places between control points by ``shares`` (v, s) of them [1].
+
+    For the others see ``CarriedBinding``. Single precision of the shares is exact to 1e-4 mm.
+    """
+    groups = []
+    for rows in grouped(body.vertices[vertices]):
+        columns = np.unique(shares[rows].indices)
+        groups.append(_Group(rows, columns, shares[rows][:, columns].toarray().T))
+    moving, operator = _joined_groups(groups, vertices, single=True)
+    return CarriedBinding(body, moving, operator, rest, free, carried)
+
+
+def _require_shape(control_points: Points, rest: Points) -> None:
+    wanted, got = rest.shape, np.shape(control_points)
+    if got != wanted:
+        raise ValueError(f"control points of shape {got} for a control mesh of shape {wanted}")
 
 
 def _joined(parts: Sequence[npt.NDArray[Any]], dtype: npt.DTypeLike) -> npt.NDArray[Any]:

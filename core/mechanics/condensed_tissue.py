@@ -23,14 +23,16 @@ class CondensedTissue:
     """Control points at rest on a condensed solid, and which of them are free to move.
 
     ``rest`` (n, 3) [mm]; ``free`` (f,) indices of the moving points, ascending; ``cables`` (m, 2) the edges
-    of the control mesh with at least one free end, which carry nothing here; ``stiffness`` (3 f, 3 f) [N/mm];
-    ``load`` (f, 3) [N] is what a change of weight adds at the points, 0 on the scan.
+    of the control mesh with at least one free end, which carry nothing here; ``stiffness`` (3 f, 3 f) [N/mm]
+    and its derivative ``firmer`` by the logarithm of the shear modulus; ``load`` (f, 3) [N] is what a change
+    of weight adds at the points, 0 on the scan.
     """
 
     rest: Points
     free: Indices
     cables: Indices
     stiffness: Floats
+    firmer: Floats
     load: Points
     mechanics: ModelOptions = field(default_factory=ModelOptions)
 

@@ -12,8 +12,11 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 from core.geometry.closest_point import barycentric, nearest_faces
 from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points
 
-SIZE = 22.0
+SIZE = 17.0
 """Distance between the points of a coarse skin [mm]."""
+
+RIM = 5.0
+"""Skin nearer than this to the border of what lies within the outline does not move [mm]: assumed."""
 
 _EDGE = 1e-3
 """A place whose barycentric coordinate is below this [1] lies on a side of its triangle."""
@@ -42,6 +45,8 @@ def skin_patch(body: Mesh, control: Mesh, fixed: Flags, size: float = SIZE) -> S
     Source: geodesic farthest points, moved to the middle of their cells; triangles join neighbours (ours).
     """
     whole = _largest_piece(body, ~_beyond_outline(body.vertices, control))
+    border = np.concatenate(whole.boundary_loops)
+    whole = _largest_piece(whole, dijkstra(edge_graph(whole), indices=border, min_only=True) >= RIM)
     coarse = coarse_mesh(whole, size)
     face, _ = nearest_faces(control, coarse.vertices)
     return SkinPatch(coarse, np.asarray(fixed[control.faces[face]].all(axis=1)))

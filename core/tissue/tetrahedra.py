@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy import sparse
@@ -36,6 +37,13 @@ class Tetrahedra:
     def node_count(self) -> int:
         """Return the number of nodes, middles included."""
         return len(self.corners) + len(self.edges)
+
+    @cached_property
+    def skin_nodes(self) -> Indices:
+        """Return the nodes on the skin, middles included, ascending, shape (s,)."""
+        top = len(self.corners) - len(self.skin.vertices)
+        middles = self._edge_numbers(self.skin.edges + top)
+        return np.concatenate([np.arange(top, len(self.corners)), len(self.corners) + np.sort(middles)])
 
     def volumes(self) -> Floats:
         """Return the signed volumes of the tetrahedra, shape (t,) [mm^3]."""
