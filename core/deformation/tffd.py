@@ -86,7 +86,7 @@ class Binding(ABC):
 
     @abstractmethod
     def change(self, control_points: Points) -> Floats:
-        """Return what the operator applies to, (columns, 3), for ``control_points`` (n, 3) [mm]; 0 at rest."""
+        """Return what the operator applies to, (columns, 3), for ``control_points`` (n, 3) [mm]."""
 
     def gradient(self, control_points: Points, slopes: Points) -> Points:
         """Return slopes by the control points of what has ``slopes`` (k, 3) by the places of ``moving``.
@@ -264,7 +264,7 @@ def bind_carried(
     """
     groups = []
     for rows in grouped(body.vertices[vertices]):
-        columns = np.unique(shares[rows].indices)
+        columns = np.unique(shares[rows].indices).astype(np.int64)
         groups.append(_Group(rows, columns, shares[rows][:, columns].toarray().T))
     moving, operator = _joined_groups(groups, vertices, single=True)
     return CarriedBinding(body, moving, operator, rest, free, carried)

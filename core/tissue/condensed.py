@@ -6,6 +6,7 @@ of the solid, whose tangent has the stresses of its weight on the scan.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,6 +30,9 @@ GIVE = 0.03
 Discs that overlap, as in a crease, would else be as good as rigidly joined.
 """
 
+SIZES = (17.0, 19.0, 22.0, 26.0)
+"""Distances between the points of the skin that are tried in turn [mm]."""
+
 LEAST_STIFFNESS = 0.4
 """Stresses of weight leave at least this part of the stiffness without them [1], however soft the tissue."""
 
@@ -42,8 +46,8 @@ class TissueResponse:
 
     ``stiffness`` (3 f, 3 f) [N/mm] goes with the modulus; ``prestress`` (3 f, 3 f) [N/mm], what the stresses
     of weight add, and ``weight`` (3 f, 3) [N/g] do not. ``softest`` [kPa] is the modulus below which
-    ``prestress`` goes with it as well. ``rise`` [mm] is how far the bust points rise when all weight is taken,
-    but for ``prestress``. The skin's nodes ``nodes`` (s,) of ``cells`` move by ``carried`` (3 s, 3 f) [1]
+    ``prestress`` goes with it as well. ``rise`` [mm] is how far the bust points rise when all weight is
+    taken, but for ``prestress``. The nodes ``nodes`` (s,) of the skin move by ``carried`` (3 s, 3 f) [1]
     times the displacements of the points; its other nodes do not move.
     """
 
@@ -79,12 +83,10 @@ def condense(
     ``coarse`` is the control mesh that ``fine`` halves. Raises ValueError where the chest wall crosses the
     skin, Cancelled.
     """
-    solid = tissue_solid(skin_patch(body, coarse.mesh, coarse.fixed), 1.0, progress=progress)
+    solid = _solid(body, coarse, progress)
     modes = _modes(solid, _over_axes(disc_rows(solid, body, fine.mesh.vertices[~fine.fixed]))[:, solid.free])
     stresses = solid.prestress(-modes.by_weight[:, 2], -modes.pressure[:, 2])
-    prestress = np.concatenate(
-        [modes.shapes.T @ (stresses @ some) for some in _parts(modes.shapes)], axis=1
-    )
+    prestress = np.concatenate([modes.shapes.T @ (stresses @ some) for some in _parts(modes.shapes)], axis=1)
     prestress = 0.5 * (prestress + prestress.T)
     place = np.cumsum(~fine.fixed) - 1
     rise = float(np.mean([modes.at_points[3 * place[point] + 2, 2] for point in fine.bust_points]))
@@ -100,6 +102,14 @@ def condense(
         nodes,
         frozen(modes.shapes[(rows[:, None] + np.arange(3)).ravel()]),
     )
+
+
+def _solid(body: Mesh, coarse: ControlMesh, progress: Progress) -> TissueSolid:
+    """Return the solid of 1 kPa, its points further apart where the skin folds between them otherwise."""
+    for size in SIZES[:-1]:
+        with suppress(ValueError):
+            return tissue_solid(skin_patch(body, coarse.mesh, coarse.fixed, size), 1.0, progress=progress)
+    return tissue_solid(skin_patch(body, coarse.mesh, coarse.fixed, SIZES[-1]), 1.0, progress=progress)
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import SuperLU, splu
 
-from core.geometry.mesh import Flags, Floats, Indices, Points
+from core.geometry.mesh import Flags, Floats, Indices
 from core.progress import Progress, quiet
 from core.tissue.skin_patch import SkinPatch
 from core.tissue.tetrahedra import EDGES, LAYERS, Tetrahedra, layered_tetrahedra
@@ -65,7 +65,7 @@ class TissueSolid:
 
     def weight_loads(self) -> Floats:
         """Return the loads on ``free`` of 1 g along each axis, shape (m, 3) [N]."""
-        return np.kron(self.weights[:, None], np.eye(3))[self.free]
+        return np.asarray(np.kron(self.weights[:, None], np.eye(3))[self.free])
 
     def solved(self, loads: Floats) -> tuple[Floats, Floats]:
         """Return how ``free`` move under loads on them, (m, k) [mm] and [N], and pressures (c, k) [MPa]."""
@@ -89,10 +89,10 @@ class TissueSolid:
         return splu(whole, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
 
     def prestress(self, moved: Floats, pressure: Floats) -> sparse.csr_array:
-        """Return what stresses under which ``free`` moved (m,) [mm] add to the tangent there, (m, m) [N/mm].
+        """Return what stresses under which ``free`` moved (m,) [mm] add to the tangent, (m, m) [N/mm].
 
-        ``pressure`` (c,) [MPa] is positive in compression. To first order in both, for a neo-Hookean material:
-        the loaded shape is the one that is known. Source: Govindjee and Mihalic 1996, linearised.
+        ``pressure`` (c,) [MPa] is positive in compression. To first order in both, for a neo-Hookean
+        material; the shape that is known is the loaded one. Source: Govindjee and Mihalic 1996, linearised.
         """
         cells, shear = self.cells, 1e-3 * self.shear_modulus
         gradients, volumes = _corner_gradients(cells)
@@ -104,10 +104,13 @@ class TissueSolid:
             slope = np.einsum("ai,tic->tac", _shape_slopes(point), gradients)
             change = np.einsum("tac,tad->tcd", slope, at_nodes)
             part = 0.25 * volumes
-            strained = slope @ (change + change.transpose(0, 2, 1)) @ slope.transpose(0, 2, 1)
-            added += np.einsum("t,tab,cd->tacbd", shear * part, strained, np.eye(3))
-            turning = np.einsum("t,tad,tbc->tacbd", part * (at_corners @ point), slope, slope)
-            added += turning - turning.transpose(0, 1, 4, 3, 2)
+            grown = np.einsum("tcc->t", change)
+            strain = change + change.transpose(0, 2, 1) - grown[:, None, None] * np.eye(3)
+            along = slope @ strain @ slope.transpose(0, 2, 1)
+            added += np.einsum("t,tab,cd->tacbd", shear * part, along, np.eye(3))
+            pushed, products = part * (at_corners @ point), np.einsum("tad,tbc->tacbd", slope, slope)
+            added += (pushed - shear * part * grown)[:, None, None, None, None] * products
+            added -= pushed[:, None, None, None, None] * products.transpose(0, 1, 4, 3, 2)
         where = (3 * cells.nodes[:, :, None] + np.arange(3)).reshape(len(volumes), 30)
         whole = _summed(added, where, where, (len(motion),) * 2)
         return sparse.csr_array(whole[self.free][:, self.free])
