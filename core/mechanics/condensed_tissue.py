@@ -56,9 +56,10 @@ class CondensedTissue:
     def mean_stiffness(self) -> float:
         """Return the median over points and axes of the force that moves one alone by 1 mm [N/mm].
 
-        Points that lie close together, as in a crease, are very stiff against each other: no mean.
+        Points that lie close together, as in a crease, are very stiff against each other: no mean. Stresses
+        of weight do not count: the unit of line stiffness goes with the shear modulus.
         """
-        return float(np.median(self.stiffness.diagonal()))
+        return float(np.median(self.firmer.diagonal()))
 
     def energy(self, moved: Points) -> float:
         """Return the energy for displacements of the free points, shape (f, 3) [mm]; 0 at rest [N mm]."""
