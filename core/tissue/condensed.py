@@ -101,17 +101,18 @@ def condense(
     prestress = 0.5 * (prestress + prestress.T)
     place = np.cumsum(~fine.fixed) - 1
     rise = float(np.mean([modes.at_points[3 * place[point] + 2, 2] for point in fine.bust_points]))
-    nodes = solid.moving_skin
-    rows = np.searchsorted(solid.free, 3 * nodes)
+    skin = solid.cells.skin
+    inner = np.setdiff1d(np.arange(len(skin.vertices)), np.concatenate(skin.boundary_loops))
+    means = _over_axes(disc_rows(solid, body, skin.vertices[inner]))[:, solid.free]
     return TissueResponse(
         frozen(modes.stiffness),
         frozen(prestress),
         frozen(modes.stiffness @ modes.at_points),
         _softest(modes.stiffness, prestress),
         rise,
-        solid.cells.finer_skin(),
-        np.searchsorted(solid.cells.skin_nodes, nodes),
-        frozen(modes.shapes[(rows[:, None] + np.arange(3)).ravel()]),
+        skin,
+        inner,
+        frozen(means @ modes.shapes),
     )
 
 
