@@ -1,4 +1,4 @@
-"""A control mesh whose edges are halved: the same surface with a point in the middle of each edge."""
+"""A control mesh whose edges are halved, the new points lying on the skin."""
 
 from __future__ import annotations
 
@@ -10,19 +10,23 @@ from scipy import sparse
 
 from core.control_mesh.embedding import EmbeddedCurve, Grid, embed
 from core.control_mesh.fit import ControlMesh
-from core.geometry.mesh import Indices, Mesh
+from core.geometry.closest_point import nearest_faces
+from core.geometry.mesh import Indices, Mesh, Points
+
+BULGE = 0.15
+"""Skin further from the middle of an edge than this part of its length [1] is not what the edge spans."""
 
 
-def halved(control: ControlMesh) -> ControlMesh:
-    """Return ``control`` with a point in the middle of each edge; its own points come first.
+def halved(control: ControlMesh, skin: Mesh) -> ControlMesh:
+    """Return ``control`` with a point on ``skin`` at the middle of each edge; its own points come first.
 
     Points of triangles at the border are fixed; other points that were, and middles between two of them, are
-    anchored. A middle has row and column of the end farther from 0. Lines run over the middles too, and are
-    as long as before.
+    anchored. A middle has row and column of the end farther from 0, and stays where it is if the skin is far
+    away, as at a crease. Lines run over the middles too.
     """
     mesh, count = control.mesh, len(control.mesh.vertices)
     ends = mesh.edges
-    middles = mesh.vertices[ends].mean(axis=1)
+    middles = _on_skin(mesh.vertices[ends], skin)
     number = _numbers(mesh)
     a, b, c = mesh.faces.T
     ab, bc, ca = (np.asarray(number[one, other]).ravel() for one, other in ((a, b), (b, c), (c, a)))
@@ -44,6 +48,14 @@ def halved(control: ControlMesh) -> ControlMesh:
         border=border,
         embedded={name: _finer(curve, grid) for name, curve in control.embedded.items()},
     )
+
+
+def _on_skin(ends: Points, skin: Mesh) -> Points:
+    """Return the place on ``skin`` nearest to the middle of each edge, (e, 2, 3) to (e, 3) [mm], if near."""
+    middles = ends.mean(axis=1)
+    _, places = nearest_faces(skin, middles)
+    away, length = (np.linalg.norm(each, axis=1) for each in (places - middles, ends[:, 1] - ends[:, 0]))
+    return np.where((away <= BULGE * length)[:, None], places, middles)
 
 
 def _finer(curve: EmbeddedCurve, grid: Grid) -> EmbeddedCurve:

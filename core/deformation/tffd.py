@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -68,35 +69,63 @@ class Operator:
 
 
 @dataclass(frozen=True, eq=False)
-class Binding:
+class Binding(ABC):
     """How the vertices of a body follow its control mesh: a linear operator on what the control mesh changes.
 
-    ``moving`` are the vertices that can move, shape (k,): the rows of ``operator``, neighbours together. Its
-    columns are what can change: the control points ``points`` (p,), then the normals of the control triangles
-    ``triangles`` (t,).
+    ``moving`` are the vertices that can move, shape (k,): the rows of ``operator``, neighbours together.
     """
 
     body: Mesh
-    control: Mesh
     moving: Indices
-    points: Indices
-    triangles: Indices
     operator: Operator
-    scaled_normals: bool
 
     @cached_property
     def rest_moving(self) -> Points:
         """Return the moving vertices at rest, shape (k, 3) [mm]."""
         return frozen(self.body.vertices[self.moving])
 
+    @abstractmethod
+    def change(self, control_points: Points) -> Floats:
+        """Return what the operator applies to, (columns, 3), for ``control_points`` (n, 3) [mm]."""
+
+    def gradient(self, control_points: Points, slopes: Points) -> Points:
+        """Return slopes by the control points of what has ``slopes`` (k, 3) by the places of ``moving``.
+
+        Both at ``control_points`` (n, 3) [mm]; the result has their shape. Those that are fixed have none.
+        """
+        return self.gradient_by_points(control_points, self.operator.apply_transposed(slopes))
+
+    @abstractmethod
+    def gradient_by_points(self, control_points: Points, slopes: Points) -> Points:
+        """Return slopes by the control points, (n, 3), of what has ``slopes`` (c, 3) by the first columns.
+
+        Of several figures at once, (k, c, 3), they are (k, n, 3).
+        """
+
+    @abstractmethod
+    def directional_derivative(self, control_points: Points, moved: Points) -> Floats:
+        """Return how fast ``change`` changes at ``control_points`` as they move by ``moved``, both (n, 3)."""
+
+
+@dataclass(frozen=True, eq=False)
+class FrameBinding(Binding):
+    """A body that follows the frames of the control triangles.
+
+    The columns of the operator are the control points ``points`` (p,) that can move, then the normals of the
+    control triangles ``triangles`` (t,).
+    """
+
+    control: Mesh
+    points: Indices
+    triangles: Indices
+    scaled_normals: bool
+
     def change(self, control_points: Points) -> Floats:
         """Return by how much ``points`` and the normals of ``triangles`` changed, shape (p + t, 3).
 
         Raises ValueError unless there are as many ``control_points`` as the control mesh has, (n, 3) [mm].
         """
-        wanted, got = self.control.vertices.shape, np.shape(control_points)
-        if got != wanted:
-            raise ValueError(f"control points of shape {got} for a control mesh of shape {wanted}")
+        _require_shape(control_points, self.control.vertices)
         return self._frames(control_points) - self._rest_frames
 
     def _frames(self, control_points: Points) -> Floats:
@@ -114,18 +143,8 @@ class Binding:
             spans *= np.sqrt(length / np.where(rest > 0.0, rest, 1.0))
         return np.concatenate([control_points[self.points], spans.T])
 
-    def gradient(self, control_points: Points, slopes: Points) -> Points:
-        """Return slopes by the control points of what has ``slopes`` (k, 3) by the places of ``moving``.
-
-        Both at ``control_points`` (n, 3) [mm]; the result has their shape. Those that are fixed have none.
-        """
-        return self.gradient_by_points(control_points, self.operator.apply_transposed(slopes))
-
     def gradient_by_points(self, control_points: Points, slopes: Points) -> Points:
-        """Return slopes by the control points, (n, 3), of what has ``slopes`` (c, 3) by the first columns.
-
-        Of several figures at once, (k, c, 3), they are (k, n, 3).
-        """
+        """Return slopes by the control points: see ``Binding``."""
         columns = np.zeros((*slopes.shape[:-2], len(self.points) + len(self.triangles), 3))
         columns[..., : slopes.shape[-2], :] = slopes
         points, by_normal = np.split(columns, [len(self.points)], axis=-2)
@@ -140,7 +159,7 @@ class Binding:
         return np.asarray(np.moveaxis(found, 0, -2))
 
     def directional_derivative(self, control_points: Points, moved: Points) -> Floats:
-        """Return how fast ``change`` changes at ``control_points`` as they move by ``moved``, both (n, 3)."""
+        """Return how fast ``change`` changes as the control points move: see ``Binding``."""
         v0, v1, v2 = control_points[self._corners]
         w0, w1, w2 = moved[self._corners]
         across = np.cross(v1 - v0, v2 - v0)
@@ -178,7 +197,7 @@ def bind(
     scaled_normals: bool = False,
     fixed: Flags | None = None,
     single: bool = False,
-) -> Binding:
+) -> FrameBinding:
     """Bind the vertices of ``body`` to the triangles of ``control``.
 
     ``fade`` scales the motion of each vertex, shape (N,), 0 still .. 1 full; vertices without fade or without
@@ -199,7 +218,63 @@ def bind(
     )
     points, triangles = np.split(np.flatnonzero(can_change), [int(free.sum())])
     moving = _joined([candidates[group.rows] for group in groups], np.int64)
-    return Binding(body, control, moving, points, triangles - len(free), operator, scaled_normals)
+    return FrameBinding(body, moving, operator, control, points, triangles - len(free), scaled_normals)
+
+
+@dataclass(frozen=True, eq=False)
+class CarriedBinding(Binding):
+    """A body that follows ``frames`` of a finer mesh, whose points the control points carry along.
+
+    ``rest`` (n, 3) [mm] are the control points at rest, of which ``free`` (f,) can move; ``carried``
+    (3 s, 3 f) [1] times their displacements are those of the points ``nodes`` (s,) of the finer mesh.
+    """
+
+    frames: FrameBinding
+    rest: Points
+    free: Indices
+    nodes: Indices
+    carried: Floats
+
+    def change(self, control_points: Points) -> Floats:
+        """Return what the operator applies to. Raises ValueError for a wrong number of points."""
+        _require_shape(control_points, self.rest)
+        return self.frames.change(self._finer(control_points))
+
+    def gradient_by_points(self, control_points: Points, slopes: Points) -> Points:
+        """Return slopes by the control points: see ``Binding``."""
+        by_nodes = self.frames.gradient_by_points(self._finer(control_points), slopes)[..., self.nodes, :]
+        few = by_nodes.reshape(*by_nodes.shape[:-2], -1) @ self.carried
+        found = np.zeros((*few.shape[:-1], *self.rest.shape))
+        found[..., self.free, :] = few.reshape(*few.shape[:-1], -1, 3)
+        return found
+
+    def directional_derivative(self, control_points: Points, moved: Points) -> Floats:
+        """Return how fast ``change`` changes as the control points move: see ``Binding``."""
+        finer = self._spread(moved)
+        return self.frames.directional_derivative(self._finer(control_points), finer)
+
+    def _finer(self, control_points: Points) -> Points:
+        """Return the points of the finer mesh."""
+        return self.frames.control.vertices + self._spread(control_points - self.rest)
+
+    def _spread(self, moved: Points) -> Points:
+        """Return displacements of the finer mesh for those of the control points."""
+        finer = np.zeros_like(self.frames.control.vertices)
+        finer[self.nodes] = (self.carried @ moved[self.free].ravel()).reshape(-1, 3)
+        return finer
+
+
+def bind_carried(
+    frames: FrameBinding, rest: Points, free: Indices, nodes: Indices, carried: Floats
+) -> CarriedBinding:
+    """Bind a body that follows ``frames`` to control points that carry those: see ``CarriedBinding``."""
+    return CarriedBinding(frames.body, frames.moving, frames.operator, frames, rest, free, nodes, carried)
+
+
+def _require_shape(control_points: Points, rest: Points) -> None:
+    wanted, got = rest.shape, np.shape(control_points)
+    if got != wanted:
+        raise ValueError(f"control points of shape {got} for a control mesh of shape {wanted}")
 
 
 def _joined(parts: Sequence[npt.NDArray[Any]], dtype: npt.DTypeLike) -> npt.NDArray[Any]:

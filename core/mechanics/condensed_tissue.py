@@ -27,14 +27,16 @@ class CondensedTissue:
 
     ``rest`` (n, 3) [mm]; ``free`` (f,) indices of the moving points, ascending; ``cables`` (m, 2) the edges
     whose strain is judged, with at least one free end, which carry nothing here; ``solid`` (3 f, 3 f) [N/mm]
-    is the stiffness of the tissue; ``load`` (f, 3) [N] is what a change of weight adds at the points, 0 on
-    the scan. ``cups`` are the parts of cups that act on the points.
+    is the stiffness of the tissue and ``firmer`` its derivative by the logarithm of the shear modulus;
+    ``load`` (f, 3) [N] is what a change of weight adds at the points, 0 on the scan. ``cups`` are the parts
+    of cups that act on the points.
     """
 
     rest: Points
     free: Indices
     cables: Indices
     solid: Floats
+    firmer: Floats
     load: Points
     mechanics: ModelOptions = field(default_factory=ModelOptions)
     cups: tuple[CupPart, ...] = ()
@@ -59,9 +61,10 @@ class CondensedTissue:
     def mean_stiffness(self) -> float:
         """Return the median over points and axes of the force that moves one alone by 1 mm [N/mm].
 
-        Points that lie close together, as in a crease, are very stiff against each other: no mean.
+        Points that lie close together, as in a crease, are very stiff against each other: no mean. Stresses
+        of weight do not count: the unit of line stiffness goes with the shear modulus.
         """
-        return float(np.median(self.solid.diagonal()))
+        return float(np.median(self.firmer.diagonal()))
 
     @cached_property
     def stiffness(self) -> Floats:

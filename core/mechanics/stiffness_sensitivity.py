@@ -131,11 +131,11 @@ def d_prestress(answer: Sensitivities) -> Rates:
 def d_sag(answer: Sensitivities) -> Rates:
     """Return the rates by the logarithm of ``ModelOptions.sag``, at the stiffness that lines have [mm].
 
-    The stiffness of a solid goes with 1 / sag, its weight does not.
+    The shear modulus of a solid goes with 1 / sag, its weight does not.
     """
     solid = answer.potential.model.tensegric
     assert isinstance(solid, CondensedTissue)
-    return answer.by_forces(-solid.resistance(answer.place.moved).reshape(-1, 1))
+    return answer.by_forces(-(solid.firmer @ answer.place.moved.ravel()).reshape(-1, 1))
 
 
 def d_tissue(prestress: float) -> float:

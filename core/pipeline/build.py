@@ -17,7 +17,7 @@ from core.control_mesh.straps import Tail
 from core.control_mesh.template import read_template
 from core.deformation.blend_region import BlendRegion, blend_weights
 from core.deformation.incremental_normals import MovingFaces, moving_faces
-from core.deformation.tffd import Binding, Weights, bind, movable_border_triangles
+from core.deformation.tffd import Binding, Weights, bind, bind_carried, movable_border_triangles
 from core.document.cup import Cup
 from core.document.design import Design, ScanSource
 from core.document.line_notation import with_custom_lines
@@ -253,20 +253,24 @@ def _stages(
     fitted = _fitted(stage, design, body, landmarks, control_points)
     control, tissue = fitted, None
     if design.tissue == "solid":
-        control = stage("halve control mesh", halved, fitted)
+        control = stage("halve control mesh", halved, fitted, body.smoothed)
         condensed = partial(_condensed, progress=stage.inside)
         tissue = stage("condense tissue", condensed, body.smoothed, fitted, control)
     cups = () if design.cup is None else stage("place cups", _cups, design.cup, fitted, control, tissue)
     patch = stage("find patch", blend_weights, body.mesh, control)
-    weights = design.weights, design.scaled_normals
-    binding = stage("bind body", _bind, body.mesh, control, patch.fade, *weights)
+    binding: Binding
+    if tissue is None:
+        weights = design.weights, design.scaled_normals
+        binding = stage("bind body", _bind, body.mesh, control, patch.fade, *weights)
+    else:
+        binding = stage("bind body", _bind_to_tissue, body.mesh, control, patch.fade, tissue)
     middle = float(control.mesh.vertices[control.border, 0].mean())
     moving = stage("prepare normals", moving_faces, body.mesh, binding.moving, middle)
     watch = stage("watch body", BodyObservables, binding, control, landmarks)
     backs = stage("measure bands", _backs, body, control)
     laid = stage("lay own lines", with_custom_lines, fitted, design.own_lines)
     if tissue is not None:
-        laid = stage("halve own lines", halved, laid)
+        laid = stage("halve own lines", halved, laid, body.smoothed)
     tails = stage("lead straps", strap_tails, body.mesh, laid, design.own_lines, backs)
     routes = stage("trace lines", line_routes, body.mesh, laid, backs, tails)
     lengths = (*({name: part.length for name, part in each.items()} for each in (backs, tails)),)
@@ -355,6 +359,15 @@ def _bind(body: Mesh, control: ControlMesh, fade: Floats, weights: Weights, scal
     )
 
 
+def _bind_to_tissue(body: Mesh, control: ControlMesh, fade: Floats, tissue: TissueResponse) -> Binding:
+    follows = np.array(fade > 0.0)
+    follows[follows] = tissue.moves(body.vertices[follows])
+    frames = bind(body, tissue.skin, follows.astype(np.float64), fixed=tissue.still, single=True)
+    return bind_carried(
+        frames, control.mesh.vertices, np.flatnonzero(~control.fixed), tissue.nodes, tissue.carried
+    )
+
+
 def _backs(body: Body, control: ControlMesh) -> dict[str, Back]:
     return {name: back_of(body.smoothed, control, name) for name in control.paths}
 
@@ -437,6 +450,7 @@ def solid_tissue(
     ``fitted`` is the mesh that ``control`` has halved, whose edges tell the strain. ``gravity`` [g] is that
     of its posture unless it is told.
     """
+    stiffness, firmer = tissue.stiffness_at(tissue.shear_modulus(mechanics.sag))
     change = np.subtract(gravity or GRAVITY[mechanics.posture], GRAVITY["standing"])
     heavier = mechanics.density / CONDENSED_DENSITY  # and as much stiffer, if it sags as far
     free = np.flatnonzero(~control.fixed)
@@ -445,7 +459,8 @@ def solid_tissue(
         control.mesh.vertices,
         free,
         edges[~control.fixed[edges].all(axis=1)],
-        frozen(heavier * tissue.shear_modulus(mechanics.sag) * tissue.stiffness),
+        frozen(heavier * stiffness),
+        frozen(heavier * firmer),
         frozen(heavier * (tissue.weight @ change).reshape(-1, 3)),
         mechanics,
         cups,

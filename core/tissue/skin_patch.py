@@ -12,8 +12,8 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 from core.geometry.closest_point import barycentric, nearest_faces
 from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points
 
-SIZE = 22.0
-"""Distance between the points of a coarse skin [mm]."""
+RIM = 5.0
+"""Skin nearer than this to the border of what lies within the outline does not move [mm]: assumed."""
 
 _EDGE = 1e-3
 """A place whose barycentric coordinate is below this [1] lies on a side of its triangle."""
@@ -35,13 +35,15 @@ class SkinPatch:
         return np.unique(np.concatenate(self.mesh.boundary_loops))
 
 
-def skin_patch(body: Mesh, control: Mesh, fixed: Flags, size: float = SIZE) -> SkinPatch:
+def skin_patch(body: Mesh, control: Mesh, fixed: Flags, size: float) -> SkinPatch:
     """Return the skin of ``body`` within the outline of ``control``, with points about ``size`` [mm] apart.
 
     ``fixed`` (k,) tells which control points do not move. Raises ValueError where no skin lies within.
     Source: geodesic farthest points, moved to the middle of their cells; triangles join neighbours (ours).
     """
     whole = _largest_piece(body, ~_beyond_outline(body.vertices, control))
+    border = np.concatenate(whole.boundary_loops)
+    whole = _largest_piece(whole, dijkstra(edge_graph(whole), indices=border, min_only=True) >= RIM)
     coarse = coarse_mesh(whole, size)
     face, _ = nearest_faces(control, coarse.vertices)
     return SkinPatch(coarse, np.asarray(fixed[control.faces[face]].all(axis=1)))
@@ -104,7 +106,8 @@ def _border_sites(mesh: Mesh, size: float) -> Indices:
     steps = np.linalg.norm(np.diff(mesh.vertices[[*loop, loop[0]]], axis=0), axis=1)
     along = np.cumsum(steps) - steps
     count = max(round(steps.sum() / size), 3)
-    return np.asarray(loop[np.unique(np.searchsorted(along, np.arange(count) * steps.sum() / count))])
+    at = np.searchsorted(along, np.arange(count) * steps.sum() / count)
+    return np.asarray(loop[np.unique(np.minimum(at, len(loop) - 1))])
 
 
 def _farthest_sites(graph: sparse.csr_array, border: Indices, size: float) -> Indices:

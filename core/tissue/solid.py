@@ -13,7 +13,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import SuperLU, splu
 
-from core.geometry.mesh import Flags, Floats, Indices, Points
+from core.geometry.mesh import Flags, Floats, Indices
 from core.progress import Progress, quiet
 from core.tissue.skin_patch import SkinPatch
 from core.tissue.tetrahedra import EDGES, LAYERS, Tetrahedra, layered_tetrahedra
@@ -53,47 +53,62 @@ class TissueSolid:
         at = self.cells.nodes.ravel()
         return np.asarray(np.bincount(at, borne.ravel(), self.cells.node_count), dtype=np.float64)
 
-    def weight_response(self, gravity: Points) -> Points:
-        """Return how nodes move when ``gravity`` (3,) [g] is added to that on the scan, (nodes, 3) [mm]."""
-        loads = self.weights[:, None] * np.asarray(gravity, dtype=np.float64)
-        return self.displacements(loads[:, :, None])[:, :, 0]
+    @cached_property
+    def free(self) -> Indices:
+        """Return the coordinates of the nodes that can move, ascending, shape (m,)."""
+        return np.flatnonzero(np.repeat(~self.fixed, 3))
 
-    def displacements(self, loads: Floats) -> Floats:
-        """Return displacements under ``loads``, both of shape (nodes, 3, k) [N], [mm]."""
-        count = loads.shape[2]
-        forces = np.zeros((self._factors.shape[0], count))
-        free = ~self.fixed
-        forces[: 3 * free.sum()] = loads[free].reshape(-1, count)
-        moved = np.zeros_like(loads)
-        for start in range(0, count, _AT_ONCE):
+    def weight_loads(self) -> Floats:
+        """Return the loads on ``free`` of 1 g along each axis, shape (m, 3) [N]."""
+        return np.asarray(np.kron(self.weights[:, None], np.eye(3))[self.free])
+
+    def solved(self, loads: Floats) -> tuple[Floats, Floats]:
+        """Return how ``free`` move under loads on them, (m, k) [mm] and [N], and pressures (c, k) [MPa]."""
+        count, wide = loads.shape
+        found = np.zeros((self._factors.shape[0], wide))
+        for start in range(0, wide, _AT_ONCE):
             some = slice(start, start + _AT_ONCE)
-            solved = self._factors.solve(forces[:, some])[: 3 * free.sum()]
-            moved[free, :, some] = solved.reshape(free.sum(), 3, -1)
-        return moved
-
-    def compliance(self, rows: sparse.csr_array) -> Floats:
-        """Return how means of nodes move under unit forces at them, shape (3 k, 3 k) [mm/N].
-
-        ``rows`` (k, nodes) are the means.
-        """
-        count = rows.shape[0]
-        loads = np.zeros((self.cells.node_count, 3, count, 3))
-        for axis in range(3):
-            loads[:, axis, :, axis] = rows.toarray().T
-        moved = self.displacements(loads.reshape(-1, 3, 3 * count))
-        at_means = means_of(rows, moved)
-        return np.asarray(0.5 * (at_means + at_means.T))
+            found[:count, some] = loads[:, some]
+            found[:, some] = self._factors.solve(found[:, some])
+        return found[:count], found[count:]
 
     @cached_property
     def _factors(self) -> SuperLU:
         """Return the factors of the tangent: symmetric, so its diagonal is kept as it is."""
         stiffness, divergence, compressibility = self._tangent()
-        free = np.flatnonzero(np.repeat(~self.fixed, 3))
+        free = self.free
         coupling = -divergence[:, free]
         high = sparse.hstack([stiffness[free][:, free], coupling.T])
         whole = sparse.csc_array(sparse.vstack([high, sparse.hstack([coupling, -compressibility])]))
         options = {"SymmetricMode": True}
         return splu(whole, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+
+    def prestress(self, moved: Floats, pressure: Floats) -> sparse.csr_array:
+        """Return what stresses under which ``free`` moved (m,) [mm] add to the tangent, (m, m) [N/mm].
+
+        ``pressure`` (c,) [MPa] is positive in compression. To first order in both, for a neo-Hookean
+        material; the shape that is known is the loaded one. Source: Govindjee and Mihalic 1996, linearised.
+        """
+        cells, shear = self.cells, 1e-3 * self.shear_modulus
+        gradients, volumes = _corner_gradients(cells)
+        motion = np.zeros(3 * cells.node_count)
+        motion[self.free] = moved
+        at_nodes, at_corners = motion.reshape(-1, 3)[cells.nodes], pressure[cells.nodes[:, :4]]
+        added = np.zeros((len(volumes), 10, 3, 10, 3))
+        for point in _POINTS:
+            slope = np.einsum("ai,tic->tac", _shape_slopes(point), gradients)
+            change = np.einsum("tac,tad->tcd", slope, at_nodes)
+            part = 0.25 * volumes
+            grown = np.einsum("tcc->t", change)
+            strain = change + change.transpose(0, 2, 1) - grown[:, None, None] * np.eye(3)
+            along = slope @ strain @ slope.transpose(0, 2, 1)
+            added += np.einsum("t,tab,cd->tacbd", shear * part, along, np.eye(3))
+            pushed, products = part * (at_corners @ point), np.einsum("tad,tbc->tacbd", slope, slope)
+            added += (pushed - shear * part * grown)[:, None, None, None, None] * products
+            added -= pushed[:, None, None, None, None] * products.transpose(0, 1, 4, 3, 2)
+        where = (3 * cells.nodes[:, :, None] + np.arange(3)).reshape(len(volumes), 30)
+        whole = _summed(added, where, where, (len(motion),) * 2)
+        return sparse.csr_array(whole[self.free][:, self.free])
 
     def _tangent(self) -> tuple[sparse.csc_array, sparse.csc_array, sparse.csc_array]:
         """Return stiffness (3 n, 3 n), divergence (c, 3 n) and compressibility (c, c) in N and mm."""
@@ -116,12 +131,6 @@ class TissueSolid:
             _summed(divergence, corner, motion, (len(cells.corners), count)),
             _summed(volumes[:, None, None] * pressure, corner, corner, (len(cells.corners),) * 2),
         )
-
-
-def means_of(rows: sparse.csr_array, moved: Floats) -> Floats:
-    """Return means (k, nodes) of displacements (nodes, 3, p), shape (3 k, p)."""
-    means = np.stack([rows @ moved[:, axis] for axis in range(3)], axis=1)
-    return np.asarray(means.reshape(3 * rows.shape[0], -1))
 
 
 def tissue_solid(

@@ -74,7 +74,7 @@ def layered_tetrahedra(skin: Mesh, wall: Points, layers: int = LAYERS) -> Tetrah
         turned = np.unique(made.nodes[made.volumes() <= 0.0][:, :4] % len(wall))
         if not len(turned):
             return made
-        wall = _evened(skin, wall, np.setdiff1d(turned, np.concatenate(skin.boundary_loops)))
+        wall = _evened(skin, wall, turned)
     raise ValueError("the chest wall crosses the skin")
 
 

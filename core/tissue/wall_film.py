@@ -9,7 +9,7 @@ from scipy.sparse.linalg import spsolve
 from core.geometry.mesh import Indices, Mesh, Points
 from core.tissue.skin_patch import SkinPatch
 
-DEPTH = 11.0
+DEPTH = 12.0
 """Depth of the chest wall under skin that does not move [mm]: assumed."""
 
 _ROUNDS = 30

@@ -8,7 +8,7 @@ from scipy.spatial import Delaunay
 
 from core.geometry.mesh import Mesh
 from core.tissue.skin_patch import SkinPatch, coarse_mesh
-from core.tissue.solid import DENSITY, EARTH, TissueSolid, means_of, tissue_solid
+from core.tissue.solid import _POINTS, DENSITY, EARTH, TissueSolid, _shape_slopes, tissue_solid
 from core.tissue.tetrahedra import layered_tetrahedra
 from core.tissue.wall_film import DEPTH, wall_film
 
@@ -90,11 +90,18 @@ def test_a_turn_and_a_shift_of_all_nodes_strain_nothing(tissue: TissueSolid) -> 
         assert np.abs(stiffness @ motion.ravel()).max() < 1e-9
 
 
+def at_nodes(tissue: TissueSolid, moved: np.ndarray) -> np.ndarray:
+    """Return displacements of the free coordinates (m,) at all nodes, (nodes, 3) [mm]."""
+    motion = np.zeros(3 * tissue.cells.node_count)
+    motion[tissue.free] = moved
+    return motion.reshape(-1, 3)
+
+
 def test_without_weight_the_breast_rises_and_keeps_its_volume(tissue: TissueSolid) -> None:
-    moved = tissue.weight_response(np.array([0.0, 0.0, 1.0]))
-    assert not moved[tissue.fixed].any()
+    motion = at_nodes(tissue, tissue.solved(tissue.weight_loads()[:, 2:])[0][:, 0])
+    assert not motion[tissue.fixed].any()
     skin = tissue.cells.skin
-    top = moved[len(tissue.cells.corners) - len(skin.vertices) : len(tissue.cells.corners)]
+    top = motion[len(tissue.cells.corners) - len(skin.vertices) : len(tissue.cells.corners)]
     rise = top[np.argmin(skin.vertices[:, 1])]
     assert rise[2] > 5.0
     assert abs(rise[0]) < 0.05 * rise[2]
@@ -102,19 +109,62 @@ def test_without_weight_the_breast_rises_and_keeps_its_volume(tissue: TissueSoli
     assert abs(swept) < 0.003 * tissue.cells.volumes().sum()
 
 
-def test_compliance_is_symmetric_positive_and_goes_with_softness(tissue: TissueSolid) -> None:
+def test_answers_are_symmetric_and_go_with_softness(tissue: TissueSolid) -> None:
     places = tissue.cells.skin.vertices[[0, 3, 9]]
     rows = tissue.cells.skin_rows(places)
     assert rows.sum(axis=1) == pytest.approx(1.0)
-    at_means = tissue.compliance(rows)
-    assert np.linalg.eigvalsh(at_means).min() > 0.0
-    force = np.zeros((tissue.cells.node_count, 3, 1))
-    force[:, 1, 0] = rows.toarray()[2]  # one newton at the last place, to the back
-    assert means_of(rows, tissue.displacements(force))[:, 0] == pytest.approx(
-        at_means[:, 7], rel=1e-6, abs=1e-9
-    )
-    softer = TissueSolid(tissue.cells, tissue.fixed, 0.25, tissue.density)
-    assert softer.compliance(rows) == pytest.approx(2.0 * at_means, rel=1e-6)
+    loads = np.kron(rows.toarray(), np.eye(3))[:, tissue.free].T
+    moved, pressure = tissue.solved(loads)
+    compliance = loads.T @ moved
+    assert compliance == pytest.approx(compliance.T, rel=1e-6, abs=1e-9)
+    assert np.linalg.eigvalsh(compliance).min() > 0.0
+    soft, same = TissueSolid(tissue.cells, tissue.fixed, 0.25, tissue.density).solved(loads)
+    assert soft == pytest.approx(2.0 * moved, rel=1e-6, abs=1e-12)
+    assert same == pytest.approx(pressure, rel=1e-6, abs=1e-9)
+
+
+def test_stresses_of_weight_are_the_slope_of_the_tangent_of_a_neo_hookean_solid() -> None:
+    """The energy's second derivative at the known shape, by differences of its exact gradient."""
+    tissue = tissue_solid(breast(3), 0.5)
+    moved, pressure = (each[:, 0] for each in tissue.solved(-tissue.weight_loads()[:, 2:]))
+    rng, step, size = np.random.default_rng(5), 1e-4, 1e-3
+    way = at_nodes(tissue, rng.normal(size=moved.shape))
+    nodes = np.concatenate([tissue.cells.corners, tissue.cells.corners[tissue.cells.edges].mean(axis=1)])
+
+    def slope(share: float) -> np.ndarray:
+        before = nodes - share * at_nodes(tissue, moved)
+        ahead, behind = (
+            forces(tissue, before, nodes + sign * step * way, share * pressure) for sign in (1, -1)
+        )
+        return (ahead - behind) / (2.0 * step)
+
+    expected = (slope(size) - slope(-size)) / (2.0 * size)
+    added = tissue.prestress(moved, pressure) @ way.ravel()[tissue.free]
+    assert np.abs(added - expected).max() < 1e-3 * np.abs(expected).max()
+
+
+def forces(tissue: TissueSolid, before: np.ndarray, after: np.ndarray, pressure: np.ndarray) -> np.ndarray:
+    """Return what a neo-Hookean solid resists with on the free coordinates, moved from one shape to another.
+
+    Energy per volume before: mu / 2 (tr F^T F - 3) - mu ln det F - p (det F - 1).
+    """
+    cells, shear = tissue.cells, 1e-3 * tissue.shear_modulus
+    found = np.zeros((cells.node_count, 3))
+    for point in _POINTS:
+        slopes = _shape_slopes(point)
+        one, two = (
+            np.einsum("tac,ai->tci", shape[cells.nodes], slopes[:, 1:] - slopes[:, :1])
+            for shape in (before, after)
+        )
+        change = two @ np.linalg.inv(one)
+        grown = np.linalg.det(change)
+        inward = np.linalg.inv(change).transpose(0, 2, 1)
+        push = pressure[cells.nodes[:, :4]] @ point * grown + shear
+        stress = shear * change - push[:, None, None] * inward
+        by_before = np.linalg.inv(one).transpose(0, 2, 1) @ (slopes[:, 1:] - slopes[:, :1]).T
+        weight = np.linalg.det(one) / 24.0
+        np.add.at(found, cells.nodes, np.einsum("t,tci,tia->tac", weight, stress, by_before))
+    return found.ravel()[tissue.free]
 
 
 def test_more_layers_and_points_change_the_rise_little() -> None:
@@ -122,7 +172,7 @@ def test_more_layers_and_points_change_the_rise_little() -> None:
     for rings, layers in ((5, 2), (8, 3)):
         solid = tissue_solid(breast(rings), 0.5, layers=layers)
         rows = solid.cells.skin_rows(np.array([[0.0, -HEIGHT, 0.0]]))
-        rises.append((rows @ solid.weight_response(np.array([0.0, 0.0, 1.0])))[0, 2])
+        rises.append((rows @ at_nodes(solid, solid.solved(solid.weight_loads()[:, 2:])[0][:, 0]))[0, 2])
     assert rises[0] == pytest.approx(rises[1], rel=0.05)
 
 
