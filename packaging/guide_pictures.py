@@ -72,6 +72,7 @@ SCREENS: tuple[tuple[str, Callable[[], Design], Scene], ...] = (
     ("start", _mannequin, scenes.start_page),
     *((name, _person, step(name)) for name in ("landmarks", "lines", "result")),
     ("ask", _person, scenes.asking),
+    ("cups", scenes.in_cups, step("lines")),
     ("wish", bra, advice_scenes.wishing),
     ("drawn-profile", bra, advice_scenes.drawing_a_profile),
     ("path", _mannequin, scenes.drawing),

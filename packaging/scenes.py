@@ -21,6 +21,7 @@ from app.gui.main_window import MainWindow
 from app.gui.session.settings import set_setting
 from app.i18n.catalog import language
 from app.presenters.samples import lifted_sample, sample_design, sample_path
+from core.document.cup import Cup
 from core.document.design import Design, ScanSource
 from core.garment.presets import built_in, with_preset
 from core.garment.elastic_library import find_elastic
@@ -70,6 +71,11 @@ def banded() -> Design:
 def for_customer() -> Design:
     """Return the same with the name of the customer."""
     return replace(banded(), customer="Customer 0412")
+
+
+def in_cups() -> Design:
+    """Return moulded cups with a wire, and straps, on a customer's scan."""
+    return replace(banded(), cup=Cup(lift=20.0, forward=5.0, gather=5.0, wire=True))
 
 
 def sliding() -> Design:

@@ -74,12 +74,12 @@ def solve_design(
     """Solve a design with ``lines``, NAME=LENGTH, and ``elastics``, LINE=ELASTIC.
 
     With ``keep_fit`` lines with an elastic reach the lengths that they reach without it. Raises UserError,
-    also for a design without active lines unless it may be ``bare``.
+    also for a design without active lines and cups unless it may be ``bare``.
     """
     stages = build(design)
     design = apply_lines(design, stages.model.lines, lines)
     requested = apply_elastics(design, elastics)
-    if not design.lines and not bare:
+    if not design.lines and design.cup is None and not bare:
         raise LineError(
             Message("No active lines."),
             Message("Set one: --line mid-bust=75% --elastic 'mid-bust=plush 12'."),
