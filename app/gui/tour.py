@@ -182,7 +182,8 @@ class Tour(QObject):
         if window.report_controller.is_open:
             page = window.report_controller.page
             return [*notices, self._place_of(page.paper), *map(self._place_of, page.does.values())]
-        beside = [self._place_of(each) for each in (window.rail, window.inspector) if each.isVisible()]
+        parts = window.rail, window.inspector, window.view.tools, window.view.compare
+        beside = [self._place_of(each) for each in parts if each.isVisible()]
         return [*notices, *beside, self._bust_place(), self._verdict_place()]
 
     def _place_of(self, *parts: QWidget) -> QRect:

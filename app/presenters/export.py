@@ -91,7 +91,7 @@ def _drawings() -> tuple[Export, ...]:
         Export(
             "cut",
             tr("Cut list"),
-            "bands",
+            "cut-list",
             tr("Elastic, cut length, tension and contact pressure of each active line."),
             {"csv": _table()},
         ),

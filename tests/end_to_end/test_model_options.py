@@ -154,7 +154,12 @@ def test_every_setting_is_one_step_and_the_reset_brings_back_all() -> None:
         yield settled(window)
         assert frame_of(window).stages.gain == 1.2
         assert window.model.fields["gain"].edit.text() == "1.20"
+        chosen = {key: getattr(window.session.design, key) for key in defaults()}
         window.model._reset.click()
+        yield settled(window)
+        steps.undo()
+        assert {key: getattr(window.session.design, key) for key in defaults()} == chosen, "all come back"
+        steps.redo()
         yield settled(window)
         assert steps.undoText() == "Model options reset to defaults"
         assert not window.model._reset.isEnabled()

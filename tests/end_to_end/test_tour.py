@@ -142,6 +142,8 @@ def covers_nothing_that_must_be_seen(window: MainWindow) -> Script:
         assert not seen_of(mark).intersects(place_of(window, part))
     if not window.report_controller.is_open:
         assert not seen_of(mark).intersects(bust_of(window))
+        for part in (window.view.tools, window.view.compare):
+            assert not seen_of(mark).intersects(place_of(window, part)), type(part).__name__
     window.notices.withdraw("test")
     yield settled(window)
 
