@@ -176,16 +176,18 @@ def test_the_body_follows_the_skin_of_the_solid(lifted: Stages, person: Stages) 
     assert float(np.sum(binding.gradient(points, slopes) * way)) == pytest.approx(expected, rel=1e-6)
 
 
-def test_weight_moves_the_body_as_far_at_its_points_as_between_them(person: Stages) -> None:
-    """The skin beside the outline moves little, and nothing leaps where the solid ends."""
+def test_nothing_leaps_where_the_solid_ends(person: Stages) -> None:
     lying = worn(person, 1.0, posture="lying")
     moved = deform(lying.binding, lying.control.mesh.vertices + shift(lying)) - lying.body.mesh.vertices
     length = np.linalg.norm(moved, axis=1)
     assert length.max() > 10.0
     ends = lying.body.mesh.edges
-    apart = np.linalg.norm(moved[ends[:, 0]] - moved[ends[:, 1]], axis=1)
+    apart, long = (
+        np.linalg.norm(each[ends[:, 0]] - each[ends[:, 1]], axis=1)
+        for each in (moved, lying.body.mesh.vertices)
+    )
     stays = length[ends].min(axis=1) == 0.0
-    assert apart[stays].max() < 2.5
+    assert (apart / long)[stays].max() < 0.7
 
 
 def test_middles_lie_on_the_skin_but_for_creases(person: Stages) -> None:
