@@ -360,9 +360,10 @@ def _bind(body: Mesh, control: ControlMesh, fade: Floats, weights: Weights, scal
 
 
 def _bind_to_tissue(body: Mesh, control: ControlMesh, fade: Floats, tissue: TissueResponse) -> Binding:
-    follows = np.array(fade > 0.0)
-    follows[follows] = tissue.moves(body.vertices[follows])
-    frames = bind(body, tissue.skin, follows.astype(np.float64), fixed=tissue.still, single=True)
+    within = np.flatnonzero(fade > 0.0)
+    follow = np.zeros_like(fade)
+    follow[within] = tissue.fade(body.vertices[within])
+    frames = bind(body, tissue.skin, follow, fixed=tissue.still, single=True)
     return bind_carried(
         frames, control.mesh.vertices, np.flatnonzero(~control.fixed), tissue.nodes, tissue.carried
     )

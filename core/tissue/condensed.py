@@ -40,6 +40,9 @@ LEAST_STIFFNESS = 0.4
 _ON_RIM = 1e-3
 """A place where the share of what can move is no more than this [1] lies on the border of the skin."""
 
+_FADE = 0.5
+"""From this share on [1] the body follows the skin fully."""
+
 _COLUMNS = 64
 """So many columns of a product are made at a time: all at once take more memory than all else."""
 
@@ -81,12 +84,13 @@ class TissueResponse:
         """Return which vertices of ``skin`` do not move."""
         return np.isin(np.arange(len(self.skin.vertices)), self.nodes, invert=True)
 
-    def moves(self, places: Points) -> Flags:
-        """Return which of ``places`` (k, 3) [mm] are next to skin that can move."""
+    def fade(self, places: Points) -> Floats:
+        """Return how far ``places`` (k, 3) [mm] follow the skin: 0 at its border and beyond .. 1 inside."""
         face, foot = nearest_faces(self.skin, places)
         corners = self.skin.faces[face]
-        share = barycentric(self.skin.vertices[corners], foot)
-        return np.asarray((share * ~self.still[corners]).sum(axis=1) > _ON_RIM)
+        share = np.clip(barycentric(self.skin.vertices[corners], foot), 0.0, 1.0)
+        inside = (share * ~self.still[corners]).sum(axis=1)
+        return np.asarray(np.where(inside > _ON_RIM, np.minimum(inside / _FADE, 1.0), 0.0))
 
 
 def condense(
@@ -104,7 +108,7 @@ def condense(
     prestress = 0.5 * (prestress + prestress.T)
     place = np.cumsum(~fine.fixed) - 1
     rise = float(np.mean([modes.at_points[3 * place[point] + 2, 2] for point in fine.bust_points]))
-    skin = solid.cells.skin
+    skin = solid.cells.finer_skin()
     inner = np.setdiff1d(np.arange(len(skin.vertices)), np.concatenate(skin.boundary_loops))
     means = _over_axes(disc_rows(solid, body, skin.vertices[inner]))[:, solid.free]
     return TissueResponse(
