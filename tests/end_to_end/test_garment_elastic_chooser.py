@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from garment_tools import at_rest, chooser_of, cut_rows, made_of, mark
-from window_tools import PATIENCE, Script, run_undrawn, settled
+from window_tools import PATIENCE, Script, run_bodiless, settled
 
 from app.gui.features.garment import elastic_offer
 from app.gui.main_window import MainWindow
@@ -61,7 +61,7 @@ def test_an_elastic_that_cannot_be_used_is_grey_and_the_nearest_that_can_is_one_
         assert row.elongation == pytest.approx(0.3, rel=0.02)
         assert number(row.reached_front_mm) == limited.reached
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_the_loss_of_lift_is_shown_before_it_is_chosen() -> None:
@@ -89,7 +89,7 @@ def test_the_loss_of_lift_is_shown_before_it_is_chosen() -> None:
         assert window.session.frame is not None
         assert bust_shift(window.session.frame).mean.up == pytest.approx(float(view.lift), abs=0.15)
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_effects_that_come_late_are_dropped_with_the_chooser(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -118,7 +118,7 @@ def test_effects_that_come_late_are_dropped_with_the_chooser(monkeypatch: pytest
         assert {view.note for view in views[1:]} == {"Slack at this length: set the line to 99 % or less."}
         chooser_of(window).reject()
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_what_was_edited_while_the_chooser_was_open_is_kept() -> None:
@@ -135,4 +135,4 @@ def test_what_was_edited_while_the_chooser_was_open_is_kept() -> None:
         assert window.session.design is not None
         assert window.session.design.ratio("under-bust") == pytest.approx(0.97)
 
-    run_undrawn([], script)
+    run_bodiless([], script)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from window_tools import Script, points, run_undrawn, settled
+from window_tools import Script, points, run_bodiless, run_undrawn, settled
 
 from app.gui.main_window import MainWindow
 from app.gui.widgets.option_field import AmountField, MenuField, SegmentField
@@ -49,7 +50,7 @@ def bust_points(window: MainWindow) -> float:
     )
 
 
-@pytest.mark.usefixtures("fine_mannequin")
+@pytest.mark.usefixtures("fine_samples")
 def test_a_sliding_line_lifts_the_bust_points_and_undo_brings_the_old_result_back() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -69,7 +70,7 @@ def test_a_sliding_line_lifts_the_bust_points_and_undo_brings_the_old_result_bac
         assert np.abs(points(window) - at_start).max() < 1e-6
         assert window.model._present["line_contact"] == "glued"
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_a_held_line_reaches_its_length() -> None:
@@ -84,7 +85,7 @@ def test_a_held_line_reaches_its_length() -> None:
             line = next(line for line in frame_of(window).stages.model.lines if line.name == "mid-bust")
             assert abs(frame_of(window).lengths["mid-bust"] - 0.95 * line.rest_length) < 0.01
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_what_cannot_be_held_is_said_and_the_last_good_state_stays() -> None:
@@ -110,7 +111,7 @@ def test_what_cannot_be_held_is_said_and_the_last_good_state_stays() -> None:
         yield settled(window)
         assert window.notices.notice() is None, "what is solved since is not refused"
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_the_volume_that_is_told_is_the_one_that_is_kept() -> None:
@@ -126,7 +127,7 @@ def test_the_volume_that_is_told_is_the_one_that_is_kept() -> None:
         yield settled(window)
         assert controlled_volume(frame_of(window))[1] == frame_of(window).error_ml
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_every_setting_is_one_step_and_the_reset_brings_back_all() -> None:
@@ -160,7 +161,7 @@ def test_every_setting_is_one_step_and_the_reset_brings_back_all() -> None:
         assert not window.model._reset.isEnabled()
         assert all(getattr(window.session.design, key) == value for key, value in defaults().items())
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_what_cannot_be_is_refused_and_the_field_shows_what_is() -> None:
@@ -190,7 +191,7 @@ def test_what_cannot_be_is_refused_and_the_field_shows_what_is() -> None:
         assert window.session.design.template == "168"
         assert window.actions_.templates["168"].isChecked()
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_forces_one_turn_late_come_with_a_soft_line_and_leave_with_it() -> None:
@@ -218,18 +219,18 @@ def test_every_choice_has_its_words_and_the_door_says_what_is_not_usual() -> Non
     assert summary(values | {"firm_chest": 0.3}) == "Bonded · Elastic length · Rib-cage support"
 
 
-def test_another_body_is_opened_with_its_lines_in_sight() -> None:
+def test_another_body_is_opened_with_its_lines_in_sight(mannequin: Path, person: Path) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        for show, page in (
-            (window.model_controller.show, "lines"),
-            (window.scan_comparison_controller.show_page, "result"),
+        for show, page, body in (
+            (window.model_controller.show, "lines", person),
+            (window.scan_comparison_controller.show_page, "result", mannequin),
         ):
             show()
             left = window.inspector.panel()
             before = window.session.frame.stages.body
             window.session.undo_stack.setClean()
-            window.project_controller.open_sample("person" if page == "lines" else "mannequin")
+            window.project_controller.open_file(str(body))
             yield lambda before=before: window.session.frame.stages.body is not before
             yield settled(window)
             assert window.inspector.panel() is window.inspector._panels[page] is not left
