@@ -11,7 +11,7 @@ import pyvista as pv
 from export_tools import choose, opened, saved_as, told, written
 from PIL import Image
 from PySide6.QtWidgets import QApplication
-from window_tools import Script, run_bodiless, settled
+from window_tools import Script, run_bodiless, run_undrawn, settled
 
 import app.gui.features.export.controller
 import app.rendering.offscreen
@@ -68,7 +68,7 @@ def test_a_turntable_is_drawn_between_events_and_can_be_left(
         assert window.notices.notice().sentence == "anna.gif saved."
         assert made == []
 
-    run_bodiless([], script)
+    run_undrawn([], script)
     with Image.open(path) as picture:
         assert (picture.n_frames, picture.size) == (12, (480, 540))
 
@@ -105,7 +105,7 @@ def test_a_picture_shows_what_the_view_shows_on_no_ground(
             window.notices.clear()
             path.rename(tmp_path / f"{count}.png")
 
-    run_bodiless([], script)
+    run_undrawn([], script)
     worn, bare = (pv.read_texture(tmp_path / f"{count}.png").to_array() for count in range(2))
     assert worn.shape == (1125, 1000, 4)
     assert (worn[..., 3] == 0).mean() > 0.3

@@ -61,7 +61,7 @@ def test_the_model_is_entered_by_its_key_and_left_by_esc() -> None:
         press(Qt.Key.Key_Escape)
         assert window.view.beside.way == "after"
 
-    assert run_bodiless([], script) == 0
+    assert run_main([], script) == 0
 
 
 def test_a_card_over_the_window_takes_the_keyboard_and_goes_by_esc_or_once_something_is_opened(
@@ -106,7 +106,7 @@ def test_enter_presses_the_button_that_has_the_keyboard_and_space_does_not_flip_
             assert window.inspector.panel() is not window.scan
             assert window.view.beside.way in (way, "after")
 
-    assert run_bodiless([], script) == 0
+    assert run_main([], script) == 0
 
 
 def test_the_keyboard_stays_with_a_line_whatever_is_done_to_it() -> None:
@@ -149,7 +149,7 @@ def test_steps_and_tabs_are_heard_as_choices_and_sliders_as_what_they_mean() -> 
         assert panel.plot.gap.endswith("mm")
         assert panel.plot.accessibleDescription() == panel.plot.gap
 
-    assert run_bodiless([], script) == 0
+    assert run_main([], script) == 0
 
 
 class _Kept:

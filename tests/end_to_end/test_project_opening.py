@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from PySide6.QtGui import QColor, QImage
-from window_tools import Script, run_bodiless, settled
+from window_tools import Script, run_undrawn, settled
 
 from app.gui.main_window import MainWindow
 from app.gui.session.project_thumbnail import project_picture
@@ -43,4 +43,4 @@ def test_a_project_on_its_way_in_shows_its_picture_and_can_be_cancelled(tmp_path
         yield lambda: window.session.name == "anna"
         assert cover.isHidden()
 
-    assert run_bodiless([], script) == 0
+    assert run_undrawn([], script) == 0

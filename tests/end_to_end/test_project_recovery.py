@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PySide6.QtCore import QLockFile, QSettings
-from window_tools import Script, drag, points, run_bodiless, settled
+from window_tools import Script, drag, points, run_bodiless, run_main, settled
 
 import app.gui.features.project.controller as project_files
 import app.gui.features.project.recovery
@@ -278,7 +278,7 @@ def test_variants_are_chosen_undone_and_seen_side_by_side(
         session.opened.emit(session.frame)
         assert not [job for job in window.jobs.at_work() if job.waited], "it is of another document"
 
-    run_bodiless([], script)
+    run_main([], script)
 
 
 def the_history_goes_back_in_the_variant_of_a_result(window: MainWindow) -> Script:

@@ -12,7 +12,7 @@ from pdf_tools import Pdf
 from PySide6.QtCore import Qt
 from PySide6.QtPrintSupport import QPrinter
 from PySide6.QtTest import QTest
-from window_tools import Script, run_bodiless, settled
+from window_tools import Script, run_bodiless, run_undrawn, settled
 
 from app.gui.main_window import MainWindow
 from app.gui.widgets.thumbnail_list import VIEW
@@ -297,4 +297,4 @@ def test_the_window_closes_while_the_sheet_is_being_made(mannequin: Path) -> Non
         window.report_controller.open()
         yield lambda: bool(window.jobs.at_work())
 
-    assert run_bodiless([str(mannequin)], script) == 0
+    assert run_undrawn([str(mannequin)], script) == 0

@@ -9,7 +9,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
-from window_tools import Script, run_bodiless, run_main, settled
+from window_tools import Script, run_bodiless, run_main, run_undrawn, settled
 
 import app.gui.file_export
 from app.gui.main_window import MainWindow
@@ -201,7 +201,7 @@ def test_the_same_key_puts_variants_side_by_side_and_back() -> None:
         window.view.compare_by("wipe")
         assert not flip.isChecked()
 
-    run_bodiless([], script)
+    run_undrawn([], script)
 
 
 def test_measures_say_from_where_they_count_and_leave_as_a_table(

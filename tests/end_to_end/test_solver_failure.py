@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import QSettings
 from PySide6.QtWidgets import QLabel
-from window_tools import Script, drag, run_bodiless, settled
+from window_tools import Script, drag, run_undrawn, settled
 
 import app.gui.features.project.controller as project_files
 from app.gui.main_window import MainWindow
@@ -81,4 +81,4 @@ def test_a_solver_that_fails_for_long_loses_nothing(
         assert window.strip._state != "stale"
         assert session.document is document
 
-    run_bodiless([], script)
+    run_undrawn([], script)
