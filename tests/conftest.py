@@ -229,6 +229,11 @@ def opened_as_in_the_program() -> None:
 
 
 @pytest.fixture
+def first_tour() -> None:
+    """A first start begins the tour."""
+
+
+@pytest.fixture
 def fine_samples() -> None:
     """Samples are opened on all their vertices."""
 
@@ -279,6 +284,7 @@ def empty_house(
     if "opened_as_in_the_program" not in request.fixturenames:
         opened = sample_design() if "fine_samples" in request.fixturenames else coarse_sample
         monkeypatch.setattr("app.gui.startup.lifted_sample", lambda: opened)
+    if not {"opened_as_in_the_program", "first_tour"}.intersection(request.fixturenames):
         monkeypatch.setattr("app.gui.tour.Tour.begin_when_settled", lambda _: None)
     monkeypatch.setattr("app.gui.viewport.view_area.bake_occlusion", shading)
     monkeypatch.setattr("app.gui.features.uncertainty.controller.PAUSE", 10**8)

@@ -38,7 +38,7 @@ def at_start(window: MainWindow) -> bool:
     return window.start_controller.page.isVisible()
 
 
-@pytest.mark.usefixtures("opened_as_in_the_program")
+@pytest.mark.usefixtures("fine_samples", "first_tour")
 def test_the_first_start_leads_through_the_sample_and_later_ones_go_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -49,7 +49,7 @@ def test_the_first_start_leads_through_the_sample_and_later_ones_go_on(
 
     def first(window: MainWindow) -> Script:
         yield settled(window)
-        assert window.session.name == "person"
+        assert window.session.name == "mannequin"
         assert not at_start(window)
         yield lambda: window.start_controller.tour.place == 0
         QTest.keyClick(window.start_controller.tour.mark, Qt.Key.Key_Escape)
