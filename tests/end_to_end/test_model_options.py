@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -219,18 +218,18 @@ def test_every_choice_has_its_words_and_the_door_says_what_is_not_usual() -> Non
     assert summary(values | {"firm_chest": 0.3}) == "Bonded · Elastic length · Rib-cage support"
 
 
-def test_another_body_is_opened_with_its_lines_in_sight(mannequin: Path, person: Path) -> None:
+def test_another_body_is_opened_with_its_lines_in_sight() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        for show, page, body in (
-            (window.model_controller.show, "lines", person),
-            (window.scan_comparison_controller.show_page, "result", mannequin),
+        for show, page in (
+            (window.model_controller.show, "lines"),
+            (window.scan_comparison_controller.show_page, "result"),
         ):
             show()
             left = window.inspector.panel()
             before = window.session.frame.stages.body
             window.session.undo_stack.setClean()
-            window.project_controller.open_file(str(body))
+            window.project_controller.open_sample("person" if page == "lines" else "mannequin")
             yield lambda before=before: window.session.frame.stages.body is not before
             yield settled(window)
             assert window.inspector.panel() is window.inspector._panels[page] is not left
