@@ -66,7 +66,7 @@ def run_undrawn(arguments: list[str], script: Callable[[MainWindow], Script], ex
 
 
 def run_bodiless(arguments: list[str], script: Callable[[MainWindow], Script], expected: Kinds = ()) -> int:
-    """Do as ``run_main``, with no body in the 3D view, which is made for no one, and no limits looked for."""
+    """Do as ``run_main``, with no body in the 3D view and no limits of lines looked for."""
 
     def unseen(window: MainWindow) -> Script:
         with pytest.MonkeyPatch.context() as patch:
