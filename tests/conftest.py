@@ -30,6 +30,7 @@ from app.gui.theme.stylesheet import apply_theme
 from app.i18n.catalog import use_language
 from app.i18n.lengths import use_unit
 from app.presenters.samples import sample_design
+from app.rendering.ambient_occlusion import bake_occlusion
 from core.analysis.uncertainty.input_uncertainty import default_uncertainty
 from core.document.design import Design, ScanSource
 from core.document.lines import ActiveLine
@@ -148,6 +149,10 @@ def remembered(make: Callable[..., Any]) -> Callable[..., Any]:
     return again
 
 
+shading = remembered(bake_occlusion)
+"""The soft shadows of a body, computed once."""
+
+
 @pytest.fixture(scope="session")
 def mannequin() -> Path:
     """The sample body on which the program opens: a smooth, watertight scan."""
@@ -224,8 +229,13 @@ def opened_as_in_the_program() -> None:
 
 
 @pytest.fixture
-def fine_mannequin() -> None:
-    """A first start opens the mannequin on all its vertices."""
+def first_tour() -> None:
+    """A first start begins the tour."""
+
+
+@pytest.fixture
+def fine_samples() -> None:
+    """Samples are opened on all their vertices."""
 
 
 @pytest.fixture
@@ -237,30 +247,46 @@ def spared_as_in_the_program() -> Iterator[None]:
 
 
 @pytest.fixture(scope="session")
-def coarse_sample(tmp_path_factory: pytest.TempPathFactory) -> Design:
-    """The design on the mannequin with which the windows of tests begin, on a fifth of its vertices."""
+def coarse_samples(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """Return the file of a sample body on a fifth of its vertices, made once."""
+    folder = tmp_path_factory.mktemp("coarse")
+    return cache(lambda name: coarse_body(name, folder))
+
+
+@pytest.fixture(scope="session")
+def coarse_sample(coarse_samples: Callable[[str], Path]) -> Design:
+    """The design on the mannequin with which the windows of tests begin."""
     design = sample_design()
-    file = coarse_body("mannequin", tmp_path_factory.mktemp("coarse"))
-    return replace(design, scan=replace(design.scan, path=str(file)))
+    return replace(design, scan=replace(design.scan, path=str(coarse_samples("mannequin"))))
 
 
 @pytest.fixture
 def empty_house(
-    request: pytest.FixtureRequest, qapp: QApplication, monkeypatch: pytest.MonkeyPatch, coarse_sample: Design
+    request: pytest.FixtureRequest,
+    qapp: QApplication,
+    monkeypatch: pytest.MonkeyPatch,
+    coarse_sample: Design,
+    coarse_samples: Callable[[str], Path],
 ) -> Iterator[None]:
     """Nothing of a window lives on after a test: no thread of ours, no window; its settings are fresh.
 
-    A first start opens the mannequin with a short glued line, which most tests are about, on a fifth of its
-    vertices: with ``fine_mannequin`` on all, with ``opened_as_in_the_program`` as the user sees it.
+    A first start opens the mannequin with a short glued line, which most tests are about, and begins no tour:
+    with ``opened_as_in_the_program`` it does as the user sees it. Samples are on a fifth of their vertices,
+    with ``fine_samples`` on all. The soft shadows of a body are computed once.
     How sure figures are is not worked out where a test does not ask: it takes half a minute of a processor.
     Frames come seldom, as on a slow machine: most of a test's time would go into ones that nobody looks at.
     """
     if "spared_as_in_the_program" not in request.fixturenames:
         # Else all libraries would be looked through three times after each window, and not only what it left.
         monkeypatch.setattr("app.gui.session.gc_control.gc", SPARING_NOTHING)
+    if "fine_samples" not in request.fixturenames:
+        monkeypatch.setattr("app.presenters.samples.sample_path", coarse_samples)
     if "opened_as_in_the_program" not in request.fixturenames:
-        opened = sample_design() if "fine_mannequin" in request.fixturenames else coarse_sample
+        opened = sample_design() if "fine_samples" in request.fixturenames else coarse_sample
         monkeypatch.setattr("app.gui.startup.lifted_sample", lambda: opened)
+    if not {"opened_as_in_the_program", "first_tour"}.intersection(request.fixturenames):
+        monkeypatch.setattr("app.gui.tour.Tour.begin_when_settled", lambda _: None)
+    monkeypatch.setattr("app.gui.viewport.view_area.bake_occlusion", shading)
     monkeypatch.setattr("app.gui.features.uncertainty.controller.PAUSE", 10**8)
     monkeypatch.setattr("core.pipeline.live_solver._SLICE", 0.1)
     QSettings().clear()

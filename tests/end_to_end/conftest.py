@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from coarse_bodies import coarse_body
-
-from core.document.design import Design
 
 
 @pytest.fixture(scope="session")
-def mannequin(coarse_sample: Design) -> Path:
+def mannequin(coarse_samples: Callable[[str], Path]) -> Path:
     """The mannequin on which the windows of tests open too."""
-    return Path(coarse_sample.scan.path)
+    return coarse_samples("mannequin")
 
 
 @pytest.fixture(scope="session")
-def person(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def person(coarse_samples: Callable[[str], Path]) -> Path:
     """The body with the shape of a person."""
-    return coarse_body("person", tmp_path_factory.mktemp("coarse"))
+    return coarse_samples("person")

@@ -12,7 +12,7 @@ from PySide6.QtCore import QByteArray, QPoint, QSettings, Qt, QTimer
 from PySide6.QtGui import QDesktopServices, QGuiApplication
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
-from window_tools import Script, drag, run_main, run_undrawn, settled, undrawn
+from window_tools import Script, drag, run_bodiless, settled
 
 from app.gui.application import log_folder
 from app.gui.features.help.about import AboutDialog, DiagnosticsDialog
@@ -89,7 +89,7 @@ def test_help_finds_keys_commands_versions_and_licences() -> None:
         ] * 3
         about.accept()
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def the_folders_are_named_and_opened(window: MainWindow, sheet: DiagnosticsDialog, said: str) -> None:
@@ -131,7 +131,6 @@ def the_hand_of_another_program_is_understood(window: MainWindow) -> None:
 
 def test_the_room_is_shared_out_by_keys() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.activateWindow()
         yield window.isActiveWindow
@@ -158,7 +157,7 @@ def test_the_room_is_shared_out_by_keys() -> None:
         window.strip.set_folded(True)
         assert "Live plot height" not in [each.accessibleName() for each in window.layout_._stops()]
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def test_the_layout_is_shared_out_by_hand_and_kept(mannequin: Path) -> None:
@@ -195,11 +194,11 @@ def test_the_layout_is_shared_out_by_hand_and_kept(mannequin: Path) -> None:
         yield settled(window)
         assert window.screen().geometry().intersects(window.frameGeometry())
 
-    run_undrawn([], first)
-    run_undrawn([str(mannequin)], second)
+    run_bodiless([], first)
+    run_bodiless([str(mannequin)], second)
     QSettings().setValue("window/geometry", QByteArray(b"no geometry"))
     QSettings().setValue("window/inspector", "-7")
-    run_undrawn([str(mannequin)], third)
+    run_bodiless([str(mannequin)], third)
 
 
 def test_a_fault_is_told_once_and_the_work_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -235,7 +234,7 @@ def test_a_fault_is_told_once_and_the_work_goes_on(monkeypatch: pytest.MonkeyPat
         assert design is not None
         assert design.ratio("mid-bust") < 0.95
 
-    run_undrawn([], script, expected=(KeyError, ZeroDivisionError))
+    run_bodiless([], script, expected=(KeyError, ZeroDivisionError))
 
 
 def test_a_fault_in_a_slot_or_thread_fails_the_test_that_does_not_expect_it() -> None:
@@ -250,6 +249,6 @@ def test_a_fault_in_a_slot_or_thread_fails_the_test_that_does_not_expect_it() ->
         yield lambda: window.crash_handler.sheet is not None
 
     with pytest.raises(KeyError):
-        run_undrawn([], in_slot)
+        run_bodiless([], in_slot)
     with pytest.raises(ZeroDivisionError):
-        run_undrawn([], in_thread, expected=(KeyError,))
+        run_bodiless([], in_thread, expected=(KeyError,))

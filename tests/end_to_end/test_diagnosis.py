@@ -7,7 +7,7 @@ import threading
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from window_tools import PATIENCE, Script, run_main, run_undrawn, settled, undrawn
+from window_tools import PATIENCE, Script, run_bodiless, settled
 
 import app.gui.features.garment.pressure_controller
 from app.gui.features.diagnosis.controller import ABOUT
@@ -37,7 +37,6 @@ def words(window: MainWindow) -> list[str]:
 
 def test_a_vibration_is_told_at_once_and_ended_by_one_button() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.session.choose_control("conventional")
         window.session.change({"gain": 1.7}, "gain")
@@ -67,13 +66,12 @@ def test_a_vibration_is_told_at_once_and_ended_by_one_button() -> None:
         yield lambda: told(window)
         assert words(window)[0].startswith("Use adaptive")
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
-@pytest.mark.usefixtures("fine_mannequin")
+@pytest.mark.usefixtures("fine_samples")
 def test_strain_is_told_calmly_once_and_never_again() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.session.preview_line("mid-bust", 0.9)
         yield lambda: window.session.frame is not None and not window.session.frame.is_running
@@ -101,12 +99,11 @@ def test_strain_is_told_calmly_once_and_never_again() -> None:
         assert frame is not None
         assert frame.verdict.display_state == "settled"
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def test_a_length_that_was_refused_gets_the_nearest_that_is_not() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.session.change({"line_hold": "held", "volume": "exact"}, "held")
         yield settled(window)
@@ -124,12 +121,11 @@ def test_a_length_that_was_refused_gets_the_nearest_that_is_not() -> None:
         assert 0.8 < design.ratio("mid-bust") < 0.95
         assert f"{100.0 * design.ratio('mid-bust'):.1f} %" in window.session.undo_stack.undoText()
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def test_asked_of_a_calm_design_he_says_that_nothing_is_wrong() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         (command,) = (each for _, each in window.actions_.all() if each.text() == "Diagnose design…")
         command.trigger()
@@ -142,7 +138,7 @@ def test_asked_of_a_calm_design_he_says_that_nothing_is_wrong() -> None:
         yield lambda: window.notices.notice() is None
         assert not [each for each in window.notices._waiting if each.about == ABOUT]
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def test_asked_before_the_verdict_is_known_he_says_what_presses(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -166,7 +162,7 @@ def test_asked_before_the_verdict_is_known_he_says_what_presses(monkeypatch: pyt
         yield lambda: window.assessment_controller.of(frame).level == "bad"
 
     try:
-        run_undrawn([], script)
+        run_bodiless([], script)
     finally:
         known.set()
     ((seen, sentence),) = asked
@@ -185,12 +181,11 @@ def test_what_is_asked_before_the_first_frame_is_answered_with_it() -> None:
         assert notice_of(window).lasting
         assert window.diagnosis_controller._about is window.session.design
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_what_was_closed_stays_away_until_something_else_is_wrong() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.lines_controller.commit_length("mid-bust", 0.7)
         yield lambda: told(window)
@@ -209,12 +204,11 @@ def test_what_was_closed_stays_away_until_something_else_is_wrong() -> None:
         window.lines_controller.commit_length("mid-bust", 0.7)
         yield lambda: told(window)
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def test_a_run_that_comes_back_slowly_is_let_go_on() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         for name in ("mid-bust", "full-bust"):
             window.lines_controller.commit_length(name, 0.6)
@@ -224,12 +218,11 @@ def test_a_run_that_comes_back_slowly_is_let_go_on() -> None:
         yield settled(window)
         yield lambda: window.session.frame.verdict.motion == "settled"  # type: ignore[union-attr]
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def test_what_was_edited_meanwhile_is_not_told_of() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.lines_controller.commit_length("mid-bust", 0.6)
         yield lambda: window.diagnosis_controller._job is not None
@@ -241,13 +234,12 @@ def test_what_was_edited_meanwhile_is_not_told_of() -> None:
         assert not job.wanted
         assert window.notices.notice() is None
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
-@pytest.mark.usefixtures("fine_mannequin")
+@pytest.mark.usefixtures("fine_samples")
 def test_the_pill_opens_what_the_button_ends_and_what_will_still_be_strained() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         chip = window.strip.chip
         window.lines_controller.commit_length("mid-bust", 0.848)
@@ -275,4 +267,4 @@ def test_the_pill_opens_what_the_button_ends_and_what_will_still_be_strained() -
         text = window.notices.details
         assert text.document().lineCount() > 6
 
-    run_main([], script)
+    run_bodiless([], script)

@@ -13,7 +13,7 @@ from export_tools import choose, opened, saved_as, told, written
 from PySide6.QtCore import QSettings, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QFileDialog, QWidget
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_bodiless, settled
 
 import app.gui.features.export.controller
 import app.rendering.offscreen
@@ -24,7 +24,7 @@ from app.presenters.export import exports
 pytestmark = pytest.mark.usefixtures("empty_house")
 
 
-@pytest.mark.usefixtures("fine_mannequin")
+@pytest.mark.usefixtures("fine_samples")
 def test_a_body_is_exported_by_keys_alone_in_the_unit_that_was_chosen(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -32,7 +32,6 @@ def test_a_body_is_exported_by_keys_alone_in_the_unit_that_was_chosen(
     asked = saved_as(monkeypatch, path)
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.activateWindow()
         yield window.isActiveWindow
@@ -65,16 +64,15 @@ def test_a_body_is_exported_by_keys_alone_in_the_unit_that_was_chosen(
         low, high = rest.vertices.min(axis=0), rest.vertices.max(axis=0)
         assert body.bounds[5] - body.bounds[4] == pytest.approx((high - low)[2] / 10.0, abs=0.01)
 
-    run_main([], script)
+    run_bodiless([], script)
     kinds = asked[0][3].split(";;")
     assert kinds[0] == "PLY (*.ply)"
     assert set(kinds) == {f"{kind} (*.{kind.lower()})" for kind in ("GLB", "OBJ", "PLY", "STL")}
 
 
-@pytest.mark.usefixtures("fine_mannequin")
+@pytest.mark.usefixtures("fine_samples")
 def test_choices_are_remembered_for_each_thing_and_each_format(tmp_path: Path) -> None:
     def first(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         sheet = opened(window, "measures")
         choose(sheet, "unit", "in")
@@ -87,7 +85,6 @@ def test_choices_are_remembered_for_each_thing_and_each_format(tmp_path: Path) -
         sheet.reject()
 
     def again(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         choices = window.export_controller._choices
         sheet = opened(window)
@@ -98,8 +95,8 @@ def test_choices_are_remembered_for_each_thing_and_each_format(tmp_path: Path) -
         assert choices.values("measures")["unit"] == "in"
         sheet.reject()
 
-    run_main([], first)
-    run_main([], again)
+    run_bodiless([], first)
+    run_bodiless([], again)
 
 
 @pytest.mark.parametrize(
@@ -129,7 +126,6 @@ def test_everything_that_is_offered_is_written_in_every_format(
     """Also by a name whose ending is another format than the chosen one: then it is that one."""
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         for export in exports():
             for kind in export.formats:
@@ -145,13 +141,12 @@ def test_everything_that_is_offered_is_written_in_every_format(
                 assert path.stat().st_size > 100
                 window.notices.clear()
 
-    run_main([], script)
+    run_bodiless([], script)
     assert len(list(tmp_path.iterdir())) == 4 + 5 + 2 + 2 + 1 + 4 + 1
 
 
 def test_what_cannot_be_exported_says_why_and_is_not_offered(tmp_path: Path) -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.session.reset_lines()
         yield settled(window)
@@ -166,14 +161,13 @@ def test_what_cannot_be_exported_says_why_and_is_not_offered(tmp_path: Path) -> 
             assert not sheet._doubt.isVisible()
             sheet.reject()
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def test_a_folded_body_is_told_before_it_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     saved_as(monkeypatch, tmp_path / "anna.stl")
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.lines_controller.commit_length("mid-bust", 0.5)
         yield settled(window)
@@ -192,14 +186,13 @@ def test_a_folded_body_is_told_before_it_is_written(tmp_path: Path, monkeypatch:
         yield lambda: window.notices.notice().sentence == "anna.stl saved, in mm, z-up."
         assert window.notices.more.text() == "2 more"
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def test_a_name_with_another_ending_is_that_format_with_the_unit_chosen_for_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         sheet = opened(window, "control")
         choose(sheet, "format", "obj")
@@ -210,7 +203,7 @@ def test_a_name_with_another_ending_is_that_format_with_the_unit_chosen_for_it(
         yield written(window)
         assert window.notices.notice().sentence == "anna.OBJ saved, in inches, z-up."
 
-    run_main([], script)
+    run_bodiless([], script)
     assert (tmp_path / "anna.OBJ").read_text().count("\nf ") == 168
 
 
@@ -222,7 +215,6 @@ def test_an_ending_that_nothing_has_is_put_behind_the_name(
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *how: (next(names), how[3].split(";;")[0]))
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         for what in typed:
             opened(window, what).save.click()
@@ -230,7 +222,7 @@ def test_an_ending_that_nothing_has_is_put_behind_the_name(
             assert window.notices.notice().tone == "ok"
             window.notices.clear()
 
-    run_main([], script)
+    run_bodiless([], script)
     written_files = {path.name for path in tmp_path.iterdir()}
     assert written_files == {"anna.txt.glb", "anna.jpg.png", "a.b.csv"}
 
@@ -240,7 +232,6 @@ def test_it_speaks_japanese_and_no_word_is_cut(tmp_path: Path, monkeypatch: pyte
     saved_as(monkeypatch, tmp_path / "anna.smis")
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         for export in exports():
             sheet = opened(window, export.what)
@@ -254,7 +245,7 @@ def test_it_speaks_japanese_and_no_word_is_cut(tmp_path: Path, monkeypatch: pyte
         assert "保存しました" in window.notices.notice().sentence
 
     try:
-        run_main([], script)
+        run_bodiless([], script)
     finally:
         QSettings().setValue("language", "en")
     titles = [m.get("full_name") for m in ElementTree.parse(tmp_path / "anna.smis").getroot().iter("m")]

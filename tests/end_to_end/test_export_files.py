@@ -11,7 +11,7 @@ import pyvista as pv
 from export_tools import choose, opened, saved_as, told, written
 from PIL import Image
 from PySide6.QtWidgets import QApplication
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_bodiless, run_undrawn, settled
 
 import app.gui.features.export.controller
 import app.rendering.offscreen
@@ -42,7 +42,6 @@ def test_a_turntable_is_drawn_between_events_and_can_be_left(
     )
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         sheet = opened(window, "turntable")
         choose(sheet, "format", "gif")
@@ -69,7 +68,7 @@ def test_a_turntable_is_drawn_between_events_and_can_be_left(
         assert window.notices.notice().sentence == "anna.gif saved."
         assert made == []
 
-    run_main([], script)
+    run_undrawn([], script)
     with Image.open(path) as picture:
         assert (picture.n_frames, picture.size) == (12, (480, 540))
 
@@ -80,12 +79,11 @@ def test_a_window_is_closed_while_a_turntable_is_drawn(
     saved_as(monkeypatch, tmp_path / "anna.webp")
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         opened(window, "turntable").save.click()
         yield lambda: window.status._job_name.text() == "Rendering anna.webp…"
 
-    assert run_main([], script) == 0
+    assert run_bodiless([], script) == 0
     assert list(tmp_path.iterdir()) == []
 
 
@@ -96,7 +94,6 @@ def test_a_picture_shows_what_the_view_shows_on_no_ground(
     saved_as(monkeypatch, path)
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.view.viewport.set_view("left")
         for count, bands in enumerate(("", "none")):
@@ -108,7 +105,7 @@ def test_a_picture_shows_what_the_view_shows_on_no_ground(
             window.notices.clear()
             path.rename(tmp_path / f"{count}.png")
 
-    run_main([], script)
+    run_undrawn([], script)
     worn, bare = (pv.read_texture(tmp_path / f"{count}.png").to_array() for count in range(2))
     assert worn.shape == (1125, 1000, 4)
     assert (worn[..., 3] == 0).mean() > 0.3
@@ -123,7 +120,6 @@ def test_a_full_disk_leaves_what_stood_there_and_is_told(
         raise OSError(28, "No space left on device")
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         for what in ("body", "lines", "flat", "measures", "turns", "control"):
             sheet = opened(window, what)
@@ -142,7 +138,7 @@ def test_a_full_disk_leaves_what_stood_there_and_is_told(
             assert stands == [(path.name, "what stood there")]
             window.notices.clear()
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def test_a_series_does_not_take_the_place_of_another_unasked(
@@ -156,7 +152,6 @@ def test_a_series_does_not_take_the_place_of_another_unasked(
     )
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         sheet = opened(window, "turntable")
         choose(sheet, "format", "png")
@@ -166,7 +161,7 @@ def test_a_series_does_not_take_the_place_of_another_unasked(
         assert not any(job.waited for job in window.jobs.at_work())
         sheet.reject()
 
-    run_main([], script)
+    run_bodiless([], script)
     assert [each.read_text() for each in tmp_path.iterdir()] == ["another series"]
 
 
@@ -177,7 +172,6 @@ def test_a_body_is_written_as_it_is_when_the_dialog_closes(
     said: list[str] = []
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
 
         def place(*_: Any) -> str:
@@ -202,7 +196,7 @@ def test_a_body_is_written_as_it_is_when_the_dialog_closes(
         assert abs(away).max() < 0.01
         assert said == ["anna.ply saved, in mm, z-up."], "nothing is under way any more"
 
-    run_main([str(mannequin)], script)
+    run_bodiless([str(mannequin)], script)
 
 
 def test_two_exports_do_not_share_a_name(
@@ -212,7 +206,6 @@ def test_two_exports_do_not_share_a_name(
     saved_as(monkeypatch, path)
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         desk = window.export_controller
         assert desk._ask_and_write("body", "body")
@@ -224,4 +217,4 @@ def test_two_exports_do_not_share_a_name(
         yield lambda: not window.jobs.at_work()
         assert len(pv.read(path).points) == len(window.session.frame.stages.control.mesh.vertices)
 
-    run_main([str(mannequin)], script)
+    run_bodiless([str(mannequin)], script)

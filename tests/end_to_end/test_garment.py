@@ -10,7 +10,7 @@ from garment_tools import at_rest, choose, chooser_of, cut_rows, made_of, mark, 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
-from window_tools import Script, run_undrawn, settled
+from window_tools import Script, run_bodiless, settled
 
 from app.gui import file_export as tables
 from app.gui.features.garment.elastic_assignment import LIFT_TOLD
@@ -62,7 +62,7 @@ def test_an_elastic_is_chosen_and_the_length_to_cut_is_that_of_the_core() -> Non
         assert window.session.design == bare
         assert garment.rows["mid-bust"].cut.text() == "–"
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_one_elastic_is_chosen_for_all_and_taken_off_again_without_moving_the_body() -> None:
@@ -97,7 +97,7 @@ def test_one_elastic_is_chosen_for_all_and_taken_off_again_without_moving_the_bo
         for name, row in before.items():
             assert after[name].reached_front_mm == pytest.approx(row.reached_front_mm, abs=SAME)
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_a_lift_that_goes_with_the_elastic_is_told() -> None:
@@ -118,7 +118,7 @@ def test_a_lift_that_goes_with_the_elastic_is_told() -> None:
         told = [float(value) for value in re.findall(r"([\d.]+) mm up", notice.hint)]
         assert told == pytest.approx([before, after], abs=0.15)
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_the_other_meaning_keeps_the_length_to_cut_and_moves_the_body() -> None:
@@ -140,7 +140,7 @@ def test_the_other_meaning_keeps_the_length_to_cut_and_moves_the_body() -> None:
         assert row.reached_front_mm > first.reached_front_mm + 1.0
         assert (row.tension_n or 0.0) < 0.7 * (first.tension_n or 0.0)
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_a_band_on_the_rib_cage_is_cut_as_far_stretched_as_the_designer_says() -> None:
@@ -187,7 +187,7 @@ def test_a_band_on_the_rib_cage_is_cut_as_far_stretched_as_the_designer_says() -
         assert window.session.design is not None
         assert not window.session.design.active_lines(), "what holds nothing is not worn"
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_a_locked_line_stays_what_it_is() -> None:
@@ -204,7 +204,7 @@ def test_a_locked_line_stays_what_it_is() -> None:
         chooser_of(window).reject()
         assert window.session.design is before
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_newtons_go_with_the_stiffness_of_tissue_and_the_list_leaves_as_a_table(
@@ -250,4 +250,4 @@ def test_newtons_go_with_the_stiffness_of_tissue_and_the_list_leaves_as_a_table(
         window.garment.table_requested.emit()
         assert path.read_text("utf-8-sig").splitlines()[0].split(",") == heading.split("\t")
 
-    run_undrawn([], script)
+    run_bodiless([], script)

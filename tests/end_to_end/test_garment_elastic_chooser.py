@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from garment_tools import at_rest, chooser_of, cut_rows, made_of, mark
-from window_tools import PATIENCE, Script, run_undrawn, settled
+from window_tools import PATIENCE, Script, run_bodiless, settled
 
 from app.gui.features.garment import elastic_offer
 from app.gui.features.garment.elastic_chooser import PRESSURE
@@ -62,7 +62,7 @@ def test_an_elastic_that_cannot_be_used_is_grey_and_the_nearest_that_can_is_one_
         assert row.elongation == pytest.approx(0.3, rel=0.02)
         assert number(row.reached_front_mm) == limited.reached
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_the_loss_of_lift_is_shown_before_it_is_chosen() -> None:
@@ -95,7 +95,7 @@ def test_the_loss_of_lift_is_shown_before_it_is_chosen() -> None:
         most = max(shown, key=lambda each: float(each.kpa))
         assert (float(most.kpa), most.word) == (pytest.approx(float(kpa), abs=0.15), word)
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_effects_that_come_late_are_dropped_with_the_chooser(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -124,7 +124,7 @@ def test_effects_that_come_late_are_dropped_with_the_chooser(monkeypatch: pytest
         assert {view.note for view in views[1:]} == {"Slack at this length: set the line to 99 % or less."}
         chooser_of(window).reject()
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_what_was_edited_while_the_chooser_was_open_is_kept() -> None:
@@ -141,4 +141,4 @@ def test_what_was_edited_while_the_chooser_was_open_is_kept() -> None:
         assert window.session.design is not None
         assert window.session.design.ratio("under-bust") == pytest.approx(0.97)
 
-    run_undrawn([], script)
+    run_bodiless([], script)

@@ -10,7 +10,7 @@ from garment_tools import at_rest, choose, chooser_of, cut_rows, made_of
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
-from window_tools import Script, run_undrawn, settled
+from window_tools import Script, run_bodiless, settled
 
 from app.gui.features.garment import elastics_controller as elastics_desk
 from app.gui.main_window import MainWindow
@@ -71,7 +71,7 @@ def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(
         sheet.reject()
         yield lambda: window.elastics_controller.sheet is None
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_an_own_elastic_travels_with_its_project_to_where_nobody_has_it(
@@ -102,9 +102,9 @@ def test_an_own_elastic_travels_with_its_project_to_where_nobody_has_it(
         assert chooser.views()[chooser.current].title == "Roll 9, in this project"
         chooser.reject()
 
-    run_undrawn([], save)
+    run_bodiless([], save)
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "elsewhere"))
-    run_undrawn([str(project)], reopen)
+    run_bodiless([str(project)], reopen)
 
 
 def test_the_keyboard_alone_chooses_an_elastic() -> None:
@@ -131,7 +131,7 @@ def test_the_keyboard_alone_chooses_an_elastic() -> None:
         yield made_of(window, "mid-bust")
         assert window.garment.rows["mid-bust"].elastic.words == "Strap 15 mm"
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_an_elastic_beyond_its_table_is_told_in_a_drag_and_anew_at_the_next_edit() -> None:
@@ -155,7 +155,7 @@ def test_an_elastic_beyond_its_table_is_told_in_a_drag_and_anew_at_the_next_edit
         yield at_rest(window)
         assert window.session.design == made
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_a_linked_pair_is_made_of_the_same_in_one_step() -> None:
@@ -177,7 +177,7 @@ def test_a_linked_pair_is_made_of_the_same_in_one_step() -> None:
             assert row.reached_front_mm == pytest.approx(before[name].reached_front_mm, abs=0.2)
         assert window.garment.rows["strap left"].elastic.words == "Strap 12 mm"
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_one_that_is_called_as_ours_gets_a_name_of_its_own_and_none_is_called_measured_without_a_source(
@@ -212,4 +212,4 @@ def test_one_that_is_called_as_ours_gets_a_name_of_its_own_and_none_is_called_me
         assert chooser.views()[chooser.current].title == "Strap 15 mm, custom, from this project"
         chooser.reject()
 
-    run_undrawn([], script)
+    run_bodiless([], script)

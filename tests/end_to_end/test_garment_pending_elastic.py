@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 from garment_tools import at_rest, made_of
-from window_tools import PATIENCE, Script, run_undrawn, settled
+from window_tools import PATIENCE, Script, run_bodiless, run_undrawn, settled
 
 from app.gui.features.garment import elastic_offer
 from app.gui.main_window import MainWindow
@@ -95,4 +95,4 @@ def test_an_elastic_goes_with_the_next_edit_and_leaves_with_an_undo_and_with_its
         gate.set()
         yield made_of(window, "mid-bust")
 
-    run_undrawn([], script)
+    run_bodiless([], script)

@@ -8,7 +8,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QLabel
-from window_tools import Script, drag, run_main, run_undrawn, settled, undrawn
+from window_tools import Script, drag, run_bodiless, run_undrawn, settled
 
 import app.gui.features.garment.pressure_controller as desk_module
 from app.gui.features.garment.pressure_card import PressureCard
@@ -61,7 +61,6 @@ def colours(window: MainWindow) -> np.ndarray:
 
 def test_the_map_of_pressure_is_worked_out_at_rest_and_where_it_is_seen(asked: list[float]) -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.navigation.show_panel("history")
         wear(window)
@@ -86,7 +85,7 @@ def test_the_map_of_pressure_is_worked_out_at_rest_and_where_it_is_seen(asked: l
         yield lambda: not window.jobs.at_work()
         assert len(asked) == 4, "and once for the last"
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def a_click_tells_the_value_there(window: MainWindow, listed: PressureList) -> None:
@@ -128,7 +127,6 @@ def while_the_body_moves_it_is_that_of_the_former_shape(window: MainWindow, aske
 
 def test_variants_side_by_side_are_pressed_in_one_range(asked: list[float]) -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         wear(window)
         yield settled(window)
@@ -145,7 +143,7 @@ def test_variants_side_by_side_are_pressed_in_one_range(asked: list[float]) -> N
         assert sorted(set(asked)) == [0.7, 0.8, 0.95]
         assert len(asked) == len({*asked}) + 1, "each shape once, but for the variant that is solved anew"
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_the_legend_says_why_nothing_presses() -> None:
@@ -156,7 +154,6 @@ def test_the_legend_says_why_nothing_presses() -> None:
 
 def test_beside_the_cut_list_stands_what_each_line_presses_with(asked: list[float]) -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.navigation.show_panel("history")
         wear(window)
@@ -196,12 +193,11 @@ def test_beside_the_cut_list_stands_what_each_line_presses_with(asked: list[floa
         yield lambda: desk.shown is not None
         assert not card.isVisible()
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_an_opened_line_of_elastic_tells_what_it_presses_with(asked: list[float]) -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         yield lambda: not window.jobs.at_work()
         assert asked == [0.95]
@@ -222,7 +218,7 @@ def test_an_opened_line_of_elastic_tells_what_it_presses_with(asked: list[float]
         window.navigation.show_panel("lines")
         yield lambda: details._pressed.text() == f"{known(window).rows[0].max_kpa:.1f} kPa · gentle"
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def the_copied_list_has_it_in_the_order_of_the_panel(window: MainWindow, kpa: float) -> None:
@@ -285,4 +281,4 @@ def test_pressures_that_cannot_be_computed_are_no_reason_to_wait(monkeypatch: py
         yield settled(window)
         yield lambda: window.assessment_controller.of(window.session.frame).level == "bad"
 
-    run_undrawn([], script)
+    run_bodiless([], script)

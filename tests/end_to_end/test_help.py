@@ -9,7 +9,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QPushButton
-from window_tools import Script, run_main, undrawn
+from window_tools import Script, run_bodiless
 
 from app.gui.features.help import user_guide as guide
 from app.gui.main_window import MainWindow
@@ -66,7 +66,6 @@ def go_everywhere(window: MainWindow) -> None:
 
 def test_f1_opens_the_page_that_fits_what_is_being_done(opened: list[str]) -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield window.is_settled
         window.start_controller.tour.end()
         go_everywhere(window)
@@ -90,7 +89,7 @@ def test_f1_opens_the_page_that_fits_what_is_being_done(opened: list[str]) -> No
         assert window.notices.notice() is None
         where_nothing_opens_it_the_window_says_where_it_is(window)
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def where_nothing_opens_it_the_window_says_where_it_is(window: MainWindow) -> None:

@@ -7,7 +7,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QAccessible, QImage
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_bodiless, run_main, settled
 
 from app.gui.features.project.recovery import RecoveryView
 from app.gui.main_window import MainWindow
@@ -22,7 +22,6 @@ def press(key: Qt.Key, held: Qt.KeyboardModifier = Qt.KeyboardModifier.NoModifie
 
 def begun(window: MainWindow) -> Script:
     """Wait until the sample stands in an active window."""
-    undrawn(window)
     yield settled(window)
     window.start_controller.tour.end()
     window.activateWindow()
@@ -46,7 +45,7 @@ def test_after_opening_tab_goes_on_in_the_panel_and_a_step_by_key_ends_the_view_
         press(Qt.Key.Key_Down)
         assert QApplication.focusWidget() is next(iter(window.landmarks.rows.values()))
 
-    assert run_main([], script) == 0
+    assert run_bodiless([], script) == 0
 
 
 def test_the_model_is_entered_by_its_key_and_left_by_esc() -> None:
@@ -131,7 +130,7 @@ def test_the_keyboard_stays_with_a_line_whatever_is_done_to_it() -> None:
         assert row.slider.accessibleDescription().startswith(f"{row.slider.ratio() * 100:.1f} %, ")
         assert row.percent.accessibleName() == "Foundation: length in percent"
 
-    assert run_main([], script) == 0
+    assert run_bodiless([], script) == 0
 
 
 def test_steps_and_tabs_are_heard_as_choices_and_sliders_as_what_they_mean() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
-from window_tools import Script, run_undrawn, settled
+from window_tools import Script, run_bodiless, run_undrawn, settled
 
 import app.gui.features.landmarks.controller
 import app.gui.features.project.controller as project_files
@@ -92,7 +92,7 @@ def test_a_new_warning_has_its_notice_whose_button_shows_its_landmark(
         assert window.landmarks.isVisible()
         assert window.landmarks_controller._context.selection.landmark == "root_outer_right"
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_linked_sides_are_placed_as_in_a_mirror_in_one_step_and_keys_move_a_pin(

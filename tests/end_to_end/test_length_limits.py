@@ -56,7 +56,7 @@ def test_the_hover_tells_zone_number_and_reason() -> None:
     )
 
 
-@pytest.mark.usefixtures("fine_mannequin")
+@pytest.mark.usefixtures("fine_samples")
 def test_a_line_that_is_folded_is_told_so_and_its_slider_says_how_far_it_reaches() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)

@@ -8,7 +8,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
-from window_tools import Script, drag, run_main, settled, undrawn
+from window_tools import Script, drag, run_undrawn, settled
 
 from app.gui.main_window import MainWindow
 from app.gui.session.document_editor import DocumentEditor
@@ -32,7 +32,6 @@ def last(window: MainWindow) -> str:
 
 def test_lines_are_linked_locked_named_coloured_softened_and_dressed_by_a_preset() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.activateWindow()
         yield window.isActiveWindow
@@ -48,7 +47,7 @@ def test_lines_are_linked_locked_named_coloured_softened_and_dressed_by_a_preset
         yield settled(window)
         assert list(window.lines.rows) == ["full-bust", "mid-bust", "under-bust"]
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def over_the_shoulder(window: MainWindow) -> Script:

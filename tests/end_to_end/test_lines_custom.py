@@ -11,7 +11,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
-from window_tools import Script, drag, points, run_undrawn, settled
+from window_tools import Script, drag, points, run_bodiless, run_undrawn, settled
 
 from app.gui.features.lines import add_lines as line_maker
 from app.gui.features.lines.path_dialog import LineDialog
@@ -138,7 +138,7 @@ def test_the_accumulating_force_can_be_chosen() -> None:
         segment.button("exact").click()
         assert window.session.design.volume == "exact"
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 @pytest.mark.parametrize("name", ["168", "120"])
@@ -189,4 +189,4 @@ def test_a_handle_in_the_hand_stays_while_lines_come_and_its_preview_goes_with_i
         yield lambda: "strap left" not in window.lines.rows
         assert cancelled == ["strap left"]
 
-    run_undrawn([], script)
+    run_bodiless([], script)

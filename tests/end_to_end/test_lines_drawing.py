@@ -126,7 +126,7 @@ def test_a_line_on_the_rib_cage_is_said_to_measure_only_and_can_move_to_where_it
     run_main([], script)
 
 
-@pytest.mark.usefixtures("fine_mannequin")
+@pytest.mark.usefixtures("fine_samples")
 def test_a_diagonal_stays_what_was_drawn_and_can_be_drawn_anew() -> None:
     def script(window: MainWindow) -> Script:
         drawing, card = yield from drawing_begun(window)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QWidget
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_bodiless, run_undrawn, settled
 
 from app.gui.features.lines import presets as preset_desk
 from app.gui.main_window import MainWindow
@@ -18,7 +18,6 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 def test_the_worn_preset_stands_over_the_list_with_what_it_leaves_out() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        undrawn(window)
         head = window.lines.head
         assert head.presets.text() == "Presets"
         assert head.note.isHidden()
@@ -39,7 +38,7 @@ def test_the_worn_preset_stands_over_the_list_with_what_it_leaves_out() -> None:
         assert head.presets.text() == "Presets"
         assert head.note.isHidden()
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_a_preset_is_replaced_only_by_one_who_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -51,7 +50,6 @@ def test_a_preset_is_replaced_only_by_one_who_says_so(monkeypatch: pytest.Monkey
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        undrawn(window)
         names[:] = ["Longline"]
         window.presets_controller.ask()
         first = user_file("Longline").read_bytes()
@@ -66,13 +64,12 @@ def test_a_preset_is_replaced_only_by_one_who_says_so(monkeypatch: pytest.Monkey
         window.presets_controller.ask()
         assert user_file("Longline").read_bytes() != first
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def test_the_button_that_adds_offers_only_what_adds_and_is_lit_no_longer() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        undrawn(window)
         add, menu = window.lines.head.add, window.add_lines_controller.menu
         lit(add)
         add.click()
@@ -83,7 +80,7 @@ def test_the_button_that_adds_offers_only_what_adds_and_is_lit_no_longer() -> No
         menu.close()
         assert not add.underMouse()
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def lit(button: QWidget) -> None:

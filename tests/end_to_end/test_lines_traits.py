@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from window_tools import Script, run_main, undrawn
+from window_tools import Script, run_bodiless
 from window_tools import settled as at_rest
 
 from app.gui.main_window import MainWindow
@@ -46,7 +46,6 @@ def test_a_run_goes_on_over_a_new_name_and_a_measure(solver: LiveSolver, built: 
 @pytest.mark.usefixtures("empty_house")
 def test_the_plots_stay_when_a_line_is_renamed_locked_or_undone() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield at_rest(window)
         window.lines.length_committed.emit("mid-bust", 0.9)
         yield at_rest(window)
@@ -63,4 +62,4 @@ def test_the_plots_stay_when_a_line_is_renamed_locked_or_undone() -> None:
         assert {control: len(records) for control, records in frame.tracks.items()} == turns
         assert len(window.convergence_controller._events) == 1, "only what acts has a mark on the axis"
 
-    assert run_main([], script) == 0
+    assert run_bodiless([], script) == 0

@@ -19,7 +19,7 @@ from core.messages import Message
 pytestmark = pytest.mark.usefixtures("empty_house")
 
 
-@pytest.mark.usefixtures("fine_mannequin")
+@pytest.mark.usefixtures("fine_samples")
 @pytest.mark.usefixtures("spared_as_in_the_program")
 def test_the_sample_opens_in_a_finished_state() -> None:
     def script(window: MainWindow) -> Script:

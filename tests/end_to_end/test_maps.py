@@ -159,7 +159,7 @@ def away_from(curves: tuple[Curve, ...], place: np.ndarray) -> float:
     return float(np.linalg.norm(foot.place - place))
 
 
-@pytest.mark.usefixtures("fine_mannequin")
+@pytest.mark.usefixtures("fine_samples")
 def test_the_section_plane_cuts_before_and_after(answered: Path) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)

@@ -9,7 +9,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QLineEdit
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_bodiless, run_undrawn, settled
 
 from app.gui.features.measurements.table import MeasurementsTable
 from app.gui.main_window import MainWindow
@@ -30,7 +30,6 @@ def measured(window: MainWindow) -> bool:
 
 def test_the_body_is_measured_where_it_is_seen_once_the_run_rests() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         assert not window.result.measured, "nobody has looked"
         window.navigation.show_step("result")
@@ -40,7 +39,7 @@ def test_the_body_is_measured_where_it_is_seen_once_the_run_rests() -> None:
         yield from former_measures_fade_until_the_run_rests(window)
         as_the_core_measures(window)
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def as_the_core_measures(window: MainWindow) -> None:
@@ -76,7 +75,6 @@ def former_measures_fade_until_the_run_rests(window: MainWindow) -> Script:
 
 def test_band_and_cup_follow_the_system_and_the_allowance_that_are_remembered() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.navigation.show_step("result")
         yield lambda: measured(window)
@@ -116,7 +114,7 @@ def test_band_and_cup_follow_the_system_and_the_allowance_that_are_remembered() 
         typed(card.allowance, "21")
         assert "0 to 20" in card.allowance.accessibleDescription()
 
-    run_main([], script)
+    run_bodiless([], script)
     assert get_setting("size_system") == "uk"
 
 
@@ -168,12 +166,11 @@ def test_a_measure_is_shown_on_the_body_until_esc_and_framed_at_a_double_click()
         window.navigation.show_step("lines")
         assert not scene.measure.shown
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_what_is_opened_is_scrolled_to_with_all_that_it_tells() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.navigation.show_step("result")
         yield lambda: measured(window)
@@ -188,12 +185,11 @@ def test_what_is_opened_is_scrolled_to_with_all_that_it_tells() -> None:
                 yield lambda: True
             assert table.visibleRegion().boundingRect().contains(opened.adjusted(4, 1, -4, -1)), key
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def test_side_by_side_and_wiped_each_body_has_its_own_curve() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.navigation.show_step("result")
         yield lambda: measured(window)
@@ -211,7 +207,7 @@ def test_side_by_side_and_wiped_each_body_has_its_own_curve() -> None:
         window.result.unmark()
         assert not any(trace.shown for trace in traces.values())
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def click(table: MeasurementsTable, key: str) -> None:

@@ -10,7 +10,7 @@ import pytest
 from PySide6.QtCore import QPoint, QPointF, QSettings, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_bodiless, run_main, settled
 
 from app.gui import file_export as tables
 from app.gui.features.measurements.table import MeasurementsTable
@@ -28,7 +28,6 @@ KEY = Qt.Key
 
 def begun(window: MainWindow) -> Script:
     """Open the window on the sample, and its form for a measure."""
-    undrawn(window)
     yield settled(window)
     window.custom_measures_controller.action.trigger()
     assert window.result.editing
@@ -174,7 +173,6 @@ def typed(field: QWidget, text: str) -> None:
 
 def test_one_is_changed_renamed_and_deleted_by_keys_each_one_step() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.session.edit(lambda design: design.with_custom_measurement(GORE), "Gore")
         window.navigation.show_step("result")
@@ -204,7 +202,7 @@ def test_one_is_changed_renamed_and_deleted_by_keys_each_one_step() -> None:
         window.actions_.undo.trigger()
         assert own(window) == (GORE,)
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def test_a_name_that_is_taken_is_refused_and_another_body_ends_it() -> None:
@@ -223,7 +221,7 @@ def test_a_name_that_is_taken_is_refused_and_another_body_ends_it() -> None:
         assert not window.result.editing
         assert own(window) == (GORE,)
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 @pytest.mark.parametrize("language", ["en", "ja"])
@@ -249,7 +247,7 @@ def test_one_is_made_by_keys_alone_and_all_of_the_form_has_a_name_and_room(langu
         assert window.focusWidget() is window.result.findChild(MeasurementsTable)
         yield from all_have_a_name_and_room(window)
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def all_have_a_name_and_room(window: MainWindow) -> Script:
@@ -277,7 +275,6 @@ def test_own_measures_are_copied_and_written_with_all_others(
     monkeypatch.setattr(tables, "ask_save", lambda *_: str(path))
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.session.edit(lambda design: design.with_custom_measurement(GORE), "Gore")
         window.navigation.show_step("result")
@@ -291,4 +288,4 @@ def test_own_measures_are_copied_and_written_with_all_others(
         window.result.copy_requested.emit()
         assert "Gore\t" in QApplication.clipboard().text()
 
-    run_main([], script)
+    run_bodiless([], script)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from window_tools import Script, points, run_undrawn, settled
+from window_tools import Script, points, run_bodiless, run_undrawn, settled
 
 from app.gui.main_window import MainWindow
 from app.gui.widgets.option_field import AmountField, MenuField, SegmentField
@@ -49,7 +49,7 @@ def bust_points(window: MainWindow) -> float:
     )
 
 
-@pytest.mark.usefixtures("fine_mannequin")
+@pytest.mark.usefixtures("fine_samples")
 def test_a_sliding_line_lifts_the_bust_points_and_undo_brings_the_old_result_back() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -69,7 +69,7 @@ def test_a_sliding_line_lifts_the_bust_points_and_undo_brings_the_old_result_bac
         assert np.abs(points(window) - at_start).max() < 1e-6
         assert window.model._present["line_contact"] == "glued"
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_a_held_line_reaches_its_length() -> None:
@@ -84,7 +84,7 @@ def test_a_held_line_reaches_its_length() -> None:
             line = next(line for line in frame_of(window).stages.model.lines if line.name == "mid-bust")
             assert abs(frame_of(window).lengths["mid-bust"] - 0.95 * line.rest_length) < 0.01
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_what_cannot_be_held_is_said_and_the_last_good_state_stays() -> None:
@@ -110,7 +110,7 @@ def test_what_cannot_be_held_is_said_and_the_last_good_state_stays() -> None:
         yield settled(window)
         assert window.notices.notice() is None, "what is solved since is not refused"
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_the_volume_that_is_told_is_the_one_that_is_kept() -> None:
@@ -126,7 +126,7 @@ def test_the_volume_that_is_told_is_the_one_that_is_kept() -> None:
         yield settled(window)
         assert controlled_volume(frame_of(window))[1] == frame_of(window).error_ml
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_every_setting_is_one_step_and_the_reset_brings_back_all() -> None:
@@ -165,7 +165,7 @@ def test_every_setting_is_one_step_and_the_reset_brings_back_all() -> None:
         assert not window.model._reset.isEnabled()
         assert all(getattr(window.session.design, key) == value for key, value in defaults().items())
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_what_cannot_be_is_refused_and_the_field_shows_what_is() -> None:
@@ -195,7 +195,7 @@ def test_what_cannot_be_is_refused_and_the_field_shows_what_is() -> None:
         assert window.session.design.template == "168"
         assert window.actions_.templates["168"].isChecked()
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_forces_one_turn_late_come_with_a_soft_line_and_leave_with_it() -> None:

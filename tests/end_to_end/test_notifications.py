@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from window_tools import Script, drag, run_undrawn, settled
+from window_tools import Script, drag, run_bodiless, settled
 
 from app.gui.main_window import MainWindow
 from app.gui.widgets.notification_bar import SCAN
@@ -19,7 +19,7 @@ def test_notices_leave_the_view_its_size_and_go_with_their_cause() -> None:
         yield from they_float(window)
         yield from they_go_with_their_cause(window)
 
-    assert run_undrawn([], script) == 0
+    assert run_bodiless([], script) == 0
 
 
 def they_float(window: MainWindow) -> Script:

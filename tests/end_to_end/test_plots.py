@@ -11,7 +11,7 @@ import pytest
 from PySide6.QtCore import QSettings
 from PySide6.QtGui import QImage
 from PySide6.QtSvg import QSvgRenderer
-from window_tools import Script, drag, run_main, settled
+from window_tools import Script, drag, run_bodiless, settled
 
 import app.gui.features.convergence.controller
 from app.gui.main_window import MainWindow
@@ -36,7 +36,7 @@ def test_turns_can_be_watched_marked_and_saved(tmp_path: Path, monkeypatch: pyte
         the_saved_table_holds_every_turn(window, tmp_path)
         what_is_plotted_is_saved_as_it_is_seen(window, tmp_path)
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def each_turn_is_seen_while_they_are_slow(window: MainWindow) -> Script:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import QRect, QSettings, QSize
 from PySide6.QtWidgets import QPushButton
-from window_tools import Script, run_undrawn, settled
+from window_tools import Script, run_bodiless, settled
 
 import app.gui.features.preferences.controller
 import app.gui.widgets.file_dialogs
@@ -41,7 +41,7 @@ def test_a_language_is_found_in_any_other_and_changes_by_a_button(
         restart.click()
         yield lambda: bool(begun)
 
-    assert run_undrawn([str(mannequin)], script) == 0
+    assert run_bodiless([str(mannequin)], script) == 0
     assert begun == [str(mannequin)]
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import trimesh
 from PySide6.QtGui import QImage
-from window_tools import Script, drag, points, run_main, run_undrawn, settled, undrawn
+from window_tools import Script, drag, points, run_bodiless, settled
 
 import app.gui.features.export.controller
 import app.gui.features.project.controller as project_files
@@ -47,12 +47,12 @@ def test_a_project_is_saved_and_reopened(tmp_path: Path, monkeypatch: pytest.Mon
         assert window.session.design.lines == seen[0][0].lines
         assert np.abs(points(window) - seen[0][1]).max() < 0.3
 
-    run_undrawn([], first)
+    run_bodiless([], first)
     with zipfile.ZipFile(path) as archive:
         assert set(archive.namelist()) == {"design.json", "scan/mannequin.ply", "preview.png"}
         assert json.loads(archive.read("design.json"))["format"] == 1
         assert QImage.fromData(archive.read("preview.png")).width() == 480
-    run_undrawn([str(path)], again)
+    run_bodiless([str(path)], again)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="links and access rights of POSIX")
@@ -77,14 +77,14 @@ def test_a_project_behind_a_link_is_saved_where_it_lies(tmp_path: Path) -> None:
         window.actions_.save.trigger()
         assert window.session.finish_saving()
 
-    run_undrawn([str(link)], script)
+    run_bodiless([str(link)], script)
     assert link.is_symlink()
     assert stat.S_IMODE(path.stat().st_mode) == 0o640
     lengths = [open_project(each).design.ratio("mid-bust") for each in (path, *(b.path for b in backups()))]
     assert len(set(lengths)) == 3, "as it is, as it was saved before, and as it was opened"
 
 
-@pytest.mark.usefixtures("fine_mannequin")
+@pytest.mark.usefixtures("fine_samples")
 def test_the_shown_body_is_exported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -103,7 +103,7 @@ def test_the_shown_body_is_exported(tmp_path: Path, monkeypatch: pytest.MonkeyPa
                 moved = np.asarray(body.vertices)[frame.stages.moving.vertices]
                 assert np.abs(moved - frame.points).max() < 1e-3
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_an_export_that_failed_is_told_until_it_succeeds(
@@ -116,7 +116,6 @@ def test_an_export_that_failed_is_told_until_it_succeeds(
             notice = window.notices.notice()
             return notice.tone if notice is not None else ""
 
-        undrawn(window)
         yield settled(window)
         monkeypatch.setattr(app.gui.features.export.controller, "ask_save", lambda *_: str(nowhere))
         window.actions_.export.trigger()
@@ -136,7 +135,7 @@ def test_an_export_that_failed_is_told_until_it_succeeds(
         yield lambda: window.session.name == "person"
         assert window.status._saved.text() == "", "this one was never saved"
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def test_a_bad_scan_leaves_everything_as_it_was(tmp_path: Path) -> None:
@@ -156,7 +155,7 @@ def test_a_bad_scan_leaves_everything_as_it_was(tmp_path: Path) -> None:
         assert window.session.design is design
         assert np.abs(points(window) - at_start).max() < 0.2
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_the_file_that_was_refused_last_is_the_one_that_is_told(tmp_path: Path, project: Path) -> None:
@@ -165,7 +164,6 @@ def test_the_file_that_was_refused_last_is_the_one_that_is_told(tmp_path: Path, 
     cut.write_bytes(project.read_bytes()[:900])
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         for path in (notes, cut, notes):
             window.project_controller.open_file(str(path))
@@ -177,7 +175,7 @@ def test_the_file_that_was_refused_last_is_the_one_that_is_told(tmp_path: Path, 
             yield settled(window)
             assert window.notices.more.isHidden(), "what was refused before was asked for before"
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def test_a_save_that_fails_elsewhere_leaves_what_is_saved_here_saved(
@@ -189,7 +187,6 @@ def test_a_save_that_fails_elsewhere_leaves_what_is_saved_here_saved(
     told: list[object] = []
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.session.not_saved.connect(told.append)
         window.actions_.save_as.trigger()
@@ -202,7 +199,7 @@ def test_a_save_that_fails_elsewhere_leaves_what_is_saved_here_saved(
         yield lambda: len(told) == 2
         assert window.session.unsaved
 
-    run_main([str(saved)], script)
+    run_bodiless([str(saved)], script)
 
 
 @pytest.mark.parametrize("last", ["discard", "save"])
@@ -221,7 +218,7 @@ def test_closing_asks_about_changes(last: str, tmp_path: Path, monkeypatch: pyte
         assert window.close()
         assert path.exists() == (last == "save")
 
-    run_undrawn([], script)
+    run_bodiless([], script)
     assert not answers
     if last == "save":
         assert open_project(path).design.ratio("mid-bust") < 0.95
@@ -235,10 +232,10 @@ def test_a_project_that_cannot_be_opened_at_start_is_told(tmp_path: Path) -> Non
         assert window.session.frame is None
         assert not window.actions_.save.isEnabled()
 
-    run_undrawn([str(tmp_path / "broken.busk")], script)
+    run_bodiless([str(tmp_path / "broken.busk")], script)
 
 
-@pytest.mark.usefixtures("fine_mannequin")
+@pytest.mark.usefixtures("fine_samples")
 def test_an_edit_while_another_scan_is_read_does_not_mix_the_two(person: Path) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -256,4 +253,4 @@ def test_an_edit_while_another_scan_is_read_does_not_mix_the_two(person: Path) -
         assert notice is not None
         assert "person.ply was not opened" in notice.sentence
 
-    run_undrawn([], script)
+    run_bodiless([], script)

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PySide6.QtCore import QLockFile, QSettings
-from window_tools import Script, drag, points, run_main, run_undrawn, settled
+from window_tools import Script, drag, points, run_bodiless, run_main, settled
 
 import app.gui.features.project.controller as project_files
 import app.gui.features.project.recovery
@@ -72,15 +72,15 @@ def test_a_crash_loses_nothing_and_the_next_start_offers_it(
         assert window.session.finish_saving()
         assert open_project(path).design.lines == document.design.lines
 
-    run_undrawn([], first)
+    run_bodiless([], first)
     (folder,) = recovery_folder().iterdir()
     assert json.loads((folder / "document.json").read_text())["project"] == str(path)
     assert (folder / "picture.png").exists()
-    run_undrawn([], again)
+    run_bodiless([], again)
     assert list(recovery_folder().iterdir()) == []
 
 
-@pytest.mark.usefixtures("fine_mannequin")
+@pytest.mark.usefixtures("fine_samples")
 def test_what_is_not_restored_stays_until_it_is_discarded(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(app.gui.features.project.recovery, "may_discard", lambda *_: True)
 
@@ -106,7 +106,7 @@ def test_what_is_not_restored_stays_until_it_is_discarded(monkeypatch: pytest.Mo
         assert not window.recovery_controller.card.isVisible()
 
     for script in (first, later, discard):
-        run_undrawn([], script)
+        run_bodiless([], script)
     assert list(recovery_folder().iterdir()) == []
 
 
@@ -123,7 +123,7 @@ def test_a_broken_recovery_is_told_and_rescue_never_raises(monkeypatch: pytest.M
         monkeypatch.setattr(os, "fsync", lambda _: (_ for _ in ()).throw(OSError(28, "No space left")))
         assert window.rescue() == ""
 
-    run_undrawn([], script)
+    run_bodiless([], script)
     shutil.rmtree(recovery_folder())
 
 
@@ -148,7 +148,7 @@ def test_saving_waits_for_no_disk_and_closing_waits_for_saving(
         assert window.close()
         assert open_project(path).design.ratio("mid-bust") == 0.9
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_two_windows_and_a_change_from_outside_are_told(
@@ -204,7 +204,7 @@ def test_two_windows_and_a_change_from_outside_are_told(
         assert "*" in window.windowTitle()
         other.unlock()
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_the_history_goes_back_to_edits_and_results() -> None:
@@ -235,7 +235,7 @@ def test_the_history_goes_back_to_edits_and_results() -> None:
         session.undo_stack.undo()
         assert session.design == long
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_variants_are_chosen_undone_and_seen_side_by_side(

@@ -45,6 +45,7 @@ def answers(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, person: Path) -> No
     monkeypatch.setattr("app.gui.features.report.controller.ask_save", lambda *_: str(tmp_path / "anna.pdf"))
 
 
+@pytest.mark.usefixtures("first_tour")
 def test_the_first_customer_as_the_guide_tells_it(tmp_path: Path) -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)

@@ -12,7 +12,7 @@ from pdf_tools import Pdf
 from PySide6.QtCore import Qt
 from PySide6.QtPrintSupport import QPrinter
 from PySide6.QtTest import QTest
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_bodiless, run_undrawn, settled
 
 from app.gui.main_window import MainWindow
 from app.gui.widgets.thumbnail_list import VIEW
@@ -32,7 +32,6 @@ def made(window: MainWindow) -> Callable[[], bool]:
 
 def test_the_sheet_takes_the_place_of_the_work_and_gives_it_back(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         assert not window.top.primary.isEnabled(), "no body is open yet"
         yield settled(window)
         desk, work = window.report_controller, window.pages.currentWidget()
@@ -64,12 +63,11 @@ def test_the_sheet_takes_the_place_of_the_work_and_gives_it_back(mannequin: Path
         desk.page.back.click()
         assert window.pages.currentWidget() is work
 
-    assert run_main([str(mannequin)], script) == 0
+    assert run_bodiless([str(mannequin)], script) == 0
 
 
 def test_the_sheet_follows_and_a_former_one_is_not_given_away(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.report_controller.open()
         yield made(window)
@@ -103,7 +101,7 @@ def test_the_sheet_follows_and_a_former_one_is_not_given_away(mannequin: Path) -
         yield made(window)
         assert window.report_controller.handout.report.cuts.rows == ()
 
-    assert run_main([str(mannequin)], script) == 0
+    assert run_bodiless([str(mannequin)], script) == 0
 
 
 def test_what_came_of_an_edit_on_the_sheet_is_kept_with_its_picture(mannequin: Path) -> None:
@@ -118,7 +116,7 @@ def test_what_came_of_an_edit_on_the_sheet_is_kept_with_its_picture(mannequin: P
         yield lambda: kept.count() == 1
         assert kept.item(0).data(VIEW).picture is not None
 
-    assert run_main([str(mannequin)], script) == 0
+    assert run_bodiless([str(mannequin)], script) == 0
 
 
 def test_the_customer_is_one_step_and_measures_nothing_again(
@@ -131,7 +129,6 @@ def test_the_customer_is_one_step_and_measures_nothing_again(
     )
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         desk, page = window.report_controller, window.report_controller.page
         desk.open()
@@ -152,7 +149,7 @@ def test_the_customer_is_one_step_and_measures_nothing_again(
         assert page.customer.text() == ""
         assert len(measured) == 1
 
-    assert run_main([str(mannequin)], script) == 0
+    assert run_bodiless([str(mannequin)], script) == 0
 
 
 def test_a_name_that_is_typed_goes_out_with_the_next_press(
@@ -164,7 +161,6 @@ def test_a_name_that_is_typed_goes_out_with_the_next_press(
     monkeypatch.setattr("app.gui.features.report.controller.ask_save", place)
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         desk, page = window.report_controller, window.report_controller.page
         desk.open()
@@ -186,7 +182,7 @@ def test_a_name_that_is_typed_goes_out_with_the_next_press(
         assert window.session.design is not None
         assert window.session.design.customer == "Berta"
 
-    assert run_main([str(mannequin)], script) == 0
+    assert run_bodiless([str(mannequin)], script) == 0
 
 
 def test_the_sheet_is_saved_in_another_language(
@@ -198,7 +194,6 @@ def test_the_sheet_is_saved_in_another_language(
     monkeypatch.setattr("app.gui.features.report.controller.ask_save", place)
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         desk, page = window.report_controller, window.report_controller.page
         desk.open()
@@ -216,7 +211,7 @@ def test_the_sheet_is_saved_in_another_language(
         assert f"{bust:.1f}" in pdf.text()
         assert (tmp_path / "sheet.csv").read_text("utf-8-sig").startswith("section,key,title")
 
-    assert run_main([str(mannequin)], script) == 0
+    assert run_bodiless([str(mannequin)], script) == 0
 
 
 def test_the_printer_gets_the_same_pages(
@@ -233,7 +228,6 @@ def test_the_printer_gets_the_same_pages(
     monkeypatch.setattr("app.gui.features.report.controller.QPrintDialog", Dialog)
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.report_controller.open()
         yield made(window)
@@ -247,7 +241,7 @@ def test_the_printer_gets_the_same_pages(
         assert abs(first.left - other.left) < 0.3
         assert abs(first.top - other.top) < 0.3
 
-    assert run_main([str(mannequin)], script) == 0
+    assert run_bodiless([str(mannequin)], script) == 0
 
 
 def test_only_the_pages_that_were_chosen_are_printed(
@@ -266,7 +260,6 @@ def test_only_the_pages_that_were_chosen_are_printed(
     monkeypatch.setattr("app.gui.features.report.controller.QPrintDialog", Dialog)
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.report_controller.open()
         yield made(window)
@@ -277,7 +270,7 @@ def test_only_the_pages_that_were_chosen_are_printed(
         second = [piece.text for piece in Pdf(tmp_path / "written.pdf").pieces(1)]
         assert [piece.text for piece in printed.pieces(0)] == second
 
-    assert run_main([str(mannequin)], script) == 0
+    assert run_bodiless([str(mannequin)], script) == 0
 
 
 def test_the_sheet_comes_without_pictures_where_they_cannot_be_drawn(
@@ -289,21 +282,19 @@ def test_the_sheet_comes_without_pictures_where_they_cannot_be_drawn(
     monkeypatch.setattr("app.report.images.OffscreenRenderer", fails)
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.report_controller.open()
         yield made(window)
         assert window.report_controller.handout is not None
         assert window.report_controller.handout.pictures == {}
 
-    assert run_main([str(mannequin)], script) == 0
+    assert run_bodiless([str(mannequin)], script) == 0
 
 
 def test_the_window_closes_while_the_sheet_is_being_made(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.report_controller.open()
         yield lambda: bool(window.jobs.at_work())
 
-    assert run_main([str(mannequin)], script) == 0
+    assert run_undrawn([str(mannequin)], script) == 0

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from PySide6.QtTest import QTest
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_bodiless, settled
 
 from app.gui.main_window import MainWindow
 from core.document.storage.project_file import open_project
@@ -23,7 +23,6 @@ def typed(window: MainWindow, name: str) -> None:
 
 def test_a_typed_name_does_not_go_to_the_next_document(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         desk = window.report_controller
         typed(window, "Clara")
@@ -36,12 +35,11 @@ def test_a_typed_name_does_not_go_to_the_next_document(mannequin: Path) -> None:
         assert desk.page.customer.text() == ""
         assert not desk.is_open
 
-    assert run_main([str(mannequin)], script) == 0
+    assert run_bodiless([str(mannequin)], script) == 0
 
 
 def test_nothing_of_a_former_document_is_kept_or_shown(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         desk = window.report_controller
         desk.open()
@@ -57,12 +55,11 @@ def test_nothing_of_a_former_document_is_kept_or_shown(mannequin: Path) -> None:
         assert not desk.page.paper.leaves, "no sheet of a former customer stands there, however faint"
         yield desk.page.does["pdf"].isEnabled
 
-    assert run_main([str(mannequin)], script) == 0
+    assert run_bodiless([str(mannequin)], script) == 0
 
 
 def test_no_piece_of_a_former_document_is_listed(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.navigation.show_panel("garment")
         window.session.commit_line("mid-bust", "Mid-bust", 0.9)
@@ -79,7 +76,7 @@ def test_no_piece_of_a_former_document_is_listed(mannequin: Path) -> None:
         yield lambda: bool(listed) and settled(window)()
         assert not any(listed)
 
-    assert run_main([str(mannequin)], script) == 0
+    assert run_bodiless([str(mannequin)], script) == 0
 
 
 def test_a_typed_name_is_saved_and_asked_about(
@@ -93,7 +90,6 @@ def test_a_typed_name_is_saved_and_asked_about(
     )
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         typed(window, "Dora")
         window.actions_.save.trigger()
@@ -105,4 +101,4 @@ def test_a_typed_name_is_saved_and_asked_about(
         assert window.project_controller.may_leave()
         assert asked == [1], "what is typed is a change that would be lost"
 
-    assert run_main([str(mannequin)], script) == 0
+    assert run_bodiless([str(mannequin)], script) == 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_bodiless, settled
 
 from app.gui.main_window import MainWindow
 from core.garment.elastic_library import find_elastic
@@ -15,7 +15,6 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 
 def test_of_a_run_that_ran_away_there_is_no_sheet_and_no_light(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.session.edit(
             lambda design: design.with_line("mid-bust", 0.7).with_elastic(
@@ -42,4 +41,4 @@ def test_of_a_run_that_ran_away_there_is_no_sheet_and_no_light(mannequin: Path) 
         yield desk.page.does["pdf"].isEnabled
         assert desk.page.state.text() == ""
 
-    assert run_main([str(mannequin)], script) == 0
+    assert run_bodiless([str(mannequin)], script) == 0

@@ -9,7 +9,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_bodiless, run_main, run_undrawn, settled
 
 import app.gui.file_export
 from app.gui.main_window import MainWindow
@@ -44,7 +44,6 @@ def title_of_b(window: MainWindow) -> list[str]:
 
 def test_the_whole_window_tells_one_lift_that_of_the_bust_points() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.variants_controller.choose("B")
         window.lines_controller.commit_length("mid-bust", 0.9)
@@ -83,7 +82,7 @@ def test_the_whole_window_tells_one_lift_that_of_the_bust_points() -> None:
         window.sections_controller.set_on(True)
         assert window.sections_controller.panel.readout.text().startswith("Bust point left: ")
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def all_judged(window: MainWindow) -> bool:
@@ -95,7 +94,7 @@ def row_of(window: MainWindow, label: str) -> float | None:
     return next(row.change for row in window.result.rows if row.label == label)
 
 
-@pytest.mark.usefixtures("fine_mannequin")
+@pytest.mark.usefixtures("fine_samples")
 def test_a_settled_body_that_is_strained_says_so_in_one_voice() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -128,10 +127,9 @@ def test_a_settled_body_that_is_strained_says_so_in_one_voice() -> None:
     run_main([], script)
 
 
-@pytest.mark.usefixtures("fine_mannequin")
+@pytest.mark.usefixtures("fine_samples")
 def test_a_run_that_never_rests_is_no_result_and_has_a_way_out() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.variants_controller.choose("B")
         window.session.choose_control("conventional")
@@ -178,12 +176,11 @@ def test_a_run_that_never_rests_is_no_result_and_has_a_way_out() -> None:
         assert notice is not None
         assert "oscillates by" in notice.sentence, "it is told again"
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def test_the_same_key_puts_variants_side_by_side_and_back() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.activateWindow()
         yield window.isActiveWindow
@@ -204,7 +201,7 @@ def test_the_same_key_puts_variants_side_by_side_and_back() -> None:
         window.view.compare_by("wipe")
         assert not flip.isChecked()
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_measures_say_from_where_they_count_and_leave_as_a_table(
@@ -214,7 +211,6 @@ def test_measures_say_from_where_they_count_and_leave_as_a_table(
     monkeypatch.setattr(app.gui.file_export, "ask_save", lambda *_: str(path))
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.navigation.show_step("result")
         body, marks = frame_of(window).stages.body.mesh.vertices, frame_of(window).stages.rest_marks
@@ -238,4 +234,4 @@ def test_measures_say_from_where_they_count_and_leave_as_a_table(
         window.result.copy_requested.emit()
         assert "\t".join(cells) + "\n" in QGuiApplication.clipboard().text()
 
-    run_main([], script)
+    run_bodiless([], script)

@@ -23,7 +23,7 @@ from core.document.storage.crash_counter import failed_starts, starts_folder
 pytestmark = pytest.mark.usefixtures("empty_house")
 
 
-@pytest.mark.usefixtures("fine_mannequin")
+@pytest.mark.usefixtures("fine_samples")
 def test_the_safe_mode_draws_without_the_graphics_driver_and_says_so() -> None:
     def asked(window: MainWindow) -> Script:
         yield settled(window)

@@ -12,7 +12,7 @@ import pytest
 import trimesh
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
-from window_tools import Script, drag, run_undrawn, settled
+from window_tools import Script, drag, run_bodiless, run_undrawn, settled
 
 import app.gui.features.project.controller as project_files
 import core.pipeline.build
@@ -91,7 +91,7 @@ def test_an_unsure_scan_asks_and_the_answer_is_one_undo_step(
         assert window.session.design is not None
         assert window.session.design.scan.front is None
 
-    run_undrawn([str(mannequin)], script)
+    run_bodiless([str(mannequin)], script)
 
 
 def test_a_scan_that_shows_no_bust_is_turned_by_a_picture(
@@ -111,7 +111,7 @@ def test_a_scan_that_shows_no_bust_is_turned_by_a_picture(
         assert frame.stages.landmarks.position("bust_point_left")[1] < -150.0
         assert frame.stages.body.pose.front == "-y"
 
-    run_undrawn([str(mannequin)], script)
+    run_bodiless([str(mannequin)], script)
 
 
 def test_a_body_of_a_doubtful_size_leads_to_its_unit(tmp_path: Path, mannequin: Path) -> None:
@@ -129,7 +129,7 @@ def test_a_body_of_a_doubtful_size_leads_to_its_unit(tmp_path: Path, mannequin: 
         check()
         assert window.scan.isVisible()
 
-    run_undrawn([str(path)], script)
+    run_bodiless([str(path)], script)
 
 
 def test_the_reading_of_a_scan_can_be_cancelled(person: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -157,7 +157,7 @@ def test_the_reading_of_a_scan_can_be_cancelled(person: Path, monkeypatch: pytes
         assert window.session.undo_stack.count() == 1
         assert window.notices.notice() is None
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_a_cancelled_edit_of_the_scan_leaves_no_trace(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -173,7 +173,7 @@ def test_a_cancelled_edit_of_the_scan_leaves_no_trace(monkeypatch: pytest.Monkey
         assert not window.session.undo_stack.canUndo()
         yield settled(window)
 
-    run_undrawn([], script)
+    run_bodiless([], script)
 
 
 def test_a_dragged_pin_is_a_correction_that_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

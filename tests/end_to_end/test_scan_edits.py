@@ -10,7 +10,7 @@ import trimesh
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QPushButton
-from window_tools import Script, run_undrawn, settled
+from window_tools import Script, run_bodiless, settled
 
 from app.gui.main_window import MainWindow
 from core.document.storage.project_file import open_project
@@ -69,6 +69,6 @@ def test_a_scan_is_cropped_mirrored_and_filled_step_by_step(tmp_path: Path, pers
         assert edits(window) == UNEDITED
         assert len(panel.fills) == 1
 
-    assert run_undrawn([str(scan)], script) == 0
+    assert run_bodiless([str(scan)], script) == 0
     kept = open_project(project).design.scan.edits
     assert (kept.low, kept.kept, len(kept.filled)) == (40.0, "left", 1)

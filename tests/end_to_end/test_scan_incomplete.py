@@ -12,7 +12,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from trimesh.creation import box
-from window_tools import Script, run_undrawn, settled
+from window_tools import Script, run_bodiless, run_undrawn, settled
 
 import app.gui.features.scan.controller
 import app.rendering.thumbnail
@@ -91,7 +91,7 @@ def test_a_scan_that_cannot_go_on_is_shown_and_a_placed_point_lets_it_in(
         assert window.session.stuck is None
         assert window.notices.notice() is None
 
-    run_undrawn([str(mannequin)], script)
+    run_bodiless([str(mannequin)], script)
 
 
 def test_a_scan_that_cannot_go_on_is_read_once_however_many_pins_it_takes(
@@ -125,7 +125,7 @@ def test_a_scan_that_cannot_go_on_is_read_once_however_many_pins_it_takes(
         assert window.session.design is not None
         assert len(window.session.design.placed) == 2
 
-    run_undrawn([str(mannequin)], script)
+    run_bodiless([str(mannequin)], script)
 
 
 def test_a_scan_that_only_asks_leaves_the_open_one_alone(
@@ -188,7 +188,7 @@ def test_a_scan_whose_question_is_left_is_shown_and_can_be_told(
         yield settled(window)
         assert window.session.stuck is None
 
-    run_undrawn([str(mannequin)], script)
+    run_bodiless([str(mannequin)], script)
 
 
 def test_on_a_refused_scan_nothing_can_be_placed_and_what_was_stays_in_sight(
@@ -221,7 +221,7 @@ def test_on_a_refused_scan_nothing_can_be_placed_and_what_was_stays_in_sight(
         yield settled(window)
         assert window.session.stuck is None
 
-    run_undrawn([str(brick)], script)
+    run_bodiless([str(brick)], script)
 
 
 def test_the_picture_of_a_scan_that_cannot_go_on_shows_it(
@@ -257,7 +257,7 @@ def test_a_refused_scan_is_shown_as_it_lies_and_can_be_told_how_it_stands(
         assert design.scan.up == "+z"
         assert window.session.stuck is None
 
-    run_undrawn([str(mannequin)], script)
+    run_bodiless([str(mannequin)], script)
 
 
 def test_a_landmark_that_was_not_found_can_be_placed_and_undone(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 from scipy.spatial.transform import Rotation
-from window_tools import Script, run_undrawn, settled
+from window_tools import Script, run_bodiless, settled
 
 from app.gui.main_window import MainWindow
 from core.scan.body import read_scan
@@ -64,7 +64,7 @@ def test_a_leaning_body_is_set_upright_in_steps_that_can_be_undone(leaning: Path
             yield settled(window)
         assert lean(window) == (0.0, 0.0)
 
-    run_undrawn([str(leaning)], script)
+    run_bodiless([str(leaning)], script)
 
 
 @pytest.mark.parametrize(("forward", "left"), [(12.0, 0.0), (-7.0, 3.0)])

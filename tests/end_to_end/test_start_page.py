@@ -38,7 +38,7 @@ def at_start(window: MainWindow) -> bool:
     return window.start_controller.page.isVisible()
 
 
-@pytest.mark.usefixtures("fine_mannequin")
+@pytest.mark.usefixtures("fine_samples", "first_tour")
 def test_the_first_start_leads_through_the_sample_and_later_ones_go_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

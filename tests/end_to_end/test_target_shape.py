@@ -10,7 +10,7 @@ import pytest
 from ask_tools import answered, drag, type_wish, wear
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from window_tools import Script, points, run_main, settled, undrawn
+from window_tools import Script, points, run_undrawn, settled
 
 from app.gui.main_window import MainWindow
 from core.analysis.inverse_design.quantities import Goal
@@ -248,11 +248,10 @@ def sends_to_apply_or_cancel(window: MainWindow) -> Script:
 
 def test_the_result_is_asked_for(tmp_path: Path) -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield from is_typed_seen_taken_and_undone_or_left(window)
         yield from tells_what_keeps_a_wish_from_being_met(window)
         yield from sends_to_apply_or_cancel(window)
         yield from drags_the_bust_point(window)
         yield from loses_nothing_meanwhile(window, tmp_path)
 
-    run_main([], script)
+    run_undrawn([], script)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from ask_tools import answered, drag, type_wish, wear
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_undrawn, settled
 
 from app.gui.main_window import MainWindow
 from core.analysis.inverse_design.quantities import Goal
@@ -163,7 +163,6 @@ def is_the_skin_as_long_as_it_is_free(window: MainWindow) -> Script:
 
 def test_a_profile_is_drawn_from_its_side_and_taken_back() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         yield wear(window)
         window.layout_.give_up()
@@ -172,4 +171,4 @@ def test_a_profile_is_drawn_from_its_side_and_taken_back() -> None:
         yield from is_taken_back_step_by_step(window)
         yield from is_the_skin_as_long_as_it_is_free(window)
 
-    run_main([], script)
+    run_undrawn([], script)

@@ -7,7 +7,7 @@ import math
 import pytest
 from ask_tools import answered, type_wish, wear
 from PySide6.QtCore import QCoreApplication, QEvent, QPoint
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_undrawn, settled
 
 from app.gui.main_window import MainWindow
 from core.garment.pressure import pressure_limits
@@ -97,7 +97,6 @@ def keeps_to_the_limit_of_pressure(window: MainWindow) -> Script:
 
 def test_targets_are_set_beside_the_body() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         yield wear(window)
         window.layout_.give_up()
@@ -105,4 +104,4 @@ def test_targets_are_set_beside_the_body() -> None:
         yield from leaves_the_bust_in_sight(window)
         yield from keeps_to_the_limit_of_pressure(window)
 
-    run_main([], script)
+    run_undrawn([], script)

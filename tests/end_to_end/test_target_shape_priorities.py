@@ -6,7 +6,7 @@ import pytest
 from ask_tools import answered, wear
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_bodiless, settled
 
 from app.gui.main_window import MainWindow
 from core.analysis.inverse_design.quantities import Goal
@@ -58,7 +58,6 @@ def names_the_conflict_and_follows_priorities(window: MainWindow) -> Script:
 
 def test_conflicts_are_named_and_priorities_followed() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield from names_the_conflict_and_follows_priorities(window)
 
-    run_main([], script)
+    run_bodiless([], script)

@@ -10,7 +10,7 @@ import pytest
 from ask_tools import answered, drag, wear
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_undrawn, settled
 
 from app.gui.main_window import MainWindow
 from app.gui.viewport.target_handle import TargetCurve
@@ -147,7 +147,6 @@ def drags_the_foremost_place(window: MainWindow) -> Script:
 
 def test_profiles_and_foremost_places_are_dragged(tmp_path: Path) -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         yield from draws_a_profile(window)
         yield from wishes_what_is_dragged(window)
@@ -155,4 +154,4 @@ def test_profiles_and_foremost_places_are_dragged(tmp_path: Path) -> None:
         yield from takes_a_table(window, tmp_path)
         yield from drags_the_foremost_place(window)
 
-    run_main([], script)
+    run_undrawn([], script)

@@ -6,7 +6,7 @@ import pytest
 from ask_tools import answered, type_wish, wear
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_bodiless, settled
 
 from app.gui.main_window import MainWindow
 from app.gui.widgets.value_edit import ValueEdit
@@ -130,7 +130,6 @@ def takes_no_letters(window: MainWindow) -> Script:
 
 def test_what_is_still_typed_counts() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         yield wear(window)
         window.layout_.give_up()
@@ -142,4 +141,4 @@ def test_what_is_still_typed_counts() -> None:
         yield from leaves_the_keyboard_where_it_was_pressed(window)
         yield from takes_no_letters(window)
 
-    run_main([], script)
+    run_bodiless([], script)

@@ -6,7 +6,7 @@ import threading
 
 import numpy as np
 import pytest
-from window_tools import PATIENCE, Script, run_main, settled, undrawn
+from window_tools import PATIENCE, Script, run_bodiless, settled
 
 import core.analysis.uncertainty.estimate
 from app.gui.main_window import MainWindow
@@ -32,7 +32,6 @@ def whole(window: MainWindow) -> bool:
 
 def test_it_is_told_where_it_is_looked_at_and_fades_while_a_line_moves() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         desk, card = window.uncertainty_controller, window.uncertainty_controller.card
         assert not desk.is_computing, "nobody has looked"
@@ -66,7 +65,7 @@ def test_it_is_told_where_it_is_looked_at_and_fades_while_a_line_moves() -> None
         window.session.cancel_preview()
         yield lambda: whole(window)
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def test_nothing_is_shown_before_all_sources_are_in(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -87,7 +86,6 @@ def test_nothing_is_shown_before_all_sources_are_in(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(core.analysis.uncertainty.estimate.UncertaintyEstimator, "estimate", waiting)
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         window.navigation.show_step("result")
         yield reached.is_set
@@ -100,7 +98,7 @@ def test_nothing_is_shown_before_all_sources_are_in(monkeypatch: pytest.MonkeyPa
         assert "narrowest" in waist.label
         assert "several centimetres" in waist.told()
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def test_where_it_is_given_up_there_is_none_and_the_reason_stands_there(
@@ -115,7 +113,6 @@ def test_where_it_is_given_up_there_is_none_and_the_reason_stands_there(
     monkeypatch.setattr(core.analysis.uncertainty.estimate.UncertaintyEstimator, "estimate", refused)
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         desk, card = window.uncertainty_controller, window.uncertainty_controller.card
         window.navigation.show_step("result")
@@ -125,4 +122,4 @@ def test_where_it_is_given_up_there_is_none_and_the_reason_stands_there(
         yield lambda: bool(window.result.measured)
         assert all(view.off == () for view in window.result.measured)
 
-    run_main([], script)
+    run_bodiless([], script)

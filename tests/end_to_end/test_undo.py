@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from window_tools import Script, points, run_main, settled, undrawn
+from window_tools import Script, points, run_bodiless, settled
 
 from app.gui.main_window import MainWindow
 
@@ -16,7 +16,6 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 def test_an_undo_before_the_answer_waits_for_its_own(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        undrawn(window)
         before, session = points(window).copy(), window.session
         former = session.frame
         session.choose_template("120")
@@ -28,4 +27,4 @@ def test_an_undo_before_the_answer_waits_for_its_own(mannequin: Path) -> None:
         assert np.allclose(points(window), before)
         assert session.frame.stages.design is session.design
 
-    run_main([str(mannequin)], script)
+    run_bodiless([str(mannequin)], script)

@@ -9,7 +9,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_bodiless, run_undrawn, settled
 
 import app.gui.features.variants.controller
 import app.gui.file_export
@@ -28,7 +28,6 @@ SPACE = Qt.Key.Key_Space
 
 def test_the_space_bar_goes_back_to_the_way_it_was_flipped_from(monkeypatch: pytest.MonkeyPatch) -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         yield settled(window)
         view = window.view
         window.activateWindow()
@@ -55,7 +54,7 @@ def test_the_space_bar_goes_back_to_the_way_it_was_flipped_from(monkeypatch: pyt
         QTest.keyRelease(window, SPACE)
         assert view.beside.way == "before"
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_the_figures_of_all_variants_stand_beside_each_other(
@@ -65,7 +64,6 @@ def test_the_figures_of_all_variants_stand_beside_each_other(
 
     def script(window: MainWindow) -> Script:
         panel, desk = window.variants, window.variant_table_controller
-        undrawn(window)
         yield settled(window)
         window.navigation.show_panel("variants")
         assert panel.view is None, "one variant has nothing to be compared with"
@@ -95,13 +93,12 @@ def test_the_figures_of_all_variants_stand_beside_each_other(
         window.session.remove_variant("B")
         yield lambda: panel.view is None
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def test_variants_that_differ_in_elastics_alone_are_told_apart() -> None:
     def script(window: MainWindow) -> Script:
         panel = window.variants
-        undrawn(window)
         yield settled(window)
         window.navigation.show_panel("variants")
         window.variants_controller.choose("B")
@@ -133,7 +130,7 @@ def test_variants_that_differ_in_elastics_alone_are_told_apart() -> None:
         told = QGuiApplication.clipboard().text().splitlines()
         assert any(line.split("\t")[1:] == ["", "", band.name, ""] for line in told)
 
-    run_main([], script)
+    run_bodiless([], script)
 
 
 def what_cannot_be_solved_is_told_once(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:

@@ -6,7 +6,7 @@ import pytest
 from PySide6.QtCore import QRect, QSettings, QSize, Qt
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
-from window_tools import Script, run_main, undrawn
+from window_tools import Script, run_bodiless
 
 from app.gui.main_window import MainWindow
 from app.gui.widgets import window_geometry as place
@@ -62,10 +62,9 @@ def test_the_first_window_is_no_larger_than_the_screen(monkeypatch: pytest.Monke
     monkeypatch.setattr(place, "put_first", put)
 
     def script(window: MainWindow) -> Script:
-        undrawn(window)
         assert set(seen) == {(True, True)}, "the window, and what holds its place before"
         window.resize(1200, 720)
         # Whoever ends the program by force finds the window here again.
         yield lambda: QSettings().contains("window/geometry")
 
-    run_main([], script)
+    run_bodiless([], script)

@@ -65,6 +65,19 @@ def run_undrawn(arguments: list[str], script: Callable[[MainWindow], Script], ex
     return run_main(arguments, unseen, expected)
 
 
+def run_bodiless(arguments: list[str], script: Callable[[MainWindow], Script], expected: Kinds = ()) -> int:
+    """Do as ``run_main``, with no body in the 3D view and no limits of lines looked for."""
+
+    def unseen(window: MainWindow) -> Script:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(window.view, "prepare", lambda *_: None)
+            window.frames.order.remove(window.view.show_frame)
+            window.frames.order.remove(window.limits_controller.follow)
+            yield from script(window)
+
+    return run_main(arguments, unseen, expected)
+
+
 def settled(window: MainWindow) -> Callable[[], bool]:
     """The design of the session is solved to the end and has been drawn."""
 
