@@ -50,7 +50,7 @@ class Inspector(QWidget):
         self.setMaximumWidth(self.MOST)
         self._panels: dict[str, QWidget] = {}
         self._titled: set[str] = set()
-        self.tabs = Segment((), wide=True)
+        self.tabs = Segment((), small=True, wide=True)
         set_tip(self.tabs, tr("Lengths, measurements, elastics and cut list, variants, history"))
         self._head = QWidget()
         row = QHBoxLayout(self._head)
