@@ -15,7 +15,7 @@ from scipy import sparse
 from scipy.spatial.distance import cdist
 
 from core.geometry import kernels
-from core.geometry.closest_point import Frames, centroids, corner_reach, grouped, is_usable, neighbourhoods
+from core.geometry.closest_point import Frames, centroids, corner_reach, is_usable, neighbourhoods
 from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points, frozen
 
 Weights = Literal["paper", "smooth"]
@@ -210,64 +210,65 @@ def bind(
     can_change = np.concatenate([free, free[control.faces].any(axis=1)])
     candidates = np.flatnonzero(fade > 0.0)
     groups = list(_groups(body.vertices[candidates], fade[candidates], control, weights, can_change))
-    moving, operator = _joined_groups(groups, candidates, single)
-    points, triangles = np.split(np.flatnonzero(can_change), [int(free.sum())])
-    return FrameBinding(body, moving, operator, control, points, triangles - len(free), scaled_normals)
-
-
-def _joined_groups(groups: Sequence[_Group], vertices: Indices, single: bool) -> tuple[Indices, Operator]:
-    """Return the ``vertices`` (v,) that are rows of the groups, and the operator; see ``bind``."""
     sizes = [(*group.table.shape[::-1], group.table.size) for group in groups]
     operator = Operator(
         _joined([group.table.ravel() for group in groups], np.float32 if single else np.float64),
         frozen(np.cumsum([(0, 0, 0), *sizes], axis=0), np.int64).view(np.int64),
         _joined([group.columns for group in groups], np.int64),
     )
-    return _joined([vertices[group.rows] for group in groups], np.int64), operator
+    points, triangles = np.split(np.flatnonzero(can_change), [int(free.sum())])
+    moving = _joined([candidates[group.rows] for group in groups], np.int64)
+    return FrameBinding(body, moving, operator, control, points, triangles - len(free), scaled_normals)
 
 
 @dataclass(frozen=True, eq=False)
 class CarriedBinding(Binding):
-    """A body that follows places between control points, which ``carried`` (3 s, 3 f) [1] tells of.
+    """A body that follows ``frames`` of a finer mesh, whose points the control points carry along.
 
-    The columns of the operator are the places. ``rest`` (n, 3) [mm] are the control points at rest, of which
-    ``free`` (f,) can move.
+    ``rest`` (n, 3) [mm] are the control points at rest, of which ``free`` (f,) can move; ``carried``
+    (3 s, 3 f) [1] times their displacements are those of the points ``nodes`` (s,) of the finer mesh.
     """
 
+    frames: FrameBinding
     rest: Points
     free: Indices
+    nodes: Indices
     carried: Floats
 
     def change(self, control_points: Points) -> Floats:
-        """Return how far the places moved, (s, 3) [mm]. Raises ValueError for a wrong number of points."""
+        """Return what the operator applies to. Raises ValueError for a wrong number of points."""
         _require_shape(control_points, self.rest)
-        return (self.carried @ (control_points - self.rest)[self.free].ravel()).reshape(-1, 3)
+        return self.frames.change(self._finer(control_points))
 
     def gradient_by_points(self, control_points: Points, slopes: Points) -> Points:
         """Return slopes by the control points: see ``Binding``."""
-        few = slopes.reshape(*slopes.shape[:-2], -1)
-        found = np.zeros((*slopes.shape[:-2], *self.rest.shape))
-        found[..., self.free, :] = (few @ self.carried[: few.shape[-1]]).reshape(*few.shape[:-1], -1, 3)
+        by_nodes = self.frames.gradient_by_points(self._finer(control_points), slopes)[..., self.nodes, :]
+        few = by_nodes.reshape(*by_nodes.shape[:-2], -1) @ self.carried
+        found = np.zeros((*few.shape[:-1], *self.rest.shape))
+        found[..., self.free, :] = few.reshape(*few.shape[:-1], -1, 3)
         return found
 
     def directional_derivative(self, control_points: Points, moved: Points) -> Floats:
         """Return how fast ``change`` changes as the control points move: see ``Binding``."""
-        return (self.carried @ moved[self.free].ravel()).reshape(-1, 3)
+        finer = self._spread(moved)
+        return self.frames.directional_derivative(self._finer(control_points), finer)
+
+    def _finer(self, control_points: Points) -> Points:
+        """Return the points of the finer mesh."""
+        return self.frames.control.vertices + self._spread(control_points - self.rest)
+
+    def _spread(self, moved: Points) -> Points:
+        """Return displacements of the finer mesh for those of the control points."""
+        finer = np.zeros_like(self.frames.control.vertices)
+        finer[self.nodes] = (self.carried @ moved[self.free].ravel()).reshape(-1, 3)
+        return finer
 
 
 def bind_carried(
-    body: Mesh, vertices: Indices, shares: sparse.csr_array, rest: Points, free: Indices, carried: Floats
+    frames: FrameBinding, rest: Points, free: Indices, nodes: Indices, carried: Floats
 ) -> CarriedBinding:
-    """Bind ``vertices`` (v,) of ``body`` to places between control points by ``shares`` (v, s) of them [1].
-
-    For the others see ``CarriedBinding``. Single precision of the shares is exact to 1e-4 mm.
-    """
-    groups = []
-    for rows in grouped(body.vertices[vertices]):
-        columns = np.unique(shares[rows].indices).astype(np.int64)
-        groups.append(_Group(rows, columns, shares[rows][:, columns].toarray().T))
-    moving, operator = _joined_groups(groups, vertices, single=True)
-    return CarriedBinding(body, moving, operator, rest, free, carried)
+    """Bind a body that follows ``frames`` to control points that carry those: see ``CarriedBinding``."""
+    return CarriedBinding(frames.body, frames.moving, frames.operator, frames, rest, free, nodes, carried)
 
 
 def _require_shape(control_points: Points, rest: Points) -> None:

@@ -57,18 +57,13 @@ def neighbourhoods(
         return
     centres = centroids(mesh)[good]
     radii = corner_reach(mesh)[good].max(axis=1) if reach is None else reach[good]
-    for rows in grouped(points):
+    for rows in _split(points, np.arange(len(points))):
         to_centre = cdist(centres, points[rows])
         # A triangle is never further than its centroid, and never nearer than its furthest corner allows.
         leeway = np.hypot(to_centre.min(axis=0), spread) if reach is None else 0.0
         near = (to_centre <= leeway + radii[:, None]).any(axis=1)
         if near.any():
             yield rows, good[near]
-
-
-def grouped(points: Points) -> Iterator[Indices]:
-    """Split ``points``, shape (k, 3) [mm], into small groups that lie close together; yield their rows."""
-    return _split(points, np.arange(len(points)))
 
 
 def _split(points: Points, rows: Indices) -> Iterator[Indices]:

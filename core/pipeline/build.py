@@ -330,10 +330,13 @@ def _bind(body: Mesh, control: ControlMesh, fade: Floats, weights: Weights, scal
 
 
 def _bind_to_tissue(body: Mesh, control: ControlMesh, fade: Floats, tissue: TissueResponse) -> Binding:
-    vertices = np.flatnonzero(fade > 0.0)
-    free = np.flatnonzero(~control.fixed)
-    shares = tissue.skin_shares(body.vertices[vertices])
-    return bind_carried(body, vertices, shares, control.mesh.vertices, free, tissue.carried)
+    within = np.flatnonzero(fade > 0.0)
+    follow = np.zeros_like(fade)
+    follow[within] = tissue.fade(body.vertices[within])
+    frames = bind(body, tissue.skin, follow, fixed=tissue.still, single=True)
+    return bind_carried(
+        frames, control.mesh.vertices, np.flatnonzero(~control.fixed), tissue.nodes, tissue.carried
+    )
 
 
 def _backs(body: Body, control: ControlMesh) -> dict[str, Back]:

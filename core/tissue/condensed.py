@@ -15,11 +15,11 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 from scipy.spatial import cKDTree
 
 from core.control_mesh.fit import ControlMesh
-from core.geometry.mesh import Floats, Indices, Mesh, Points, frozen
+from core.geometry.closest_point import barycentric, nearest_faces
+from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points, frozen
 from core.progress import Progress, quiet
 from core.tissue.skin_patch import skin_patch
 from core.tissue.solid import TissueSolid, tissue_solid
-from core.tissue.tetrahedra import Tetrahedra
 
 DISC = 7.5
 """A control point moves as the skin within this distance does on the mean [mm]."""
@@ -36,6 +36,12 @@ SIZES = (17.0, 19.0, 22.0, 26.0)
 LEAST_STIFFNESS = 0.4
 """Stresses of weight leave at least this part of the stiffness without them [1], however soft the tissue."""
 
+_ON_RIM = 1e-3
+"""A place where the share of what can move is no more than this [1] lies on the border of the skin."""
+
+_FADE = 0.5
+"""From this share on [1] the body follows the skin fully."""
+
 _COLUMNS = 64
 """So many columns of a product are made at a time: all at once take more memory than all else."""
 
@@ -47,8 +53,8 @@ class TissueResponse:
     ``stiffness`` (3 f, 3 f) [N/mm] goes with the modulus; ``prestress`` (3 f, 3 f) [N/mm], what the stresses
     of weight add, and ``weight`` (3 f, 3) [N/g] do not. ``softest`` [kPa] is the modulus below which
     ``prestress`` goes with it as well. ``rise`` [mm] is how far the bust points rise when all weight is
-    taken, but for ``prestress``. The nodes ``nodes`` (s,) of the skin move by ``carried`` (3 s, 3 f) [1]
-    times the displacements of the points; its other nodes do not move.
+    taken, but for ``prestress``. The vertices ``nodes`` (s,) of ``skin`` move by ``carried`` (3 s, 3 f) [1]
+    times the displacements of the points; its others do not move.
     """
 
     stiffness: Floats
@@ -56,7 +62,7 @@ class TissueResponse:
     weight: Floats
     softest: float
     rise: float
-    cells: Tetrahedra
+    skin: Mesh
     nodes: Indices
     carried: Floats
 
@@ -70,9 +76,18 @@ class TissueResponse:
         whole = modulus * self.stiffness + kept * self.prestress
         return whole, whole if kept < 1.0 else modulus * self.stiffness
 
-    def skin_shares(self, places: Points) -> sparse.csr_array:
-        """Return the shares of ``nodes`` in the skin nearest to ``places`` (k, 3) [mm], (k, s) [1]."""
-        return sparse.csr_array(self.cells.skin_rows(places)[:, self.nodes])
+    @property
+    def still(self) -> Flags:
+        """Return which vertices of ``skin`` do not move."""
+        return np.isin(np.arange(len(self.skin.vertices)), self.nodes, invert=True)
+
+    def fade(self, places: Points) -> Floats:
+        """Return how far ``places`` (k, 3) [mm] follow the skin: 0 at its border and beyond .. 1 inside."""
+        face, foot = nearest_faces(self.skin, places)
+        corners = self.skin.faces[face]
+        share = np.clip(barycentric(self.skin.vertices[corners], foot), 0.0, 1.0)
+        inside = (share * ~self.still[corners]).sum(axis=1)
+        return np.asarray(np.where(inside > _ON_RIM, np.minimum(inside / _FADE, 1.0), 0.0))
 
 
 def condense(
@@ -90,17 +105,18 @@ def condense(
     prestress = 0.5 * (prestress + prestress.T)
     place = np.cumsum(~fine.fixed) - 1
     rise = float(np.mean([modes.at_points[3 * place[point] + 2, 2] for point in fine.bust_points]))
-    nodes = solid.moving_skin
-    rows = np.searchsorted(solid.free, 3 * nodes)
+    skin = solid.cells.finer_skin()
+    inner = np.setdiff1d(np.arange(len(skin.vertices)), np.concatenate(skin.boundary_loops))
+    means = _over_axes(disc_rows(solid, body, skin.vertices[inner]))[:, solid.free]
     return TissueResponse(
         frozen(modes.stiffness),
         frozen(prestress),
         frozen(modes.stiffness @ modes.at_points),
         _softest(modes.stiffness, prestress),
         rise,
-        solid.cells,
-        nodes,
-        frozen(modes.shapes[(rows[:, None] + np.arange(3)).ravel()]),
+        skin,
+        inner,
+        frozen(means @ modes.shapes),
     )
 
 

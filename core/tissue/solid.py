@@ -58,11 +58,6 @@ class TissueSolid:
         """Return the coordinates of the nodes that can move, ascending, shape (m,)."""
         return np.flatnonzero(np.repeat(~self.fixed, 3))
 
-    @property
-    def moving_skin(self) -> Indices:
-        """Return the nodes of the skin that can move, ascending, shape (s,)."""
-        return self.cells.skin_nodes[~self.fixed[self.cells.skin_nodes]]
-
     def weight_loads(self) -> Floats:
         """Return the loads on ``free`` of 1 g along each axis, shape (m, 3) [N]."""
         return np.asarray(np.kron(self.weights[:, None], np.eye(3))[self.free])

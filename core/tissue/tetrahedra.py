@@ -45,6 +45,18 @@ class Tetrahedra:
         middles = self._edge_numbers(self.skin.edges + top)
         return np.concatenate([np.arange(top, len(self.corners)), len(self.corners) + np.sort(middles)])
 
+    def finer_skin(self) -> Mesh:
+        """Return the skin with ``skin_nodes`` as its vertices, four triangles to a face."""
+        top = len(self.corners) - len(self.skin.vertices)
+        nodes = np.concatenate([self.corners, self.corners[self.edges].mean(axis=1)])
+        corner = self.skin.faces + top
+        pairs = np.sort(corner[:, [[0, 1], [1, 2], [2, 0]]], axis=2)
+        middle = len(self.corners) + self._edge_numbers(pairs.reshape(-1, 2)).reshape(-1, 3)
+        (a, b, c), (ab, bc, ca) = corner.T, middle.T
+        parts = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
+        faces = np.concatenate([np.stack(part, axis=1) for part in parts])
+        return Mesh(nodes[self.skin_nodes], np.searchsorted(self.skin_nodes, faces))
+
     def volumes(self) -> Floats:
         """Return the signed volumes of the tetrahedra, shape (t,) [mm^3]."""
         a, b, c, d = (self.corners[self.nodes[:, k]] for k in range(4))

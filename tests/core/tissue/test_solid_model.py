@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from solid_bodies import BOTH, SLING, worn
 
+from core.deformation.tffd import deform
 from core.errors import LineError
 from core.garment.tension import line_tensions
+from core.geometry.closest_point import nearest_faces
 from core.geometry.mesh import Points
 from core.mechanics.iteration import LineTargets, iterate
 from core.mechanics.newton import Equilibrium
@@ -136,6 +138,67 @@ def test_conventional_control_oscillates_above_its_limit_and_adaptive_control_do
     assert swing("conventional", 0.9 * limit) < 1e-5
     assert swing("conventional", 1.2 * limit) > 1e-4
     assert swing("adaptive", 1.2 * limit) < 1e-5
+
+
+def test_stresses_of_weight_never_take_the_stiffness_away(person: Stages) -> None:
+    tissue = person.tissue
+    assert tissue is not None
+    assert 30.0 < tissue.rise / tissue.softest < 100.0
+    for sag in (5.0, 20.0, 100.0):
+        modulus, step = tissue.shear_modulus(sag), 1e-6
+        stiffness, firmer = tissue.stiffness_at(modulus)
+        assert np.linalg.eigvalsh(stiffness - 0.3 * modulus * tissue.stiffness)[0] > 0.0
+        ahead, behind = (tissue.stiffness_at(modulus * np.exp(way))[0] for way in (step, -step))
+        assert np.abs((ahead - behind) / (2.0 * step) - firmer).max() < 1e-6 * np.abs(firmer).max()
+
+
+def test_stresses_of_weight_count_for_what_moves_the_breast(person: Stages) -> None:
+    """Tissue that hangs is softer across its pull: leaning, the breast goes further than without them."""
+    lying = worn(person, 1.0, posture="lying")
+    solid = lying.model.tensegric
+    plain = np.linalg.solve(solid.firmer, solid.load.ravel())
+    away = plain - np.linalg.solve(solid.stiffness, solid.load.ravel())
+    assert 0.05 < np.linalg.norm(away) / np.linalg.norm(plain) < 0.5
+
+
+def test_the_body_follows_the_skin_of_the_solid(lifted: Stages, person: Stages) -> None:
+    binding, points = lifted.binding, lifted.control.mesh.vertices + shift(lifted)
+    assert np.array_equal(deform(binding, lifted.control.mesh.vertices), lifted.body.mesh.vertices)
+    rng = np.random.default_rng(4)
+    slopes, way = rng.normal(size=binding.rest_moving.shape), rng.normal(size=points.shape)
+    way[lifted.control.fixed] = 0.0
+    step = 1e-4
+    ahead, behind = (binding.change(points + sign * step * way) for sign in (1.0, -1.0))
+    rate = (ahead - behind) / (2.0 * step)
+    assert np.abs(binding.directional_derivative(points, way) - rate).max() < 1e-6 * np.abs(rate).max()
+    by_columns = binding.operator.apply_transposed(slopes)
+    expected = float(np.sum(by_columns * rate))
+    assert float(np.sum(binding.gradient(points, slopes) * way)) == pytest.approx(expected, rel=1e-6)
+
+
+def test_nothing_leaps_where_the_solid_ends(person: Stages) -> None:
+    lying = worn(person, 1.0, posture="lying")
+    moved = deform(lying.binding, lying.control.mesh.vertices + shift(lying)) - lying.body.mesh.vertices
+    length = np.linalg.norm(moved, axis=1)
+    assert length.max() > 10.0
+    ends = lying.body.mesh.edges
+    apart, long = (
+        np.linalg.norm(each[ends[:, 0]] - each[ends[:, 1]], axis=1)
+        for each in (moved, lying.body.mesh.vertices)
+    )
+    stays = length[ends].min(axis=1) == 0.0
+    assert (apart / long)[stays].max() < 0.7
+
+
+def test_middles_lie_on_the_skin_but_for_creases(person: Stages) -> None:
+    fitted, halved = person.fitted, person.control
+    count, skin = len(fitted.mesh.vertices), person.body.smoothed
+    middles = halved.mesh.vertices[count:]
+    _, places = nearest_faces(skin, middles)
+    on_skin = np.linalg.norm(places - middles, axis=1) < 1e-9
+    assert on_skin.mean() > 0.9
+    between = fitted.mesh.vertices[fitted.mesh.edges].mean(axis=1)
+    assert np.array_equal(middles[~on_skin], between[~on_skin])
 
 
 def test_sliding_lines_are_refused(person: Stages) -> None:
