@@ -68,7 +68,7 @@ def _design_of(pairs: Sequence[str]) -> Design:
                 Message("The setting {key} cannot be changed: each case contains its control mesh.", key=key),
                 Message("Remove {key} from the settings.", key=key),
             )
-    return replace(Design(ScanSource("")), **settings)
+    return replace(Design(ScanSource(""), tissue="solid"), **settings)
 
 
 def _text(found: Sequence[CaseComparison], design: Design) -> Iterator[str]:
