@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from app.i18n.catalog import colon, number, tr, tr_context
-from app.i18n.lengths import length_unit, shown_digits, shown_value
+from app.i18n.lengths import length, length_unit, shown_digits, shown_value
 from app.presenters.bust_shift import bust_shift, step_text
 from app.presenters.messages import render_all
 from app.presenters.model_options import Amount, Choice
@@ -16,6 +16,7 @@ from core.document.cup import CUP_RANGES, Cup
 from core.document.design import Design
 from core.garment.cup_fit import CupFit, CupSide, WornCups
 from core.garment.pressure import pressure_limits
+from core.garment.wires import nearest_wires
 from core.pipeline.live_solver import Frame
 
 NO_CUPS = ""
@@ -136,7 +137,9 @@ def fit_view(frame: Frame) -> CupFitView | None:
         return CupFitView("", (), (doubt,))
     fit = WornCups(frame.stages).fit(frame.control_points)
     lift = tr("Bust points: {shift}").format(shift=step_text(bust_shift(frame).mean))
-    return CupFitView(lift, tuple(_rows(fit)), tuple(render_all(fit.warnings)), *_light(fit))
+    return CupFitView(
+        lift, tuple(_rows(fit, frame.stages.design.cup.wire)), tuple(render_all(fit.warnings)), *_light(fit)
+    )
 
 
 def _light(fit: CupFit) -> tuple[str, str]:
@@ -144,7 +147,7 @@ def _light(fit: CupFit) -> tuple[str, str]:
     return rating_text(light), TONES[light]
 
 
-def _rows(fit: CupFit) -> list[FitRow]:
+def _rows(fit: CupFit, wire: bool) -> list[FitRow]:
     sides = fit.sides
     rows = []
     if all(side.more_ml is not None for side in sides):
@@ -162,7 +165,8 @@ def _rows(fit: CupFit) -> list[FitRow]:
                 tr("Vertical force of the cup on the breast: straps and band have to carry it."),
             ),
         ]
-    if any(side.wire_n for side in sides):
+    if wire:
+        rows.append(_wire_sizes(sides))
         tip = tr("Sum of the forces of the underwire on the skin, whatever their direction.")
         rows.append(FitRow(tr("Wire force"), "N", _figures(sides, "wire_n", 1), tip))
     tip = tr("Share of the area of the cup that presses on the skin.")
@@ -173,6 +177,18 @@ def _rows(fit: CupFit) -> list[FitRow]:
     )
     tones = tuple(TONES[pressure_limits().rating(side.max_kpa)] for side in sides)
     return [*rows, FitRow(tr("Max. pressure"), "kPa", _figures(sides, "max_kpa", 1), tip, tones)]
+
+
+def _wire_sizes(sides: tuple[CupSide, ...]) -> FitRow:
+    """Return the wires that are as long as the roots; other shapes of wire in the tooltip."""
+    nearest = [nearest_wires(side.root_mm) for side in sides]
+    names = {"Regular": tr("regular"), "Short": tr("short")}
+    others = "; ".join(f"{names[each.kind]} {each.size} ({length(each.length_mm, 0)})" for each in nearest[0])
+    tip = tr(
+        "Size of the regular wire that is as long as the root. Left root {length}: {wires}. Lengths are those "
+        "of printed size sheets."
+    ).format(length=length(sides[0].root_mm, 0), wires=others)
+    return FitRow(tr("Wire size"), "", tuple(each[0].size for each in nearest), tip)
 
 
 def _figures(sides: tuple[CupSide, ...], field: str, digits: int, *, signed: bool = False) -> tuple[str, ...]:
