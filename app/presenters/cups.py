@@ -137,9 +137,8 @@ def fit_view(frame: Frame) -> CupFitView | None:
         return CupFitView("", (), (doubt,))
     fit = WornCups(frame.stages).fit(frame.control_points)
     lift = tr("Bust points: {shift}").format(shift=step_text(bust_shift(frame).mean))
-    return CupFitView(
-        lift, tuple(_rows(fit, frame.stages.design.cup.wire)), tuple(render_all(fit.warnings)), *_light(fit)
-    )
+    rows = tuple(_rows(fit, frame.stages.design.cup.wire))
+    return CupFitView(lift, rows, tuple(render_all(fit.warnings)), *_light(fit))
 
 
 def _light(fit: CupFit) -> tuple[str, str]:
@@ -185,8 +184,8 @@ def _wire_sizes(sides: tuple[CupSide, ...]) -> FitRow:
     names = {"Regular": tr("regular"), "Short": tr("short")}
     others = "; ".join(f"{names[each.kind]} {each.size} ({length(each.length_mm, 0)})" for each in nearest[0])
     tip = tr(
-        "Size of the regular wire that is as long as the root. Left root {length}: {wires}. Lengths are those "
-        "of printed size sheets."
+        "Size of the regular wire that is as long as the root. Left root {length}: {wires}. Lengths are "
+        "those of printed size sheets."
     ).format(length=length(sides[0].root_mm, 0), wires=others)
     return FitRow(tr("Wire size"), "", tuple(each[0].size for each in nearest), tip)
 
