@@ -168,7 +168,7 @@ class Walker(LinesWalk):
 
     def wear(self) -> None:
         """Wear a preset."""
-        place, preset = self.chance.choice(list(enumerate(built_in())))
+        place, preset = self.chance.choice([each for each in enumerate(built_in()) if not each[1].tissue])
         self.window.actions_.menus["presets"].actions()[place].trigger()
         self.decide(lambda design: with_preset(design, preset))
 

@@ -150,7 +150,7 @@ class Walk:
             self.edit(lambda design: design.without_custom_line("strap left"))
 
     def dress(self) -> None:
-        preset = self.chance.choice(built_in())
+        preset = self.chance.choice([each for each in built_in() if not each.tissue])
         self.edit(lambda design: with_preset(design, preset))
 
     def choose(self) -> None:

@@ -15,7 +15,7 @@ from app.rendering.appearance import rgb
 from app.rendering.scene import Scene
 from app.rendering.vertex_colors import Ramp
 from core.garment.elastic_library import find_elastic
-from core.garment.presets import built_in, with_preset
+from core.garment.presets import find_preset, with_preset
 from core.garment.pressure import LinePressure, pressures
 from core.pipeline.build import Stages, build, line_targets
 from core.pipeline.solve import Solution, solve
@@ -28,7 +28,7 @@ RAMP = Ramp(("#EDD8C9", "#8A3408"), 0.0, 5.0, "#EDD8C9")
 @pytest.fixture(scope="module")
 def solution(built: Callable[[str], Stages]) -> Solution:
     stages = built("mannequin")
-    design = replace(with_preset(stages.design, built_in()[0]), volume="adaptive")
+    design = replace(with_preset(stages.design, find_preset("Bra")), volume="adaptive")
     design = design.with_line("mid-bust", 0.8).with_elastic("mid-bust", find_elastic("picot 10"))
     return solve(build(design, stages))
 
@@ -69,7 +69,7 @@ def test_a_row_of_a_band_has_the_pressure_of_its_place(scene: Scene, worn: dict[
 
 def test_the_largest_pressure_of_a_line_is_found_on_its_band(built: Callable[[str], Stages]) -> None:
     stages = built("person")
-    solved = solve(build(replace(with_preset(stages.design, built_in()[0]), volume="adaptive"), stages))
+    solved = solve(build(replace(with_preset(stages.design, find_preset("Bra")), volume="adaptive"), stages))
     plotter = pv.Plotter(off_screen=True, window_size=(30, 30), lighting="none")
     scene = Scene(plotter)
     scene.show_body(stages.body.mesh)

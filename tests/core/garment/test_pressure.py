@@ -14,7 +14,7 @@ from core.deformation.tffd import deform
 from core.document.design import Design, ScanSource
 from core.garment.band_path import BandPath, band_path
 from core.garment.curve_smoothing import LocalPlanes
-from core.garment.presets import built_in, with_preset
+from core.garment.presets import find_preset, with_preset
 from core.garment.pressure import LinePressure, band_pressure, mmhg, pressures
 from core.garment.tension import LineTension, line_tensions
 from core.geometry.mesh import Mesh, unit
@@ -292,7 +292,7 @@ def test_a_band_of_no_told_width_is_taken_as_wide_as_it_is_drawn() -> None:
 
 
 def test_straps_of_a_preset_are_open_and_press_below_the_shoulder() -> None:
-    design = with_preset(solution().stages.design, built_in()[0])
+    design = with_preset(solution().stages.design, find_preset("Bra"))
     solved = solve(build(design, solution().stages))
     told = pressures(solved.stages, solved.control_points)
     straps = [worn for name, worn in told.items() if "strap" in name]

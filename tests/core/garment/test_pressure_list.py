@@ -20,7 +20,7 @@ from core.document.document import Document
 from core.document.storage.project_file import read_scan_file, save_project
 from core.garment.body_location import SHOULDERS, SIDES, body_location
 from core.garment.elastic_library import find_elastic
-from core.garment.presets import built_in, with_preset
+from core.garment.presets import find_preset, with_preset
 from core.garment.pressure import LEFT_OUT, pressure_limits, pressures
 from core.garment.pressure_list import pressure_list
 from core.garment.tension import line_tensions
@@ -107,7 +107,7 @@ def test_a_slack_line_presses_nowhere(built: Callable[[str], Stages]) -> None:
 
 def test_a_strap_is_pressed_on_its_own_side(built: Callable[[str], Stages]) -> None:
     stages = built("mannequin")
-    design = with_preset(replace(stages.design, volume="adaptive"), built_in()[0])
+    design = with_preset(replace(stages.design, volume="adaptive"), find_preset("Bra"))
     solution = solve(build(design, stages))
     rows = {row.line: row for row in pressure_list(solution.stages, solution.control_points).rows}
     for side in ("left", "right"):
