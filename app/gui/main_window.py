@@ -419,21 +419,15 @@ class MainWindow(QMainWindow):
         selection.line_selected.connect(self.garment.select)
         selection.line_selected.connect(view.select_line)
         maps, sections = self.maps_controller, self.sections_controller
-        for changed in (
-            sections,
+        maps.chosen.connect(sections.show_map)
+        for each in (
             self.symmetry_controller,
             self.scan_comparison_controller,
             self.cups_controller,
-        ):
-            maps.chosen.connect(changed.show_map)
-        maps.chosen.connect(self.view_controller.show_map)
-        for source in (
-            self.symmetry_controller,
-            self.scan_comparison_controller,
             self.view_controller,
-            self.cups_controller,
         ):
-            source.map_requested.connect(maps.choose)
+            maps.chosen.connect(each.show_map)
+            each.map_requested.connect(maps.choose)
         self.view_controller.material_shown.connect(maps.refresh)
         self.preferences_controller.material_chosen.connect(self.view_controller.choose_material)
         self.symmetry_controller.changed.connect(maps.refresh)

@@ -287,16 +287,17 @@ def is_active(design: Design, preset: Preset) -> bool:
             return False
         if line.length is not None:
             wanted.update([each.name for each in own] or [line.line])
-    same_cup = (
-        preset.cup is None
-        if design.cup is None
-        else preset.cup is not None
-        and (
-            (design.cup.kind, design.cup.wire, design.cup.gather > 0.0)
-            == (preset.cup.kind, preset.cup.wire, preset.cup.gather > 0.0)
-        )
+    return bool(wanted) and design.active_lines() == wanted and _has_cups_and_elastics(design, preset)
+
+
+def _has_cups_and_elastics(design: Design, preset: Preset) -> bool:
+    """Return whether cups are of the same kind, cut and wire, and lines of the elastics that are named."""
+    told, worn = (
+        None if cup is None else (cup.kind, cup.coverage, cup.wire) for cup in (preset.cup, design.cup)
     )
-    return bool(wanted) and design.active_lines() == wanted and same_cup
+    named = {find_elastic(line.elastic).name for line in preset.lines if line.elastic}
+    made = {elastic.name for elastic in design.active_elastics().values()}
+    return told == worn and (not named or made == named)
 
 
 def _dressed(traits: LineSettings, line: PresetLine) -> LineSettings:

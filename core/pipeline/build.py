@@ -258,12 +258,8 @@ def _stages(
         tissue = stage("condense tissue", condensed, body.smoothed, fitted, control)
     cups = () if design.cup is None else stage("place cups", _cups, design.cup, fitted, control, tissue)
     patch = stage("find patch", blend_weights, body.mesh, control)
-    binding: Binding
-    if tissue is None:
-        weights = design.weights, design.scaled_normals
-        binding = stage("bind body", _bind, body.mesh, control, patch.fade, *weights)
-    else:
-        binding = stage("bind body", _bind_to_tissue, body.mesh, control, patch.fade, tissue)
+    weights = design.weights, design.scaled_normals
+    binding = stage("bind body", _bound, body.mesh, control, patch.fade, *weights, tissue)
     middle = float(control.mesh.vertices[control.border, 0].mean())
     moving = stage("prepare normals", moving_faces, body.mesh, binding.moving, middle)
     watch = stage("watch body", BodyObservables, binding, control, landmarks)
@@ -340,7 +336,16 @@ def detect_landmarks(body: Body, placed: tuple[PlacedMark, ...], progress: Progr
         raise LandmarkError(NO_BUST, KEEP_MORE) from problem
 
 
-def _bind(body: Mesh, control: ControlMesh, fade: Floats, weights: Weights, scaled_normals: bool) -> Binding:
+def _bound(
+    body: Mesh,
+    control: ControlMesh,
+    fade: Floats,
+    weights: Weights,
+    scaled_normals: bool,
+    tissue: TissueResponse | None,
+) -> Binding:
+    if tissue is not None:
+        return _bind_to_tissue(body, control, fade, tissue)
     loose = len(movable_border_triangles(control.mesh, control.fixed))
     if loose:
         raise FitError(

@@ -11,7 +11,7 @@ from slopes import doubled, slope
 from app.presenters.samples import sample_design
 from core.analysis.inverse_design.quantities import QuantityReaders
 from core.analysis.inverse_design.sensitivities import LinearizedSolutions
-from core.garment.presets import built_in, with_preset
+from core.garment.presets import find_preset, with_preset
 from core.pipeline.active_lines import free_lines
 from core.pipeline.build import Stages, build
 
@@ -61,8 +61,7 @@ def test_answers_are_those_from_rest_and_worked_out_once(plain: Stages) -> None:
 
 
 def test_locked_kept_and_still_lines_stay_and_linked_ones_go_together(plain: Stages) -> None:
-    straps = next(each for each in built_in() if any("strap" in line.line for line in each.lines))
-    design = with_preset(plain.design, straps)
+    design = with_preset(plain.design, find_preset("Bra"))
     for name in sorted(design.active_lines()):
         design = design.with_line(name, 0.95)
     stages = build(design, plain)
