@@ -83,9 +83,12 @@ def test_a_line_that_is_folded_is_told_so_and_its_slider_says_how_far_it_reaches
         )
         assert "Folded below 67.7 %: a triangle" in plain(hint(leeway, 0.55))
         assert row.slider.toolTip().startswith("Set the front length, 50 to 112 % of the original.")
+        row.slider.setSliderDown(True)  # a frame of the length before may still come
         row.slider.setValue(90_000)
         row.slider.committed.emit(0.9)
         yield settled(window)
+        yield lambda: row.view.ratio == 0.9
+        row.slider.setSliderDown(False)
         assert (row.view.ratio, row.slider.ends()) == (0.9, (0.5, 1.12)), "it keeps still under the hand"
         window.session.undo_stack.undo()
         window.session.undo_stack.undo()
