@@ -344,8 +344,12 @@ def _bound(
     scaled_normals: bool,
     tissue: TissueResponse | None,
 ) -> Binding:
-    if tissue is not None:
-        return _bind_to_tissue(body, control, fade, tissue)
+    if tissue is None:
+        return _bind(body, control, fade, weights, scaled_normals)
+    return _bind_to_tissue(body, control, fade, tissue)
+
+
+def _bind(body: Mesh, control: ControlMesh, fade: Floats, weights: Weights, scaled_normals: bool) -> Binding:
     loose = len(movable_border_triangles(control.mesh, control.fixed))
     if loose:
         raise FitError(
