@@ -54,7 +54,7 @@ def test_cups_are_chosen_shaped_and_taken_back(person: Path) -> None:
         yield settled(window)
         assert lifted(window) > before + 1.0
         rows = [[part.text() for part in row] for row in card.table.rows]
-        assert [row[0] for row in rows][:3] == ["Cup − breast volume", "Support", "Wire size", "Wire force"]
+        assert [row[0] for row in rows][:4] == ["Cup − breast volume", "Support", "Wire size", "Wire force"]
         assert rows[0][1][0] in "+\N{MINUS SIGN}"
         while undo.index() > 1:
             window.actions_.undo.trigger()
