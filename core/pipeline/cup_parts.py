@@ -24,7 +24,7 @@ CUP_STIFFNESS = 1.0
 WIRE_STIFFNESS = 3.0
 """How hard a wire holds a point of the root to its form [N/mm]."""
 
-REACH = 0.8
+REACH = 1.2
 """Standard deviation of the means that make a cup smooth, over the distance between its points [1]."""
 
 UPPER_EDGE = {"half": 0.0, "three-quarter": 1.0 / 3.0, "full": 2.0 / 3.0}
