@@ -30,9 +30,9 @@ from core.analysis.inverse_design.profile_curve import profile_goals
 from core.analysis.inverse_design.quantities import GIRTH, NAMES, Goal, profile_name, reading
 from core.analysis.inverse_design.solve import solve_targets
 from core.document.design import Design, ScanSource
-from core.garment.presets import built_in, with_preset
 from core.errors import UserError
 from core.garment.elastic_library import find_elastic
+from core.garment.presets import built_in, with_preset
 from core.garment.pressure import pressure_limits, pressures
 from core.garment.tension import line_tensions
 from core.mechanics.mesh_quality import STRAINED_RANGE, MeshQuality

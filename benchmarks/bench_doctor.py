@@ -26,8 +26,8 @@ from threadpoolctl import threadpool_limits
 from core.analysis.diagnosis.diagnose import Diagnosis, diagnose
 from core.analysis.diagnosis.trial_run import run_trial
 from core.document.design import Design
-from core.garment.presets import built_in, with_preset
 from core.errors import UserError
+from core.garment.presets import built_in, with_preset
 from core.mechanics.solver_comparison import SolverComparison
 from core.pipeline.build import Stages, build, line_targets
 

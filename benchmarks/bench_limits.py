@@ -31,10 +31,10 @@ from threadpoolctl import threadpool_limits
 from core.analysis.length_limits.limits import Limits, limits_of
 from core.document.design import Design
 from core.document.lines import ActiveLine
-from core.garment.presets import built_in, with_preset
 from core.errors import UserError
 from core.garment.cut_list import is_strap
 from core.garment.elastic_library import find_elastic
+from core.garment.presets import built_in, with_preset
 from core.garment.pressure import pressure_limits, pressures
 from core.mechanics.constraint_lines import RATIO_LIMITS
 from core.mechanics.exact_solution import solve_exact

@@ -17,8 +17,8 @@ sys.path.insert(0, str(ROOT))
 
 from app.i18n.catalog import LANGUAGES, translations  # noqa: E402
 from app.presenters.samples import SAMPLES  # noqa: E402
-from core.garment.presets import built_in as presets  # noqa: E402
 from core.garment.elastic_library import built_in as elastics  # noqa: E402
+from core.garment.presets import built_in as presets  # noqa: E402
 from core.landmarks.types import NAMES, SIDES  # noqa: E402
 from core.mechanics.options import CHOICES, RANGES  # noqa: E402
 from core.messages import LandmarkName, SettingName, SideName  # noqa: E402

@@ -31,12 +31,12 @@ from core.document.design import Design, ScanSource
 from core.document.document import Document
 from core.document.line_notation import parse_line
 from core.document.lines import LineSettings
-from core.garment.presets import built_in, with_preset
 from core.document.storage.project_file import ScanFile, open_project, save_project
 from core.export.mesh import write_mesh
 from core.export.units_and_axes import FileSpace
 from core.garment.cut_list import cut_list
 from core.garment.elastic_library import find_elastic
+from core.garment.presets import built_in, with_preset
 from core.garment.pressure_list import pressure_list
 from core.geometry.mesh import Mesh
 from core.landmarks.manual import in_file

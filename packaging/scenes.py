@@ -23,8 +23,8 @@ from app.i18n.catalog import language
 from app.presenters.samples import lifted_sample, sample_design, sample_path
 from core.document.cup import Cup
 from core.document.design import Design, ScanSource
-from core.garment.presets import built_in, with_preset
 from core.garment.elastic_library import find_elastic
+from core.garment.presets import built_in, with_preset
 
 Scene = Callable[[MainWindow], QWidget | None]
 """Brings a window to what is shown; returns the part that the picture is of, None for all of it."""
