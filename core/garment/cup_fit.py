@@ -10,7 +10,7 @@ import numpy as np
 
 from core.geometry.mesh import Floats, Points
 from core.mechanics.condensed_tissue import CondensedTissue
-from core.mechanics.cup_parts import CupCloth, CupContact, CupPart, Underwire
+from core.mechanics.cup_parts import Underwire
 from core.messages import Message
 from core.pipeline.build import Stages
 from core.pipeline.cup_parts import CupLayout
@@ -111,10 +111,10 @@ class WornCups:
         normals = self.stages.control.mesh.moved(control_points).vertex_normals
         kpa = np.zeros(len(control_points))
         more = self._more_volume()
-        sides = []
+        sides, half = [], len(solid.cups) // 2  # the parts of the left cup come first
         for number, side in enumerate(("left", "right")):
             points = self.layout.points(1 - 2 * number)
-            own = [part for part in solid.cups if self._belongs(part, points, number)]
+            own = solid.cups[number * half : (number + 1) * half]
             force = np.zeros_like(control_points)
             for part in own:
                 if not isinstance(part, Underwire):
@@ -124,12 +124,6 @@ class WornCups:
             wire_n = float(sum(np.linalg.norm(each, axis=1).sum() for each in wire))
             sides.append(self._side(side, more[number], force, wire_n, kpa, points, control_points))
         return CupFit(tuple(sides), kpa)
-
-    def _belongs(self, part: CupPart, points: np.ndarray, number: int) -> bool:
-        if isinstance(part, CupCloth):
-            return bool(np.isin(part.strips.nodes, self.stages.model.tensegric.place[points]).all())
-        assert isinstance(part, CupContact | Underwire)
-        return bool((part.rest[:, 0].mean() > self.stages.moving.middle) == (number == 0))
 
     def _side(
         self,

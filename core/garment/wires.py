@@ -29,10 +29,6 @@ class Wire:
     size: str
     length_mm: float
 
-    def ratio(self, root_mm: float) -> float:
-        """Return its length over that of a root of ``root_mm`` [1]."""
-        return self.length_mm / root_mm
-
 
 @cache
 def wire_types() -> tuple[WireType, ...]:

@@ -129,7 +129,7 @@ class CupLayout:
         return np.asarray((self.cup.wire_width - 1.0) * away * np.array([1.0, 1.0, 0.0]))
 
     def parts(self) -> tuple[CupPart, ...]:
-        """Return the parts of both cups in the model. Raises LineError for cups that hold too little."""
+        """Return the parts of both cups, the left first. Raises LineError for cups that hold too little."""
         if self.cup.kind == "moulded" and (lack := self._lack) > MOST_LACK:
             raise LineError(
                 Message("The cups hold {percent} % less than the breasts.", percent=f"{100.0 * lack:.0f}"),

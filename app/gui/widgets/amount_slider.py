@@ -27,6 +27,22 @@ _KEYS = {
 }
 
 
+def paint_handle(painter: QPainter, slider: QAbstractSlider, at: QPointF, radius: float) -> None:
+    """Paint the handle of a ``slider``, with a halo while it has the focus or is held."""
+    tokens = tokens_of(slider)
+    painter.setPen(Qt.PenStyle.NoPen)
+    if slider.hasFocus() or slider.isSliderDown():
+        halo = QColor(tokens.accent)
+        halo.setAlpha(76)
+        painter.setBrush(halo)
+        painter.drawEllipse(at, radius + 4, radius + 4)
+    painter.setBrush(QColor(0, 0, 0, 40))
+    painter.drawEllipse(at + QPointF(0, 0.8), radius + 0.5, radius + 0.5)
+    painter.setBrush(QColor("#FFFFFF"))
+    painter.setPen(QPen(QColor(tokens.control if slider.underMouse() else tokens.outline), 1))
+    painter.drawEllipse(at, radius, radius)
+
+
 class AmountSlider(QAbstractSlider):
     """A slider over the limits of an amount in steps of ``step``, with a mark at ``neutral``.
 
@@ -125,20 +141,7 @@ class AmountSlider(QAbstractSlider):
         painter.setBrush(QColor(tokens.control))
         painter.drawRect(QRectF(min(neutral, here), top, abs(here - neutral), _GROOVE))
         painter.drawRect(QRectF(neutral - 0.5, top - 3, 1, _GROOVE + 6))
-        self._paint_handle(painter, QPointF(here, middle))
-
-    def _paint_handle(self, painter: QPainter, at: QPointF) -> None:
-        tokens = tokens_of(self)
-        if self.hasFocus() or self.isSliderDown():
-            halo = QColor(tokens.accent)
-            halo.setAlpha(76)
-            painter.setBrush(halo)
-            painter.drawEllipse(at, _RADIUS + 4, _RADIUS + 4)
-        painter.setBrush(QColor(0, 0, 0, 40))
-        painter.drawEllipse(at + QPointF(0, 0.8), _RADIUS + 0.5, _RADIUS + 0.5)
-        painter.setBrush(QColor("#FFFFFF"))
-        painter.setPen(QPen(QColor(tokens.control if self.underMouse() else tokens.outline), 1))
-        painter.drawEllipse(at, _RADIUS, _RADIUS)
+        paint_handle(painter, self, QPointF(here, middle), _RADIUS)
 
     def _drag_to(self, x: float) -> None:
         low, high = self._amount.limits

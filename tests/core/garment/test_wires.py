@@ -18,4 +18,3 @@ def test_lengths_grow_with_the_size_by_steps_of_a_wire():
 def test_the_size_next_to_a_root_is_found(root, size):
     wire = next(each for each in nearest_wires(root) if each.kind == "Regular")
     assert wire.size == size
-    assert wire.ratio(root) == wire.length_mm / root

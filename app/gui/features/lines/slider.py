@@ -22,6 +22,7 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QAbstractSlider, QSizePolicy, QWidget
 
 from app.gui.theme.stylesheet import tokens_of
+from app.gui.widgets.amount_slider import paint_handle
 from app.i18n.catalog import tr
 from app.presenters.length_limits import hint
 from app.rendering.palette import LINE_COLORS, Tokens
@@ -350,17 +351,7 @@ class LengthSlider(QAbstractSlider):
         painter.drawPolygon(QPolygonF([QPointF(x, y), QPointF(x + 4, y + 5), QPointF(x - 4, y + 5)]))
 
     def _paint_handle(self, painter: QPainter, at: QPointF) -> None:
-        tokens = tokens_of(self)
-        if self.hasFocus() or self.isSliderDown():
-            halo = QColor(tokens.accent)
-            halo.setAlpha(76)
-            painter.setBrush(halo)
-            painter.drawEllipse(at, 12, 12)
-        painter.setBrush(QColor(0, 0, 0, 40))
-        painter.drawEllipse(at + QPointF(0, 0.8), _HANDLE_RADIUS + 0.5, _HANDLE_RADIUS + 0.5)
-        painter.setBrush(QColor("#FFFFFF"))
-        painter.setPen(QPen(QColor(tokens.control if self.underMouse() else tokens.outline), 1))
-        painter.drawEllipse(at, _HANDLE_RADIUS, _HANDLE_RADIUS)
+        paint_handle(painter, self, at, _HANDLE_RADIUS)
         painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(QColor(self._color if self.isEnabled() else tokens.control))
+        painter.setBrush(QColor(self._color if self.isEnabled() else tokens_of(self).control))
         painter.drawEllipse(at, 4.2, 4.2)
