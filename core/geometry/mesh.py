@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -37,19 +37,42 @@ SIGNS = (1.0, -1.0)
 
 
 @dataclass(frozen=True, eq=False)
+class _Topology:
+    """What follows from the ``faces`` (m, 3) of a mesh alone, wherever its vertices are."""
+
+    faces: Faces
+
+    @cached_property
+    def edges(self) -> Indices:
+        return edges(self.faces)
+
+    @cached_property
+    def boundary_loops(self) -> tuple[Indices, ...]:
+        return boundary_loops(self.faces)
+
+
+@dataclass(frozen=True, eq=False)
 class Mesh:
     """Triangles in space, shape (n, 3) [mm] and (m, 3); the arrays are read-only copies."""
 
     vertices: Points
     faces: Faces
+    _topology: _Topology | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "vertices", frozen(self.vertices))
-        object.__setattr__(self, "faces", frozen(self.faces, np.int64))
+        if self._topology is None:
+            object.__setattr__(self, "_topology", _Topology(frozen(self.faces, np.int64).view(np.int64)))
+        object.__setattr__(self, "faces", self._shared.faces)
+
+    @property
+    def _shared(self) -> _Topology:
+        assert self._topology is not None
+        return self._topology
 
     def moved(self, vertices: Points) -> Mesh:
         """Return the same triangles at other positions, shape (n, 3) [mm]."""
-        return Mesh(vertices, self.faces)
+        return Mesh(vertices, self.faces, self._topology)
 
     @cached_property
     def area_vectors(self) -> Points:
@@ -71,15 +94,15 @@ class Mesh:
         """Return area-weighted unit normals of the vertices, shape (n, 3) [1]."""
         return unit(incidence(self.faces, len(self.vertices)) @ self.area_vectors)
 
-    @cached_property
+    @property
     def edges(self) -> Indices:
         """Return every edge once, lower index first, shape (e, 2)."""
-        return edges(self.faces)
+        return self._shared.edges
 
-    @cached_property
+    @property
     def boundary_loops(self) -> tuple[Indices, ...]:
         """Return closed loops of border vertices in face order, longest first; empty for a closed mesh."""
-        return boundary_loops(self.faces)
+        return self._shared.boundary_loops
 
     def enclosed_volume(self, apex: npt.ArrayLike = (0.0, 0.0, 0.0)) -> float:
         """Return the signed volume of the cone over the faces from ``apex`` [mm^3].

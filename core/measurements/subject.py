@@ -14,6 +14,7 @@ from core.landmarks.bust_point import ACROSS
 from core.landmarks.lower_breast import HIDDEN, UNSEEN
 from core.landmarks.torso.cross_sections import Level, trunk_levels
 from core.landmarks.torso.girths import trunk_sections
+from core.landmarks.torso.torso_axis import share_axis
 from core.landmarks.types import CERTAIN, SIDES, Landmark, Landmarks
 from core.measurements.breast_root import Root, chart_of, root_of, side_of
 from core.measurements.breast_volume import Breast, breast_of
@@ -76,8 +77,9 @@ class Subject:
             side: replace(root, loop=loop)
             for (side, root), loop in zip(self.roots.items(), loops, strict=True)
         }
-        after = moved_landmarks(self.landmarks, marks)
-        return replace(self, mesh=self.mesh.moved(vertices), landmarks=after, roots=roots, gains=gains)
+        after, mesh = moved_landmarks(self.landmarks, marks), self.mesh.moved(vertices)
+        share_axis(mesh, self.mesh)
+        return replace(self, mesh=mesh, landmarks=after, roots=roots, gains=gains)
 
     @cached_property
     def _riders(self) -> TrackedPoints:

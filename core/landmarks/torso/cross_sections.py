@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -29,8 +30,8 @@ from core.messages import Length, Message
 NECK = 0.5
 """A level narrower than this part of the trunk is a neck: what is above it is none of the trunk [1]."""
 
-STABLE_STEP = 5.0
-"""Step of the search for the stable under-bust level [mm]."""
+STABLE_DOWN = 5.0 * np.arange(9)
+"""How far under the breasts a stable under-bust level is sought, and four steps further [mm]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,13 +164,16 @@ def _bridges(far: Floats, skin: Flags, centre: Points, z: float) -> Points:
 
 
 def stable_level(mesh: Mesh, underbust_level: float) -> Level:
-    """Return the first outline from ``underbust_level`` [mm] down that no longer nicks the breasts.
+    """Return the first outline from ``underbust_level`` [mm] down that no longer nicks the breasts."""
+    return first_stable(trunk_levels(mesh, underbust_level - STABLE_DOWN[::-1])[::-1])
+
+
+def first_stable(levels: Sequence[Level]) -> Level:
+    """Return the first of ``levels``, ``STABLE_DOWN`` under the breasts, that no longer nicks them.
 
     In steps of 5 mm: the first whose tape falls to the next by no more than the taper of the ribs + 4 mm, not
     more than 35 mm down; else the one with the smallest fall. Source: ours.
     """
-    down = STABLE_STEP * np.arange(9)
-    levels = trunk_levels(mesh, underbust_level - down[::-1])[::-1]
     tape = np.array([level.tape for level in levels])
     fall = tape[:-1] - tape[1:]
     taper = (tape[4] - tape[8]) / 4.0

@@ -6,8 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
+import numpy as np
+
 from core.geometry.mesh import Mesh
-from core.landmarks.torso.cross_sections import Level, stable_level, trunk_levels
+from core.landmarks.torso.cross_sections import STABLE_DOWN, Level, first_stable, trunk_levels
 from core.landmarks.types import CERTAIN, SIDES, Landmarks
 from core.messages import Message
 from core.scan.body import Body
@@ -74,10 +76,17 @@ def trunk_sections(mesh: Mesh, landmarks: Landmarks, down: float | None = None) 
 
     ``down`` [mm] is how far under the breasts the under-bust is measured, where that is not to be found.
     """
-    bust, under = trunk_levels(mesh, [landmarks.bust_level])[0], landmarks.underbust_level
-    below = stable_level(mesh, under) if down is None else trunk_levels(mesh, [under - down])[0]
-    found = {"bust": bust, "underbust": below}
-    return found | {name: trunk_levels(mesh, [z])[0] for name, z in girth_levels(landmarks).items()}
+    heights = {"bust": landmarks.bust_level, **girth_levels(landmarks)}
+    below = landmarks.underbust_level - (STABLE_DOWN if down is None else np.array([down]))
+    z = np.unique([*heights.values(), *below])
+    cut = dict(zip(z.tolist(), trunk_levels(mesh, z), strict=True))
+    under = [cut[height] for height in below.tolist()]
+    found = {name: cut[float(height)] for name, height in heights.items()}
+    return {
+        "bust": found.pop("bust"),
+        "underbust": first_stable(under) if down is None else under[0],
+        **found,
+    }
 
 
 def confidences(landmarks: Landmarks) -> dict[str, float]:

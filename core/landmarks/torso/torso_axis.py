@@ -96,6 +96,11 @@ def torso_axis(mesh: Mesh) -> TorsoAxis:
     return _GUIDES[mesh]
 
 
+def share_axis(mesh: Mesh, rest: Mesh) -> None:
+    """Give ``mesh``, which is ``rest`` reshaped at the breasts, its axis: arms and middle stay."""
+    _GUIDES[mesh] = torso_axis(rest)
+
+
 def _looked_at(mesh: Mesh) -> TorsoAxis:
     low, high = mesh.vertices[:, 2].min(), mesh.vertices[:, 2].max()
     count = min(int(np.ceil((high - low) / STEP - 0.5)), MOST) if high > low else 0
