@@ -51,6 +51,10 @@ class LineError(UserError):
     """A constraining line is unknown, or its length cannot be asked for."""
 
 
+class TissueError(LineError):
+    """Solid tissue cannot be computed on the scan."""
+
+
 class ProjectError(UserError):
     """The project file cannot be read or written."""
 

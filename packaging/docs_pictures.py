@@ -29,7 +29,7 @@ import measure_pictures  # noqa: E402
 from guide_pictures import SHOTS, WIDE  # noqa: E402
 
 from app.cli.commands.picture import draw_picture, save_window, settled_window  # noqa: E402
-from app.presenters.samples import lifted_sample  # noqa: E402
+from app.presenters.samples import sample_design  # noqa: E402
 from app.report.pages import pages_of  # noqa: E402
 from app.report.painter import A4, UNITS  # noqa: E402
 from app.research.commands.figures import make_figures  # noqa: E402
@@ -117,7 +117,7 @@ def printed_sheets() -> None:
 
 def unloaded() -> None:
     """Show the breasts from the side as scanned and without their weight, side by side."""
-    standing = replace(lifted_sample(), lines=(), own_lines=(), traits=(), elastics=())
+    standing = replace(sample_design("person"), lines=(), tissue="solid")
     with TemporaryDirectory() as folder:
         drawn = []
         for posture in ("standing", "unloaded"):

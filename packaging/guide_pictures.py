@@ -9,10 +9,10 @@ import advice_scenes
 import scenes
 from scenes import (
     Scene,
-    banded,
     bra,
     for_customer,
     for_somebody,
+    in_bra,
     made_of_elastics,
     own_scan,
     sheet,
@@ -21,7 +21,7 @@ from scenes import (
     vibrating,
 )
 
-from app.presenters.samples import LIFTING_LINE, lifted_sample, sample_design
+from app.presenters.samples import STRAP, sample_design, sample_in_bra
 from core.document.design import Design
 
 
@@ -60,19 +60,19 @@ def runs() -> Iterator[Design]:
 FIRST: tuple[tuple[str, Callable[[], Design], Scene], ...] = (
     ("first-scan", own_scan, step("scan")),
     ("first-landmarks", own_scan, scenes.pin_selected),
-    ("first-lines", banded, tab("lines", LIFTING_LINE)),
-    ("first-garment", banded, tab("garment", LIFTING_LINE)),
-    ("first-pressure", banded, scenes.pressed_most),
+    ("first-lines", in_bra, tab("lines", STRAP)),
+    ("first-garment", in_bra, tab("garment", STRAP)),
+    ("first-pressure", in_bra, scenes.pressed_most),
     ("first-report", for_customer, scenes.reported),
 )
 
 # Of each screen, in both languages.
 SCREENS: tuple[tuple[str, Callable[[], Design], Scene], ...] = (
-    ("tour", lifted_sample, scenes.touring),
+    ("tour", sample_in_bra, scenes.touring),
     ("start", _mannequin, scenes.start_page),
     *((name, _person, step(name)) for name in ("landmarks", "lines", "result")),
     ("ask", _person, scenes.asking),
-    ("cups", scenes.in_cups, step("lines")),
+    ("cups", in_bra, step("lines")),
     ("wish", bra, advice_scenes.wishing),
     ("drawn-profile", bra, advice_scenes.drawing_a_profile),
     ("path", _mannequin, scenes.drawing),
@@ -91,7 +91,7 @@ SCREENS: tuple[tuple[str, Callable[[], Design], Scene], ...] = (
 
 # Of README and of pages in one language.
 ONCE = (
-    Shot("window", lifted_sample, scenes.nothing, {"size": LARGE}),
+    Shot("window", sample_in_bra, scenes.nothing, {"size": LARGE}),
     Shot("map", _mannequin, scenes.mapped, {"size": LARGE}),
     Shot("vibrating", vibrating, scenes.with_control_mesh, {"dark": True, "size": SMALL}),
     Shot("spread", bra, advice_scenes.sure, {"size": LARGE}),

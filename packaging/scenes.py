@@ -20,11 +20,10 @@ from app.gui.features.project.recent_files import forget_file, recent_files
 from app.gui.main_window import MainWindow
 from app.gui.session.settings import set_setting
 from app.i18n.catalog import language
-from app.presenters.samples import lifted_sample, sample_design, sample_path
-from core.document.cup import Cup
-from core.document.design import Design, ScanSource
+from app.presenters.samples import sample_design, sample_in_bra, sample_path
+from core.document.design import Design, ScanSource, new_design
 from core.garment.elastic_library import find_elastic
-from core.garment.presets import built_in, with_preset
+from core.garment.presets import find_preset, with_preset
 
 Scene = Callable[[MainWindow], QWidget | None]
 """Brings a window to what is shown; returns the part that the picture is of, None for all of it."""
@@ -52,30 +51,27 @@ def own_scan() -> Design:
     path = Path(HOUSE.name) / "customer 0412.ply"
     if not path.exists():
         shutil.copy(sample_path("person"), path)
-    return Design(ScanSource(str(path)))
+    return new_design(ScanSource(str(path)))
 
 
 def bra() -> Design:
-    """Return the lines of a bra on a customer's scan, the straps shorter than the preset has them."""
-    design = with_preset(own_scan(), next(each for each in built_in() if each.title == "Bra"))
+    """Return the lines of a bra on the net, on a customer's scan, the straps shorter than in the preset."""
+    design = with_preset(replace(own_scan(), tissue="net"), find_preset("Bra"))
     for name in ("strap left", "strap right"):
         design = design.with_line(name, 0.98)
     return design
 
 
-def banded() -> Design:
-    """Return the band of the samples on a customer's scan."""
-    return replace(lifted_sample("person"), scan=own_scan().scan)
+def in_bra() -> Design:
+    """Return the bra of the samples on a customer's scan, its cups higher."""
+    design = replace(sample_in_bra("person"), scan=own_scan().scan)
+    assert design.cup is not None
+    return replace(design, cup=replace(design.cup, lift=30.0))
 
 
 def for_customer() -> Design:
     """Return the same with the name of the customer."""
-    return replace(banded(), customer="Customer 0412")
-
-
-def in_cups() -> Design:
-    """Return moulded cups with a wire, and straps, on a customer's scan."""
-    return replace(banded(), cup=Cup(lift=20.0, forward=5.0, gather=5.0, wire=True))
+    return replace(in_bra(), customer="Customer 0412")
 
 
 def sliding() -> Design:

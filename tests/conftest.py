@@ -128,6 +128,8 @@ def stages_made_once() -> Iterator[None]:
             "detect_landmarks",
             "read_template",
             "fit_control_mesh",
+            "halved",
+            "_condensed",
             "blend_weights",
             "_backs",
         ):
@@ -283,7 +285,7 @@ def empty_house(
         monkeypatch.setattr("app.presenters.samples.sample_path", coarse_samples)
     if "opened_as_in_the_program" not in request.fixturenames:
         opened = sample_design() if "fine_samples" in request.fixturenames else coarse_sample
-        monkeypatch.setattr("app.gui.startup.lifted_sample", lambda: opened)
+        monkeypatch.setattr("app.gui.startup.sample_in_bra", lambda: opened)
     if not {"opened_as_in_the_program", "first_tour"}.intersection(request.fixturenames):
         monkeypatch.setattr("app.gui.tour.Tour.begin_when_settled", lambda _: None)
     monkeypatch.setattr("app.gui.viewport.view_area.bake_occlusion", shading)

@@ -1,4 +1,4 @@
-"""The tour through the window: from the lifted bust over steps, lines and verdict to the report."""
+"""The tour through the window: from the lifted bust over steps, cups or lines, and verdict to the report."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.gui.features.project.recent_files import end_first_start
 from app.gui.widgets.coach_mark import CoachMark
+from app.gui.widgets.focus_chain import bring_in
 from app.i18n.catalog import tr
 from app.presenters.bust_shift import bust_shift, up_text
 
@@ -24,12 +25,16 @@ _SETTLED = 250
 
 @dataclass(frozen=True)
 class TourStop:
-    """A stop of the tour: ``place`` is what its sentence is about, ``report`` whether it opens the report."""
+    """A stop of the tour: ``place`` is what its sentence is about, ``report`` whether it opens the report.
+
+    ``part`` is what has to be scrolled to first, if anything.
+    """
 
     title: str
     words: str
     place: Callable[[], QRect]
     report: bool = False
+    part: QWidget | None = None
 
 
 class Tour(QObject):
@@ -96,6 +101,8 @@ class Tour(QObject):
         self._window.strip.set_folded(False)
         if stop.report:
             self._window.report_controller.open()
+        if stop.part is not None:
+            bring_in(stop.part)
         self.mark.show_step(self._place, len(stops), stop.title, stop.words)
         self._point()
         self.mark.setFocus(Qt.FocusReason.OtherFocusReason)
@@ -141,14 +148,30 @@ class Tour(QObject):
                 ),
                 lambda: self._place_of(*window.rail.items.values()),
             ),
-            TourStop(
-                tr("Drag a line"),
+            self._stop_to_drag(),
+        )
+
+    def _stop_to_drag(self) -> TourStop:
+        window = self._window
+        design = window.session.design
+        if design is not None and design.cup is not None and design.cup.kind == "moulded":
+            slider = window.cups.rows["lift"].slider
+            return TourStop(
+                tr("Drag a slider"),
                 tr(
-                    "Drag the round handle slightly to the left: the line becomes shorter and presses "
-                    "harder. Bust movement is shown below the body. Ctrl+Z undoes the change."
+                    "Drag the round handle of Lift slightly to the right: the cups become higher, and the "
+                    "breasts follow. Bust movement is shown below the body. Ctrl+Z undoes the change."
                 ),
-                lambda: self._place_of(window.lines.rows.get(window.view.selected_line, window.lines)),
+                lambda: self._place_of(slider),
+                part=slider,
+            )
+        return TourStop(
+            tr("Drag a line"),
+            tr(
+                "Drag the round handle slightly to the left: the line becomes shorter and presses "
+                "harder. Bust movement is shown below the body. Ctrl+Z undoes the change."
             ),
+            lambda: self._place_of(window.lines.rows.get(window.view.selected_line, window.lines)),
         )
 
     def _stops_of_the_result(self) -> tuple[TourStop, ...]:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length_unit, shown_digits, shown_value
-from core.document.design import Design
+from core.document.design import ScanSource, new_design
 from core.mechanics.options import RANGES
 
 SOFT_LINE = 0.2
@@ -83,7 +83,8 @@ def groups() -> tuple[Group, ...]:
 def defaults() -> dict[str, Any]:
     """Return what every setting of the model is in a new design."""
     keys = {setting.key for _, settings in groups() for setting in settings}
-    return {field.name: field.default for field in fields(Design) if field.name in keys}
+    usual = new_design(ScanSource(""))
+    return {key: getattr(usual, key) for key in keys}
 
 
 def without_effect(present: Mapping[str, Any]) -> frozenset[str]:

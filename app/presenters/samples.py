@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 
-from core.control_mesh.template import read_template
 from core.document.design import Design, ScanSource
-from core.document.line_notation import ready_made_lines
 from core.document.lines import ActiveLine
-from core.garment.elastic_library import find_elastic
+from core.garment.presets import built_in, with_preset
 
 SAMPLES = {"mannequin": "Mannequin", "person": "Person"}
 """The sample bodies by file name, each with what it is called in the window."""
@@ -22,8 +19,11 @@ FIRST_RATIO = 0.95
 FIRST_SAMPLE = "person"
 """The sample body of the first start and of the tour."""
 
-LIFTING_LINE, LIFTING_ELASTIC, LIFTING_RATIO = "strap left", "strap 15", 0.94
-"""Straps of a soft bra on tissue with weight: they lift the bust by about a centimetre, and press gently."""
+FIRST_PRESET = "Underwired bra"
+"""The preset in which sample bodies open: it lifts the bust by about a centimetre, and presses gently."""
+
+STRAP = "strap left"
+"""The line of it that is selected at first."""
 
 
 def sample_path(name: str) -> Path:
@@ -38,10 +38,7 @@ def sample_design(name: str = "mannequin") -> Design:
     return Design(scan, lines=(ActiveLine("mid-bust", FIRST_RATIO),))
 
 
-def lifted_sample(name: str = FIRST_SAMPLE) -> Design:
-    """Return the design that a sample body opens with: elastic straps lift the bust."""
-    straps = ready_made_lines(read_template("168"))["straps"]
-    design = replace(sample_design(name), lines=(), own_lines=straps, tissue="solid")
-    for strap in straps:
-        design = design.with_elastic(strap.name, find_elastic(LIFTING_ELASTIC))
-    return design.with_linked(LIFTING_LINE, LIFTING_RATIO)
+def sample_in_bra(name: str = FIRST_SAMPLE) -> Design:
+    """Return the design that a sample body opens with: in a bra that lifts the bust."""
+    preset = next(each for each in built_in() if each.title == FIRST_PRESET)
+    return with_preset(sample_design(name), preset)

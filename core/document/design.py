@@ -32,7 +32,7 @@ from core.mechanics.volume import CONTROLS
 from core.messages import LineName, Message, SettingName
 from core.scan.source import ScanSource
 
-__all__ = ["TEMPLATES", "WEIGHTS", "Design", "ScanSource"]
+__all__ = ["TEMPLATES", "WEIGHTS", "Design", "ScanSource", "new_design"]
 
 WEIGHTS = ("smooth", "paper")
 TEMPLATES = ("168", "120")
@@ -325,3 +325,11 @@ class Design:
             raise LineError(
                 Message("The line {name} is locked.", name=LineName(name)), Message("Unlock the line first.")
             )
+
+
+def new_design(scan: ScanSource) -> Design:
+    """Return the design that a scan begins with: no line, on solid tissue.
+
+    Fields have the defaults of the first version instead, whose projects have a net and do not say so.
+    """
+    return Design(scan, tissue="solid")

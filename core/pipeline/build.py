@@ -22,7 +22,7 @@ from core.document.cup import Cup
 from core.document.design import Design, ScanSource
 from core.document.line_notation import with_custom_lines
 from core.document.storage.project_file import ScanFile, read_scan_file
-from core.errors import FitError, LandmarkError, LineError, UserError
+from core.errors import FitError, LandmarkError, LineError, TissueError, UserError
 from core.geometry.mesh import Floats, Mesh, Points, frozen
 from core.landmarks.detect import FINDING, find_landmarks
 from core.landmarks.manual import PLACED, PlacedMark, in_mm
@@ -385,11 +385,11 @@ def _backs(body: Body, control: ControlMesh) -> dict[str, Back]:
 def _condensed(
     body: Mesh, coarse: ControlMesh, fine: ControlMesh, progress: Progress = quiet
 ) -> TissueResponse:
-    """Return what the tissue answers. Raises LineError on a scan that leaves no room for it, Cancelled."""
+    """Return what the tissue answers. Raises TissueError on a scan without room for it, Cancelled."""
     try:
         return condense(body, coarse, fine, progress)
     except ValueError as problem:
-        raise LineError(
+        raise TissueError(
             Message("Solid tissue cannot be computed: the scan has holes or deep folds at the breasts."),
             Message("Fill the holes at the Scan step, or choose the net as tissue."),
         ) from problem

@@ -14,6 +14,7 @@ from app.gui.main_window import MainWindow
 from app.presenters.bust_shift import bust_shift
 from app.rendering.appearance import appearance_of, rgb
 from core.garment.cup_fit import WornCups
+from tests.end_to_end.test_model_options import choose
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -37,7 +38,10 @@ def test_cups_are_chosen_shaped_and_taken_back(person: Path) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
         session, card, undo = window.session, window.cups, window.session.undo_stack
-        assert session.design.tissue == "net"
+        window.model_controller.show()
+        choose(window, "tissue", "net")
+        window.navigation.show_panel("lines")
+        undo.clear()
         assert "from net to solid" in card.notes.text()
         assert not card._body.isVisible()
         card.kind.button("moulded").click()

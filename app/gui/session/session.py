@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from app.gui.session.background_save import BackgroundSave
 from app.gui.session.document_editor import DocumentEditor, EditCommand
 from app.gui.session.solver_bridge import SolverBridge
-from core.document.design import Design, ScanSource
+from core.document.design import Design, ScanSource, new_design
 from core.document.document import Document
 from core.document.storage.backups import backup_before_write
 from core.document.storage.project_file import (
@@ -23,8 +23,8 @@ from core.document.storage.project_file import (
     save_project,
 )
 from core.document.storage.recovery import RecoveredDocument
-from core.errors import UserError
-from core.messages import Message
+from core.errors import TissueError, UserError
+from core.messages import Message, join
 from core.pipeline.build import IncompleteBuildError
 from core.pipeline.live_solver import Failure, Frame
 
@@ -38,6 +38,11 @@ class _Opening:
     stamp: Stamp | None
     unsaved: bool
     revision: int
+
+    @property
+    def is_new(self) -> bool:
+        """Return whether it is a scan on which nothing was decided yet."""
+        return self.path is None and not self.unsaved and self.document.design.is_bare
 
 
 class Session(DocumentEditor):
@@ -96,7 +101,7 @@ class Session(DocumentEditor):
             self.open_document(
                 open_project(path)
                 if is_project(path)
-                else Document.single(Design(ScanSource(str(Path(path).absolute()))))
+                else Document.single(new_design(ScanSource(str(Path(path).absolute()))))
             )
         except UserError as error:
             # At start nobody listens yet: the window hears it once the event loop runs.
@@ -225,6 +230,12 @@ class Session(DocumentEditor):
         revision = self._solving.submit(document.design, fresh=True)
         self._opening = _Opening(document, path, stamp, unsaved, revision)
 
+    def _open_on_net(self, design: Design, problem: UserError) -> None:
+        """Open a scan that solid tissue cannot be computed on, and say so once."""
+        self.open_design(replace(design, tissue="net"))
+        said = join((problem.message, Message("The net is used as tissue.")))
+        self.failed.emit(UserError(said, Message("To use solid tissue, fill the holes at the Scan step.")))
+
     def _try(self, design: Design, fresh: bool) -> bool:
         if self._opening is None:
             self._solving.submit(design, fresh)
@@ -273,7 +284,10 @@ class Session(DocumentEditor):
 
     def _fail(self, failure: Failure) -> None:
         if self._opening is not None and failure.revision >= self._opening.revision:
-            self._opening = None
+            opening, self._opening = self._opening, None
+            if isinstance(failure.error, TissueError) and opening.is_new:
+                self._open_on_net(opening.document.design, failure.error)
+                return
             if self.design is not None:
                 self._submit(self.design)
             stuck = failure.error

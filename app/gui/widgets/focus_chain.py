@@ -51,7 +51,7 @@ def next_stop(order: Sequence[QWidget], forward: bool) -> bool:
         if not inside:
             target = _nearest(has, order) or target
     target.setFocus(reason if forward else Qt.FocusReason.BacktabFocusReason)
-    _bring_in(target)
+    bring_in(target)
     return True
 
 
@@ -71,8 +71,8 @@ def _within(block: QWidget, found: Sequence[QWidget]) -> list[QWidget]:
     return [each for each in found if each is block] + (stops(inside) if inside is not None else [])
 
 
-def _bring_in(widget: QWidget) -> None:
-    """Scroll what has got the keyboard to where it is seen; what is higher than the room stays as it is."""
+def bring_in(widget: QWidget) -> None:
+    """Scroll to where a widget is seen; what is higher than the room stays as it is."""
     parent = widget.parentWidget()
     while parent is not None and not parent.isWindow():
         if isinstance(parent, QScrollArea) and widget.height() <= parent.viewport().height():

@@ -14,7 +14,7 @@ from app.gui.features.project.recent_files import forget_file, project_views, re
 from app.gui.features.project.start_page import DropVeil, StartPage
 from app.gui.widgets.file_dialogs import ask_open
 from app.i18n.catalog import tr
-from app.presenters.samples import FIRST_SAMPLE, LIFTING_LINE, SAMPLES, lifted_sample, sample_path
+from app.presenters.samples import FIRST_SAMPLE, SAMPLES, STRAP, sample_in_bra, sample_path
 from core.document.storage.recovery import recovery_folder
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ class StartController(QObject):
         if session.path is not None:
             remember_file(str(session.path))
             return
-        if session.design in [lifted_sample(name) for name in SAMPLES]:
+        if session.design in [sample_in_bra(name) for name in SAMPLES]:
             # As soon as the view has framed the body that is new to it.
             session.frame_ready.connect(self._show_lift, Qt.ConnectionType.SingleShotConnection)
         scan = session.design.scan if session.design is not None else None
@@ -120,11 +120,11 @@ class StartController(QObject):
             remember_file(scan.path)
 
     def _show_lift(self) -> None:
-        """Show from near by what the band of a sample does, against the original body."""
+        """Show from near by what the bra of a sample does, against the original body."""
         view = self._context.view
-        self._context.selection.select_line(LIFTING_LINE)
+        self._context.selection.select_line("")
         view.set_layer("ghost", True)
-        view.viewport.frame_points(view.viewport.scene.bands.spine(LIFTING_LINE)[0])
+        view.viewport.frame_points(view.viewport.scene.bands.spine(STRAP)[0])
 
     def take_tour(self) -> None:
         """Start the tour on the open document, or else on the sample."""
