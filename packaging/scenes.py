@@ -66,7 +66,7 @@ def in_bra() -> Design:
     """Return the bra of the samples on a customer's scan, its cups higher."""
     design = replace(sample_in_bra("person"), scan=own_scan().scan)
     assert design.cup is not None
-    return replace(design, cup=replace(design.cup, lift=30.0))
+    return replace(design, cup=replace(design.cup, lift=25.0))
 
 
 def for_customer() -> Design:

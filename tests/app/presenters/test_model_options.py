@@ -15,7 +15,7 @@ def test_every_volume_control_has_its_texts():
 
 
 def test_settings_of_the_other_tissue_are_neither_shown_nor_summed_up():
-    net = defaults()
+    net = {**defaults(), "tissue": "net"}
     solid = {**net, "tissue": "solid", "firm_chest": 0.1, "member_law": "co-rotated"}
     keys = {setting.key for _, settings in groups() for setting in settings}
     assert without_effect(net) == {"sag", "density", "posture", "prestress"}
