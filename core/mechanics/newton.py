@@ -8,7 +8,7 @@ whose length is held.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -24,6 +24,9 @@ RESIDUAL_LIMIT = 1e-10
 _QUICK = 0.25
 """A step that leaves no more than this of what was amiss needs no safeguard: most do, at half the cost."""
 
+_AGAIN = 0.1
+"""The same for a step with the factors of an earlier one: six of these cost as much as new factors."""
+
 _PATIENCE = 8
 _SHIFT = 1e-3
 
@@ -36,6 +39,7 @@ class Equilibrium:
     """An iterate of the exact solve: state, residual [mm], left and right pressure, Newton steps taken.
 
     ``tensions`` (lines,) [mm] are the multipliers of held lines; ``multipliers`` all, in the solver's units.
+    ``factors`` are those of a place near by, of a solid alone.
     """
 
     state: SolverState
@@ -44,6 +48,7 @@ class Equilibrium:
     steps: int
     multipliers: Floats = field(default_factory=lambda: np.zeros(2))
     tensions: Floats = field(default_factory=lambda: np.zeros(0))
+    factors: Solve | None = field(default=None, repr=False)
 
     @property
     def is_converged(self) -> bool:
@@ -55,20 +60,24 @@ def energy_steps(potential: Potential, start: Equilibrium, limit: int) -> Iterat
     """Yield ``start`` and the Newton iterates after it, until exact, lost, or ``limit`` steps are made.
 
     A short step that leaves a quarter of what was amiss, or less, is taken as it is. Any other is brought
-    back to the exact volumes and lengths, and shortened until it lowers the energy.
+    back to the exact volumes and lengths, and shortened until it lowers the energy. The factors of a solid
+    cost far more than the rest of a step: they serve the next steps too, as long as these lead far enough.
     """
     place, multipliers = potential.at(start.state.moved), start.multipliers
-    spoilt = 0
+    spoilt, kept = 0, start.factors if potential.one_sided else None
     for step in range(limit + 1):
         amiss = potential.residual_norm(place, multipliers)
         held = (np.abs(place.held) <= 1e3 * potential.tolerance).all()
         residual = amiss if held else np.inf
-        yield equilibrium_at(potential, place.moved, residual, multipliers, step)
+        yield replace(equilibrium_at(potential, place.moved, residual, multipliers, step), factors=kept)
         if residual < RESIDUAL_LIMIT or step == limit:
             return
-        solve, true = factor(potential, place, multipliers, shifted=spoilt >= _PATIENCE)
-        spoilt += not true
-        taken = _step(potential, place, multipliers, solve, amiss if true else 0.0)
+        taken = kept and _quick(potential, place, _Direction.towards(place, kept), _AGAIN * amiss)
+        if taken is None:
+            solve, true = factor(potential, place, multipliers, shifted=spoilt >= _PATIENCE)
+            spoilt += not true
+            taken = _step(potential, place, multipliers, solve, amiss if true else 0.0)
+            kept = solve if true and potential.one_sided else None
         if taken is None:
             return
         place, multipliers = taken
@@ -89,6 +98,23 @@ def equilibrium_at(
     return Equilibrium(state, residual, pressures, steps, multipliers, tensions)
 
 
+@dataclass(frozen=True, eq=False)
+class _Direction:
+    """Where factors lead: ``way`` (3 f,), and ``multipliers``, each of which moves by ``push`` (3 f, h)."""
+
+    way: Floats
+    multipliers: Floats
+    push: Floats
+
+    @staticmethod
+    def towards(place: Evaluation, solve: Solve) -> _Direction:
+        """Return the direction of a Newton step from a place."""
+        solved = solve(np.column_stack([-place.gradient, place.slopes.T]))
+        free, push = solved[:, 0], solved[:, 1:]
+        multipliers = -small_solve(place.slopes @ push, place.slopes @ free + place.held)
+        return _Direction(free + push @ multipliers, multipliers, push)
+
+
 def _step(
     potential: Potential, place: Evaluation, multipliers: Floats, solve: Solve, amiss: float
 ) -> tuple[Evaluation, Floats] | None:
@@ -96,19 +122,24 @@ def _step(
 
     ``amiss`` is what is amiss in ``place``, 0 to allow no step without safeguard.
     """
-    solved = solve(np.column_stack([-place.gradient, place.slopes.T]))
-    free, push = solved[:, 0], solved[:, 1:]
-    new = -small_solve(place.slopes @ push, place.slopes @ free + place.held)
-    direction = free + push @ new
-    if amiss and np.abs(direction).max(initial=0.0) < _BOLD:
-        there = potential.at(place.moved + direction.reshape(-1, 3))
-        if potential.residual_norm(there, new) <= _QUICK * amiss:
-            return there, new
+    ahead = _Direction.towards(place, solve)
+    if amiss and (quick := _quick(potential, place, ahead, _QUICK * amiss)) is not None:
+        return quick
     if (np.abs(place.held) > potential.tolerance).any():
-        start = _retract(potential, place.moved, push)
+        start = _retract(potential, place.moved, ahead.push)
         return None if start is None else (start, multipliers)
-    found = _line_search(potential, place, direction, push)
-    return None if found is None else (found, new)
+    found = _line_search(potential, place, ahead.way, ahead.push)
+    return None if found is None else (found, ahead.multipliers)
+
+
+def _quick(
+    potential: Potential, place: Evaluation, ahead: _Direction, most: float
+) -> tuple[Evaluation, Floats] | None:
+    """Return the end of a short step and its multipliers, None unless at most ``most`` is amiss there."""
+    if np.abs(ahead.way).max(initial=0.0) >= _BOLD:
+        return None
+    there = potential.at(place.moved + ahead.way.reshape(-1, 3))
+    return (there, ahead.multipliers) if potential.residual_norm(there, ahead.multipliers) <= most else None
 
 
 def factor(

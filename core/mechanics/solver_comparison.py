@@ -92,6 +92,7 @@ class SolverComparison:
         targets: LineTargets,
         watch: Watch | None = None,
         body_change: BodyChange | None = None,
+        exact: Equilibrium | None = None,
     ) -> None:
         self.model = model
         self.targets = targets
@@ -99,14 +100,20 @@ class SolverComparison:
         self.runs: dict[str, ControlRun] = {}
         self._body_change = body_change
         self._shape = shape_of(model)
-        self._solve(None)
+        self._solve(None, exact)
         self._set_runs(fresh=True)
 
-    def retarget(self, model: ConstrainedModel, targets: LineTargets, fresh: bool = False) -> None:
+    def retarget(
+        self,
+        model: ConstrainedModel,
+        targets: LineTargets,
+        fresh: bool = False,
+        exact: Equilibrium | None = None,
+    ) -> None:
         """Take new targets, warm: every run goes on from where it is, unless it diverged or never converged.
 
         ``model`` may differ in the lines that are worn, not in its control points. ``fresh`` begins new
-        records at turn 0.
+        records at turn 0; ``exact`` is the exact answer if it is known.
         """
         near, same = None, model is self.model and targets == self.targets
         if model is self.model and self.exact.is_converged:
@@ -116,13 +123,15 @@ class SolverComparison:
             for run in self.runs.values():
                 run.state = carried(run.state, self.model, model)
         self.model, self.targets = model, targets
-        self._solve(near)
+        self._solve(near, exact)
         self._set_runs(fresh, same)
 
-    def _solve(self, near: Equilibrium | None) -> None:
+    def _solve(self, near: Equilibrium | None, known: Equilibrium | None = None) -> None:
         """Find the exact answer; from one near by it is quicker, and the first Newton step is its tangent."""
-        self._exact_is_near = near is not None
-        if self._body_change is None:
+        self._exact_is_near = near is not None and known is None
+        if known is not None:
+            self.exact = known
+        elif self._body_change is None:
             self.exact = solve_exact(self.model, self.targets.ratios, near=near)
         else:
             self.exact = solve_body_exact(self.model, self.targets.ratios, self._body_change, near=near)

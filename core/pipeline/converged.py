@@ -20,7 +20,9 @@ def converged_frame(design: Design, near: Stages, progress: Progress = quiet) ->
     with threadpool_limits(1):
         stages = build(design, near, progress)
         change = stages.body_change if design.dense_volume else None
-        comparison = SolverComparison(stages.model, line_targets(design, stages), stages.watch, change)
+        comparison = SolverComparison(
+            stages.model, line_targets(design, stages), stages.watch, change, stages.balance
+        )
         turns = 0
         while not comparison.is_finished:
             progress("turns", min(turns / MOST_TURNS, 1.0))

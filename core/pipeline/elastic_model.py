@@ -29,22 +29,19 @@ def solve_elastic_model(
 
     The natural length of such a line is what its elastic measures unstretched. ``tissue_stiffness`` [N/m]
     gives the newtons; see ``core.mechanics.elastic_lines``. ``body_change`` is for answers that hold the
-    volume of the body itself. On a solid, which has one balance, the search begins at the stiffnesses of a
-    ``former`` model. Raises LineError where an elastic would be stretched beyond its curve, or
-    nothing balances.
+    volume of the body itself. On a solid, which has one balance, the search begins at the balance and the
+    stiffnesses of a ``former`` model. Raises LineError where an elastic would be stretched beyond its curve,
+    or nothing balances.
     """
     worn = {line.name: line.ratio for line in lines}
     ratios = {line.name: worn.get(line.name, 1.0) for line in model.lines}
     newtons = newtons_per_unit(model, tissue_stiffness)
     wish = ElasticLines(model, ratios, elastics, newtons, own_stiffness)
-    begin = None
-    if (
-        former is not None
-        and model.options.tissue == "solid"
-        and former.elongations.keys() == elastics.keys()
-    ):
-        begin = former.log_ea
-    fitted = fit_elastics(wish, _solver(tuple(ratios.values()), body_change), begin)
+    begin = near = None
+    if former is not None and _is_of_same_solid(former.model, model):
+        near = former.balance if former.balance.is_converged else None
+        begin = former.log_ea if former.elongations.keys() == elastics.keys() else None
+    fitted = fit_elastics(wish, _solver(tuple(ratios.values()), body_change, near), begin)
     for name, elongation in fitted.elongations.items():
         if elongation > elastics[name].max_elongation:
             raise elastics[name].overstretch_error(elongation, LineName(name), worn.get(name))
@@ -53,9 +50,16 @@ def solve_elastic_model(
     return fitted
 
 
-def _solver(ratios: tuple[float, ...], change: BodyChange | None) -> Solve:
-    """Return what solves the model of each round."""
-    near: Equilibrium | None = None
+def _is_of_same_solid(former: ConstrainedModel, model: ConstrainedModel) -> bool:
+    """Return whether both models are of one solid, and hold the same."""
+    alike = (
+        former.tensegric.rest is model.tensegric.rest and former.options.volume_of == model.options.volume_of
+    )
+    return alike and former.options.tissue == model.options.tissue == "solid"
+
+
+def _solver(ratios: tuple[float, ...], change: BodyChange | None, near: Equilibrium | None) -> Solve:
+    """Return what solves the model of each round, the first from ``near`` on."""
 
     def solve(model: ConstrainedModel) -> Equilibrium:
         nonlocal near

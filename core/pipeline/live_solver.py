@@ -251,9 +251,9 @@ class LiveSolver:
         same_answer = same_body and old is not None and old.design.dense_volume == dense
         if self._comparison is None or not same_answer:
             change = stages.body_change if dense else None
-            self._comparison = SolverComparison(stages.model, targets, stages.watch, change)
+            self._comparison = SolverComparison(stages.model, targets, stages.watch, change, stages.balance)
         else:
-            self._comparison.retarget(stages.model, targets, request.fresh)
+            self._comparison.retarget(stages.model, targets, request.fresh, stages.balance)
         self._seconds = time.perf_counter() - start
 
     def _advance(self, seconds: float) -> bool:
