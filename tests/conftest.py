@@ -231,6 +231,12 @@ def opened_as_in_the_program() -> None:
 
 
 @pytest.fixture
+def on_net(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A scan opens on the net of the paper."""
+    monkeypatch.setattr("app.gui.session.session.new_design", Design)
+
+
+@pytest.fixture
 def first_tour() -> None:
     """A first start begins the tour."""
 

@@ -142,7 +142,7 @@ def _over_shoulder(design: Design, frame: Frame, name: str) -> bool | None:
         return None
     if own.over_shoulder:
         return True
-    control, bust_level = frame.stages.control, frame.stages.landmarks.bust_level
+    control, bust_level = frame.stages.fitted, frame.stages.landmarks.bust_level
     if own.free:
         ends = embed(control.grid, (own.places[0], own.places[-1])).weights[[0, -1]]
         heights, held = ends @ control.mesh.vertices[:, 2], ends @ control.held > 1.0 - 1e-9

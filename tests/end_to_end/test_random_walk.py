@@ -15,7 +15,7 @@ from app.gui.main_window import MainWindow
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
-STEPS, EVERY, SEED = 100, 100, 5
+STEPS, EVERY, SEED = 100, 100, 7
 
 
 def test_a_random_walk_through_the_window_ends_where_its_model_does(

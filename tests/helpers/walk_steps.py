@@ -26,6 +26,8 @@ AMOUNTS = {
     "line_height": ("40", "55"),
     "prestress": ("30", "80"),
     "gain": ("", "0.02"),
+    "sag": ("15", "30"),
+    "density": ("0.9", "1"),
 }
 PINS = ("bust_point_left", "bust_point_right", "under_bust", "fold_left", "navel")
 LOOKS = (

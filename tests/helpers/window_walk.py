@@ -148,7 +148,8 @@ class WindowWalk:
         assert shown is not None
         alone = converged_frame(self.design, build(self.design))
         exact = np.subtract(astuple(shown.exact_marks), astuple(alone.exact_marks))
-        run = shown.control_points - alone.control_points
+        settled = shown.verdict.motion == alone.verdict.motion == "settled"  # others end at a chance place
+        run = (shown.control_points - alone.control_points) * settled
         self.far = max(self.far[0], float(np.abs(exact).max())), max(self.far[1], float(np.abs(run).max()))
         recovery = self.window.autosave_controller._recovery
         if self.session.unsaved and recovery is not None:

@@ -38,6 +38,7 @@ class _Opening:
     stamp: Stamp | None
     unsaved: bool
     revision: int
+    remark: UserError | None = None
 
     @property
     def is_new(self) -> bool:
@@ -55,7 +56,8 @@ class Session(DocumentEditor):
     says that a project is being written, or no longer, and ``not_saved`` why this has failed. ``failure`` is
     why the frame is not that of the present document, and stays so until something else is requested.
     ``trial`` is a design that is previewed as a proposal, until it is applied or rejected; ``stuck`` what
-    keeps a scan that is shown from being a document, never while a document is open.
+    keeps a scan that is shown from being a document, never while a document is open; ``remark`` says what of
+    the document is not as usual since it was opened.
     """
 
     opened = Signal(object)
@@ -74,6 +76,7 @@ class Session(DocumentEditor):
         self.stamp: Stamp | None = None
         self.trial: Design | None = None
         self.stuck: IncompleteBuildError | None = None
+        self.remark: UserError | None = None
         self._opening: _Opening | None = None
         self._saving = BackgroundSave(self)
         self._oldest = 0
@@ -231,10 +234,12 @@ class Session(DocumentEditor):
         self._opening = _Opening(document, path, stamp, unsaved, revision)
 
     def _open_on_net(self, design: Design, problem: UserError) -> None:
-        """Open a scan that solid tissue cannot be computed on, and say so once."""
+        """Open a scan that solid tissue cannot be computed on; ``remark`` says so."""
         self.open_design(replace(design, tissue="net"))
+        assert self._opening is not None
         said = join((problem.message, Message("The net is used as tissue.")))
-        self.failed.emit(UserError(said, Message("To use solid tissue, fill the holes at the Scan step.")))
+        remark = UserError(said, Message("To use solid tissue, fill the holes at the Scan step."))
+        self._opening = replace(self._opening, remark=remark)
 
     def _try(self, design: Design, fresh: bool) -> bool:
         if self._opening is None:
@@ -275,7 +280,7 @@ class Session(DocumentEditor):
         opening, self._opening = self._opening, None
         self.document, self.path, self.stamp = opening.document, opening.path, opening.stamp
         self._revision = self._oldest = opening.revision
-        self.frame = frame
+        self.frame, self.remark = frame, opening.remark
         self.undo_stack.clear()
         if opening.unsaved:
             self.undo_stack.resetClean()

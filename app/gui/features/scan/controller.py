@@ -86,6 +86,8 @@ class ScanController(QObject):
         self._check_pose(frame.stages)
         for sentence in warnings(frame.stages):
             self._context.notifications.warn(sentence, topic=SCAN)
+        if (remark := self._session.remark) is not None:
+            self._context.notifications.warn(remark.message, remark.hint, topic=SCAN)
 
     def show_frame(self, frame: Frame) -> None:
         """Show what was found on the scan of a frame, if it is another one; warnings that are over go."""
@@ -93,7 +95,9 @@ class ScanController(QObject):
         if former is None or frame.stages.landmarks is not former.landmarks:
             self.show_found(frame.stages)
         if former is not None and frame.stages.control is not former.control:
-            self._context.notifications.keep_only(SCAN, warnings(frame.stages))
+            remark = self._session.remark
+            lasting = [remark.message] if remark is not None and frame.stages.tissue is None else []
+            self._context.notifications.keep_only(SCAN, [*warnings(frame.stages), *lasting])
 
     def _check_pose(self, stages: Stages) -> None:
         self._forget_question()
