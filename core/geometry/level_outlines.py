@@ -92,7 +92,8 @@ def outlines(mesh: Mesh, z: Floats) -> Outlines:
 def _cut_levels(mesh: Mesh, z: Floats) -> tuple[Points, Indices, Indices]:
     """Return the segments of all levels, the edges that their ends lie on, shape (s, 2), and their levels."""
     # how many levels each corner lies over
-    over = np.searchsorted(z, mesh.vertices[:, 2], side="right")[mesh.faces.T]
+    below = np.searchsorted(z, mesh.vertices[:, 2], side="right")
+    over = np.stack([below[corner] for corner in mesh.faces.T])
     first = over.min(axis=0)
     count = over.max(axis=0) - first
     if count.sum() > MOST_SEGMENTS:
@@ -137,8 +138,8 @@ def _describe(segments: Points, piece: Indices, level: Indices, closed: Flags) -
     order = np.argsort(piece, kind="stable")
     start = np.searchsorted(piece[order], np.arange(len(closed)))
     flat = segments[order, :, :2]
-    low = np.minimum.reduceat(flat.min(axis=1), start, axis=0)
-    high = np.maximum.reduceat(flat.max(axis=1), start, axis=0)
+    low = np.minimum.reduceat(np.minimum(flat[:, 0], flat[:, 1]), start, axis=0)
+    high = np.maximum.reduceat(np.maximum(flat[:, 0], flat[:, 1]), start, axis=0)
     return Pieces(low, high, level[order[start]], closed)
 
 
@@ -228,7 +229,7 @@ def radii(segments: Points, level: Indices, centre: Points, bins: int = BINS) ->
         cross = out[:, 0] * along[:, 1] - out[:, 1] * along[:, 0]
         distance = (a[row, 0] * along[:, 1] - a[row, 1] * along[:, 0]) / np.where(cross == 0.0, np.nan, cross)
         good = np.isfinite(distance)
-        np.maximum.at(result, (level[row[good]], bin_[good] % bins), distance[good])
+        np.maximum.at(result.reshape(-1), level[row[good]] * bins + bin_[good] % bins, distance[good])
     return np.where(np.isfinite(result), result, np.nan)
 
 

@@ -61,7 +61,8 @@ def profiles(mesh: Mesh, bust: Points, bottom: float) -> list[Profile]:
 
     A profile is empty where there is no surface.
     """
-    x = mesh.vertices[:, 0][mesh.faces.T] - bust[0]
+    beside = mesh.vertices[:, 0] - bust[0]
+    x = np.stack([beside[corner] for corner in mesh.faces.T])
     crossed = (x.min(axis=0) <= OFFSETS[-1]) & (x.max(axis=0) >= OFFSETS[0])
     used, faces = np.unique(mesh.faces[crossed], return_inverse=True)
     strip = Mesh(mesh.vertices[used], faces.reshape(-1, 3))

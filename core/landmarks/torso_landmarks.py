@@ -64,7 +64,7 @@ def _line(mesh: Mesh, x: float, low: float, high: float, back: bool, split: floa
 
     It lies in front of y = ``split`` [mm], or at the ``back`` of it.
     """
-    across = mesh.vertices[:, 0][mesh.faces.T]
+    across = np.stack([mesh.vertices[corner, 0] for corner in mesh.faces.T])
     crossed = (across.min(axis=0) <= x) & (across.max(axis=0) >= x)
     pieces = join_segments(cut(Mesh(mesh.vertices, mesh.faces[crossed]), (x, 0.0, 0.0), (1.0, 0.0, 0.0)))
     best = np.empty((0, 3))

@@ -130,7 +130,8 @@ def _split(skin: Mesh, wall: Points, layers: int) -> Tetrahedra:
             parts.append(part)
     cells = np.concatenate(parts)
     pairs = np.sort(cells[:, EDGES].reshape(-1, 2), axis=1)
-    edges, number = np.unique(pairs, axis=0, return_inverse=True)
+    keys, number = np.unique(pairs[:, 0] * len(corners) + pairs[:, 1], return_inverse=True)
+    edges = np.stack(np.divmod(keys, len(corners)), axis=1)
     return Tetrahedra(skin, corners, edges, np.hstack([cells, len(corners) + number.reshape(-1, 6)]))
 
 

@@ -25,6 +25,7 @@ def work(body: Path) -> int:
     """Edit once, print that this is done, and stay, with autosave an hour away; returns the exit code."""
     from app.gui.application import application  # noqa: PLC0415 (in the process that is ended)
 
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)  # it may be ignored where tests are run, which is inherited
     app = application()
     QSettings().setValue("autosave", 3600.0)
 

@@ -118,7 +118,8 @@ def objects() -> dict[str, Shape]:
         "vase": plain(vase),
         "chair": chair(),
         "table": table(),
-        "head": together(*head()),
+        # so large that whichever girth is taken for that of a trunk could be one
+        "head": together(*(part.apply_scale(1.3) for part in head())),
         "head and shoulders": together(
             *head(40), limb((-170, 10, -50), (170, 10, -50), 75), ball((0, 0, -60), (150, 90, 80))
         ),

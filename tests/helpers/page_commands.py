@@ -6,10 +6,11 @@ import contextlib
 import io
 import re
 import shlex
-import shutil
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+
+from coarse_bodies import coarse_body
 
 from app.cli.main import main
 from app.presenters.samples import sample_design
@@ -44,10 +45,11 @@ def words_of(command: str) -> list[str]:
 
 
 def furnish(folder: Path) -> None:
-    """Put the scans and the project that pages name into an empty folder."""
+    """Put the scans, on few vertices, and the project that pages name into an empty folder."""
     for name, sample in SCANS.items():
-        shutil.copy(ROOT / "resources" / "samples" / f"{sample}.ply", folder / f"{name}.ply")
+        coarse_body(sample, folder).rename(folder / f"{name}.ply")
     design = replace(sample_design().with_line("mid-bust", 0.95), volume="exact")
+    design = replace(design, scan=replace(design.scan, path=str(folder / "scan.ply")))
     save_project(folder / "design.busk", Document.single(design), read_scan_file(design.scan), b"")
 
 

@@ -145,6 +145,6 @@ def eroded(skin: Flags) -> Flags:
 
 def bearing_bin(segments: Points, centre: Points) -> Indices:
     """Return the direction in which each segment lies from its centre, shape (s,)."""
-    out = segments[:, :, :2].mean(axis=1) - centre
+    out = 0.5 * (segments[:, 0, :2] + segments[:, 1, :2]) - centre
     bearing = np.arctan2(out[:, 0], -out[:, 1])
     return np.asarray(np.floor((bearing + np.pi) * BINS / (2.0 * np.pi)).astype(np.int64) % BINS)

@@ -11,7 +11,6 @@ from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 
-import numpy as np
 import platformdirs
 import pytest
 from PIL import Image
@@ -67,7 +66,7 @@ def test_all_checks_pass_without_display_and_without_streams(tmp_path: Path) -> 
     ]
     with Image.open(tmp_path / "out" / "window.png") as image:
         assert image.size == (1600, 1000)
-        assert len(np.unique(np.asarray(image.convert("RGB")).reshape(-1, 3), axis=0)) > 2000
+        assert len(image.convert("RGB").getcolors(1600 * 1000)) > 2000
 
 
 def test_a_failed_part_hides_none_of_the_others() -> None:

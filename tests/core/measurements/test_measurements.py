@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 from types import MappingProxyType
 
 import numpy as np
@@ -20,7 +21,7 @@ from core.landmarks.lower_breast import MIRRORED
 from core.landmarks.torso.cross_sections import Level, trunk_levels
 from core.landmarks.torso.girths import UNDER, girth_at, girths
 from core.landmarks.types import Landmarks
-from core.measurements.definitions import DEFINITIONS, KEYS, definition_of
+from core.measurements.definitions import DEFINITIONS, KEYS, Measure, definition_of
 from core.measurements.girths import enclosed, skin_ring, tape_ring
 from core.measurements.table import before_after, measure_rows, measures, smoothed_moves
 from core.measurements.tracked_points import moved_landmarks, track_points
@@ -28,6 +29,19 @@ from core.pipeline.build import build
 from core.pipeline.observables import Tapes
 from core.pipeline.solve import Solution, solve
 from core.scan.body import read_scan
+
+
+@cache
+def scanned(name: str) -> tuple[Mesh, Landmarks]:
+    """The calm skin of a sample body and its landmarks."""
+    body = read_scan(SAMPLES / f"{name}.ply")
+    return body.smoothed, find_landmarks(body)
+
+
+@cache
+def measured(name: str) -> MappingProxyType[str, Measure]:
+    """The measures of a sample body."""
+    return MappingProxyType(measures(*scanned(name)))
 
 
 def length(curve: np.ndarray) -> float:
@@ -57,15 +71,14 @@ def test_a_ring_goes_straight_over_what_is_missing() -> None:
 
 
 def test_landmarks_ride_on_the_skin() -> None:
-    body = read_scan(SAMPLES / "mannequin.ply")
-    found = find_landmarks(body)
+    skin, found = scanned("mannequin")
     places = np.array([mark.position for mark in found.points.values()])
-    bound = track_points(body.smoothed, places)
-    still = moved_landmarks(found, bound.moved(np.zeros_like(body.smoothed.vertices)))
+    bound = track_points(skin, places)
+    still = moved_landmarks(found, bound.moved(np.zeros_like(skin.vertices)))
     for name, mark in found.points.items():
         assert np.array_equal(mark.position, still.position(name))
     assert (still.bust_level, still.underbust_level) == (found.bust_level, found.underbust_level)
-    up = moved_landmarks(found, bound.moved(np.full_like(body.smoothed.vertices, 5.0)))
+    up = moved_landmarks(found, bound.moved(np.full_like(skin.vertices, 5.0)))
     assert up.bust_level == pytest.approx(found.bust_level + 5.0)
     assert up.underbust_level == pytest.approx(found.underbust_level + 5.0)
 
@@ -81,12 +94,11 @@ def test_a_rider_keeps_its_place_on_its_triangle() -> None:
 
 @pytest.fixture(scope="module")
 def person() -> tuple[Mesh, Landmarks]:
-    body = read_scan(SAMPLES / "person.ply")
-    return body.smoothed, find_landmarks(body)
+    return scanned("person")
 
 
-def test_every_measure_is_there_with_its_curves(person: tuple[Mesh, Landmarks]) -> None:
-    found = measures(*person)
+def test_every_measure_is_there_with_its_curves() -> None:
+    found = measured("person")
     missed = [key for key in KEYS if key not in (*found, "apex_lift")]
     assert not missed, "a definition needs its value, yielded by core/measurements/girths.py or bust.py"
     assert list(found) == [key for key in KEYS if key != "apex_lift"]
@@ -104,15 +116,14 @@ def test_every_measure_is_there_with_its_curves(person: tuple[Mesh, Landmarks]) 
 
 def test_girths_are_those_that_are_detected() -> None:
     body = read_scan(SAMPLES / "mannequin.ply")
-    landmarks = find_landmarks(body)
-    found = measures(body.smoothed, landmarks)
-    for name, girth in girths(body, landmarks).items():
+    found = measured("mannequin")
+    for name, girth in girths(body, scanned("mannequin")[1]).items():
         assert found[f"{name}_girth"].value == girth.tape_mm
         assert found[f"{name}_girth_skin"].value == girth.skin_mm
 
 
 def test_what_the_scan_does_not_show_is_missing_with_the_reason(person: tuple[Mesh, Landmarks]) -> None:
-    found = measures(*person)
+    found = measured("person")
     assert found["waist_girth"].value is None
     assert "No waist detected" in str(found["waist_girth"].note)
     mesh, landmarks = person
@@ -150,7 +161,7 @@ def test_no_volume_is_made_of_a_fold_that_a_hole_hides(person: tuple[Mesh, Landm
     unsure = {"fold_left": replace(landmarks.points["fold_left"], confidence=0.3)}
     found = measures(mesh, replace(landmarks, points=MappingProxyType({**landmarks.points, **unsure})))
     assert "uncertain" in str(found["breast_volume_left"].note)
-    sure = measures(mesh, landmarks)
+    sure = measured("person")
     for key in ("root_length_left", "bust_point_to_fold_left", "bust_height"):
         assert found[key].estimate, key
         assert "uncertain" in str(found[key].note)
@@ -171,7 +182,7 @@ def test_a_hole_at_a_level_makes_an_estimate(person: tuple[Mesh, Landmarks]) -> 
         (np.abs(middle[:, 2] - landmarks.bust_level) < 25.0) & (middle[:, 0] > 100.0) & (middle[:, 1] > -150)
     )
     found = measures(Mesh(mesh.vertices, mesh.faces[~torn]), landmarks)
-    whole = measures(mesh, landmarks)
+    whole = measured("person")
     assert found["bust_girth"].estimate
     assert not whole["bust_girth"].estimate
     assert "hole" in str(found["bust_girth"].note)
@@ -180,8 +191,7 @@ def test_a_hole_at_a_level_makes_an_estimate(person: tuple[Mesh, Landmarks]) -> 
 
 
 def test_even_breasts_measure_alike_and_volumes_tell_how_unsure_they_are() -> None:
-    body = read_scan(SAMPLES / "mannequin.ply")
-    found = measures(body.smoothed, find_landmarks(body))
+    found = measured("mannequin")
     left, right = (found[f"breast_volume_{side}"] for side in ("left", "right"))
     assert left.value == pytest.approx(right.value, rel=0.01)
     assert left.estimate
