@@ -17,6 +17,7 @@ from core.mechanics.iteration import LineTargets, iterate
 from core.mechanics.newton import Equilibrium
 from core.mechanics.potential import Potential
 from core.mechanics.sensitivity import Sensitivities
+from core.pipeline import build as pipeline
 from core.pipeline.build import Stages, build, line_targets
 from core.pipeline.solve import exact_equilibrium
 
@@ -218,6 +219,7 @@ def test_a_scan_without_room_for_tissue_is_refused_in_a_sentence(
     def crossed(*_: object) -> None:
         raise ValueError("the chest wall crosses the skin")
 
-    monkeypatch.setattr("core.pipeline.build.condense", crossed)
+    monkeypatch.setattr(pipeline, "_condensed", pipeline._condensed.__wrapped__)
+    monkeypatch.setattr(pipeline, "condense", crossed)
     with pytest.raises(LineError, match="Solid tissue cannot be computed"):
         build(person.design)
