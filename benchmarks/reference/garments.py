@@ -14,7 +14,6 @@ from core.document.cup import Cup as CupSettings
 from core.document.design import Design, ScanSource
 from core.geometry.mesh import Floats, Points
 from core.pipeline.build import Stages, build
-from core.pipeline.cup_parts import CupLayout
 from reference.cases import Case
 from reference.contact import Cup
 
@@ -89,11 +88,10 @@ def cup_of(value: str, stages: Stages) -> Cup:
     }
     if coverage not in COVERAGES or len(way) > len(WAYS):
         raise ValueError(f"cup={value}: give {', '.join(COVERAGES)}, then lift, forward or gather")
-    assert stages.tissue is not None
     control = stages.control
     lift, forward, gather = (way[each] for each in WAYS)
     settings = CupSettings(coverage=coverage, lift=lift, forward=forward, gather=gather)
-    layout = CupLayout(settings, stages.fitted, control, stages.tissue.depth)
+    layout = stages.cup_layout(settings)
     side = np.zeros(len(control.fixed), dtype=np.int64)
     for each in (1, -1):
         side[layout.points(each)] = each

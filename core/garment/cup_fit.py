@@ -13,7 +13,6 @@ from core.mechanics.condensed_tissue import CondensedTissue
 from core.mechanics.cup_parts import Underwire
 from core.messages import Message
 from core.pipeline.build import Stages
-from core.pipeline.cup_parts import CupLayout
 from core.pipeline.surface_fields import between_control_points
 
 SMALL_ML = 20.0
@@ -91,9 +90,8 @@ class WornCups:
 
     def __init__(self, stages: Stages) -> None:
         assert stages.design.cup is not None
-        assert stages.tissue is not None
         self.stages = stages
-        self.layout = CupLayout(stages.design.cup, stages.fitted, stages.control, stages.tissue.depth)
+        self.layout = stages.cup_layout(stages.design.cup)
 
     @cached_property
     def _areas(self) -> Floats:

@@ -43,7 +43,7 @@ from core.progress import Progress, quiet
 from core.scan.body import Body, ImplausibleScanError, body_of
 from core.scan.edited_body import KEEP_MORE, NO_BUST, apply_edits
 from core.scan.source import UNEDITED
-from core.tissue.condensed import TissueResponse, condense
+from core.tissue.condensed import TissueResponse, condense, with_moved_points
 from core.tissue.solid import DENSITY as CONDENSED_DENSITY
 
 SHARES = {
@@ -120,6 +120,10 @@ class Stages:
     def rest_marks(self) -> Observables:
         """Return the observables of the original body."""
         return self.watch(self.control.mesh.vertices)
+
+    def cup_layout(self, cup: Cup) -> CupLayout:
+        """Return where cups lie on this body. Raises LineError on a net of cables."""
+        return _cup_layout(cup, self.fitted, self.control, self.tissue)
 
     def shape(self, control_points: Points) -> tuple[Points, Points]:
         """Return places [mm] and normals [1] of ``moving.vertices``, each of shape (r, 3).
@@ -223,11 +227,13 @@ def build(
     progress: Progress = quiet,
     *,
     control_points: Points | None = None,
+    near: Stages | None = None,
 ) -> Stages:
     """Build everything that precedes solving ``design``; ``progress`` receives the name of each new stage.
 
     ``previous`` is the last result, whole or incomplete; stages with equal inputs are reused. The control
-    mesh is fitted, unless its ``control_points`` (n, 3) [mm] are known. Raises the UserError of the stage
+    mesh is fitted, unless its ``control_points`` (n, 3) [mm] are known. The tissue is condensed, unless its
+    landmarks lie ``near`` those of other stages, whose tissue then serves. Raises the UserError of the stage
     that fails, or Cancelled; ``previous`` then remains valid.
     """
     stage = _StageCache(previous, progress)
@@ -239,7 +245,7 @@ def build(
     else:
         try:
             body = stage("edit scan", partial(apply_edits, progress=stage.inside), body, design.scan.edits)
-            return _stages(stage, design, scan, body, control_points)
+            return _stages(stage, design, scan, body, control_points, near)
         except (LandmarkError, FitError) as problem:
             stuck = IncompleteBuildError(problem, body, design, stage)
     # Raised out here it has no context: what the window keeps would keep all that was read and tried.
@@ -247,15 +253,19 @@ def build(
 
 
 def _stages(
-    stage: _StageCache, design: Design, scan: ScanFile, body: Body, control_points: Points | None
+    stage: _StageCache,
+    design: Design,
+    scan: ScanFile,
+    body: Body,
+    control_points: Points | None,
+    near: Stages | None,
 ) -> Stages:
     landmarks = stage(FINDING, partial(detect_landmarks, progress=stage.inside), body, design.placed)
     fitted = _fitted(stage, design, body, landmarks, control_points)
     control, tissue = fitted, None
     if design.tissue == "solid":
         control = stage("halve control mesh", halved, fitted, body.smoothed)
-        condensed = partial(_condensed, progress=stage.inside)
-        tissue = stage("condense tissue", condensed, body.smoothed, fitted, control)
+        tissue = _tissue(stage, body.smoothed, fitted, control, near)
     cups = () if design.cup is None else stage("place cups", _cups, design.cup, fitted, control, tissue)
     patch = stage("find patch", blend_weights, body.mesh, control)
     weights = design.weights, design.scaled_normals
@@ -293,6 +303,14 @@ def _fitted(
     if control_points is None:
         return stage("fit control mesh", fit_control_mesh, template, body, landmarks, design.line_height)
     return stage("place control mesh", control_mesh_at, template, control_points)
+
+
+def _tissue(
+    stage: _StageCache, body: Mesh, fitted: ControlMesh, control: ControlMesh, near: Stages | None
+) -> TissueResponse:
+    if near is not None and near.tissue is not None:
+        return stage("condense tissue", with_moved_points, near.tissue, near.control, control)
+    return stage("condense tissue", partial(_condensed, progress=stage.inside), body, fitted, control)
 
 
 def _with_elastics(
@@ -426,16 +444,22 @@ def _model(
     )
 
 
-def _cups(
+def _cup_layout(
     cup: Cup, fitted: ControlMesh, control: ControlMesh, tissue: TissueResponse | None
-) -> tuple[CupPart, ...]:
-    """Return the parts of cups. Raises LineError on a net of cables."""
+) -> CupLayout:
     if tissue is None:
         raise LineError(
             Message("Cups cannot be computed on the net as tissue."),
             Message("Choose solid tissue, or remove the cups."),
         )
-    return CupLayout(cup, fitted, control, tissue.depth).parts()
+    return CupLayout(cup, fitted, control, tissue.depth)
+
+
+def _cups(
+    cup: Cup, fitted: ControlMesh, control: ControlMesh, tissue: TissueResponse | None
+) -> tuple[CupPart, ...]:
+    """Return the parts of cups. Raises LineError on a net of cables, and for cups that hold too little."""
+    return _cup_layout(cup, fitted, control, tissue).parts()
 
 
 GRAVITY = {

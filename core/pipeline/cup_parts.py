@@ -13,7 +13,7 @@ from core.control_mesh.fit import ControlMesh
 from core.control_mesh.halved import through_middles
 from core.document.cup import Cup
 from core.errors import LineError
-from core.geometry.mesh import Floats, Indices, Mesh, Points
+from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points
 from core.mechanics.cup_parts import CupCloth, CupContact, CupPart, SmoothSurface, Underwire
 from core.mechanics.springs import springs
 from core.messages import Message
@@ -122,6 +122,19 @@ class CupLayout:
         path = self.control.mesh.vertices[self.root(side)]
         return float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
 
+    def root_width(self, side: int) -> float:
+        """Return the distance between the ends of the root [mm]."""
+        ends = self.control.mesh.vertices[self.root(side)[[0, -1]]]
+        return float(np.linalg.norm(ends[1] - ends[0]))
+
+    def cloth_lengths(self, side: int) -> tuple[float, float]:
+        """Return the mean lengths of the skin under a sewn cup, across and upright [mm]."""
+        pairs, across = self._strips(side)
+        rest = self.control.mesh.vertices
+        length = np.linalg.norm(rest[pairs[:, 0]] - rest[pairs[:, 1]], axis=1)
+        rows, columns = (len(np.unique(place[pairs])) for place in (self._row, self._column))
+        return float(length[across].sum()) / rows, float(length[~across].sum()) / columns
+
     def wire_shape(self, side: int) -> Points:
         """Return the form of the wire less that of the root, shape (w, 3) [mm]: wider in its own plane."""
         rest = self.control.mesh.vertices[self.root(side)]
@@ -177,13 +190,17 @@ class CupLayout:
         rest = self.control.mesh.vertices[points]
         return CupContact(self._place[points], rest, self.target[points], surface, CUP_STIFFNESS)
 
-    def _cloth(self, side: int) -> CupCloth:
+    def _strips(self, side: int) -> tuple[Indices, Flags]:
+        """Return the ends of the strips of a sewn cup, (s, 2), and which of them go across, (s,)."""
         points = self.points(side)
         edges = self.control.mesh.edges
         pairs = edges[np.isin(edges, points).all(axis=1)]
         rows, columns = (np.ptp(place[pairs], axis=1) for place in (self._row, self._column))
         pairs = pairs[(rows == 0.0) | (columns == 0.0)]
-        across = self._row[pairs[:, 0]] == self._row[pairs[:, 1]]
+        return pairs, np.asarray(self._row[pairs[:, 0]] == self._row[pairs[:, 1]])
+
+    def _cloth(self, side: int) -> CupCloth:
+        pairs, across = self._strips(side)
         ratio = np.where(across, self.cup.across, self.cup.upright)
         rest = self.control.mesh.vertices
         length = np.linalg.norm(rest[pairs[:, 0]] - rest[pairs[:, 1]], axis=1)

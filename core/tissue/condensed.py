@@ -7,7 +7,7 @@ of the solid, whose tangent has the stresses of its weight on the scan.
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import sparse
@@ -86,11 +86,18 @@ class TissueResponse:
 
     def fade(self, places: Points) -> Floats:
         """Return how far ``places`` (k, 3) [mm] follow the skin: 0 at its border and beyond .. 1 inside."""
-        face, foot = nearest_faces(self.skin, places)
-        corners = self.skin.faces[face]
-        share = np.clip(barycentric(self.skin.vertices[corners], foot), 0.0, 1.0)
+        corners, share = corner_shares(self.skin, places)
         inside = (share * ~self.still[corners]).sum(axis=1)
         return np.asarray(np.where(inside > _ON_RIM, np.minimum(inside / _FADE, 1.0), 0.0))
+
+    def moved_at(self, places: Points) -> Floats:
+        """Return how ``places`` (k, 3) [mm] of the skin move with the points, (3 k, 3 f) [1]."""
+        corners, share = corner_shares(self.skin, places)
+        rows = np.repeat(np.arange(len(places)), 3)
+        at_vertices = sparse.csr_array(
+            (share.ravel(), (rows, corners.ravel())), shape=(len(places), len(self.skin.vertices))
+        )
+        return np.asarray(_over_axes(at_vertices[:, self.nodes]) @ self.carried)
 
 
 def condense(
@@ -124,13 +131,49 @@ def condense(
     )
 
 
+def with_moved_points(tissue: TissueResponse, former: ControlMesh, fine: ControlMesh) -> TissueResponse:
+    """Return the response of the same tissue at the points of ``fine``, which lie near those of ``former``.
+
+    Both are meshes of one template on one body. The solid is not condensed anew: within the displacements
+    that forces at the former points cause, those of the new ones are as many and tell them apart.
+    """
+    free, places = ~fine.fixed, fine.mesh.vertices
+    if np.array_equal(places, former.mesh.vertices):
+        return tissue
+    turned = np.eye(3 * int(free.sum()))
+    turned += tissue.moved_at(places[free]) - tissue.moved_at(former.mesh.vertices[free])
+    back = np.asarray(np.linalg.inv(turned), dtype=np.float64)
+    by_weight = turned @ np.linalg.solve(tissue.stiffness, tissue.weight[:, 2])
+    corners, share = corner_shares(former.mesh, places)
+    return replace(
+        tissue,
+        stiffness=frozen(_congruent(tissue.stiffness, back)),
+        prestress=frozen(_congruent(tissue.prestress, back)),
+        weight=frozen(back.T @ tissue.weight),
+        rise=float(np.mean(by_weight[3 * (np.cumsum(free) - 1)[list(fine.bust_points)] + 2])),
+        carried=frozen(tissue.carried @ back),
+        depth=frozen((share * tissue.depth[corners]).sum(axis=1)),
+    )
+
+
+def corner_shares(mesh: Mesh, places: Points) -> tuple[Indices, Floats]:
+    """Return the corners of the face nearest to each of ``places`` (k, 3) [mm] and their shares, (k, 3)."""
+    face, foot = nearest_faces(mesh, places)
+    corners = mesh.faces[face]
+    return corners, np.clip(barycentric(mesh.vertices[corners], foot), 0.0, 1.0)
+
+
+def _congruent(matrix: Floats, by: Floats) -> Floats:
+    product = by.T @ matrix @ by
+    return np.asarray(0.5 * (product + product.T))
+
+
 def tissue_depth(solid: TissueSolid, places: Points) -> Floats:
     """Return how much deeper than at the rim the tissue is at places (k, 3) of the skin, (k,) [mm]."""
     skin = solid.cells.skin
     deep = np.linalg.norm(skin.vertices - solid.cells.corners[: len(skin.vertices)], axis=1) - DEPTH
-    face, foot = nearest_faces(skin, places)
-    share = np.clip(barycentric(skin.vertices[skin.faces[face]], foot), 0.0, 1.0)
-    return np.asarray(np.maximum((share * deep[skin.faces[face]]).sum(axis=1), 0.0))
+    corners, share = corner_shares(skin, places)
+    return np.asarray(np.maximum((share * deep[corners]).sum(axis=1), 0.0))
 
 
 def _solid(body: Mesh, coarse: ControlMesh, progress: Progress) -> TissueSolid:

@@ -21,7 +21,7 @@ from core.analysis.uncertainty.outputs import (
     original_values,
     skin_normals,
 )
-from core.analysis.uncertainty.parameters import PLACING, UncertainParameter, perturb
+from core.analysis.uncertainty.parameters import PLACING, UncertainParameter, perturb, turned_cup
 from core.analysis.uncertainty.perturbed_solutions import PerturbedSolutions
 from core.deformation.tffd import deform
 from core.errors import UserError
@@ -160,30 +160,40 @@ class Propagation:
                 # Elastics have newtons of their own on a net, whose unit changes; on a solid other lines do.
                 stiffer[at] = -knob.sd if solid != (elastic is not None) else 0.0
             elif (knob.source == LINE and not elastic) or (
-                knob.source == ELASTIC and elastic and elastic.name == knob.name
+                knob.source == ELASTIC and elastic and elastic.name == knob.name and not knob.cup
             ):
                 stiffer[at] = knob.sd
-            elif knob.source == TAPE and name == knob.name:
+            elif knob.source == TAPE and name == knob.name and not knob.cup:
                 ratios[at] = knob.sd / model.lines[at].whole_length
         made = {names.index(name): elastic for name, elastic in elastics.items()}
-        softer = self._softer(knob.sd if knob.source == TISSUE and solid else 0.0)
+        beside = self._beside(knob)
         answers = stiffness_rates(
-            self.answer, Changes(stiffer, ratios), made, self.ratios, self._kept, softer.moved
+            self.answer, Changes(stiffer, ratios), made, self.ratios, self._kept, beside.moved
         )
         moved = np.zeros_like(self.points)
         moved[model.tensegric.free] = answers.moved[:, 0].reshape(-1, 3)
-        return moved, self._pulls(knob, answers.pulls[:, 0], newtons, ratios, softer)
+        return moved, self._pulls(knob, answers.pulls[:, 0], newtons, ratios, beside)
 
-    def _softer(self, off: float) -> Rates:
-        """Return what a sag larger by ``off`` in its logarithm does to a solid; 0 does nothing."""
-        if off:
-            return self._kept(d_sag(self.answer)).summed([[0]], off)
+    def _beside(self, knob: UncertainParameter) -> Rates:
+        """Return what a knob does to other things than lines: to a solid, and to cups."""
+        if knob.source == TISSUE and self.stages.design.tissue == "solid":
+            return self._kept(d_sag(self.answer)).summed([[0]], knob.sd)
+        if knob.cup:
+            return self._kept(self.answer.by_forces(self._of_cups(knob)))
         return Rates(
             np.zeros((self.answer.place.gradient.size, 1)), np.zeros((len(self.answer.place.held), 1))
         )
 
+    def _of_cups(self, knob: UncertainParameter) -> Floats:
+        """Return the forces on the free points that one sd of a setting of the cups adds, (3 f, 1)."""
+        moved, found = self.answer.place.moved, []
+        for turn in (-_SMALL, _SMALL):
+            parts = self.stages.cup_layout(turned_cup(self.stages.design.cup, knob, turn)).parts()
+            found.append(sum((part.gradient(moved) for part in parts), np.zeros_like(moved)))
+        return ((found[1] - found[0]) / (2.0 * _SMALL)).reshape(-1, 1)
+
     def _pulls(
-        self, knob: UncertainParameter, pulls: Floats, newtons: float, ratios: Floats, softer: Rates
+        self, knob: UncertainParameter, pulls: Floats, newtons: float, ratios: Floats, beside: Rates
     ) -> dict[str, Floats]:
         stages, model = self.stages, self.stages.model
         unit = newtons_per_unit(model, stages.design.tissue_stiffness)
@@ -194,7 +204,7 @@ class Propagation:
                 continue
             segments = self.tensions[line.name].segments
             if held:
-                found[line.name] = newtons * segments + unit * self._held(at, ratios, softer)
+                found[line.name] = newtons * segments + unit * self._held(at, ratios, beside)
             elif (model.owner == at).any():
                 found[line.name] = newtons * segments + unit * pulls[model.owner == at]
             else:
@@ -202,14 +212,14 @@ class Propagation:
                 found[line.name] = np.full(len(segments), gained)
         return found
 
-    def _held(self, line: int, ratios: Floats, softer: Rates) -> float:
+    def _held(self, line: int, ratios: Floats, beside: Rates) -> float:
         """Return what the tension of a held line gains, in the model's unit."""
         every = np.arange(len(ratios))
         rates = self._kept(self.answer.by_ratio(every))
         rest = np.array([each.rest_length for each in self.stages.model.lines])
         by_line = self.answer.tensions(rates, np.diag(rest))[1]
-        by_tissue = self.answer.tensions(softer, np.zeros((len(rest), 1)))[1]
-        return float(by_line[line] @ ratios[:, 0] + by_tissue[line, 0])
+        by_beside = self.answer.tensions(beside, np.zeros((len(rest), 1)))[1]
+        return float(by_line[line] @ ratios[:, 0] + by_beside[line, 0])
 
     def _on_ribs(self, knob: UncertainParameter, name: str, longer: float) -> float:
         """Return what the tension of an elastic that cannot move gains [N]."""
@@ -221,6 +231,7 @@ class Propagation:
         return (ends[1] - ends[0]) / 2.0
 
 
+_SMALL = 1e-3  # of a standard deviation, to either side, for what a setting of the cups adds
 _STILL = 1e-9  # a knob that moves no point further changes no measure [mm]
 
 

@@ -6,10 +6,12 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import reduce
+from typing import Any
 
 import numpy as np
 
 from core.analysis.uncertainty.input_uncertainty import InputUncertainty
+from core.document.cup import CUP_RANGES, Cup
 from core.document.design import Design
 from core.document.elastic import TISSUE_LIMITS, Elastic
 from core.geometry.mesh import Points, unit
@@ -39,7 +41,7 @@ class UncertainParameter:
 
     ``source`` is one of ``SOURCES``; ``name`` that of a landmark, line or elastic; ``direction`` (3,) is
     where a landmark goes, None for ``PLACING``; ``shift`` (n, 3) [mm] is how far one ``sd`` of the model
-    error moves the control points.
+    error moves the control points; ``cup`` names a setting of the cups.
     """
 
     source: str
@@ -47,6 +49,7 @@ class UncertainParameter:
     name: str = ""
     direction: Points | None = None
     shift: Points | None = None
+    cup: str = ""
 
 
 PLACING = UncertainParameter(LANDMARKS, 1.0)
@@ -57,6 +60,7 @@ def uncertain_parameters(stages: Stages, assumed: InputUncertainty) -> tuple[Unc
     """Return all knobs of a design that turn anything, the quick ones first."""
     found = [
         *_of_lines(stages, assumed),
+        *_of_cups(stages, assumed),
         UncertainParameter(SCAN, assumed.skin_mm),
         *_of_landmarks(stages, assumed),
     ]
@@ -70,7 +74,7 @@ def _of_lines(stages: Stages, assumed: InputUncertainty) -> Iterator[UncertainPa
         [line for line in stages.model.lines if line.name in design.active_lines()],
     )
     moving = [line for line in worn if line.constrains]
-    if worn:
+    if not design.is_bare:
         yield UncertainParameter(TISSUE, assumed.sag_ln if design.tissue == "solid" else assumed.tissue_ln)
     if any(line.name not in elastics for line in moving) and design.line_hold == "spring":
         yield UncertainParameter(LINE, assumed.line_ln)
@@ -80,6 +84,23 @@ def _of_lines(stages: Stages, assumed: InputUncertainty) -> Iterator[UncertainPa
     for elastic in dict.fromkeys(elastics.values()):
         sd = assumed.elastic_ln if elastic.estimate else assumed.measured_elastic_ln
         yield UncertainParameter(ELASTIC, sd, elastic.name)
+
+
+def _of_cups(stages: Stages, assumed: InputUncertainty) -> Iterator[UncertainParameter]:
+    """Yield each length of a cup off by what a band is, and its cloth as an elastic that is estimated."""
+    cup = stages.design.cup
+    if cup is None:
+        return
+    layout = stages.cup_layout(cup)
+    if cup.kind == "moulded":
+        lengths = dict.fromkeys(("lift", "forward", "gather"), 1.0)
+    else:
+        lengths = dict(zip(("across", "upright"), layout.cloth_lengths(1), strict=True))
+        yield UncertainParameter(ELASTIC, assumed.elastic_ln, cup="cloth")
+    if cup.wire:
+        lengths["wire_width"] = layout.root_width(1)
+    for setting, length in lengths.items():
+        yield UncertainParameter(TAPE, assumed.tape_mm / length, cup=setting)
 
 
 def _of_landmarks(stages: Stages, assumed: InputUncertainty) -> Iterator[UncertainParameter]:
@@ -137,11 +158,22 @@ def perturb(stages: Stages, turns: Mapping[UncertainParameter, float]) -> Pertur
         elif knob.source == LANDMARKS:
             if knob.direction is not None:
                 marks[knob.name] = marks[knob.name] + off * knob.direction
+        elif knob.cup:
+            design = replace(design, cup=turned_cup(design.cup, knob, turn))
         else:
             design = _TURNS[knob.source](design, knob, off, lines)
     for name, place in marks.items():
         design = design.with_placed(name, in_file(place, stages.body.pose.file_to_mm))
     return Perturbed(design, skin, shift)
+
+
+def turned_cup(cup: Cup | None, knob: UncertainParameter, turn: float) -> Cup:
+    """Return a cup with one of its settings turned by so many standard deviations, within its range."""
+    assert cup is not None, "a knob of cups is one of a design with cups"
+    value, off = getattr(cup, knob.cup), turn * knob.sd
+    turned = value * math.exp(off) if knob.source == ELASTIC else value + off
+    changed: dict[str, Any] = {knob.cup: _within(turned, CUP_RANGES[knob.cup])}
+    return replace(cup, **changed)
 
 
 def _tissue(design: Design, knob: UncertainParameter, off: float, lines: Mapping[str, Line]) -> Design:

@@ -127,8 +127,8 @@ class PerturbedSolutions:
         if self.is_bare:
             return self._unworn(turned)
         placed = turned.design.placed
-        near, rest = self._known.get(placed, (self.base, None))
-        stages = build(turned.design, near)
+        known, rest = self._known.get(placed, (self.base, None))
+        stages = build(turned.design, known, near=self.base)
         rest = rest or original_measurements(stages, self.steps)
         if keep and placed not in self._known:
             slim = {name: known for name, known in stages.memo.items() if name in _KEPT}
