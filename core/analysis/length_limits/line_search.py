@@ -101,8 +101,12 @@ class LineSearch:
         return _red(here) and any(not _red(stop) for stop in stops)
 
     def _jumped(self, above: float) -> Sample | None:
-        """Return a balance far from the last one: where lines are springs the shape may snap there, once."""
-        if self._snapped or self._ground.model.options.line_hold == "held":
+        """Return a balance far from the last one: where lines are springs the shape may snap there, once.
+
+        On a solid, whose energy is quadratic but for lines and cups, none was found on any garment.
+        """
+        options = self._ground.model.options
+        if self._snapped or options.line_hold == "held" or options.tissue == "solid":
             return None
         self._snapped = True
         ratios = (above - leap for leap in _LEAPS)
