@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
-from scipy.linalg import lapack, solve_triangular
+from scipy.linalg import blas, solve_triangular
 from scipy.sparse import linalg as sparse_linalg
 
 from core.geometry.mesh import Floats, Indices, Points, frozen, unit
@@ -66,15 +66,12 @@ def _forward_of_blocks(stiffness: Operator, points: int, relaxation: float) -> S
     lower = triangle if isinstance(triangle, np.ndarray) else triangle.toarray()
     blocks = lower.reshape(points, 3, points, 3)[np.arange(points), :, np.arange(points)]
     own = np.linalg.inv(blocks)
-    # Each point's rows over its own block: what is left has ones on the diagonal, and is inverted quickly.
+    # Each point's rows over its own block: what is left has ones on the diagonal.
     scaled = np.einsum("pab,pbk->pak", own, lower.reshape(points, 3, -1)).reshape(lower.shape)
-    inverse, _ = lapack.dtrtri(scaled, lower=1, unitdiag=1)
-    inverse = np.tril(inverse, -1) + np.eye(len(inverse))
 
     def forward(right: Points) -> Points:
-        return np.asarray(inverse @ np.einsum("pab,pb->pa", own, right.reshape(points, 3)).ravel()).reshape(
-            -1, 3
-        )
+        forces = np.einsum("pab,pb->pa", own, right.reshape(points, 3)).ravel()
+        return np.asarray(blas.dtrsv(scaled.T, forces, lower=0, trans=1, diag=1)).reshape(-1, 3)
 
     return forward
 
