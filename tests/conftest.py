@@ -231,9 +231,8 @@ def opened_as_in_the_program() -> None:
 
 
 @pytest.fixture
-def on_net(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A scan opens on the net of the paper."""
-    monkeypatch.setattr("app.gui.session.session.new_design", Design)
+def on_solid() -> None:
+    """A scan opens on solid tissue."""
 
 
 @pytest.fixture
@@ -280,7 +279,8 @@ def empty_house(
 
     A first start opens the mannequin with a short glued line, which most tests are about, and begins no tour:
     with ``opened_as_in_the_program`` it does as the user sees it. Samples are on a fifth of their vertices,
-    with ``fine_samples`` on all. The soft shadows of a body are computed once.
+    with ``fine_samples`` on all. The soft shadows of a body are computed once. Scans open on the net of the
+    paper, which takes a tenth of the time; with ``on_solid`` they do as the user sees it.
     How sure figures are is not worked out where a test does not ask: it takes half a minute of a processor.
     Frames come seldom, as on a slow machine: most of a test's time would go into ones that nobody looks at.
     """
@@ -292,6 +292,8 @@ def empty_house(
     if "opened_as_in_the_program" not in request.fixturenames:
         opened = sample_design() if "fine_samples" in request.fixturenames else coarse_sample
         monkeypatch.setattr("app.gui.startup.sample_in_bra", lambda: opened)
+    if not {"opened_as_in_the_program", "on_solid"}.intersection(request.fixturenames):
+        monkeypatch.setattr("app.gui.session.session.new_design", Design)
     if not {"opened_as_in_the_program", "first_tour"}.intersection(request.fixturenames):
         monkeypatch.setattr("app.gui.tour.Tour.begin_when_settled", lambda _: None)
     monkeypatch.setattr("app.gui.viewport.view_area.bake_occlusion", shading)

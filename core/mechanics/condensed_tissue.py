@@ -5,7 +5,7 @@ It takes the place of the net of cables in a model: linear, in balance with its 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -77,14 +77,26 @@ class CondensedTissue:
 
     def stiffness_of(self, contacts: Points) -> Floats:
         """Return the stiffness in an iteration with ``contacts`` (c, 3), (3 f, 3 f) [N/mm]."""
-        figures, done = [], 0
+        # A point that a surface holds back goes to its balance there and not beyond.
+        bounds = [RELAXATION * bound if touches else bound for touches, bound in self._bounds(contacts)]
+        return self._with_cups(bounds)
+
+    def contact_blocks(self, contacts: Points) -> Floats:
+        """Return what ``contacts`` (c, 3) add to the points' own blocks in an iteration, (f, 3, 3) [N/mm]."""
+        blocks = np.zeros((len(self.free), 3, 3))
+        for cup, (touches, bound) in zip(self.cups, self._bounds(contacts), strict=True):
+            if touches:
+                at = cup.entries
+                np.add.at(blocks, (at.row // 3, at.row % 3, at.column % 3), at.value * bound[at.source])
+        return blocks
+
+    def _bounds(self, contacts: Points) -> Iterator[tuple[bool, Floats]]:
+        """Yield for each part whether it may touch, and its figures for an iteration."""
+        done = 0
         for cup in self.cups:
             count = len(cup.contacts(np.zeros_like(self.load)))
-            bound = cup.bound(contacts[done : done + count])
-            # A point that a surface holds back goes to its balance there and not beyond.
-            figures.append(RELAXATION * bound if count else bound)
+            yield count > 0, cup.bound(contacts[done : done + count])
             done += count
-        return self._with_cups(figures)
 
     def hessian(self, moved: Points) -> Floats:
         """Return the second derivative of the energy as a full matrix, shape (3 f, 3 f) [N/mm]."""

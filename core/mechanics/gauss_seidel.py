@@ -8,6 +8,7 @@ move by the answer of that triangle to the unbalanced forces, whatever law made 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy import sparse
@@ -54,26 +55,60 @@ def bonded_sweep(stiffness: Operator, points: int, relaxation: float = 1.0) -> G
 
     The latter's points go further by ``relaxation`` [1].
     """
-    none = np.empty((0, points))
     alike = stiffness.shape[0] == points
-    forward = _forward(stiffness) if alike else _forward_of_blocks(stiffness, points, relaxation)
-    return GaussSeidelSweep(forward, np.empty(0, dtype=np.int64), none, np.empty((0, 0)))
+    return _glued(_forward(stiffness) if alike else forward_of_blocks(stiffness, points, relaxation))
 
 
-def _forward_of_blocks(stiffness: Operator, points: int, relaxation: float) -> Solve:
-    """Return the solver of the lower triangle of a stiffness (3 f, 3 f): each point solves its own block."""
+def block_sweep(forward: ForwardOfBlocks, added: Floats) -> GaussSeidelSweep:
+    """Return the sweep where ``added`` (f, 3, 3) [N/mm] is added to the blocks of the points."""
+    return _glued(forward.with_blocks(added))
+
+
+def _glued(forward: Solve) -> GaussSeidelSweep:
+    return GaussSeidelSweep(forward, np.empty(0, dtype=np.int64), np.empty((0, 0)), np.empty((0, 0)))
+
+
+@dataclass(frozen=True, eq=False)
+class ForwardOfBlocks:
+    """The solver of the lower triangle of a stiffness over all coordinates: each point solves its own block.
+
+    ``own`` (f, 3, 3) [N/mm] are those blocks, ``scaled`` (3 f, 3 f) [1] the rows below them over their own.
+    """
+
+    own: Floats
+    scaled: Floats
+
+    @cached_property
+    def _inverse(self) -> Floats:
+        return np.asarray(np.linalg.inv(self.own), dtype=np.float64)
+
+    def __call__(self, right: Points) -> Points:
+        """Return what forces (f, 3) [N] move the points by, (f, 3) [mm]."""
+        forces = np.einsum("pab,pb->pa", self._inverse, right.reshape(-1, 3)).ravel()
+        return np.asarray(blas.dtrsv(self.scaled.T, forces, lower=0, trans=1, diag=1)).reshape(-1, 3)
+
+    def with_blocks(self, added: Floats) -> ForwardOfBlocks:
+        """Return the solver where ``added`` (f, 3, 3) [N/mm] is added to the points' own blocks."""
+        changed = np.flatnonzero(added.any(axis=(1, 2)))
+        if not len(changed):
+            return self
+        own, scaled = self.own.copy(), self.scaled.copy()
+        own[changed] += added[changed]
+        rows = scaled.reshape(len(own), 3, -1)
+        rows[changed] = np.linalg.solve(own[changed], self.own[changed]) @ rows[changed]
+        return ForwardOfBlocks(own, scaled)
+
+
+def forward_of_blocks(stiffness: Operator, points: int, relaxation: float) -> ForwardOfBlocks:
+    """Return the solver for a stiffness (3 f, 3 f), whose points go further by ``relaxation`` [1]."""
     triangle = lower_points(stiffness, points, relaxation)
     lower = triangle if isinstance(triangle, np.ndarray) else triangle.toarray()
-    blocks = lower.reshape(points, 3, points, 3)[np.arange(points), :, np.arange(points)]
-    own = np.linalg.inv(blocks)
-    # Each point's rows over its own block: what is left has ones on the diagonal.
-    scaled = np.einsum("pab,pbk->pak", own, lower.reshape(points, 3, -1)).reshape(lower.shape)
-
-    def forward(right: Points) -> Points:
-        forces = np.einsum("pab,pb->pa", own, right.reshape(points, 3)).ravel()
-        return np.asarray(blas.dtrsv(scaled.T, forces, lower=0, trans=1, diag=1)).reshape(-1, 3)
-
-    return forward
+    by_point = lower.reshape(points, 3, points, 3)
+    every = np.arange(points)
+    own = by_point[every, :, every]
+    by_point[every, :, every] = 0.0
+    scaled = np.linalg.solve(own, lower.reshape(points, 3, -1)).reshape(lower.shape)
+    return ForwardOfBlocks(own, frozen(scaled))
 
 
 def sliding_sweep(cables: Operator, lines: Operator, nodes: Indices) -> GaussSeidelSweep:

@@ -16,7 +16,14 @@ from core.geometry.mesh import Floats, Indices, Points, frozen
 from core.mechanics.banded_matrix import Operator, compact, over_axes
 from core.mechanics.condensed_tissue import CondensedTissue
 from core.mechanics.constraint_lines import Line, anchored_line, free_line, line_on
-from core.mechanics.gauss_seidel import GaussSeidelSweep, bonded_sweep, sliding_sweep
+from core.mechanics.gauss_seidel import (
+    ForwardOfBlocks,
+    GaussSeidelSweep,
+    block_sweep,
+    bonded_sweep,
+    forward_of_blocks,
+    sliding_sweep,
+)
 from core.mechanics.hessian_layout import HessianLayout, layout_of
 from core.mechanics.options import ModelOptions
 from core.mechanics.springs import Springs, members
@@ -90,10 +97,17 @@ class ConstrainedModel:
         contacts = tissue.contacts(moved)
         known = self._last_sweep[0] if self._last_sweep else None
         if known is None or not _alike(known, contacts):
-            stiffness = self._with_lines(tissue.stiffness_of(contacts))
-            sweep = bonded_sweep(stiffness, len(tissue.free), tissue.relaxation)
-            self._last_sweep[:] = [contacts, sweep]
+            self._last_sweep[:] = [contacts, block_sweep(self._untouched, tissue.contact_blocks(contacts))]
         return cast(GaussSeidelSweep, self._last_sweep[1])
+
+    @cached_property
+    def _untouched(self) -> ForwardOfBlocks:
+        """The forward substitution of a solid that no cup touches."""
+        tissue = self.tensegric
+        assert isinstance(tissue, CondensedTissue)
+        none = np.zeros_like(tissue.contacts(np.zeros_like(tissue.load)))
+        stiffness = self._with_lines(tissue.stiffness_of(none))
+        return forward_of_blocks(stiffness, len(tissue.free), tissue.relaxation)
 
     @cached_property
     def _last_sweep(self) -> list[Any]:

@@ -35,7 +35,7 @@ HIGH = 25.0
 
 DOCS = Path(__file__).parents[2] / "docs"
 
-pytestmark = pytest.mark.usefixtures("empty_house", "own_data")
+pytestmark = pytest.mark.usefixtures("empty_house", "own_data", "on_solid", "landmarks_known")
 
 
 @pytest.fixture(autouse=True)

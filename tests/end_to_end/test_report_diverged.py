@@ -13,7 +13,6 @@ from core.garment.elastic_library import find_elastic
 pytestmark = pytest.mark.usefixtures("empty_house")
 
 
-@pytest.mark.usefixtures("on_net")
 def test_of_a_run_that_ran_away_there_is_no_sheet_and_no_light(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)

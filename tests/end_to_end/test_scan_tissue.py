@@ -11,7 +11,7 @@ from window_tools import Script, run_bodiless, settled
 from app.gui.main_window import MainWindow
 from core.pipeline import build as pipeline
 
-pytestmark = pytest.mark.usefixtures("empty_house")
+pytestmark = pytest.mark.usefixtures("empty_house", "on_solid")
 
 
 def test_a_scan_opens_on_solid_tissue(mannequin: Path) -> None:

@@ -58,7 +58,6 @@ def told(window: MainWindow) -> BeforeAfter:
     return compare_sides(frame.stages, frame.control_points)
 
 
-@pytest.mark.usefixtures("on_net")  # sliding lines make even, and there are none on a solid
 def test_the_card_tells_what_differs_shows_where_and_makes_it_even(
     person: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -22,7 +22,7 @@ from core.pipeline.build import build
 from core.pipeline.solve import solve
 from tests.end_to_end.test_cups import pulled
 
-pytestmark = pytest.mark.usefixtures("empty_house")
+pytestmark = pytest.mark.usefixtures("empty_house", "landmarks_known")
 
 SEEN = 5.0
 """A lift of the bust points that is seen in the view from near by, beside the original [mm]."""
