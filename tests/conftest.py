@@ -231,6 +231,11 @@ def opened_as_in_the_program() -> None:
 
 
 @pytest.fixture
+def limits_sought() -> None:
+    """The length limits of lines are computed as soon as a design is built."""
+
+
+@pytest.fixture
 def on_solid() -> None:
     """A scan opens on solid tissue."""
 
@@ -281,7 +286,8 @@ def empty_house(
     with ``opened_as_in_the_program`` it does as the user sees it. Samples are on a fifth of their vertices,
     with ``fine_samples`` on all. The soft shadows of a body are computed once. Scans open on the net of the
     paper, which takes a tenth of the time; with ``on_solid`` they do as the user sees it.
-    How sure figures are is not worked out where a test does not ask: it takes half a minute of a processor.
+    How sure figures are is not worked out where a test does not ask: it takes half a minute of a processor;
+    nor are length limits but with ``limits_sought``.
     Frames come seldom, as on a slow machine: most of a test's time would go into ones that nobody looks at.
     """
     if "spared_as_in_the_program" not in request.fixturenames:
@@ -298,6 +304,10 @@ def empty_house(
         monkeypatch.setattr("app.gui.tour.Tour.begin_when_settled", lambda _: None)
     monkeypatch.setattr("app.gui.viewport.view_area.bake_occlusion", shading)
     monkeypatch.setattr("app.gui.features.uncertainty.controller.PAUSE", 10**8)
+    if "limits_sought" not in request.fixturenames:
+        monkeypatch.setattr(
+            "app.gui.features.lines.limits_controller.LimitsController._begin", lambda _: None
+        )
     monkeypatch.setattr("core.pipeline.live_solver._SLICE", 0.1)
     QSettings().clear()
     yield

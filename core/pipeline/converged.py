@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from threadpoolctl import threadpool_limits
-
+from core.blas_threads import one_blas_thread
 from core.document.design import Design
 from core.mechanics.solver_comparison import MOST_TURNS, SolverComparison
 from core.pipeline.build import Stages, build, line_targets
@@ -17,7 +16,7 @@ def converged_frame(design: Design, near: Stages, progress: Progress = quiet) ->
     Raises the UserError of the stage that fails, or Cancelled.
     """
     # Two BLAS threads make these small products many times slower.
-    with threadpool_limits(1):
+    with one_blas_thread():
         stages = build(design, near, progress)
         change = stages.body_change if design.dense_volume else None
         comparison = SolverComparison(

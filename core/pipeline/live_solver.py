@@ -13,8 +13,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 
-from threadpoolctl import threadpool_limits
-
+from core.blas_threads import one_blas_thread
 from core.document.design import Design
 from core.errors import UserError, as_exception
 from core.geometry import kernels
@@ -156,7 +155,7 @@ class LiveSolver:
 
     def _work(self) -> None:
         # Two BLAS threads make these small products many times slower.
-        with threadpool_limits(1):
+        with one_blas_thread():
             while not self._stopping:
                 try:
                     self._serve()

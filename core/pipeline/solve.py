@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
+from core.blas_threads import one_blas_thread
 from core.deformation.tffd import deform
 from core.document.design import Design
 from core.document.lines import ActiveLine
@@ -162,7 +162,7 @@ def solve(stages: Stages, turns: int | None = None, progress: Progress = quiet) 
     rest = record(stages.model, initial_state(stages.model), 0.0, stages.watch)
     solve = _run_exact if stages.design.volume == "exact" else _run_turns
     # Two BLAS threads make these small products many times slower.
-    with threadpool_limits(1):
+    with one_blas_thread():
         records, state, verdict = solve(stages, rest, turns, progress)
     condition = shape_of(stages.model).quality(stages.model.tensegric.expand(state.moved))
     verdict = replace(verdict, condition=condition)

@@ -92,6 +92,7 @@ def test_an_export_is_named_and_can_be_left_by_card_key_and_status_bar(
     run_main([], script)
 
 
+@pytest.mark.usefixtures("limits_sought")
 def test_limits_come_beside_the_window_and_are_those_of_the_core(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[str] = []
     work_out = app.gui.features.lines.limits_controller.length_limits_of
@@ -132,6 +133,7 @@ def test_limits_come_beside_the_window_and_are_those_of_the_core(monkeypatch: py
     run_main([], script)
 
 
+@pytest.mark.usefixtures("limits_sought")
 def test_an_edit_ends_what_was_worked_out_for_the_design_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
     left: list[str] = []
     monkeypatch.setattr(app.gui.features.lines.limits_controller, "length_limits_of", endless(left))

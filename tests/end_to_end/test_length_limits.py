@@ -19,7 +19,7 @@ from app.gui.widgets.tooltip import set_tip, shown_tip
 from app.presenters.length_limits import hint, legend_entries, resistance_reason, short_reason, tone_at
 from core.analysis.length_limits.zones import LengthLimits, Reason, Zone
 
-pytestmark = pytest.mark.usefixtures("empty_house")
+pytestmark = pytest.mark.usefixtures("empty_house", "limits_sought")
 
 STRAINED = Reason("strained", 0.5, 0.939)
 FOLDED = Reason("folded", 0.5, 0.86)

@@ -54,7 +54,6 @@ def hover(window: MainWindow, at: QPoint) -> Qt.CursorShape:
 def test_the_selected_band_is_pulled_shorter_and_longer() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.frames.order.remove(window.limits_controller.follow)
         window.view.viewport.set_view("front")
         yield from a_pull_is_live_and_one_undo_step(window)
         yield from escape_brings_the_band_back(window)

@@ -94,7 +94,7 @@ def row_of(window: MainWindow, label: str) -> float | None:
     return next(row.change for row in window.result.rows if row.label == label)
 
 
-@pytest.mark.usefixtures("fine_samples")
+@pytest.mark.usefixtures("fine_samples", "limits_sought")
 def test_a_settled_body_that_is_strained_says_so_in_one_voice() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)

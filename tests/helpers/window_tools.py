@@ -56,7 +56,7 @@ def run_main(arguments: list[str], script: Callable[[MainWindow], Script], expec
 
 
 def run_undrawn(arguments: list[str], script: Callable[[MainWindow], Script], expected: Kinds = ()) -> int:
-    """Do as ``run_main``, with no 3D view drawn and no limits looked for from the start."""
+    """Do as ``run_main``, with no 3D view drawn from the start."""
 
     def unseen(window: MainWindow) -> Script:
         undrawn(window)
@@ -66,13 +66,12 @@ def run_undrawn(arguments: list[str], script: Callable[[MainWindow], Script], ex
 
 
 def run_bodiless(arguments: list[str], script: Callable[[MainWindow], Script], expected: Kinds = ()) -> int:
-    """Do as ``run_main``, with no body in the 3D view and no limits of lines looked for."""
+    """Do as ``run_main``, with no body in the 3D view."""
 
     def unseen(window: MainWindow) -> Script:
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(window.view, "prepare", lambda *_: None)
             window.frames.order.remove(window.view.show_frame)
-            window.frames.order.remove(window.limits_controller.follow)
             yield from script(window)
 
     return run_main(arguments, unseen, expected)
@@ -85,11 +84,10 @@ def settled(window: MainWindow) -> Callable[[], bool]:
 
 
 def undrawn(window: MainWindow) -> None:
-    """Draw no 3D view and look for no limits, which take most of the time where a test asks for neither."""
+    """Draw no 3D view, which takes most of the time where a test does not ask for it."""
     canvas = window.view.viewport.overlay.parentWidget()
     assert canvas is not None
     canvas.setUpdatesEnabled(False)
-    window.frames.order.remove(window.limits_controller.follow)
 
 
 def drag(window: MainWindow, name: str, pixels: int, release: bool = True) -> None:

@@ -9,8 +9,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from itertools import chain
 
-from threadpoolctl import threadpool_limits
-
 from core.analysis.diagnosis.candidate_changes import (
     Change,
     ChangePath,
@@ -29,6 +27,7 @@ from core.analysis.diagnosis.pressure_fixes import complete_fix, pressure_change
 from core.analysis.diagnosis.search import Search
 from core.analysis.diagnosis.stability import StabilityForecast, forecast
 from core.analysis.diagnosis.trial_run import TrialResult, run_trial, severity_rank
+from core.blas_threads import one_blas_thread
 from core.garment.assessment import Finding
 from core.mechanics.constraint_lines import Line
 from core.mechanics.convergence import Convergence
@@ -118,7 +117,7 @@ def diagnose(stages: Stages, progress: Progress = quiet) -> Diagnosis:
     Cancelled.
     """
     # Two BLAS threads make these small products many times slower.
-    with threadpool_limits(1):
+    with one_blas_thread():
         progress("diagnosing", 0.0)
         found = Diagnosis(run_trial(stages, progress), analyse(stages, progress))
         if found.problem != "unreachable":

@@ -11,7 +11,6 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from core.analysis.inverse_design.conflicts import Conflict, conflicts_of
 from core.analysis.inverse_design.objective import NEAR, goal_weights
@@ -19,6 +18,7 @@ from core.analysis.inverse_design.pressure_limit import PressureLimit, largest_p
 from core.analysis.inverse_design.quantities import Goal, QuantityReaders
 from core.analysis.inverse_design.search import LOOSEST, Bounds, Candidate, Search
 from core.analysis.inverse_design.sensitivities import exact_points
+from core.blas_threads import one_blas_thread
 from core.document.design import Design
 from core.errors import LineError
 from core.geometry.mesh import Floats, Points
@@ -138,7 +138,7 @@ class InverseSolver:
         """Return which ``goals`` the last ``solve`` could not meet together. Raises UserError, Cancelled."""
         if reply.reachable or len(goals) < 2:
             return ()
-        with threadpool_limits(1):
+        with one_blas_thread():
             stages = build(reply.design, self._stages)
             self._goals, self._progress = goals, progress
             search = self._begun(stages)
@@ -149,7 +149,7 @@ class InverseSolver:
 
         These are the largest pressures [kPa] of all lines. Raises UserError.
         """
-        with threadpool_limits(1):
+        with one_blas_thread():
             points = exact_points(self._stages)
             return self.values_at(names, points), largest_pressures(self._stages, points)
 
@@ -166,7 +166,7 @@ class InverseSolver:
         if not same:
             self._search = None
         # Two BLAS threads make these small products many times slower.
-        with threadpool_limits(1):
+        with one_blas_thread():
             try:
                 return answered()
             except NoEquilibriumError:

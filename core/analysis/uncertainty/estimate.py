@@ -12,7 +12,6 @@ from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from core.analysis.uncertainty.input_uncertainty import InputUncertainty, default_uncertainty
 from core.analysis.uncertainty.linear_propagation import Effect, Propagation, effects
@@ -25,6 +24,7 @@ from core.analysis.uncertainty.parameters import (
     unmodelled_measurements,
 )
 from core.analysis.uncertainty.perturbed_solutions import PerturbedSolutions
+from core.blas_threads import one_blas_thread
 from core.document.design import Design
 from core.errors import UserError
 from core.measurements.uncertain_value import (
@@ -79,18 +79,18 @@ class UncertaintyEstimator:
         if self.trials.is_bare or design.tissue == "solid":  # there is but one contact
             return replace(whole, sources=SOURCES)
         progress("the other contact", 1.0)
-        with threadpool_limits(1):
+        with one_blas_thread():
             contact, figures = _other_contact(self.trials)
         return replace(whole, sources=SOURCES, other=figures, contact=contact)
 
     @cached_property
     def _knobs(self) -> tuple[UncertainParameter, ...]:
-        with threadpool_limits(1):
+        with one_blas_thread():
             return *uncertain_parameters(self.trials.base, self.sizes), *model_errors(self.trials, self.sizes)
 
     def _by(self, turning: Sequence[UncertainParameter], progress: Progress) -> OutputUncertainties:
         # Two BLAS threads make these small products many times slower.
-        with threadpool_limits(1):
+        with one_blas_thread():
             progress("propagating", 0.0)
             self._propagation = self._propagation or Propagation(self.trials)
             for at, effect in enumerate(effects(self._propagation, turning)):

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from core.analysis.uncertainty.outputs import Figures
 from core.analysis.uncertainty.parameters import UncertainParameter, perturb
 from core.analysis.uncertainty.perturbed_solutions import PerturbedSolutions
+from core.blas_threads import one_blas_thread
 from core.errors import UserError
 from core.geometry.mesh import Floats
 from core.progress import Progress, quiet
@@ -47,7 +47,7 @@ def sample(
     """Draw all ``knobs`` ``count`` times from normal distributions, and solve each draw anew."""
     draws = np.random.default_rng(seed).standard_normal((count, len(knobs)))
     kept, figures = [], []
-    with threadpool_limits(1):
+    with one_blas_thread():
         for at, draw in enumerate(draws):
             progress("sampling", at / count)
             turns = dict(zip(knobs, draw.tolist(), strict=True))

@@ -2,27 +2,25 @@
 
 import numpy as np
 import pytest
+import trimesh
+from coarse_bodies import coarse_arrays
 from odd_objects import objects, pieces
 from scipy.spatial.transform import Rotation
 
+from app.presenters.samples import sample_path
 from core.errors import UserError
 from core.geometry.mesh import Mesh
 from core.landmarks.detect import find_landmarks
 from core.scan.body import Body
 from core.scan.orientation.pose import estimate_pose
-from core.scan.readers.registry import read_triangles
-from tests.core.scan.test_pose import SAMPLES, angle_between
+from tests.core.scan.test_pose import angle_between
 
 OBJECTS = objects()
 TILTED = Rotation.from_euler("xyz", (25.0, -20.0, 70.0), degrees=True).as_matrix()
 
 
-def sample(name):
-    path = SAMPLES / f"{name}.ply"
-    return read_triangles(path.name, path.read_bytes())
-
-
-PIECES = pieces(sample("mannequin"), fold=299.0, bust=347.0)
+WHOLE = trimesh.load(sample_path("mannequin"), process=False)
+PIECES = pieces((np.array(WHOLE.vertices), np.array(WHOLE.faces)), fold=299.0, bust=347.0)
 
 
 def understood(vertices, faces):
@@ -83,7 +81,7 @@ def with_a_gap(vertices, faces):
 
 @pytest.mark.parametrize("worn", [holes, without_left_breast, with_a_gap])
 def test_a_body_that_was_worn_hard_is_understood(worn):
-    vertices, faces = worn(*sample("mannequin"))
+    vertices, faces = worn(*coarse_arrays("mannequin"))
     pose = estimate_pose(vertices @ TILTED.T, faces)
     assert pose.unit == "mm"
     assert angle_between(pose, TILTED) < 3.0

@@ -2,27 +2,24 @@
 
 from dataclasses import replace
 from itertools import permutations, product
-from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
+from coarse_bodies import coarse_arrays
 from scipy.spatial.transform import Rotation
 
 from core.errors import ScanError
 from core.scan.orientation import pose as upright
 from core.scan.orientation.pose import AXES, MILLIMETRES, estimate_pose
 from core.scan.orientation.symmetry_planes import mirror_planes, sample_uniformly
-from core.scan.readers.registry import read_triangles
 
-SAMPLES = Path(__file__).parents[3] / "resources" / "samples"
 CANONICAL = np.eye(4)
 
 
 @pytest.fixture(scope="module")
 def mannequin():
-    path = SAMPLES / "mannequin.ply"
-    return read_triangles(path.name, path.read_bytes())
+    return coarse_arrays("mannequin")
 
 
 def torso(bust_at=(-1.0,), height=600.0):

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 import trimesh
+from coarse_bodies import coarse_arrays
 from odd_objects import limb, together
 from scipy.spatial.transform import Rotation
 
 from core.errors import ScanError
 from core.scan.orientation.pose import estimate_pose
-from tests.core.scan.test_plausibility import sample
 from tests.core.scan.test_pose import angle_between, torso
 
 
@@ -34,7 +34,7 @@ def bent(vertices, degrees):
 
 @pytest.mark.parametrize("name", ["mannequin", "person"])
 def test_any_tilt_up_to_45_degrees_is_undone(name):
-    vertices, faces = sample(name)
+    vertices, faces = coarse_arrays(name)
     for degrees, about, yaw in (
         (12.0, 35.0, 0.0),
         (22.0, 140.0, 50.0),
@@ -52,7 +52,7 @@ def test_any_tilt_up_to_45_degrees_is_undone(name):
 
 
 def test_one_who_leans_is_left_to_lean_in_an_upright_file():
-    vertices, faces = sample("mannequin")
+    vertices, faces = coarse_arrays("mannequin")
     for about, degrees in (
         (0.0, 8.0),
         (0.0, -8.0),
@@ -68,7 +68,7 @@ def test_one_who_leans_is_left_to_lean_in_an_upright_file():
 
 @pytest.mark.parametrize("back", [0.0, 8.0, 15.0])
 def test_a_foremost_belly_is_no_bust(back):
-    vertices, faces = sample("mannequin")
+    vertices, faces = coarse_arrays("mannequin")
     turn = tilted(20.0, 70.0)
     pose = estimate_pose(bent(with_belly(vertices, 95.0), back) @ turn.T, faces)
     assert pose.is_certain
@@ -76,7 +76,7 @@ def test_a_foremost_belly_is_no_bust(back):
 
 
 def test_legs_are_no_trunk_and_tell_what_is_down():
-    vertices, faces = sample("mannequin")
+    vertices, faces = coarse_arrays("mannequin")
     legs = [
         limb((90.0 * side, -90.0, 20.0), (115.0 * side, -90.0, -800.0), 85.0, 40.0) for side in (-1.0, 1.0)
     ]
@@ -88,7 +88,7 @@ def test_legs_are_no_trunk_and_tell_what_is_down():
 
 
 def test_moving_turning_or_mirroring_a_body_moves_its_pose_accordingly():
-    vertices, faces = sample("person")
+    vertices, faces = coarse_arrays("person")
     first = estimate_pose(vertices, faces)
     turn = Rotation.from_euler("xyz", (200.0, 33.0, -80.0), degrees=True).as_matrix()
     moved = estimate_pose((vertices @ turn.T + [3000.0, -200.0, 80.0]) / 25.4, faces)
@@ -101,7 +101,7 @@ def test_moving_turning_or_mirroring_a_body_moves_its_pose_accordingly():
 
 
 def test_other_readings_are_offered_each_another():
-    pose = estimate_pose(*sample("person"))
+    pose = estimate_pose(*coarse_arrays("person"))
     assert 1 <= len(pose.others) <= 3
     turns = [matrix[:3, :3] for matrix in (pose.file_to_mm, *pose.others)]
     for k, turn in enumerate(turns):
@@ -111,7 +111,7 @@ def test_other_readings_are_offered_each_another():
 
 
 def test_a_told_axis_is_the_nearest_one_and_a_told_direction_is_meant_exactly():
-    vertices, faces = sample("mannequin")
+    vertices, faces = coarse_arrays("mannequin")
     turn = tilted(30.0, 60.0, 15.0)
     near = estimate_pose(vertices @ turn.T, faces, up="+z", front="-y")
     assert angle_between(near, turn) < 2.0
@@ -145,7 +145,7 @@ def test_a_girth_that_fits_two_units_is_said_not_to_be_sure():
 
 
 def test_a_told_up_is_believed_before_the_front_and_neither_is_overruled():
-    vertices, faces = sample("person")
+    vertices, faces = coarse_arrays("person")
     for up, front in (("+z", "0,-1,0.5"), ("0,0.05,1", "0,-1,0"), (" Z", "-y")):
         pose = estimate_pose(vertices, faces, up=up, front=front, unit="MM")
         assert (pose.up, pose.front, pose.unit) == ("+z", "-y", "mm")
@@ -163,7 +163,7 @@ def test_a_told_up_is_believed_before_the_front_and_neither_is_overruled():
     ("radius", "length"), [(18.0, 900.0), (48.0, 200.0)]
 )  # slim, or slimmer than its foot
 def test_a_pole_in_one_piece_with_the_body_is_no_body_and_tells_no_size(radius, length):
-    vertices, faces = sample("mannequin")
+    vertices, faces = coarse_arrays("mannequin")
     pole = trimesh.creation.cylinder(radius, length).apply_translation([0.0, -95.0, 10.0 - 0.5 * length])
     foot = trimesh.creation.cylinder(170.0, 20.0).apply_translation([0.0, -95.0, 10.0 - length])
     pose = estimate_pose(*together(trimesh.Trimesh(vertices, faces, process=False), pole, foot))
@@ -172,7 +172,7 @@ def test_a_pole_in_one_piece_with_the_body_is_no_body_and_tells_no_size(radius, 
 
 
 def test_neither_a_neck_nor_a_torn_ring_of_skin_is_a_pole():
-    vertices, faces = sample("mannequin")
+    vertices, faces = coarse_arrays("mannequin")
     assert estimate_pose(vertices, faces).stand == -np.inf
     assert estimate_pose(vertices, faces, up="-z", front="+y").stand == -np.inf
     x, y, z = vertices[faces].mean(axis=1).T
