@@ -84,7 +84,7 @@ def updates(
 ) -> dict[str, Work]:
     """Give what is done in a frame, in the forms compared."""
     operator, wide = binding.operator, double.operator
-    change, rest = binding.change(points), moving.rest
+    change, rest = binding.changes.of(points), moving.rest
     places = operator.apply(change, rest)
     rows = binding.operator.of_rows(np.arange(len(binding.moving)))
     dense = rows.toarray().astype(np.float32)
@@ -92,13 +92,13 @@ def updates(
     tables = operator.weights, operator.starts, operator.columns
 
     def frame() -> None:
-        now = operator.apply(binding.change(points), rest)
+        now = operator.apply(binding.changes.of(points), rest)
         moving.normals(now)
         tapes(now)
 
     return {
-        "t-FFD update": lambda: operator.apply(binding.change(points), rest),
-        "  in double precision": lambda: wide.apply(double.change(points), rest),
+        "t-FFD update": lambda: operator.apply(binding.changes.of(points), rest),
+        "  in double precision": lambda: wide.apply(double.changes.of(points), rest),
         "  t-FFD in numpy": lambda: kernels.blend_plain(*tables, single, rest),
         "  scipy, row by row": lambda: binding.rest_moving + rows @ change,
         "  one dense product": lambda: binding.rest_moving + dense @ single,
@@ -113,7 +113,7 @@ def updates(
 def libigl(binding: Binding, moving: MovingFaces) -> dict[str, Work]:
     import igl  # noqa: PLC0415
 
-    points, control, faces = np.array(binding.rest_moving), binding.control, moving.corners.T.copy()
+    points, control, faces = np.array(binding.rest_moving), binding.changes.control, moving.corners.T.copy()
     corners, triangles, rest = np.array(control.vertices), np.array(control.faces), np.array(moving.rest)
     return {
         "libigl closest triangle": lambda: igl.point_mesh_squared_distance(points, corners, triangles),
@@ -127,7 +127,7 @@ def blender(binding: Binding, points: Points) -> dict[str, Work]:
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
     objects = []
-    for mesh in (binding.control, binding.body):
+    for mesh in (binding.changes.control, binding.body):
         data = bpy.data.meshes.new("mesh")
         data.from_pydata(mesh.vertices.tolist(), [], mesh.faces.tolist())
         objects.append(bpy.data.objects.new("object", data))
@@ -141,7 +141,7 @@ def blender(binding: Binding, points: Points) -> dict[str, Work]:
     if not modifier.is_bound:
         print("Blender could not bind the body")
         return {}
-    shapes = [points.astype(np.float32).ravel(), binding.control.vertices.astype(np.float32).ravel()]
+    shapes = [points.astype(np.float32).ravel(), binding.changes.control.vertices.astype(np.float32).ravel()]
 
     def update() -> None:
         shapes.reverse()

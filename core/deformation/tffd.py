@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,9 +13,10 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.spatial.distance import cdist
 
+from core.deformation.changes import Changes, FrameChanges
 from core.geometry import kernels
 from core.geometry.closest_point import Frames, centroids, corner_reach, is_usable, neighbourhoods
-from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points, frozen
+from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points, frozen
 
 Weights = Literal["paper", "smooth"]
 
@@ -69,123 +69,56 @@ class Operator:
 
 
 @dataclass(frozen=True, eq=False)
-class Binding(ABC):
-    """How the vertices of a body follow its control mesh: a linear operator on what the control mesh changes.
+class Binding:
+    """How the vertices of a body follow control points: a linear operator on what these change.
 
-    ``moving`` are the vertices that can move, shape (k,): the rows of ``operator``, neighbours together.
+    ``moving`` are the vertices that can move, shape (k,): the rows of ``operator``, neighbours together; its
+    columns are those of ``changes``.
     """
 
     body: Mesh
     moving: Indices
     operator: Operator
+    changes: Changes
 
     @cached_property
     def rest_moving(self) -> Points:
         """Return the moving vertices at rest, shape (k, 3) [mm]."""
         return frozen(self.body.vertices[self.moving])
 
-    @abstractmethod
-    def change(self, control_points: Points) -> Floats:
-        """Return what the operator applies to, (columns, 3), for ``control_points`` (n, 3) [mm]."""
+    def places(self, control_points: Points, rest: Points) -> Points:
+        """Return ``rest``, whose first rows are those of ``moving``, for ``control_points`` (n, 3) [mm]."""
+        return self.operator.apply(self.changes.of(control_points), rest)
 
     def gradient(self, control_points: Points, slopes: Points) -> Points:
         """Return slopes by the control points of what has ``slopes`` (k, 3) by the places of ``moving``.
 
         Both at ``control_points`` (n, 3) [mm]; the result has their shape. Those that are fixed have none.
         """
-        return self.gradient_by_points(control_points, self.operator.apply_transposed(slopes))
+        return self.changes.gradient(control_points, self.operator.apply_transposed(slopes))
 
-    @abstractmethod
-    def gradient_by_points(self, control_points: Points, slopes: Points) -> Points:
-        """Return slopes by the control points, (n, 3), of what has ``slopes`` (c, 3) by the first columns.
-
-        Of several figures at once, (k, c, 3), they are (k, n, 3).
-        """
-
-    @abstractmethod
-    def directional_derivative(self, control_points: Points, moved: Points) -> Floats:
-        """Return how fast ``change`` changes at ``control_points`` as they move by ``moved``, both (n, 3)."""
+    def few(self, rows: Indices) -> FewPlaces:
+        """Return some of the rows of ``moving`` (r,), which are then quick to follow."""
+        operator = self.operator.of_rows(rows)
+        columns = np.unique(operator.indices).astype(np.int64)
+        return FewPlaces(self.rest_moving[rows], operator[:, columns], self.changes.narrowed(columns))
 
 
 @dataclass(frozen=True, eq=False)
-class FrameBinding(Binding):
-    """A body that follows the frames of the control triangles.
+class FewPlaces:
+    """Some vertices of a body, at ``rest`` (r, 3) [mm], that follow ``changes`` by an ``operator``."""
 
-    The columns of the operator are the control points ``points`` (p,) that can move, then the normals of the
-    control triangles ``triangles`` (t,).
-    """
+    rest: Points
+    operator: sparse.csr_array
+    changes: Changes
 
-    control: Mesh
-    points: Indices
-    triangles: Indices
-    scaled_normals: bool
+    def places(self, control_points: Points) -> Points:
+        """Return where they are, (r, 3) [mm]."""
+        return np.asarray(self.rest + self.operator @ self.changes.of(control_points))
 
-    def change(self, control_points: Points) -> Floats:
-        """Return by how much ``points`` and the normals of ``triangles`` changed, shape (p + t, 3).
-
-        Raises ValueError unless there are as many ``control_points`` as the control mesh has, (n, 3) [mm].
-        """
-        _require_shape(control_points, self.control.vertices)
-        return self._frames(control_points) - self._rest_frames
-
-    def _frames(self, control_points: Points) -> Floats:
-        """Return control points and unit normals.
-
-        Scaled normals grow with the root of the triangle's area, so that a similarity is followed exactly.
-        """
-        v0, v1, v2 = control_points.T[:, self._corners].swapaxes(0, 1)
-        (ax, ay, az), (bx, by, bz) = v1 - v0, v2 - v0
-        spans = np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
-        length = np.sqrt(np.einsum("ij,ij->j", spans, spans))
-        spans /= np.where(length > 0.0, length, 1.0)
-        if self.scaled_normals:
-            rest = 2.0 * self.control.face_areas[self.triangles]
-            spans *= np.sqrt(length / np.where(rest > 0.0, rest, 1.0))
-        return np.concatenate([control_points[self.points], spans.T])
-
-    def gradient_by_points(self, control_points: Points, slopes: Points) -> Points:
-        """Return slopes by the control points: see ``Binding``."""
-        columns = np.zeros((*slopes.shape[:-2], len(self.points) + len(self.triangles), 3))
-        columns[..., : slopes.shape[-2], :] = slopes
-        points, by_normal = np.split(columns, [len(self.points)], axis=-2)
-        v0, v1, v2 = control_points[self._corners]
-        across = np.cross(v1 - v0, v2 - v0)
-        by_area = self._through_normals(across, by_normal)
-        by_second, by_third = np.cross(v2 - v0, by_area), np.cross(by_area, v1 - v0)
-        found = np.zeros((len(control_points), *slopes.shape[:-2], 3))
-        found[self.points] = np.moveaxis(points, -2, 0)
-        for corner, share in zip(self._corners, (-by_second - by_third, by_second, by_third), strict=True):
-            np.add.at(found, corner, np.moveaxis(share, -2, 0))
-        return np.asarray(np.moveaxis(found, 0, -2))
-
-    def directional_derivative(self, control_points: Points, moved: Points) -> Floats:
-        """Return how fast ``change`` changes as the control points move: see ``Binding``."""
-        v0, v1, v2 = control_points[self._corners]
-        w0, w1, w2 = moved[self._corners]
-        across = np.cross(v1 - v0, v2 - v0)
-        by_move = np.cross(w1 - w0, v2 - v0) + np.cross(v1 - v0, w2 - w0)
-        return np.concatenate([moved[self.points], self._through_normals(across, by_move)])
-
-    def _through_normals(self, across: Floats, rates: Floats) -> Floats:
-        """Return the rates of normals by ``rates`` (t, 3) of the products ``across`` that they come of.
-
-        The derivative is symmetric, so it carries slopes by the normals back to the products as well.
-        """
-        length = np.where((size := np.linalg.norm(across, axis=1)) > 0.0, size, 1.0)[:, None]
-        unit = across / length
-        along = np.sum(unit * rates, axis=-1, keepdims=True) * unit
-        if not self.scaled_normals:
-            return np.asarray((rates - along) / length)
-        rest = 2.0 * self.control.face_areas[self.triangles, None]
-        return np.asarray((rates - 0.5 * along) / np.sqrt(length * np.where(rest > 0.0, rest, 1.0)))
-
-    @cached_property
-    def _rest_frames(self) -> Floats:
-        return self._frames(self.control.vertices)
-
-    @cached_property
-    def _corners(self) -> Faces:
-        return np.ascontiguousarray(self.control.faces[self.triangles].T)
+    def gradient(self, control_points: Points, slopes: Points) -> Points:
+        """Return slopes by the control points, (n, 3), of what has ``slopes`` (r, 3) by the places."""
+        return self.changes.gradient(control_points, self.operator.T @ slopes)
 
 
 def bind(
@@ -197,7 +130,7 @@ def bind(
     scaled_normals: bool = False,
     fixed: Flags | None = None,
     single: bool = False,
-) -> FrameBinding:
+) -> Binding:
     """Bind the vertices of ``body`` to the triangles of ``control``.
 
     ``fade`` scales the motion of each vertex, shape (N,), 0 still .. 1 full; vertices without fade or without
@@ -218,63 +151,8 @@ def bind(
     )
     points, triangles = np.split(np.flatnonzero(can_change), [int(free.sum())])
     moving = _joined([candidates[group.rows] for group in groups], np.int64)
-    return FrameBinding(body, moving, operator, control, points, triangles - len(free), scaled_normals)
-
-
-@dataclass(frozen=True, eq=False)
-class CarriedBinding(Binding):
-    """A body that follows ``frames`` of a finer mesh, whose points the control points carry along.
-
-    ``rest`` (n, 3) [mm] are the control points at rest, of which ``free`` (f,) can move; ``carried``
-    (3 s, 3 f) [1] times their displacements are those of the points ``nodes`` (s,) of the finer mesh.
-    """
-
-    frames: FrameBinding
-    rest: Points
-    free: Indices
-    nodes: Indices
-    carried: Floats
-
-    def change(self, control_points: Points) -> Floats:
-        """Return what the operator applies to. Raises ValueError for a wrong number of points."""
-        _require_shape(control_points, self.rest)
-        return self.frames.change(self._finer(control_points))
-
-    def gradient_by_points(self, control_points: Points, slopes: Points) -> Points:
-        """Return slopes by the control points: see ``Binding``."""
-        by_nodes = self.frames.gradient_by_points(self._finer(control_points), slopes)[..., self.nodes, :]
-        few = by_nodes.reshape(*by_nodes.shape[:-2], -1) @ self.carried
-        found = np.zeros((*few.shape[:-1], *self.rest.shape))
-        found[..., self.free, :] = few.reshape(*few.shape[:-1], -1, 3)
-        return found
-
-    def directional_derivative(self, control_points: Points, moved: Points) -> Floats:
-        """Return how fast ``change`` changes as the control points move: see ``Binding``."""
-        finer = self._spread(moved)
-        return self.frames.directional_derivative(self._finer(control_points), finer)
-
-    def _finer(self, control_points: Points) -> Points:
-        """Return the points of the finer mesh."""
-        return self.frames.control.vertices + self._spread(control_points - self.rest)
-
-    def _spread(self, moved: Points) -> Points:
-        """Return displacements of the finer mesh for those of the control points."""
-        finer = np.zeros_like(self.frames.control.vertices)
-        finer[self.nodes] = (self.carried @ moved[self.free].ravel()).reshape(-1, 3)
-        return finer
-
-
-def bind_carried(
-    frames: FrameBinding, rest: Points, free: Indices, nodes: Indices, carried: Floats
-) -> CarriedBinding:
-    """Bind a body that follows ``frames`` to control points that carry those: see ``CarriedBinding``."""
-    return CarriedBinding(frames.body, frames.moving, frames.operator, frames, rest, free, nodes, carried)
-
-
-def _require_shape(control_points: Points, rest: Points) -> None:
-    wanted, got = rest.shape, np.shape(control_points)
-    if got != wanted:
-        raise ValueError(f"control points of shape {got} for a control mesh of shape {wanted}")
+    changes = FrameChanges(control, points, triangles - len(free), scaled_normals)
+    return Binding(body, moving, operator, changes)
 
 
 def _joined(parts: Sequence[npt.NDArray[Any]], dtype: npt.DTypeLike) -> npt.NDArray[Any]:
@@ -360,7 +238,7 @@ def movable_border_triangles(control: Mesh, fixed: Flags) -> Indices:
 
 def deform_moving(binding: Binding, control_points: Points) -> Points:
     """Return the places of ``binding.moving`` for ``control_points``, shapes (k, 3) and (n, 3) [mm]."""
-    return binding.operator.apply(binding.change(control_points), binding.rest_moving)
+    return binding.places(control_points, binding.rest_moving)
 
 
 def deform(binding: Binding, control_points: Points) -> Points:

@@ -16,8 +16,9 @@ from core.control_mesh.halved import halved
 from core.control_mesh.straps import Tail
 from core.control_mesh.template import read_template
 from core.deformation.blend_region import BlendRegion, blend_weights
+from core.deformation.changes import CarriedChanges, FrameChanges
 from core.deformation.incremental_normals import MovingFaces, moving_faces
-from core.deformation.tffd import Binding, Weights, bind, bind_carried, movable_border_triangles
+from core.deformation.tffd import Binding, Weights, bind, movable_border_triangles
 from core.document.cup import Cup
 from core.document.design import Design, ScanSource
 from core.document.line_notation import with_custom_lines
@@ -130,7 +131,7 @@ class Stages:
 
         ``control_points`` have shape (n, 3) [mm].
         """
-        places = self.binding.operator.apply(self.binding.change(control_points), self.moving.rest)
+        places = self.binding.places(control_points, self.moving.rest)
         return places, self.moving.normals(places)
 
     def body_change(self, control_points: Points) -> Floats:
@@ -147,7 +148,7 @@ class DenseVolumeChange:
 
     def __call__(self, control_points: Points) -> Floats:
         """Return it for control points, shape (n, 3) [mm]."""
-        places = self.binding.operator.apply(self.binding.change(control_points), self.moving.rest)
+        places = self.binding.places(control_points, self.moving.rest)
         return self.moving.side_volume_changes(places)
 
 
@@ -390,10 +391,11 @@ def _bind_to_tissue(body: Mesh, control: ControlMesh, fade: Floats, tissue: Tiss
     within = np.flatnonzero(fade > 0.0)
     follow = np.zeros_like(fade)
     follow[within] = tissue.fade(body.vertices[within])
-    frames = bind(body, tissue.skin, follow, fixed=tissue.still, single=True)
-    return bind_carried(
-        frames, control.mesh.vertices, np.flatnonzero(~control.fixed), tissue.nodes, tissue.carried
-    )
+    to_skin = bind(body, tissue.skin, follow, fixed=tissue.still, single=True)
+    assert isinstance(to_skin.changes, FrameChanges)
+    free = np.flatnonzero(~control.fixed)
+    carried = CarriedChanges(to_skin.changes, control.mesh.vertices, free, tissue.nodes, tissue.carried)
+    return replace(to_skin, changes=carried)
 
 
 def _backs(body: Body, control: ControlMesh) -> dict[str, Back]:

@@ -42,19 +42,17 @@ class BodyObservables:
         self._left = slice(2, 2 + len(left))
         self._right = slice(2 + len(left), None)
         rows = np.concatenate([nipples, left, right])
-        self._binding, self._rest, self._operator = binding, rest[rows], binding.operator.of_rows(rows)
-        self._of_points = self._operator[:2]
+        self._followed, self._bust_points = binding.few(rows), binding.few(rows[:2])
         self._away = points - rest[nipples]
         self._back = float(control.mesh.vertices[control.border, 1].mean())
 
     def bust_points(self, control_points: Points) -> Points:
         """Return where the left and the right bust point are, shape (2, 3) [mm]."""
-        moved = self._of_points @ self._binding.change(control_points)
-        return np.asarray(self._rest[:2] + moved + self._away)
+        return np.asarray(self._bust_points.places(control_points) + self._away)
 
     def bust_point_slopes(self, control_points: Points, weights: Points) -> Points:
         """Return slopes by the control points, (n, 3), of both bust points times ``weights``, summed."""
-        return self._binding.gradient_by_points(control_points, self._of_points.T @ weights)
+        return self._bust_points.gradient(control_points, weights)
 
     def apexes(self, control_points: Points) -> Points:
         """Return y and z of the left and the right apex, shape (2, 2) [mm]."""
@@ -62,23 +60,20 @@ class BodyObservables:
 
     def apex_places(self, control_points: Points) -> Points:
         """Return where the left and the right apex are, shape (2, 3) [mm]."""
-        places = self._places(control_points)
+        places = self._followed.places(control_points)
         return np.stack([_apex(places[side]) for side in (self._left, self._right)])
 
     def apex_slopes(self, control_points: Points, weights: Points) -> Points:
         """Return slopes by the control points, (n, 3), of both apexes times ``weights`` (2, 2), summed."""
-        places = self._places(control_points)
+        places = self._followed.places(control_points)
         slopes = np.zeros_like(places)
         for side, weight in zip((self._left, self._right), weights, strict=True):
             slopes[side, 1:] = _apex_slopes(places[side], weight)
-        return self._binding.gradient_by_points(control_points, self._operator.T @ slopes)
-
-    def _places(self, control_points: Points) -> Points:
-        return np.asarray(self._rest + self._operator @ self._binding.change(control_points))
+        return self._followed.gradient(control_points, slopes)
 
     def __call__(self, control_points: Points) -> Observables:
         """Return the marks for control points, shape (n, 3) [mm]."""
-        places = self._places(control_points)
+        places = self._followed.places(control_points)
         apex = np.mean([_apex(places[self._left])[1:], _apex(places[self._right])[1:]], axis=0)
         (left_y, left_z), (right_y, right_z) = (places[:2] + self._away)[:, 1:].tolist()
         apex_out, outs = self._back - float(apex[0]), (self._back - left_y, self._back - right_y)

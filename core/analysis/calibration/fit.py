@@ -199,7 +199,9 @@ def residual_jacobian(
     for column, free in enumerate(moved.T):
         way = np.zeros_like(points)
         way[stages.model.tensegric.free] = free.reshape(-1, 3)
-        follow = binding.operator.apply(binding.directional_derivative(points, way), np.zeros((count, 3)))
+        follow = binding.operator.apply(
+            binding.changes.directional_derivative(points, way), np.zeros((count, 3))
+        )
         slopes[:, column] = np.einsum("ij,ij->i", follow, normals[:count])
     return slopes
 

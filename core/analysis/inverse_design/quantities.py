@@ -10,6 +10,7 @@ from functools import lru_cache, partial
 import numpy as np
 from scipy import sparse
 
+from core.deformation.changes import Changes
 from core.deformation.tffd import Binding
 from core.errors import UserError
 from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points
@@ -144,7 +145,7 @@ class _Girth:
     def __call__(self, control_points: Points) -> Reading:
         """Return the figure at control points, shape (n, 3) [mm]."""
         binding, moving = self._stages.binding, self._stages.moving
-        places = binding.operator.apply(binding.change(control_points), moving.rest)
+        places = binding.places(control_points, moving.rest)
         rise = self._rise(control_points)
         low, part = divmod((self._rest_height + rise.value) / TAPE_STEP, 1.0)
         tapes = [self._tape(TAPE_STEP * level) for level in (low, low + 1.0)]
@@ -209,17 +210,17 @@ class _Section:
     """The faces that may come to cross x = ``at`` [mm], as the control points shape them."""
 
     def __init__(self, mesh: Mesh, binding: Binding, at: float) -> None:
-        self._binding, self._at = binding, at
+        self._at = at
         self._faces, self._vertices = _near(mesh, at)
         self._rest = mesh.vertices[self._vertices]
-        self._operator = _operator_of(binding, self._vertices)
+        self._operator, self._changes = _followed(binding, self._vertices)
 
     def __call__(self, control_points: Points, heights: Floats) -> tuple[Floats, Floats]:
         """Return how far the skin stands out at heights (k,) [mm], and its slopes, (k, n, 3).
 
         Where there is no skin it is nan, and the slopes are nothing.
         """
-        places = self._rest + self._operator @ self._binding.change(control_points)
+        places = self._rest + self._operator @ self._changes.of(control_points)
         faces = self._faces[_crossing(places[:, 0], self._at, self._faces)]
         corners = places[faces]
         low, high = corners[:, :, 2].min(axis=1), corners[:, :, 2].max(axis=1)
@@ -247,7 +248,7 @@ class _Section:
         shape = (len(faces), len(self._rest))
         weights = sparse.csr_array((parts.ravel(), faces.ravel(), starts), shape=shape) @ self._operator
         by_columns = weights.toarray()[:, :, None] * ways[:, None, :]
-        return self._binding.gradient_by_points(control_points, by_columns)
+        return self._changes.gradient(control_points, by_columns)
 
 
 def _near(mesh: Mesh, at: float) -> tuple[Indices, Indices]:
@@ -266,17 +267,17 @@ def _crossing(x: Floats, low: float, faces: Indices, high: float | None = None) 
     return np.asarray((left[a] | left[b] | left[c]) & (right[a] | right[b] | right[c]))
 
 
-def _operator_of(binding: Binding, vertices: Indices) -> sparse.csr_array:
-    """Return what moves ``vertices`` (k,) of the body, shape (k, columns); rows of nothing keep still."""
+def _followed(binding: Binding, vertices: Indices) -> tuple[sparse.csr_array, Changes]:
+    """Return what moves ``vertices`` (k,) of the body, (k, columns), and its columns; empty rows stay."""
     place = np.full(len(binding.body.vertices), -1)
     place[binding.moving] = np.arange(len(binding.moving))
     moves = place[vertices] >= 0
-    rows = binding.operator.of_rows(place[vertices[moves]])
+    few = binding.few(place[vertices[moves]])
     spread = sparse.csr_array(
-        (np.ones(len(rows.indptr) - 1), (np.flatnonzero(moves), np.arange(moves.sum()))),
+        (np.ones(int(moves.sum())), (np.flatnonzero(moves), np.arange(moves.sum()))),
         shape=(len(vertices), int(moves.sum())),
     )
-    return sparse.csr_array(spread @ rows)
+    return sparse.csr_array(spread @ few.operator), few.changes
 
 
 def _parts(corners: Floats, places: Floats) -> Floats:

@@ -147,7 +147,7 @@ def test_a_control_mesh_whose_border_triangles_move_is_refused():
     two_rings = (np.abs(CONTROL.column) > 2) | (np.abs(CONTROL.row - 2.5) > 1.0)
     collared = replace(CONTROL, fixed=two_rings)
     binding = pipeline._bind(SHEET, collared, np.ones(len(SHEET.vertices)), "smooth", False)
-    assert np.array_equal(binding.points, np.flatnonzero(~two_rings))
+    assert np.array_equal(binding.changes.points, np.flatnonzero(~two_rings))
 
 
 SAMPLES = pytest.mark.parametrize("name", ["mannequin", "person"])

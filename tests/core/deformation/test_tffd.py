@@ -135,9 +135,10 @@ def test_what_cannot_change_is_left_out_and_changes_nothing(weights):
     moved = np.where(RING[:, None], CONTROL.vertices, shaken(CONTROL))
     whole, part = bind(BODY, CONTROL, FULL, weights), bind(BODY, CONTROL, FULL, weights, fixed=RING)
     assert np.abs(deform(part, moved) - deform(whole, moved)).max() < 1e-11
-    assert np.array_equal(part.points, np.flatnonzero(~RING))
-    assert np.array_equal(part.triangles, np.flatnonzero(~RING[CONTROL.faces].all(axis=1)))
-    assert part.operator.columns.max() < len(part.points) + len(part.triangles)
+    points, triangles = part.changes.points, part.changes.triangles
+    assert np.array_equal(points, np.flatnonzero(~RING))
+    assert np.array_equal(triangles, np.flatnonzero(~RING[CONTROL.faces].all(axis=1)))
+    assert part.operator.columns.max() < len(points) + len(triangles)
     assert part.operator.weights.size < whole.operator.weights.size
 
 
@@ -145,10 +146,10 @@ def test_what_cannot_change_is_left_out_and_changes_nothing(weights):
 def test_a_few_rows_as_a_matrix_and_all_of_them_before_others(weights):
     binding = bind(BODY, CONTROL, FULL, weights, fixed=RING)
     moved, rows = shaken(CONTROL), np.array([700, 3, 41, 3])
-    ours = binding.rest_moving[rows] + binding.operator.of_rows(rows) @ binding.change(moved)
+    ours = binding.rest_moving[rows] + binding.operator.of_rows(rows) @ binding.changes.of(moved)
     assert np.abs(ours - deform_moving(binding, moved)[rows]).max() < 1e-11
     longer = np.concatenate([binding.rest_moving, BODY.vertices[:5]])
-    places = binding.operator.apply(binding.change(moved), longer)
+    places = binding.operator.apply(binding.changes.of(moved), longer)
     assert np.array_equal(places[:-5], deform_moving(binding, moved))
     assert np.array_equal(places[-5:], BODY.vertices[:5])
 
@@ -238,7 +239,7 @@ def test_no_usable_triangle_and_no_fade_move_nothing(weights):
     needle = Mesh(np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0]]), np.array([[0, 1, 2]]))
     for binding in (bind(BODY, needle, FULL, weights), bind(BODY, CONTROL, 0.0 * FULL, weights)):
         assert len(binding.moving) == 0
-        assert np.array_equal(deform(binding, binding.control.vertices + 5.0), BODY.vertices)
+        assert np.array_equal(deform(binding, binding.changes.control.vertices + 5.0), BODY.vertices)
 
 
 def test_the_smooth_weights_end_without_a_step():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from solid_bodies import BOTH, SLING, worn
 
-from core.deformation.tffd import deform
+from core.deformation.tffd import deform, deform_moving
 from core.errors import LineError
 from core.garment.tension import line_tensions
 from core.geometry.closest_point import nearest_faces
@@ -169,12 +169,26 @@ def test_the_body_follows_the_skin_of_the_solid(lifted: Stages, person: Stages) 
     slopes, way = rng.normal(size=binding.rest_moving.shape), rng.normal(size=points.shape)
     way[lifted.control.fixed] = 0.0
     step = 1e-4
-    ahead, behind = (binding.change(points + sign * step * way) for sign in (1.0, -1.0))
+    ahead, behind = (binding.changes.of(points + sign * step * way) for sign in (1.0, -1.0))
     rate = (ahead - behind) / (2.0 * step)
-    assert np.abs(binding.directional_derivative(points, way) - rate).max() < 1e-6 * np.abs(rate).max()
+    told = binding.changes.directional_derivative(points, way)
+    assert np.abs(told - rate).max() < 1e-6 * np.abs(rate).max()
     by_columns = binding.operator.apply_transposed(slopes)
     expected = float(np.sum(by_columns * rate))
     assert float(np.sum(binding.gradient(points, slopes) * way)) == pytest.approx(expected, rel=1e-6)
+
+
+def test_a_few_places_follow_as_among_all(lifted: Stages) -> None:
+    binding, points = lifted.binding, lifted.control.mesh.vertices + shift(lifted)
+    rows = np.array([9, 700, 30, 700])
+    few = binding.few(rows)
+    assert len(few.changes.of(points)) < len(binding.changes.of(points)) / 4
+    # All rows together are blended in single precision.
+    assert np.abs(few.places(points) - deform_moving(binding, points)[rows]).max() < 1e-4
+    slopes = np.random.default_rng(3).normal(size=(4, 3))
+    every = np.zeros_like(binding.rest_moving)
+    np.add.at(every, rows, slopes)
+    assert few.gradient(points, slopes) == pytest.approx(binding.gradient(points, every), abs=1e-9)
 
 
 def test_nothing_leaps_where_the_solid_ends(person: Stages) -> None:
