@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -69,6 +70,7 @@ def through_middles(path: tuple[int, ...], mesh: Mesh) -> tuple[int, ...]:
     return _through(path, _numbers(mesh))
 
 
+@lru_cache(maxsize=2)
 def _numbers(mesh: Mesh) -> sparse.csr_array:
     """Return the number of the middle between each pair of neighbours, (n, n)."""
     count, ends = len(mesh.vertices), mesh.edges

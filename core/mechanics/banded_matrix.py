@@ -126,14 +126,23 @@ class Band:
     def _order(self) -> Indices:
         return np.argsort(self.place)
 
-    def lower(self, entries: Entries) -> Operator:
+    def lower(self, entries: Entries) -> sparse.csc_array:
         """Return the map from the entries' figures to the lower band of a symmetric matrix."""
-        row, column = self.place[entries.row], self.place[entries.column]
-        below = row >= column
-        at = column * (self.reach + 1) + row - column
+        at, below = self._in_lower(entries)
         return self._map(entries, at, below, self.size * (self.reach + 1))
 
-    def general(self, entries: Entries) -> Operator:
+    def lower_values(self, entries: Entries) -> Floats:
+        """Return the lower band of a symmetric matrix all of whose figures are 1."""
+        at, below = self._in_lower(entries)
+        values = np.bincount(at[below], entries.value[below], self.size * (self.reach + 1))
+        return np.asarray(values, dtype=np.float64)
+
+    def _in_lower(self, entries: Entries) -> tuple[Indices, Flags]:
+        """Return where entries lie in a lower band, and which of them do."""
+        row, column = self.place[entries.row], self.place[entries.column]
+        return column * (self.reach + 1) + row - column, row >= column
+
+    def general(self, entries: Entries) -> sparse.csc_array:
         """Return the map from the entries' figures to the band of any matrix, with room for pivoting."""
         row, column = self.place[entries.row], self.place[entries.column]
         at = column * self._tall + 2 * self.reach + row - column
@@ -143,9 +152,10 @@ class Band:
     def _tall(self) -> int:
         return 3 * self.reach + 1
 
-    def _map(self, entries: Entries, at: Indices, kept: Flags, size: int) -> sparse.csr_array:
+    def _map(self, entries: Entries, at: Indices, kept: Flags, size: int) -> sparse.csc_array:
+        # By columns: a full band has half a million rows, most of them empty.
         where = (at[kept], entries.source[kept])
-        return sparse.csr_array((entries.value[kept], where), shape=(size, entries.width))
+        return sparse.csc_array((entries.value[kept], where), shape=(size, entries.width))
 
     def cholesky(self, lower: Floats) -> Solve | None:
         """Return a solver of the symmetric matrix with this lower band, None unless positive definite."""

@@ -35,13 +35,13 @@ class HessianLayout:
 
     band: Band
     constant: Floats
-    changing: Operator
+    changing: sparse.csc_array
     segments: Springs
     corners: Entries
     trace: float
 
     @cached_property
-    def lines_general(self) -> Operator:
+    def lines_general(self) -> sparse.csc_array:
         """The map of the blocks of sliding line segments to a general band: see ``sliding_entries``."""
         return self.band.general(sliding_entries(self.segments.signs))
 
@@ -65,7 +65,7 @@ class HessianLayout:
         return Entries(row, column, source, corners.value[here], corners.width)
 
     @cached_property
-    def rotation_general(self) -> Operator:
+    def rotation_general(self) -> sparse.csc_array:
         """The map to a general band of what ``corners_of_lines`` do to all three axes of their points."""
         corners = self.corners_of_lines
         row = (3 * (corners.row // 3)[:, None] + np.arange(3)).ravel()
@@ -87,12 +87,11 @@ def layout_of(tensegric: TissueModel, segments: Springs, volume: VolumeMeasure) 
         coupled = [(part.row // 3, part.column // 3) for part in (fixed, *parts)]
         first, second = (np.concatenate(ends) for ends in zip(*coupled, strict=True))
         band = band_of(count, first, second)
-    maps = [sparse.csr_array(band.lower(part)) for part in parts]
-    changing = sparse.csr_array(sparse.hstack(maps, format="csr"))
+    changing = sparse.csc_array(sparse.hstack([band.lower(part) for part in parts], format="csc"))
     trace = 1e-8 * tensegric.mean_stiffness
     diagonal = np.arange(band.size)
     loose = Entries(diagonal, diagonal, np.zeros_like(diagonal), np.full(band.size, trace), 1)
-    constant = band.lower(joined([fixed, loose], 1)) @ np.ones(1)
+    constant = band.lower_values(joined([fixed, loose], 1))
     return HessianLayout(band, constant, changing, segments, corners, trace)
 
 

@@ -84,7 +84,9 @@ class ConstrainedModel:
 
     @cached_property
     def sweep(self) -> GaussSeidelSweep:
-        """Return how one turn answers the forces that it finds unbalanced."""
+        """Return how one iteration from rest answers the forces that it finds unbalanced."""
+        if isinstance(self.tensegric, CondensedTissue) and self.tensegric.cups:
+            return self.sweep_at(np.zeros_like(self.tensegric.load))
         if self.options.line_contact == "glued" or not len(self.owner):
             return bonded_sweep(self.stiffness, len(self.tensegric.free), self.tensegric.relaxation)
         return sliding_sweep(self.tensegric.stiffness, self.line_laplacian, self.segments.nodes)
