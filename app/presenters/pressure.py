@@ -145,12 +145,12 @@ def pressure_summary(listed: PressureList | None, design: Design, doubt: str = "
 
 
 def total_text(listed: PressureList) -> str:
-    """Return the total force of all bands on the skin in words: of those whose tension is known."""
+    """Return the total force of bands and cups on the skin in words: of those whose tension is known."""
     if listed.force_n is None:
         return tr("Total force on the skin unknown")
-    words = tr("Total force of all bands on the skin: {force} N")
+    words = tr("Total force on the skin: {force} N")
     if not listed.complete:
-        words = tr("Total force of bands with known tension on the skin: {force} N")
+        words = tr("Total force on the skin where tensions are known: {force} N")
     return words.format(force=number(listed.force_n, 1))
 
 
