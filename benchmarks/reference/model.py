@@ -10,7 +10,7 @@ from scipy import sparse
 from core.geometry.mesh import Faces, Flags, Mesh, Points
 from reference.bands import Bands, cut
 from reference.contact import Cup, CupContact
-from reference.sewn import Cloth
+from reference.sewn import Cloth, hanging
 from reference.skin import QuadraticSkin, closest, remeshed, within_outline
 from reference.solid_mesh import chest_wall, over_fixed, still_nodes, tetrahedra
 from reference.states import LoadedBody
@@ -63,10 +63,15 @@ class BustModel:
         return Bands(rest, self.nodes, follow, pieces, ratio * each, stiffness_n * each)
 
     def cloth(self, cup: Cup, cloth: Cloth, disc_mm: float) -> Bands:
-        """Return the strips of a sewn ``cup``, their ends glued to discs of ``disc_mm``."""
+        """Return the strips of a sewn ``cup``, their ends glued to discs of ``disc_mm``.
+
+        Points further from the skin than a disc reaches, as over a crease, hang in the air.
+        """
         used, pieces = np.unique(cloth.strips, return_inverse=True)
-        rest, follow = self._glued(cup.rest.vertices[used], disc_mm)
-        pieces = pieces.reshape(-1, 2)
+        points, pieces = cup.rest.vertices[used], pieces.reshape(-1, 2)
+        rest, follow = self._glued(points, disc_mm)
+        hung = hanging(np.linalg.norm(rest - points, axis=1) > 0.5 * disc_mm, pieces)
+        rest, follow = hung @ rest, sparse.csr_array(hung @ follow)
         return Bands(rest, self.nodes, follow, pieces, cloth.ratio, cloth.stiffness_n(cup.rest))
 
     def wires(self, cup: Cup, wire: Wire, disc_mm: float) -> tuple[Underwire, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import sparse
 
 from core.geometry.mesh import Flags, Floats, Indices, Mesh
 
@@ -50,3 +51,16 @@ def strips_of(edges: Indices, row: Floats, column: Floats, side: Indices) -> tup
     level, steep = row[one] == row[other], column[one] == column[other]
     own = (side[one] == side[other]) & (side[one] != 0) & (level | steep)
     return edges[own], level[own]
+
+
+def hanging(off: Flags, strips: Indices) -> sparse.csr_array:
+    """Return the matrix (n, n) that puts points ``off`` (n,) the skin amid those on it that strips lead to.
+
+    It is the balance of cloth that pulls alike on all sides.
+    """
+    near = np.zeros((len(off), len(off)))
+    near[strips[:, 0], strips[:, 1]] = near[strips[:, 1], strips[:, 0]] = 1.0
+    near[:, off] = 0.0
+    hung = off & near.any(axis=1)
+    near[hung] /= near[hung].sum(axis=1, keepdims=True)
+    return sparse.csr_array(np.where(hung[:, None], near, np.eye(len(off))))
