@@ -4,8 +4,9 @@ Make:  python benchmarks/make_reference.py BODY.ply --case no-weight sling=95% -
 Check: python benchmarks/make_reference.py --check FILE... --bodies DIR
 
 BODY is a clean, upright body in mm. A case is a state of gravity (no-weight, supine, lean=30,
-gravity=X,Y,Z), lines with their common ratio (mid-bust=95%, sling=95%, strap=95%), rigid cups of both
-breasts (cup=COVERAGE,lift:25,forward:5,gather:15 [mm]), or several joined by "+".
+gravity=X,Y,Z), lines with their common ratio (mid-bust=95%, sling=95%, strap=95%), cups of both breasts,
+rigid (cup=COVERAGE,lift:25,forward:5,gather:15 [mm]) or of cloth (sewn=COVERAGE,across:0.95,upright:0.92,
+cloth:300 [N/m]), with wires if a width is given (wire:1.0), or several joined by "+".
 In place of the shear modulus [kPa], ``--rise`` chooses the one with which the bust rises so far [mm] when
 its weight is removed. A check solves the definition stored in a file anew, also on a mesh with 1.7 times
 the unknowns. Model and files: resources/reference/README.md. Needs benchmarks/reference-requirements.txt.

@@ -16,7 +16,7 @@ class Bands:
 
     ``rest`` (k, 3) [mm] are the points on the scan, of which ``follow`` (k, n) gives the means of the nodes'
     displacements (an empty row: held in space), ``pieces`` (m, 2) their ends, ``ratio`` (m,) the natural
-    lengths in parts of those on the scan, ``stiffness_n`` the force per unit of strain [N].
+    lengths in parts of those on the scan, ``stiffness_n`` (m,) the forces per unit of strain [N].
     """
 
     rest: Points
@@ -24,7 +24,7 @@ class Bands:
     follow: sparse.csr_array
     pieces: Indices
     ratio: Floats
-    stiffness_n: float
+    stiffness_n: Floats
 
     def points(self, nodes: Points) -> Points:
         """Return the points for nodes (n, 3) [mm], shape (k, 3) [mm]."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -14,8 +14,10 @@ import pyvista as pv
 from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points
 from reference.bands import Bands
 from reference.contact import Cup, CupContact
+from reference.cup_arrays import cup_arrays, read_cup
 from reference.model import BustModel, bust_model
-from reference.states import STANDING
+from reference.states import STANDING, Worn
+from reference.underwire import Underwire
 
 TAPE_EA_N = 1000.0
 """Stiffness of a line per unit of strain [N]."""
@@ -80,7 +82,7 @@ def read_case(path: Path) -> tuple[Case, Points, Points]:
             rows, columns, points = (stored[f"line_{each}"] for each in ("rows", "columns", "points"))
             case = replace(case, rows=rows, columns=columns, points=points.astype(np.float64))
         if "cup" in stored:
-            case = replace(case, cup=_read_cup(stored))
+            case = replace(case, cup=read_cup(stored))
         return case, stored["rest"].astype(np.float64), stored["displacement"].astype(np.float64)
 
 
@@ -110,26 +112,8 @@ def write_case(path: Path, case: Case, model: BustModel, moved: Points, info: di
         info=np.array(repr(info)),
         wall=model.wall.astype(small),
         wall_triangles=model.skin.faces.astype(np.int32),
-        **({} if case.cup is None else _cup_arrays(case.cup)),
+        **({} if case.cup is None else cup_arrays(case.cup)),
     )
-
-
-def _cup_arrays(cup: Cup) -> dict[str, Any]:
-    return {
-        "cup": np.array([cup.lift, cup.forward, cup.gather]),
-        "cup_coverage": np.array(cup.coverage),
-        "cup_rest": cup.rest.vertices.astype(np.float32),
-        "cup_points": cup.target.astype(np.float32),
-        "cup_triangles": cup.rest.faces.astype(np.int32),
-        "cup_side": cup.side.astype(np.int8),
-    }
-
-
-def _read_cup(stored: Mapping[str, Any]) -> Cup:
-    rest = Mesh(stored["cup_rest"].astype(np.float64), stored["cup_triangles"].astype(np.int64))
-    lift, forward, gather = stored["cup"].tolist()
-    target = stored["cup_points"].astype(np.float64)
-    return Cup(lift, forward, gather, str(stored["cup_coverage"]), rest, target, stored["cup_side"])
 
 
 def model_of(case: Case, bodies: Path, count: int) -> BustModel:
@@ -146,15 +130,58 @@ CUP_STEPS = 8
 def solved(case: Case, model: BustModel) -> tuple[Points, dict[str, Any]]:
     """Return the nodes of ``model`` in ``case``, (n, 3) [mm], and what lines and cups do."""
     start = time.perf_counter()
-    lines, cups = case.lines(), () if case.cup is None else model.contacts(case.cup)
+    lines = case.lines()
     held = tuple(map(case.held, lines))
     bands = [model.bands(lines, held, case.ratio, case.tape_ea_n, case.band_mm)] if lines else []
-    if bands or cups:
-        moved = model.loaded_body.loaded(case.gravity, [*bands, *cups], CUP_STEPS if cups else 4)
+    cup = CupWorn() if case.cup is None else _worn(case.cup, model, case.band_mm)
+    if worn := [*bands, *cup.parts]:
+        moved = model.loaded_body.loaded(case.gravity, worn, CUP_STEPS if cup.parts else 4)
     else:
         moved = model.loaded_body.loaded(case.gravity) if case.gravity.any() else model.loaded_body.unloaded
     seconds = round(time.perf_counter() - start, 1)
-    return moved, {"ok": True, **_line_info(bands, model, moved), **_cup_info(cups, moved), "s": seconds}
+    return moved, {"ok": True, **_line_info(bands, model, moved), **cup.info(moved), "s": seconds}
+
+
+@dataclass(frozen=True, eq=False)
+class CupWorn:
+    """What acts of both cups, worn: the contact or the cloth, and the wires, the left before the right."""
+
+    contacts: tuple[CupContact, ...] = ()
+    cloth: tuple[Bands, ...] = ()
+    wires: tuple[Underwire, ...] = ()
+
+    @property
+    def parts(self) -> tuple[Worn, ...]:
+        """Return all parts."""
+        return *self.contacts, *self.cloth, *self.wires
+
+    def info(self, moved: Points) -> dict[str, Any]:
+        """Return the force of each cup on the breast [N], the largest penetration [mm], the tension of cloth
+        [N], and how far wires leave their form [mm], at nodes ``moved`` (n, 3).
+        """
+        info: dict[str, Any] = {}
+        if self.contacts:
+            left, right = (each.total(moved).round(3).tolist() for each in self.contacts)
+            deepest = max(float(each.outside(moved).max()) for each in self.contacts)
+            info |= {"cup_left_n": left, "cup_right_n": right, "penetration": round(deepest, 3)}
+        for each in self.cloth:
+            tension = each.tension(moved)
+            info |= {
+                "cloth_mean": round(float(tension.mean()), 3),
+                "cloth_max": round(float(tension.max()), 3),
+            }
+        if self.wires:
+            off = max(float(np.linalg.norm(each.off(moved), axis=1).max()) for each in self.wires)
+            info["wire_off"] = round(off, 3)
+        return info
+
+
+def _worn(cup: Cup, model: BustModel, disc_mm: float) -> CupWorn:
+    """Return ``cup`` as it acts on ``model``; cloth and wires are glued to discs of ``disc_mm``."""
+    wires = () if cup.wire is None else model.wires(cup, cup.wire, disc_mm)
+    if cup.cloth is not None:
+        return CupWorn(cloth=(model.cloth(cup, cup.cloth, disc_mm),), wires=wires)
+    return CupWorn(model.contacts(cup), wires=wires)
 
 
 def _line_info(bands: Sequence[Bands], model: BustModel, moved: Points) -> dict[str, Any]:
@@ -166,12 +193,3 @@ def _line_info(bands: Sequence[Bands], model: BustModel, moved: Points) -> dict[
         info = {"reached": round(float(reached), 4)}
         info |= {"T_mean": round(float(tension.mean()), 3), "T_max": round(float(tension.max()), 3)}
     return info
-
-
-def _cup_info(cups: Sequence[CupContact], moved: Points) -> dict[str, Any]:
-    """Return the force of the left and the right cup on the breast [N], and the largest penetration [mm]."""
-    if not cups:
-        return {}
-    left, right = (cup.total(moved).round(3).tolist() for cup in cups)
-    deepest = max(float(cup.outside(moved).max()) for cup in cups)
-    return {"cup_left_n": left, "cup_right_n": right, "penetration": round(deepest, 3)}

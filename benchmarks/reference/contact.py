@@ -9,7 +9,9 @@ from scipy import sparse
 
 from core.geometry.mesh import Faces, Floats, Indices, Mesh, Points
 from reference.distance_field import DistanceField, distance_field
+from reference.sewn import Cloth
 from reference.skin import barycentric, closest
+from reference.underwire import Wire
 
 HARDNESS = 0.01
 """Pressure with which a cup answers to skin outside of it [N/mm^3]: 0.1 mm at 1 kPa."""
@@ -17,11 +19,11 @@ HARDNESS = 0.01
 
 @dataclass(frozen=True, eq=False)
 class Cup:
-    """A moulded cup of each breast, given at the points of the control mesh halved once.
+    """A cup of each breast, given at the points of the control mesh halved once.
 
     ``lift``, ``forward`` and ``gather`` [mm] are the way of the apex, ``coverage`` is where the upper edge
     lies. The cup is ``rest`` with its points at ``target`` (n, 3) [mm]; ``side`` (n,) is 1 and -1 at points
-    that the left and the right cup cover, else 0.
+    that the left and the right cup cover, else 0. With ``cloth`` it is sewn and holds nothing back.
     """
 
     lift: float
@@ -31,6 +33,8 @@ class Cup:
     rest: Mesh
     target: Points
     side: Indices
+    cloth: Cloth | None = None
+    wire: Wire | None = None
 
     def contacts(self, skin: Points, triangles: Faces, picked: sparse.csr_array) -> tuple[CupContact, ...]:
         """Return the contact of nodes ``skin`` (s, 3) [mm], which ``picked`` (s, n) takes from all nodes.

@@ -12,10 +12,13 @@ from core.control_mesh.fit import ControlMesh
 from core.document.cup import COVERAGES
 from core.document.cup import Cup as CupSettings
 from core.document.design import Design, ScanSource
-from core.geometry.mesh import Floats, Points
+from core.geometry.mesh import Flags, Floats, Points
 from core.pipeline.build import Stages, build
+from core.pipeline.cup_parts import CupLayout
 from reference.cases import Case
 from reference.contact import Cup
+from reference.sewn import Cloth, strips_of
+from reference.underwire import Wire
 
 Places = tuple[tuple[int, int], ...]
 """Row and column in the template of each control point of a line."""
@@ -28,8 +31,11 @@ LINES: dict[str, tuple[Places, ...]] = {
 """Lines by name; rows count from the fold upward, column 0 is the centre, positive the subject's left."""
 
 
-WAYS = ("lift", "forward", "gather")
-"""Ways of a cup's apex [mm]."""
+CUP_NUMBERS = {
+    "cup": ("lift", "forward", "gather", "wire"),
+    "sewn": ("across", "upright", "cloth", "wire"),
+}
+"""Numbers of moulded and sewn cups: ways of the apex [mm], ratios [1], cloth [N/m], width of a wire [1]."""
 
 
 def bare_case(path: Path, shear_kpa: float) -> tuple[Case, Stages]:
@@ -42,7 +48,7 @@ def bare_case(path: Path, shear_kpa: float) -> tuple[Case, Stages]:
 
 def named_case(name: str, bare: Case, stages: Stages) -> Case:
     """Return ``bare`` in the state ``name``: parts joined by "+", as "supine", "lean=30", "sling=95%" or
-    "cup=half,lift:25,forward:5".
+    "cup=half,lift:25,forward:5" or "sewn=half,across:0.95,wire:1".
 
     Raises ValueError for an unknown part or lines of different ratios.
     """
@@ -53,8 +59,8 @@ def named_case(name: str, bare: Case, stages: Stages) -> Case:
         if label in LINES and re.fullmatch(r"\d+(\.\d+)?%", value):
             ratios.add(float(value[:-1]) / 100.0)
             lines += LINES[label]
-        elif label == "cup":
-            case = replace(case, cup=cup_of(value, stages))
+        elif label in CUP_NUMBERS:
+            case = replace(case, cup=cup_of(label, value, stages))
         else:
             case = replace(case, gravity=gravity_of(part))
     if len(ratios) > 1:
@@ -80,22 +86,47 @@ def gravity_of(part: str) -> Floats:
     )
 
 
-def cup_of(value: str, stages: Stages) -> Cup:
-    """Return the cup of "half,lift:25,forward:5": its coverage, and the way of the apex [mm]."""
-    coverage, *ways = value.split(",")
-    way = dict.fromkeys(WAYS, 0.0) | {
-        label: float(number) for label, _, number in (part.partition(":") for part in ways)
-    }
-    if coverage not in COVERAGES or len(way) > len(WAYS):
-        raise ValueError(f"cup={value}: give {', '.join(COVERAGES)}, then lift, forward or gather")
-    control = stages.control
-    lift, forward, gather = (way[each] for each in WAYS)
-    settings = CupSettings(coverage=coverage, lift=lift, forward=forward, gather=gather)
-    layout = stages.cup_layout(settings)
+def cup_of(kind: str, value: str, stages: Stages) -> Cup:
+    """Return the cup of "cup" and "half,lift:25,forward:5", or "sewn" and "half,across:0.95": its numbers."""
+    coverage, *parts = value.split(",")
+    numbers = {label: float(number) for label, _, number in (part.partition(":") for part in parts)}
+    known = CUP_NUMBERS[kind]
+    if coverage not in COVERAGES or not set(numbers) <= set(known):
+        raise ValueError(f"{kind}={value}: give {', '.join(COVERAGES)}, then any of {', '.join(known)}")
+    width = numbers.pop("wire", None)
+    settings = CupSettings("sewn" if kind == "sewn" else "moulded", coverage, **numbers)
+    if width is not None:
+        settings = replace(settings, wire=True, wire_width=width)
+    return _laid(settings, stages)
+
+
+def _laid(settings: CupSettings, stages: Stages) -> Cup:
+    """Return a cup where the program lays it: its own shape and wire, but not how they act."""
+    control, layout = stages.control, stages.cup_layout(settings)
     side = np.zeros(len(control.fixed), dtype=np.int64)
     for each in (1, -1):
         side[layout.points(each)] = each
-    return Cup(lift, forward, gather, coverage, control.mesh, layout.target, side)
+    ways = settings.lift, settings.forward, settings.gather
+    cup = Cup(*ways, settings.coverage, control.mesh, layout.target, side)
+    if settings.kind == "sewn":
+        fitted = stages.fitted
+        row, column = (
+            np.concatenate([at, at[fitted.mesh.edges].mean(axis=1)]) for at in (fitted.row, fitted.column)
+        )
+        strips = strips_of(control.mesh.edges, row, column, side)
+        cup = replace(cup, cloth=Cloth(settings.across, settings.upright, settings.cloth, *strips))
+    return replace(cup, wire=_wire(settings.wire_width, layout, control.fixed)) if settings.wire else cup
+
+
+def _wire(width: float, layout: CupLayout, fixed: Flags) -> Wire:
+    """Return the wires of both cups along the points of the roots that can move."""
+    points, side, shape = [], [], []
+    for each in (1, -1):
+        root = layout.root(each)
+        points.append(root[~fixed[root]])
+        side.append(np.full(len(points[-1]), each))
+        shape.append(layout.wire_shape(each)[~fixed[root]])
+    return Wire(width, *map(np.concatenate, (points, side, shape)))
 
 
 def _with_lines(case: Case, control: ControlMesh, lines: list[Places], ratio: float) -> Case:

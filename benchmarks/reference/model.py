@@ -10,10 +10,12 @@ from scipy import sparse
 from core.geometry.mesh import Faces, Flags, Mesh, Points
 from reference.bands import Bands, cut
 from reference.contact import Cup, CupContact
+from reference.sewn import Cloth, hanging
 from reference.skin import QuadraticSkin, closest, remeshed, within_outline
 from reference.solid_mesh import chest_wall, over_fixed, still_nodes, tetrahedra
 from reference.states import LoadedBody
 from reference.tissue import Tissue
+from reference.underwire import Underwire, Wire
 
 COUNT = 380
 """Points of the skin."""
@@ -57,7 +59,33 @@ class BustModel:
         _, rest = closest(self.skin, points)
         rest[fixed] = points[fixed]
         follow = self.surface.discs(rest, band_mm, fixed)
-        return Bands(rest, self.nodes, follow, pieces, np.full(len(pieces), ratio), stiffness_n)
+        each = np.ones(len(pieces))
+        return Bands(rest, self.nodes, follow, pieces, ratio * each, stiffness_n * each)
+
+    def cloth(self, cup: Cup, cloth: Cloth, disc_mm: float) -> Bands:
+        """Return the strips of a sewn ``cup``, their ends glued to discs of ``disc_mm``.
+
+        Points further from the skin than a disc reaches, as over a crease, hang in the air.
+        """
+        used, pieces = np.unique(cloth.strips, return_inverse=True)
+        points, pieces = cup.rest.vertices[used], pieces.reshape(-1, 2)
+        rest, follow = self._glued(points, disc_mm)
+        hung = hanging(np.linalg.norm(rest - points, axis=1) > 0.5 * disc_mm, pieces)
+        rest, follow = hung @ rest, sparse.csr_array(hung @ follow)
+        return Bands(rest, self.nodes, follow, pieces, cloth.ratio, cloth.stiffness_n(cup.rest))
+
+    def wires(self, cup: Cup, wire: Wire, disc_mm: float) -> tuple[Underwire, ...]:
+        """Return the ``wire`` of the left and the right ``cup``, which discs of ``disc_mm`` follow."""
+        made = []
+        for own in (wire.side == 1, wire.side == -1):
+            rest, follow = self._glued(cup.rest.vertices[wire.points[own]], disc_mm)
+            made.append(Underwire(rest, self.nodes, follow, wire.shape[own], wire.hardness))
+        return tuple(made)
+
+    def _glued(self, points: Points, disc_mm: float) -> tuple[Points, sparse.csr_array]:
+        """Return the places on the skin nearest to ``points`` (k, 3) [mm], and the means of discs there."""
+        _, rest = closest(self.skin, points)
+        return rest, self.surface.discs(rest, disc_mm, np.zeros(len(rest), dtype=bool))
 
     def contacts(self, cup: Cup) -> tuple[CupContact, ...]:
         """Return the contact with the left and the right ``cup``."""

@@ -12,7 +12,7 @@ from scipy import sparse
 from core.control_mesh.embedding import EmbeddedCurve, Grid, embed
 from core.control_mesh.fit import ControlMesh
 from core.geometry.closest_point import nearest_faces
-from core.geometry.mesh import Indices, Mesh, Points
+from core.geometry.mesh import Flags, Indices, Mesh, Points
 
 BULGE = 0.15
 """Skin further from the middle of an edge than this part of its length [1] is not what the edge spans."""
@@ -57,6 +57,14 @@ def _on_skin(ends: Points, skin: Mesh) -> Points:
     _, places = nearest_faces(skin, middles)
     away, length = (np.linalg.norm(each, axis=1) for each in (places - middles, ends[:, 1] - ends[:, 0]))
     return np.where((away <= BULGE * length)[:, None], places, middles)
+
+
+def off_skin(control: ControlMesh, fine: ControlMesh) -> Flags:
+    """Return which points of ``fine``, which halves ``control``, stay in the air over a crease, (n,)."""
+    before = control.mesh.vertices
+    straight = before[control.mesh.edges].mean(axis=1)
+    off = (fine.mesh.vertices[len(before) :] == straight).all(axis=1)
+    return np.concatenate([np.zeros(len(before), dtype=bool), off])
 
 
 def _finer(curve: EmbeddedCurve, grid: Grid) -> EmbeddedCurve:

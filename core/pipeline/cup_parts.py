@@ -7,15 +7,16 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+from scipy import sparse
 from scipy.spatial import cKDTree
 
 from core.control_mesh.fit import ControlMesh
-from core.control_mesh.halved import through_middles
+from core.control_mesh.halved import off_skin, through_middles
 from core.document.cup import Cup
 from core.errors import LineError
 from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points
 from core.mechanics.cup_parts import CupCloth, CupContact, CupPart, SmoothSurface, Underwire
-from core.mechanics.springs import springs
+from core.mechanics.springs import incidence_of, members
 from core.messages import Message
 
 CUP_STIFFNESS = 1.0
@@ -130,8 +131,7 @@ class CupLayout:
     def cloth_lengths(self, side: int) -> tuple[float, float]:
         """Return the mean lengths of the skin under a sewn cup, across and upright [mm]."""
         pairs, across = self._strips(side)
-        rest = self.control.mesh.vertices
-        length = np.linalg.norm(rest[pairs[:, 0]] - rest[pairs[:, 1]], axis=1)
+        length = np.linalg.norm(self._spans(pairs) @ self.control.mesh.vertices, axis=1)
         rows, columns = (len(np.unique(place[pairs])) for place in (self._row, self._column))
         return float(length[across].sum()) / rows, float(length[~across].sum()) / columns
 
@@ -201,12 +201,26 @@ class CupLayout:
 
     def _cloth(self, side: int) -> CupCloth:
         pairs, across = self._strips(side)
+        spans, rest = self._spans(pairs), self.control.mesh.vertices
         ratio = np.where(across, self.cup.across, self.cup.upright)
-        rest = self.control.mesh.vertices
-        length = np.linalg.norm(rest[pairs[:, 0]] - rest[pairs[:, 1]], axis=1)
-        natural = ratio * length
+        natural = ratio * np.linalg.norm(spans @ rest, axis=1)
         stiffness = 1e-3 * self.cup.cloth * _strip_widths(self.control.mesh, pairs) / natural
-        return CupCloth(springs(rest, self._place, pairs, stiffness), natural)
+        return CupCloth(members(rest, self._place, spans, stiffness), natural)
+
+    def _spans(self, pairs: Indices) -> sparse.csr_array:
+        """Return what makes strips between ``pairs`` (s, 2) of the points, (s, n).
+
+        Where a point is off the skin, as over a crease, the cloth hangs amid those on it that it leads to.
+        """
+        count = len(self.control.fixed)
+        off = off_skin(self.fitted, self.control)
+        ways = np.concatenate([pairs, pairs[:, ::-1]])
+        ways = ways[off[ways[:, 0]] & ~off[ways[:, 1]]]
+        led = np.bincount(ways[:, 0], minlength=count)
+        itself = np.flatnonzero(led == 0)
+        row, column = np.concatenate([np.stack([itself, itself], axis=1), ways]).T
+        amid = sparse.csr_array((1.0 / np.maximum(led, 1)[row], (row, column)), shape=(count, count))
+        return sparse.csr_array(incidence_of(np.arange(count), pairs) @ amid)
 
     def _wire(self, side: int) -> Underwire:
         root = self.root(side)

@@ -59,7 +59,14 @@ def case_arrays(
 
 def cup_arrays(cup: Cup) -> dict[str, Any]:
     """Return what tells the cup of a case."""
-    return {"cup": np.array([cup.lift, cup.forward, cup.gather]), "cup_coverage": cup.coverage}
+    arrays: dict[str, Any] = {
+        "cup": np.array([cup.lift, cup.forward, cup.gather]),
+        "cup_coverage": cup.coverage,
+        "cup_kind": None if cup.kind == "moulded" else cup.kind,
+        "cup_sewn": np.array([cup.across, cup.upright, cup.cloth]) if cup.kind == "sewn" else None,
+        "cup_wire": cup.wire_width if cup.wire else None,
+    }
+    return {name: array for name, array in arrays.items() if array is not None}
 
 
 def write_case(folder: Path, arrays: dict[str, Any], body: Path | None = None, /, **changed: Any) -> Path:

@@ -197,13 +197,20 @@ def _template(reader: _Reader) -> Template:
 
 
 def _cup(reader: _Reader) -> Cup | None:
-    """Return the cup of a case, None if it has none: the way of the apex, and how far up it goes."""
+    """Return the cup of a case, None if it has none: a moulded one without wire unless told otherwise."""
     if "cup" not in reader.arrays:
         return None
     lift, forward, gather = reader.numbers("cup", (3,)).tolist()
     coverage = str(reader.array("cup_coverage", "U", ()))
+    kind = str(reader.array("cup_kind", "U", ())) if "cup_kind" in reader.arrays else "moulded"
+    numbers = {"lift": lift, "forward": forward, "gather": gather}
+    if kind == "sewn":
+        sewn = reader.numbers("cup_sewn", (3,)).tolist()
+        numbers |= dict(zip(("across", "upright", "cloth"), sewn, strict=True))
+    if wire := "cup_wire" in reader.arrays:
+        numbers["wire_width"] = float(reader.numbers("cup_wire", ()))
     try:
-        return Cup(coverage=coverage, lift=lift, forward=forward, gather=gather)
+        return Cup(kind, coverage, wire=wire, **numbers)
     except UserError as problem:
         raise reader.error(Message("its cup is not one that Busk can compute")) from problem
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ from core.analysis.model_check.compare import (
     body_file,
     check_model,
 )
-from core.analysis.model_check.reference_case import case_file, included_cases, read_case
+from core.analysis.model_check.reference_case import case_file, read_case
 from core.document.cup import Cup
 from core.document.design import Design, ScanSource
 from core.errors import UserError
@@ -95,16 +96,50 @@ def test_solid_tissue_wears_the_cup_of_a_case(body: Path, tmp_path: Path) -> Non
     assert (net.ratio, net.notes) == (1.0, (NO_CUPS,))
 
 
+@pytest.mark.parametrize(
+    "cup",
+    [
+        Cup(coverage="half", lift=10.0, wire=True, wire_width=0.95),
+        Cup("sewn", "full", across=0.95, upright=0.9, cloth=400.0),
+        Cup("sewn", across=0.95, wire=True),
+    ],
+)
+def test_wires_and_sewn_cups_are_those_of_the_file(sling: Arrays, tmp_path: Path, cup: Cup) -> None:
+    none = {"line_rows": np.empty(0), "line_columns": np.empty(0)}
+    case = read_case(write_case(tmp_path, sling, **none, **cup_arrays(cup)))
+    assert (case.cup, case.kind) == (cup, "cup")
+
+
+def test_a_sewn_cup_with_a_wire_is_worn(body: Path, tmp_path: Path) -> None:
+    cup = Cup("sewn", across=0.92, upright=0.88, wire=True, wire_width=0.9)
+    case = write_case(tmp_path, case_arrays(body, [], tissue="solid", sag=15.0, cup=cup), body)
+    own = compared(case, tissue="solid")
+    assert own.ratio < 1e-6
+    assert own.reference_rms_mm > 2.0
+    for other in (replace(cup, upright=0.9), replace(cup, wire_width=0.95)):
+        changed = cup_arrays(other)
+        assert (
+            compared(write_case(tmp_path, dict(np.load(case)), body, **changed), tissue="solid").ratio > 0.02
+        )
+
+
 def test_cups_beside_lines_make_another_kind(sling: Arrays, tmp_path: Path) -> None:
     assert read_case(write_case(tmp_path, sling, **cup_arrays(Cup(lift=10.0)))).kind == "other"
 
 
-def test_cup_cases_that_come_with_the_program_are_met() -> None:
-    cases = [read_case(file) for name, file in included_cases().items() if name.startswith("mannequin_cup")]
-    assert len(cases) == 3
-    for found in check_model(cases, Design(ScanSource(""), tissue="solid")):
-        assert found.passed, found
-        assert min(found.left.reference, found.right.reference) > 7.0
+def test_a_cup_of_each_kind_that_comes_with_the_program_is_met() -> None:
+    names = (
+        "mannequin_cup-half_lift-20_forward-5_gather-15",
+        "mannequin_cup-three-quarter_lift-20_forward-3_wire-0.95",
+        "mannequin_sewn-three-quarter_across-0.95_upright-0.92_cloth-300_wire-1.0",
+    )
+    push_up, wired, sewn = check_model(
+        [read_case(case_file(name)) for name in names], Design(ScanSource(""), tissue="solid")
+    )
+    for found in (push_up, wired, sewn):
+        assert (found.kind, found.passed) == ("cup", True), found
+    assert min(rise.reference for rise in (push_up.left, push_up.right, wired.left, wired.right)) > 7.0
+    assert max(sewn.left.reference, sewn.right.reference) < -1.0  # by itself it does not lift
 
 
 def test_nodes_away_from_movable_skin_are_left_out(body: Path, sling: Arrays, tmp_path: Path) -> None:
@@ -180,6 +215,8 @@ def test_a_case_passes_with_error_and_both_rises_within_their_limits(
     assert not CaseComparison("", kind, off, 1.0, near, far, 1.0, place, 10, 0).passed
 
 
+HALF: Arrays = {"cup": np.zeros(3), "cup_coverage": "half"}
+
 WRONG: dict[str, Arrays] = {
     "'displacement' is missing": {"displacement": None},
     "'ratio' is missing": {"ratio": None},
@@ -200,6 +237,14 @@ WRONG: dict[str, Arrays] = {
     "'cup_coverage' does not have": {"cup": np.zeros(3), "cup_coverage": np.array(["half", "full"])},
     "its cup is not one": {"cup": np.zeros(3), "cup_coverage": "double"},
     "its cup is not one that Busk can compute": {"cup": np.array([99.0, 0.0, 0.0]), "cup_coverage": "half"},
+    "'cup_kind' does not have": {**HALF, "cup_kind": 1.0},
+    "its cup is not one that Busk": {**HALF, "cup_kind": "knitted"},
+    "'cup_sewn' is missing": {**HALF, "cup_kind": "sewn"},
+    "'cup_sewn' does not have": {**HALF, "cup_kind": "sewn", "cup_sewn": np.ones(2)},
+    "its cup is not one that Busk can": {**HALF, "cup_kind": "sewn", "cup_sewn": np.array([0.5, 1.0, 300.0])},
+    "'cup_wire' does not have": {**HALF, "cup_wire": np.ones(2)},
+    "'cup_wire' contains values that are not finite": {**HALF, "cup_wire": np.inf},
+    "cup is not one that Busk can compute": {**HALF, "cup_wire": 2.0},
     "'body' is not a file name": {"body": "../mannequin.ply"},
     "is not a reference case": {"body": np.array({"an": "object"})},
 }

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.control_mesh.halved import off_skin
 from core.document.cup import Cup
 from core.errors import LineError, UserError
 from core.garment.cup_fit import CupFit, WornCups
@@ -86,6 +87,19 @@ def test_a_wire_wider_than_the_root_spreads_it(person):
         ends = layout.root(side)[~stages.control.fixed[layout.root(side)]][[0, -1]]
         width = np.ptp(points[ends, 0]) / np.ptp(stages.control.mesh.vertices[ends, 0])
         assert width == pytest.approx(1.1, abs=0.03)
+
+
+def test_cloth_over_a_crease_hangs_from_the_points_on_the_skin(person):
+    stages = dressed(person, SEWN)
+    off = off_skin(stages.fitted, stages.control)[~stages.control.fixed]
+    assert off.any()
+    (cloth, _), rng = stages.model.tensegric.cups, np.random.default_rng(5)
+    pulled = rng.normal(0.0, 3.0, (len(off), 3))
+    assert not cloth.gradient(pulled)[off].any()
+    assert cloth.gradient(pulled)[~off].any()
+    assert cloth.energy(np.where(off[:, None], 0.0, pulled)) == cloth.energy(pulled)
+    # all of it goes along: nothing hangs from what does not move
+    assert cloth.energy(np.ones((len(off), 3))) == pytest.approx(cloth.energy(0.0 * pulled), rel=1e-9)
 
 
 def test_cups_need_solid_tissue_and_room_for_the_breasts(person):
