@@ -6,7 +6,6 @@ import warnings
 from dataclasses import dataclass
 
 import numpy as np
-import pyacvd
 import pyvista as pv
 from pyvista import PyVistaDeprecationWarning
 from scipy import sparse
@@ -77,6 +76,8 @@ def remeshed(patch: Mesh, count: int) -> Mesh:
     The border is half the distance of two points within that of ``patch``.
     Source: Valette and Chassery (2004).
     """
+    import pyacvd  # noqa: PLC0415 (a dependency of making cases alone, not of checking their parts)
+
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PyVistaDeprecationWarning)  # pyacvd 0.4 with pyvista 0.49
         clustering = pyacvd.Clustering(surface(patch))

@@ -263,10 +263,7 @@ def _stages(
 ) -> Stages:
     landmarks = stage(FINDING, partial(detect_landmarks, progress=stage.inside), body, design.placed)
     fitted = _fitted(stage, design, body, landmarks, control_points)
-    control, tissue = fitted, None
-    if design.tissue == "solid":
-        control = stage("halve control mesh", halved, fitted, body.smoothed)
-        tissue = _tissue(stage, body.smoothed, fitted, control, near)
+    control, tissue = _tissue(stage, design, body.smoothed, fitted, near)
     cups = () if design.cup is None else stage("place cups", _cups, design.cup, fitted, control, tissue)
     patch = stage("find patch", blend_weights, body.mesh, control)
     weights = design.weights, design.scaled_normals
@@ -307,11 +304,16 @@ def _fitted(
 
 
 def _tissue(
-    stage: _StageCache, body: Mesh, fitted: ControlMesh, control: ControlMesh, near: Stages | None
-) -> TissueResponse:
+    stage: _StageCache, design: Design, body: Mesh, fitted: ControlMesh, near: Stages | None
+) -> tuple[ControlMesh, TissueResponse | None]:
+    """Return the control mesh, halved where the tissue is solid, and what that answers."""
+    if design.tissue != "solid":
+        return fitted, None
+    control = stage("halve control mesh", halved, fitted, body)
     if near is not None and near.tissue is not None:
-        return stage("condense tissue", with_moved_points, near.tissue, near.control, control)
-    return stage("condense tissue", partial(_condensed, progress=stage.inside), body, fitted, control)
+        return control, stage("condense tissue", with_moved_points, near.tissue, near.control, control)
+    condensed = partial(_condensed, progress=stage.inside)
+    return control, stage("condense tissue", condensed, body, fitted, control)
 
 
 def _with_elastics(
