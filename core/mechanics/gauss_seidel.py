@@ -107,7 +107,7 @@ def forward_of_blocks(stiffness: Operator, points: int, relaxation: float) -> Fo
     every = np.arange(points)
     own = by_point[every, :, every]
     by_point[every, :, every] = 0.0
-    scaled = np.linalg.solve(own, lower.reshape(points, 3, -1)).reshape(lower.shape)
+    scaled = (np.linalg.inv(own) @ lower.reshape(points, 3, -1)).reshape(lower.shape)
     return ForwardOfBlocks(own, frozen(scaled))
 
 
