@@ -282,9 +282,9 @@ def empty_house(
 ) -> Iterator[None]:
     """Nothing of a window lives on after a test: no thread of ours, no window; its settings are fresh.
 
-    A first start opens the mannequin with a short glued line, which most tests are about, and begins no tour:
-    with ``opened_as_in_the_program`` it does as the user sees it. Samples are on a fifth of their vertices,
-    with ``fine_samples`` on all. The soft shadows of a body are computed once. Scans open on the net of the
+    A first start opens the mannequin with a short glued line, which most tests are about, samples open without
+    cups, and no tour begins: with ``opened_as_in_the_program`` all is as the user sees it. Samples are on a
+    fifth of their vertices, with ``fine_samples`` on all. The soft shadows of a body are computed once. Scans open on the net of the
     paper, which takes a tenth of the time; with ``on_solid`` they do as the user sees it.
     How sure figures are is not worked out where a test does not ask: it takes half a minute of a processor;
     nor are length limits but with ``limits_sought``.
@@ -298,6 +298,7 @@ def empty_house(
     if "opened_as_in_the_program" not in request.fixturenames:
         opened = sample_design() if "fine_samples" in request.fixturenames else coarse_sample
         monkeypatch.setattr("app.gui.startup.sample_in_bra", lambda: opened)
+        monkeypatch.setattr("app.gui.features.project.controller.sample_in_bra", sample_design)
     if not {"opened_as_in_the_program", "on_solid"}.intersection(request.fixturenames):
         monkeypatch.setattr("app.gui.session.session.new_design", Design)
     if not {"opened_as_in_the_program", "first_tour"}.intersection(request.fixturenames):

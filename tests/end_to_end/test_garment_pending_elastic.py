@@ -11,7 +11,7 @@ from window_tools import PATIENCE, Script, run_bodiless, run_undrawn, settled
 
 from app.gui.features.garment import elastic_offer
 from app.gui.main_window import MainWindow
-from app.presenters.samples import sample_in_bra
+from app.presenters.samples import sample_design
 from core.garment.elastic_library import find_elastic
 
 pytestmark = pytest.mark.usefixtures("empty_house", "few_elastics")
@@ -56,7 +56,7 @@ def test_an_elastic_goes_to_no_other_variant_and_to_no_other_document(gate: thre
         yield lambda: window.session.name == "person" and window.is_settled()
         gate.set()
         yield at_rest(window)
-        assert window.session.design == sample_in_bra("person")
+        assert window.session.design == sample_design("person")
         assert window.session.undo_stack.isClean()
 
     run_undrawn([], script)
