@@ -282,10 +282,11 @@ def empty_house(
 ) -> Iterator[None]:
     """Nothing of a window lives on after a test: no thread of ours, no window; its settings are fresh.
 
-    A first start opens the mannequin with a short glued line, which most tests are about, samples open without
-    cups, and no tour begins: with ``opened_as_in_the_program`` all is as the user sees it. Samples are on a
-    fifth of their vertices, with ``fine_samples`` on all. The soft shadows of a body are computed once. Scans open on the net of the
-    paper, which takes a tenth of the time; with ``on_solid`` they do as the user sees it.
+    A first start opens the mannequin with a short glued line, which most tests are about, samples open
+    without cups, and no tour begins: with ``opened_as_in_the_program`` all is as the user sees it. Samples
+    are on a fifth of their vertices, with ``fine_samples`` on all. The soft shadows of a body are computed
+    once. Scans open on the net of the paper, which takes a tenth of the time; with ``on_solid`` they do as
+    the user sees it.
     How sure figures are is not worked out where a test does not ask: it takes half a minute of a processor;
     nor are length limits but with ``limits_sought``.
     Frames come seldom, as on a slow machine: most of a test's time would go into ones that nobody looks at.
