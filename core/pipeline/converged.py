@@ -15,7 +15,6 @@ def converged_frame(design: Design, near: Stages, progress: Progress = quiet) ->
 
     Raises the UserError of the stage that fails, or Cancelled.
     """
-    # Two BLAS threads make these small products many times slower.
     with one_blas_thread():
         stages = build(design, near, progress)
         change = stages.body_change if design.dense_volume else None

@@ -154,7 +154,6 @@ class LiveSolver:
             self._warmer.join()
 
     def _work(self) -> None:
-        # Two BLAS threads make these small products many times slower.
         with one_blas_thread():
             while not self._stopping:
                 try:

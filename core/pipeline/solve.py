@@ -161,7 +161,6 @@ def solve(stages: Stages, turns: int | None = None, progress: Progress = quiet) 
     start = time.perf_counter()
     rest = record(stages.model, initial_state(stages.model), 0.0, stages.watch)
     solve = _run_exact if stages.design.volume == "exact" else _run_turns
-    # Two BLAS threads make these small products many times slower.
     with one_blas_thread():
         records, state, verdict = solve(stages, rest, turns, progress)
     condition = shape_of(stages.model).quality(stages.model.tensegric.expand(state.moved))

@@ -116,7 +116,6 @@ def diagnose(stages: Stages, progress: Progress = quiet) -> Diagnosis:
     design whose run is well may press too much, or have slack lines. ``progress`` hears each step; raises
     Cancelled.
     """
-    # Two BLAS threads make these small products many times slower.
     with one_blas_thread():
         progress("diagnosing", 0.0)
         found = Diagnosis(run_trial(stages, progress), analyse(stages, progress))

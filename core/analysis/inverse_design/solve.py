@@ -165,7 +165,6 @@ class InverseSolver:
         self._goals, self._progress, self._used = goals, progress, []
         if not same:
             self._search = None
-        # Two BLAS threads make these small products many times slower.
         with one_blas_thread():
             try:
                 return answered()

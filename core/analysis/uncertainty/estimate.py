@@ -89,7 +89,6 @@ class UncertaintyEstimator:
             return *uncertain_parameters(self.trials.base, self.sizes), *model_errors(self.trials, self.sizes)
 
     def _by(self, turning: Sequence[UncertainParameter], progress: Progress) -> OutputUncertainties:
-        # Two BLAS threads make these small products many times slower.
         with one_blas_thread():
             progress("propagating", 0.0)
             self._propagation = self._propagation or Propagation(self.trials)
