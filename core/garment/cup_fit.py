@@ -157,7 +157,7 @@ class WornCups:
         if self.layout.cup.kind == "sewn":
             return None, None
         model = self.stages.model
-        left, right = (model.volume.side_volumes(self.layout.target) - model.rest_sides) / 1000.0
+        left, right = (model.volume.zone_volumes(self.layout.target) - model.rest_zones) / 1000.0
         return float(left), float(right)
 
     @cached_property

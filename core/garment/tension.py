@@ -116,7 +116,7 @@ def _held(stages: Stages, points: Points) -> dict[str, LineTension]:
     multipliers = np.linalg.lstsq(slopes.T, forces, rcond=1e-12)[0]
     unit = newtons_per_unit(model, design.tissue_stiffness)
     tensions = {}
-    for index, multiplier in zip(model.acting_lines, multipliers[len(potential.sides) :], strict=True):
+    for index, multiplier in zip(model.acting_lines, multipliers[len(potential.groups) :], strict=True):
         line = model.lines[index]
         force = -unit * float(multiplier)
         tensions[line.name] = LineTension(np.full(len(line.rest_lengths), force), force, estimate=True)

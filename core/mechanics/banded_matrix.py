@@ -7,7 +7,7 @@ factors cost little because the free points are ordered to lie near their neighb
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -105,6 +105,15 @@ def joined(parts: list[Entries], width: int) -> Entries:
         for name in ("row", "column", "source")
     )
     return Entries(row, column, source, np.concatenate([part.value for part in parts]), width)
+
+
+def weighted_sum(parts: Sequence[Entries], figures: Sequence[Floats], size: int) -> sparse.csr_array:
+    """Return the matrix (size, size) that ``figures`` make with the entries of ``parts``."""
+    pieces = [
+        (part.value * of[part.source], part.row, part.column) for part, of in zip(parts, figures, strict=True)
+    ]
+    value, row, column = (np.concatenate(column) for column in zip(*pieces, strict=True))
+    return sparse.csr_array((value, (row, column)), shape=(size, size))
 
 
 @dataclass(frozen=True, eq=False)

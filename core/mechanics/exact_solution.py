@@ -42,7 +42,7 @@ def solve_exact(
 ) -> Equilibrium:
     """Return the exact balance for line ``ratios``, one per line.
 
-    ``excess`` (2,) [mm^3] is what the left and the right volume are to have beyond rest. ``near`` is a
+    ``excess`` (k,) [mm^3] is what the zones are to have beyond rest. ``near`` is a
     balance of the same model for other ratios to start from: quicker, but where there are several equilibria
     the answer then depends on it. If there is no balance, the nearest on the way there is returned, which is
     not ``found``. Without ``turns`` those of the last resort, a second of work, are not made.
@@ -146,7 +146,8 @@ def _follow_branch(start: Equilibrium, steps: Iterator[Equilibrium]) -> Iterator
 def _turned(model: ConstrainedModel, ratios: tuple[float, ...], excess: Floats | None) -> Equilibrium | None:
     """Return what adaptive turns and a few Newton steps after them come to, None if they run away.
 
-    Turns hold the sum of both breasts, so that is balanced first; then each is given what it should have.
+    The sum of all zones is balanced first, as turns of a bust hold it; then each is given what it should
+    have.
     """
     moved = initial_state(model).moved
     for state, measured in iterate(model, lambda: LineTargets(ratios), turns=_TURNS):
@@ -160,17 +161,19 @@ def _turned(model: ConstrainedModel, ratios: tuple[float, ...], excess: Floats |
     multipliers = np.asarray(np.linalg.lstsq(push.T, forces, rcond=1e-12)[0])
     start = equilibrium_at(potential, moved, np.inf, multipliers)
     best = min(_steps(potential, start, _STRIDE_STEPS), key=lambda balance: balance.residual)
-    if best.is_converged and len(Potential(model, ratios).sides) == 2:
-        best = _balance_sides(model, ratios, np.zeros(2) if excess is None else excess, best)
+    zones = len(Potential(model, ratios).groups)
+    if best.is_converged and zones > 1:
+        best = _balance_zones(model, ratios, np.zeros(zones) if excess is None else excess, best)
     return best if best.is_converged or measured.step < _AWAY else None
 
 
-def _balance_sides(
+def _balance_zones(
     model: ConstrainedModel, ratios: tuple[float, ...], excess: Floats, both: Equilibrium
 ) -> Equilibrium:
-    """Return the balance in which each breast has its volume, from one in which the sum is right."""
-    gap = model.volume.side_volumes(model.tensegric.expand(both.state.moved)) - model.rest_sides - excess
-    last = replace(both, multipliers=np.concatenate([both.multipliers[:1], both.multipliers]))
+    """Return the balance in which each zone has its volume, from one in which the sum is right."""
+    gap = model.volume.zone_volumes(model.tensegric.expand(both.state.moved)) - model.rest_zones - excess
+    pressures = np.repeat(both.multipliers[:1], len(excess))
+    last = replace(both, multipliers=np.concatenate([pressures, both.multipliers[1:]]))
     for share in np.linspace(0.95, 0.0, 20):
         potential = Potential(model, ratios, excess + share * gap)
         *_, last = _steps(potential, last, _STRIDE_STEPS)

@@ -8,14 +8,19 @@ calls forth the very pressure that made it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from scipy import sparse
 from scipy.sparse import linalg as sparse_linalg
 
-from core.geometry.mesh import Floats, unit
-from core.mechanics.banded_matrix import Entries, Operator, Solve, lower_points, over_axes
+from core.geometry.mesh import Floats, Points, unit
+from core.mechanics.banded_matrix import (
+    Entries,
+    Operator,
+    Solve,
+    lower_points,
+    over_axes,
+    weighted_sum,
+)
 from core.mechanics.condensed_tissue import CondensedTissue
 from core.mechanics.iteration import HELD_GROWTH
 from core.mechanics.model import ConstrainedModel
@@ -34,26 +39,45 @@ def gain_limit(model: ConstrainedModel) -> float:
 
     The tension of held lines, which also changes from turn to turn, is left out.
     """
-    a = model.rest_gradient
+    pushes = held_directions(model, model.tensegric.rest).reshape(-1, 3 * len(model.tensegric.free)).T
     if isinstance(model.tensegric, CondensedTissue):
-        d = np.linalg.solve(_solid_double_lower_less_true(model, model.tensegric), a.ravel())
-        return model.probe / abs(float(a.ravel() @ d))
+        flipped = np.linalg.solve(_solid_double_lower_less_true(model, model.tensegric), pushes)
+        return flip_limit(model, pushes, np.asarray(flipped))
     cables, lines = _double_lower_less_true(model)
     if model.options.line_contact == "sliding":
-        n = unit(a)
+        n = unit(model.rest_gradient)
         across = sparse.csr_array(sparse.block_diag([np.outer(v, v) for v in n], format="csr"))
         lines = sparse.csr_array(across @ lines)
     matrix = sparse.csc_array(cables + lines)
-    dense = matrix.nnz > _DENSE * a.size**2
-    d = np.linalg.solve(matrix.toarray(), a.ravel()) if dense else sparse_linalg.spsolve(matrix, a.ravel())
-    return model.probe / abs(float(a.ravel() @ d))
+    dense = matrix.nnz > _DENSE * len(pushes) ** 2
+    solve = sparse_linalg.spsolve
+    flipped = np.linalg.solve(matrix.toarray(), pushes) if dense else solve(matrix, pushes)
+    return flip_limit(model, pushes, np.asarray(flipped).reshape(pushes.shape))
+
+
+def held_directions(model: ConstrainedModel, points: Points) -> Floats:
+    """Return the directions of the pressures of iterations, (z, f, 3) [mm^2]: one, or that of each zone."""
+    each = model.volume.zone_gradients(points)
+    return each if model.volume.separate else each.sum(axis=0, keepdims=True)
+
+
+def flip_limit(model: ConstrainedModel, pushes: Floats, flipped: Floats) -> float:
+    """Return the gain at which the pressures call themselves forth again, their signs changed [1].
+
+    ``flipped`` (3 f, z) is how the points move under each of ``pushes`` (3 f, z) [mm^2] where displacements
+    change their sign from turn to turn. Separate zones do so together: the largest eigenvalue tells when.
+    """
+    if not model.volume.separate:
+        return model.probe / abs(float(pushes[:, 0] @ flipped[:, 0]))
+    answers = np.linalg.solve(model.zone_probes, pushes.T @ flipped + np.diag(model.give))
+    return 1.0 / float(np.abs(np.linalg.eigvals(answers)).max())
 
 
 class OscillationLimit:
     """What turns of the conventional control come to in a ``model``, and when they swing about it."""
 
     def __init__(self, model: ConstrainedModel) -> None:
-        self._model = model
+        self._model, self._together = model, not model.volume.separate
         slides = model.options.line_contact == "sliding" and len(model.owner) > 0
         self._skin = SlidingSurface(model) if slides else None
         band = model.layout.band
@@ -78,18 +102,17 @@ class OscillationLimit:
         Its pressure is ``gain`` times the volume error, so volume is missing there; ``near`` is the exact
         balance.
         """
-        sides = len(potential.sides)
-        soft = np.zeros(1 + len(potential.held_lines))
-        soft[0] = self._model.probe / (gain * potential.area**2)
+        sides = len(potential.groups)
+        soft = self._missing(potential, gain)
         moved = near.state.moved
-        multipliers = np.concatenate([[near.multipliers[:sides].mean()], near.multipliers[sides:]])
+        multipliers = _joint(near.multipliers, sides) if self._together else near.multipliers
         for step in range(_STEPS):
             place = potential.at(moved)
             forces, push = self._forces(place, sides)
-            slopes, held = _together(place.slopes, sides), _together(place.held, sides)
-            amiss = held + soft * multipliers
+            slopes, held = self._rows(place.slopes, sides), self._rows(place.held, sides)
+            amiss = held + soft @ multipliers
             unbalanced = np.abs(forces - multipliers @ push).max() / self._model.tensegric.mean_stiffness
-            whole = _apart(multipliers, sides)
+            whole = _apart(multipliers, sides) if self._together else multipliers
             if max(unbalanced, np.abs(amiss).max()) < _NEAR_ENOUGH:
                 return equilibrium_at(potential, moved, unbalanced, whole, step)
             solve = self._model.layout.band.lu(self._derivative(potential, place, whole))
@@ -97,8 +120,8 @@ class OscillationLimit:
                 return None
             solved = solve(np.column_stack([-forces, push.T]))
             free, along = solved[:, 0], solved[:, 1:]
-            small = slopes @ along + np.diag(soft)
-            multipliers = -np.linalg.lstsq(small, slopes @ free + held, rcond=1e-12)[0]
+            small = slopes @ along + soft
+            multipliers = np.asarray(-np.linalg.lstsq(small, slopes @ free + held, rcond=1e-12)[0])
             shift = (free + along @ multipliers).reshape(-1, 3)
             longest = float(np.abs(shift).max())
             if not np.isfinite(longest):
@@ -115,12 +138,16 @@ class OscillationLimit:
         place = potential.at(balance.state.moved)
         matrix = 2.0 * self._turn(place) - self._derivative(potential, place, balance.multipliers)
         solve = self._model.layout.band.lu(matrix)
-        sides = len(potential.sides)
-        a = potential.area * place.slopes[:sides].sum(axis=0)
+        sides = len(potential.groups)
         if solve is None:
             return 0.0
-        flipped = self._with_held(potential, place, solve, a)
-        return max(self._model.probe / float(a @ flipped), 0.0)
+        a = potential.area * place.slopes[:sides]
+        if not self._together:
+            each_flipped = np.stack([self._with_held(potential, place, solve, each) for each in a], axis=1)
+            return flip_limit(self._model, a.T, each_flipped)
+        whole = a.sum(axis=0)
+        flipped = self._with_held(potential, place, solve, whole)
+        return max(self._model.probe / float(whole @ flipped), 0.0)
 
     def overshoot(self, potential: Potential, balance: Equilibrium) -> float:
         """Return how far one turn goes where it goes furthest, over the way to ``equilibrium`` [1].
@@ -133,8 +160,8 @@ class OscillationLimit:
         solve = band.lu(self._turn(place))
         assert solve is not None, "a triangle with a diagonal of stiffnesses has an answer"
         pull = band.product(self._derivative(potential, place, balance.multipliers))
-        held = place.slopes[len(potential.sides) :]
-        push = self._forces(place, len(potential.sides))[1][1:]
+        held = place.slopes[len(potential.groups) :]
+        push = self._forces(place, len(potential.groups))[1][self._pressures(potential) :]
         weight = (1.0 - 0.5 * HELD_GROWTH) * self._model.tapes[potential.held_lines]
 
         def turned(moved: Floats) -> Floats:
@@ -149,7 +176,27 @@ class OscillationLimit:
     def _forces(self, place: Evaluation, sides: int) -> tuple[Floats, Floats]:
         """Return the forces to balance, (3 f,), and the directions of one pressure and the tensions."""
         forces, push = (place.gradient, place.slopes) if self._skin is None else self._skin.projected(place)
-        return forces, _together(push, sides)
+        return forces, self._rows(push, sides)
+
+    def _rows(self, rows: Floats, sides: int) -> Floats:
+        """Return ``rows`` with those of all zones summed, where iterations hold their sum."""
+        if not self._together:
+            return rows
+        return np.concatenate([rows[:sides].sum(axis=0, keepdims=True), rows[sides:]])
+
+    def _pressures(self, potential: Potential) -> int:
+        return 1 if self._together else len(potential.groups)
+
+    def _missing(self, potential: Potential, gain: float) -> Floats:
+        """Return what is missing of what is held per multiplier of the conventional control, (h, h)."""
+        first = self._pressures(potential)
+        soft = np.zeros((first + len(potential.held_lines),) * 2)
+        if self._together:
+            soft[0, 0] = self._model.probe / (gain * potential.area**2)
+        else:
+            by_pressure = np.diag(self._model.give) + self._model.zone_probes / gain
+            soft[:first, :first] = by_pressure / potential.area**2
+        return soft
 
     def _derivative(self, potential: Potential, place: Evaluation, multipliers: Floats) -> Floats:
         if self._skin is not None:
@@ -175,20 +222,19 @@ class OscillationLimit:
 
         A tension that takes a share of the excess each turn, while that flips, is half a share behind it.
         """
-        sides, held = len(potential.sides), potential.held_lines
+        sides, held = len(potential.groups), potential.held_lines
         if not len(held):
             return solve(a)
         _, push = self._forces(place, sides)
-        pulled = solve(np.column_stack([a, push[1:].T]))
+        pulled = solve(np.column_stack([a, push[self._pressures(potential) :].T]))
         weight = (1.0 - 0.5 * HELD_GROWTH) * self._model.tapes[held]
         slopes = place.slopes[sides:] * weight[:, None]
         small = np.eye(len(held)) - slopes @ pulled[:, 1:]
         return np.asarray(pulled[:, 0] + pulled[:, 1:] @ np.linalg.solve(small, slopes @ pulled[:, 0]))
 
 
-def _together(rows: Floats, sides: int) -> Floats:
-    """Return ``rows`` with those of the sides summed, as turns hold the sum of both volumes."""
-    return np.concatenate([rows[:sides].sum(axis=0, keepdims=True), rows[sides:]])
+def _joint(multipliers: Floats, sides: int) -> Floats:
+    return np.concatenate([[multipliers[:sides].mean()], multipliers[sides:]])
 
 
 def _apart(multipliers: Floats, sides: int) -> Floats:
@@ -231,12 +277,3 @@ def _line_stiffness(segments: Springs, size: int) -> sparse.csr_array:
     u = segments.rest_spans / segments.rest_lengths[:, None]
     blocks = stretch_blocks(u, segments.stiffness, np.zeros(len(u)))
     return weighted_sum([segments.entries], [blocks.ravel()], size)
-
-
-def weighted_sum(parts: Sequence[Entries], figures: Sequence[Floats], size: int) -> sparse.csr_array:
-    """Return the matrix (size, size) that ``figures`` make with the entries of ``parts``."""
-    pieces = [
-        (part.value * of[part.source], part.row, part.column) for part, of in zip(parts, figures, strict=True)
-    ]
-    value, row, column = (np.concatenate(column) for column in zip(*pieces, strict=True))
-    return sparse.csr_array((value, (row, column)), shape=(size, size))

@@ -48,7 +48,8 @@ class Record:
     """The scalars of one turn: what plot, CSV and tests read.
 
     ``error`` is (V - V0) / V0 [1], negative when volume is missing; ``error_ml`` [ml]; ``step`` [mm] the
-    largest move of a control point in this turn; ``lengths`` [mm] of the lines' front parts.
+    largest move of a control point in this turn; ``lengths`` [mm] of the lines' front parts. Where zones are
+    held separately ``zones`` are the shares of each in ``error``, less what it is to take up inside.
     """
 
     iteration: int
@@ -57,6 +58,7 @@ class Record:
     step: float
     lengths: tuple[float, ...]
     marks: Observables | None = None
+    zones: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,8 +82,12 @@ def initial_state(model: ConstrainedModel) -> SolverState:
 
 def record(model: ConstrainedModel, state: SolverState, step: float, watch: Watch | None = None) -> Record:
     """Measure a state."""
-    points = model.tensegric.expand(state.moved)
-    change = model.volume.volume(points) - model.volume.rest_volume
+    points, zones = model.tensegric.expand(state.moved), ()
+    if model.volume.separate:
+        zones = tuple(model.zone_errors(points, state.pressure.value).tolist())
+        change = sum(zones) * model.volume.rest_volume
+    else:
+        change = model.volume.volume(points) - model.volume.rest_volume
     return Record(
         state.iteration,
         change / model.volume.rest_volume,
@@ -89,6 +95,7 @@ def record(model: ConstrainedModel, state: SolverState, step: float, watch: Watc
         step,
         model.line_lengths(points),
         watch(points) if watch else None,
+        zones,
     )
 
 
@@ -102,16 +109,18 @@ def step(
     moved, volume = state.moved, model.volume
     spans, lengths = model.segments.spans(moved)
     natural, tensions = natural_lengths_for(model, targets, state, lengths)
-    outward = volume.gradient(model.tensegric.expand(moved))
+    gradients = volume.zone_gradients(model.tensegric.expand(moved))
+    outward = gradients.sum(axis=0)
     inner = model.tensegric.forces(moved)
     if targets.control != "none":
-        inner += (state.pressure.value * model.pressure_unit) * outward
+        inner += model.volume_force(state.pressure.value, gradients)
     line = -model.segments.gradient(spans, lengths, natural)
     shift = model.sweep_at(moved).solve(inner, line, outward)
     step = float(np.sqrt(np.max(np.einsum("ij,ij->i", shift, shift), initial=0.0)))
     after = SolverState(moved + shift, state.pressure, state.iteration + 1, tensions)
     measured = record(model, after, step, watch)
-    pressure = next_pressure(targets.control, state.pressure, -measured.error, targets.gain)
+    missing = -np.array(measured.zones) if volume.separate else -measured.error
+    pressure = next_pressure(targets.control, state.pressure, missing, targets.gain)
     return replace(after, pressure=pressure), measured
 
 

@@ -10,10 +10,11 @@ from typing import Any, cast
 
 import numpy as np
 from scipy import sparse
+from scipy.sparse import linalg
 
 from core.control_mesh.fit import ControlMesh
 from core.geometry.mesh import Floats, Indices, Points, frozen
-from core.mechanics.banded_matrix import Operator, compact, over_axes
+from core.mechanics.banded_matrix import Operator, compact, over_axes, weighted_sum
 from core.mechanics.condensed_tissue import CondensedTissue
 from core.mechanics.constraint_lines import Line, anchored_line, free_line, line_on
 from core.mechanics.gauss_seidel import (
@@ -29,6 +30,9 @@ from core.mechanics.options import ModelOptions
 from core.mechanics.springs import Springs, members
 from core.mechanics.tensegrity import TissueModel, tensegrity_model
 from core.mechanics.volume import VolumeMeasure, volume_measure
+
+_LEAST_KEPT = 1e-3
+"""A share of displaced volume below this counts as this [1]."""
 
 _TURNED = 0.02
 """An iteration answers anew to cups when a place where one presses has turned by this [1]."""
@@ -121,9 +125,9 @@ class ConstrainedModel:
         return self.volume.gradient(self.tensegric.rest)
 
     @cached_property
-    def rest_sides(self) -> Floats:
-        """Return the left and the right volume at rest, shape (2,) [mm^3]."""
-        return self.volume.side_volumes(self.tensegric.rest)
+    def rest_zones(self) -> Floats:
+        """Return the volumes of the zones at rest, shape (k,) [mm^3]."""
+        return self.volume.zone_volumes(self.tensegric.rest)
 
     @cached_property
     def probe(self) -> float:
@@ -148,6 +152,67 @@ class ConstrainedModel:
     def pressure_unit(self) -> float:
         """Return the pressure that would change the whole volume by 100 % in one turn, linearised."""
         return self.volume.rest_volume / self.probe
+
+    @cached_property
+    def pressure_units(self) -> Floats:
+        """Return what pressures change one zone alone by 100 % of the whole volume in one turn, (k, k).
+
+        Each column is for a zone. The push of a zone moves the skin of its neighbours as well: without the
+        figures beside the diagonal each zone would answer what its neighbours do (ours).
+        """
+        return np.asarray(self.volume.rest_volume * np.linalg.inv(self.zone_probes))
+
+    @cached_property
+    def zone_probes(self) -> Floats:
+        """Return the volume change of each zone in a sweep per pressure of each, (k, k) [mm^5]; see probe."""
+        directions = self.volume.zone_gradients(self.tensegric.rest)
+        still = np.zeros_like(directions[0])
+        moves = np.stack([self.sweep.solve(each, still, self.rest_gradient) for each in directions])
+        return np.tensordot(directions, moves, axes=((1, 2), (1, 2)))
+
+    def volume_force(self, pressure: float | Floats, gradients: Floats) -> Points:
+        """Return the force of a pressure [probe units], (f, 3); ``gradients`` (k, f, 3) are the zones'."""
+        if not self.volume.separate:
+            return np.asarray((pressure * self.pressure_unit) * gradients.sum(axis=0))
+        return np.tensordot(self.zone_pressures(pressure), gradients, axes=1)
+
+    def zone_pressures(self, pressure: float | Floats) -> Floats:
+        """Return the pressure of each zone, shape (k,), for one in probe units [1], or one of each zone."""
+        if not self.volume.separate:
+            return np.full(self.volume.zones, pressure * self.pressure_unit)
+        return np.asarray(self.pressure_units @ np.broadcast_to(pressure, self.volume.zones))
+
+    def pressure_like(self, other: ConstrainedModel, pressure: float | Floats) -> float | Floats:
+        """Return a ``pressure`` of ``other`` in the probe units of this model, whose points are the same."""
+        if not self.volume.separate:
+            return pressure * other.pressure_unit / self.pressure_unit
+        return np.asarray(np.linalg.solve(self.pressure_units, other.zone_pressures(pressure)))
+
+    def zone_errors(self, points: Points, pressure: float | Floats) -> Floats:
+        """Return what each zone has beyond what it is to have, in parts of the whole volume, shape (k,).
+
+        It is to have what it has at rest, less what it takes up inside under a ``pressure`` [probe units].
+        """
+        wanted = self.rest_zones - self.give * self.zone_pressures(pressure)
+        return np.asarray((self.volume.zone_volumes(points) - wanted) / self.volume.rest_volume)
+
+    @cached_property
+    def give(self) -> Floats:
+        """Return how much volume each zone takes up inside per unit of pressure, shape (k,) [mm^5]; see kept.
+
+        A zone that lines press by itself keeps its share ``VolumeMeasure.kept`` of what they displace, where
+        displacements are small: what it takes up is in proportion to its pressure (ours).
+        """
+        kept = self.volume.kept
+        if (kept >= 1.0).all():
+            return np.zeros(len(kept))
+        directions = self.volume.zone_gradients(self.tensegric.rest).reshape(len(kept), -1)
+        figures = self.tensegric.hessian_figures(np.zeros((len(self.tensegric.free), 3)), False)
+        entries = self.tensegric.hessian_entries
+        tissue = weighted_sum(entries, [np.ones(1), *figures], directions.shape[1])
+        answers = linalg.splu(sparse.csc_array(tissue)).solve(directions.T)
+        by_pressure = np.einsum("ki,ik->k", directions, answers)
+        return np.asarray((1.0 - kept) / np.maximum(kept, _LEAST_KEPT) * by_pressure)
 
     def natural_lengths(self, ratios: tuple[float, ...]) -> Floats:
         """Return the natural lengths of the worn segments for a ratio per line, shape (s,) [mm].
@@ -220,7 +285,7 @@ def constrained_model(
     if control.anchored is not None:
         lines = tuple(anchored_line(line, points, control.anchored, tensegric.free) for line in lines)
     columns = control.column[control.mesh.faces].sum(axis=1)
-    volume = volume_measure(control.mesh, tensegric.free, columns > 0)
+    volume = volume_measure(control.mesh, tensegric.free, np.where(columns > 0, 0, 1))
     worn = control.line_names if worn is None else worn
     return assemble(tensegric, lines, volume, worn, own_stiffness or {})
 

@@ -36,7 +36,7 @@ _BOLD = 8.0
 
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
-    """An iterate of the exact solve: state, residual [mm], left and right pressure, Newton steps taken.
+    """An iterate of the exact solve: state, residual [mm], pressures of the zones, Newton steps taken.
 
     ``tensions`` (lines,) [mm] are the multipliers of held lines; ``multipliers`` all, in the solver's units.
     ``factors`` are those of a place near by, of a solid alone.
@@ -67,12 +67,12 @@ def energy_steps(potential: Potential, start: Equilibrium, limit: int) -> Iterat
     spoilt, kept = 0, start.factors if potential.one_sided else None
     for step in range(limit + 1):
         amiss = potential.residual_norm(place, multipliers)
-        held = (np.abs(place.held) <= 1e3 * potential.tolerance).all()
+        held = (np.abs(potential.amiss(place, multipliers)) <= 1e3 * potential.tolerance).all()
         residual = amiss if held else np.inf
         yield replace(equilibrium_at(potential, place.moved, residual, multipliers, step), factors=kept)
         if residual < RESIDUAL_LIMIT or step == limit:
             return
-        taken = kept and _quick(potential, place, _Direction.towards(place, kept), _AGAIN * amiss)
+        taken = kept and _quick(potential, place, _Direction.towards(potential, place, kept), _AGAIN * amiss)
         if taken is None:
             solve, true = factor(potential, place, multipliers, shifted=spoilt >= _PATIENCE)
             spoilt += not true
@@ -107,11 +107,12 @@ class _Direction:
     push: Floats
 
     @staticmethod
-    def towards(place: Evaluation, solve: Solve) -> _Direction:
+    def towards(potential: Potential, place: Evaluation, solve: Solve) -> _Direction:
         """Return the direction of a Newton step from a place."""
         solved = solve(np.column_stack([-place.gradient, place.slopes.T]))
         free, push = solved[:, 0], solved[:, 1:]
-        multipliers = -small_solve(place.slopes @ push, place.slopes @ free + place.held)
+        small = potential.small_matrix(place.slopes, push)
+        multipliers = -small_solve(small, place.slopes @ free + place.held)
         return _Direction(free + push @ multipliers, multipliers, push)
 
 
@@ -122,10 +123,10 @@ def _step(
 
     ``amiss`` is what is amiss in ``place``, 0 to allow no step without safeguard.
     """
-    ahead = _Direction.towards(place, solve)
+    ahead = _Direction.towards(potential, place, solve)
     if amiss and (quick := _quick(potential, place, ahead, _QUICK * amiss)) is not None:
         return quick
-    if (np.abs(place.held) > potential.tolerance).any():
+    if (np.abs(place.held) > potential.tolerance)[potential.exact].any():
         start = _retract(potential, place.moved, ahead.push)
         return None if start is None else (start, multipliers)
     found = _line_search(potential, place, ahead.way, ahead.push)
@@ -171,7 +172,7 @@ def _line_search(
     potential: Potential, place: Evaluation, direction: Floats, push: Floats
 ) -> Evaluation | None:
     """Return where the longest halved step that lowers the energy leads, all held again, or None."""
-    here, slope = potential.energy(place), float(place.gradient @ direction)
+    here, slope = potential.energy(place), potential.slope(place, direction)
     length = 1.0
     while length > 1e-6:
         there = _retract(potential, place.moved + length * direction.reshape(-1, 3), push)
@@ -186,15 +187,18 @@ def _line_search(
 
 def _retract(potential: Potential, moved: Points, push: Floats) -> Evaluation | None:
     """Return the place ``moved`` shifted along ``push`` (3 f, h) until all is held as it should be."""
+    exact = potential.exact
+    if not exact.all():
+        push = push[:, exact]
     for _ in range(12):
         place = potential.at(moved)
-        away = np.abs(place.held)
-        if (away < potential.tolerance).all():
+        held, slopes = place.held[exact], place.slopes[exact]
+        if (np.abs(held) < potential.tolerance[exact]).all():
             return place
-        moved = moved - (push @ small_solve(place.slopes @ push, place.held)).reshape(-1, 3)
+        moved = moved - (push @ small_solve(slopes @ push, held)).reshape(-1, 3)
         if not np.isfinite(moved).all():
             return None
-    return place if (away < 1e3 * potential.tolerance).all() else None
+    return place if (np.abs(held) < 1e3 * potential.tolerance[exact]).all() else None
 
 
 def small_solve(matrix: Floats, right: Floats) -> Floats:
@@ -223,7 +227,7 @@ def sliding_steps(potential: Potential, start: Equilibrium, limit: int) -> Itera
     for step in range(limit + 1):
         place = potential.at(moved)
         forces, push = skin.projected(place)
-        residual = potential.residual(place, forces - push.T @ multipliers)
+        residual = potential.residual(place, forces - push.T @ multipliers, multipliers)
         yield equilibrium_at(potential, moved, residual, multipliers, step)
         if residual < RESIDUAL_LIMIT or step == limit:
             return
@@ -232,7 +236,8 @@ def sliding_steps(potential: Potential, start: Equilibrium, limit: int) -> Itera
             return
         solved = solve(np.column_stack([-forces, push.T]))
         free, along = solved[:, 0], solved[:, 1:]
-        multipliers = -small_solve(place.slopes @ along, place.slopes @ free + place.held)
+        small = potential.small_matrix(place.slopes, along)
+        multipliers = -small_solve(small, place.slopes @ free + place.held)
         shift = (free + along @ multipliers).reshape(-1, 3)
         longest = float(np.sqrt(np.einsum("ij,ij->i", shift, shift).max()))
         if not np.isfinite(longest):
@@ -245,13 +250,14 @@ class SlidingSurface:
 
     def __init__(self, model: ConstrainedModel) -> None:
         self.model = model
-        # Before the tensions of held lines come one pressure for both sides or one for each.
-        self._first_line = 1 if model.volume.closed or model.options.volume_of == "both" else 2
+        # Before the tensions of held lines come one pressure for all zones or one for each.
+        together = model.volume.closed or model.options.volume_of == "both"
+        self._first_line = 1 if together else model.volume.zones
         self._area = abs(model.volume.rest_volume) ** (2.0 / 3.0)
         self.nodes = model.layout.nodes
         corners = model.layout.corners_of_lines
         self._node, self._axis = corners.row // 3, corners.row % 3
-        # Left and right alike: n is across the sum of both.
+        # All zones alike: n is across their sum.
         self._source, self._value = corners.source % (3 * len(model.tensegric.rest)), corners.value
 
     def _across(self, place: Evaluation) -> tuple[Points, Floats]:

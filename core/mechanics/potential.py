@@ -16,7 +16,8 @@ class Evaluation:
     """A model looked at in one place: all first-order figures of it.
 
     ``moved`` (f, 3) [mm]; ``inner`` and ``line`` (f, 3) the derivatives of the energy of body and lines;
-    ``held`` (h,) what is held less what is wanted, [mm] and volumes over ``Potential.area``; ``slopes``
+    ``held`` (h,) what is held less what is wanted, [mm] and volumes over ``Potential.area``, whatever is
+    taken up inside; ``slopes``
     (h, 3 f) their derivatives.
     """
 
@@ -38,7 +39,7 @@ class Evaluation:
 class Potential:
     """Energy of body and lines for line ``ratios``, and the volumes and lengths that are held exactly.
 
-    ``excess`` (2,) [mm^3] is what the left and the right volume are to have beyond rest (dense correction).
+    ``excess`` (k,) [mm^3] is what the zones are to have beyond rest (dense correction).
     """
 
     def __init__(
@@ -50,21 +51,43 @@ class Potential:
         self.one_sided = model.options.tissue == "solid"
         self.tape = np.zeros(len(self.natural)) if hold else model.segments.stiffness
         self.held_lines = model.acting_lines if hold else model.acting_lines[:0]
+        zones = model.volume.zones
         together = model.volume.closed or model.options.volume_of == "both"
-        self.sides = np.ones((1, 2)) if together else np.eye(2)
+        self.groups = np.ones((1, zones)) if together else np.eye(zones)
         self.area = abs(model.volume.rest_volume) ** (2.0 / 3.0)
-        volumes = model.rest_sides + (0.0 if excess is None else excess)
+        volumes = model.rest_zones + (0.0 if excess is None else excess)
         self.wanted = np.concatenate(
-            [self.sides @ volumes / self.area, model.sums(self.natural)[self.held_lines]]
+            [self.groups @ volumes / self.area, model.sums(self.natural)[self.held_lines]]
         )
         self.tolerance = 1e-13 * np.concatenate(
-            [np.full(len(self.sides), self.area**0.5), 10.0 * self.wanted[len(self.sides) :]]
+            [np.full(len(self.groups), self.area**0.5), 10.0 * self.wanted[len(self.groups) :]]
         )
 
+        self.soft = np.zeros(len(self.wanted))
+        self.soft[: len(self.groups)] = self.groups @ model.give / self.area**2
+        self.exact = self.soft == 0.0
+
     def energy(self, place: Evaluation) -> float:
-        """Return the energy above that of the slack rest shape."""
+        """Return the energy above that of the slack rest shape, with that of what zones take up inside."""
         longer = self.stretch(place.lengths)
-        return self.model.tensegric.energy(place.moved) + 0.5 * float(self.tape @ (longer * longer))
+        whole = self.model.tensegric.energy(place.moved) + 0.5 * float(self.tape @ (longer * longer))
+        soft = ~self.exact
+        return whole + 0.5 * float(np.sum(place.held[soft] ** 2 / self.soft[soft]))
+
+    def slope(self, place: Evaluation, way: Floats) -> float:
+        """Return the derivative of ``energy`` along a ``way`` (3 f,)."""
+        soft = ~self.exact
+        inside = (place.held[soft] / self.soft[soft]) @ (place.slopes[soft] @ way)
+        return float(place.gradient @ way + inside)
+
+    def amiss(self, place: Evaluation, multipliers: Floats) -> Floats:
+        """Return how far all that is held is from what it is to be under its multipliers, shape (h,)."""
+        return np.asarray(place.held + self.soft * multipliers)
+
+    def small_matrix(self, slopes: Floats, push: Floats) -> Floats:
+        """Return what multipliers that move the points by ``push`` (3 f, h) do to what is held, (h, h)."""
+        matrix = slopes @ push
+        return matrix if self.exact.all() else matrix + np.diag(self.soft)
 
     def stretch(self, lengths: Floats) -> Floats:
         """Return how much longer each segment is than by nature, (s,) [mm]; 0 of slack ones on a solid."""
@@ -74,7 +97,10 @@ class Potential:
     def _held(
         self, volumes: Floats, gradients: Floats, spans: Points, lengths: Floats
     ) -> tuple[Floats, Floats]:
-        values, slopes = self.sides @ volumes / self.area, self.sides @ gradients.reshape(2, -1) / self.area
+        values, slopes = (
+            self.groups @ volumes / self.area,
+            self.groups @ gradients.reshape(len(gradients), -1) / self.area,
+        )
         if len(self.held_lines):
             u = spans / lengths[:, None]
             each = [np.where(self.model.owner[:, None] == line, u, 0.0) for line in self.held_lines]
@@ -103,7 +129,7 @@ class Potential:
         """Return the second derivative of each line segment's energy and held length, shape (s, 3, 3)."""
         across = self.pulls(place.lengths)
         tensions = np.zeros(len(self.model.lines))
-        tensions[self.held_lines] = -multipliers[len(self.sides) :]
+        tensions[self.held_lines] = -multipliers[len(self.groups) :]
         across = across + tensions[self.model.owner] / place.lengths
         if clip:
             across = np.maximum(across, 0.0)
@@ -114,26 +140,26 @@ class Potential:
     def residual_norm(self, place: Evaluation, multipliers: Floats) -> float:
         """Return the largest of the unbalanced forces over the mean stiffness and of what is held [mm]."""
         forces = np.abs(place.gradient - multipliers @ place.slopes).max(initial=0.0)
-        away = np.abs(place.held).max(initial=0.0)
+        away = np.abs(self.amiss(place, multipliers)).max(initial=0.0)
         return float(max(forces / self.model.tensegric.mean_stiffness, away))
 
-    def residual(self, place: Evaluation, forces: Floats) -> float:
+    def residual(self, place: Evaluation, forces: Floats, multipliers: Floats) -> float:
         """Return the largest of the unbalanced ``forces`` (3 f,) over the mean stiffness [mm].
 
         It is infinite as long as anything that is held is not what it should be.
         """
-        if (np.abs(place.held) > 1e3 * self.tolerance).any():
+        if (np.abs(self.amiss(place, multipliers)) > 1e3 * self.tolerance).any():
             return float("inf")
         return float(np.abs(forces).max(initial=0.0)) / self.model.tensegric.mean_stiffness
 
     def pressures(self, multipliers: Floats) -> Floats:
-        """Return the left and the right pressure, shape (2,)."""
-        return np.asarray(multipliers[: len(self.sides)] @ self.sides / self.area)
+        """Return the pressures of the zones, shape (k,)."""
+        return np.asarray(multipliers[: len(self.groups)] @ self.groups / self.area)
 
     def tensions(self, multipliers: Floats) -> Floats:
         """Return the tensions of the lines that are held, shape (lines,) [mm]; 0 for others."""
         tensions = np.zeros(len(self.model.lines))
-        tensions[self.held_lines] = -multipliers[len(self.sides) :]
+        tensions[self.held_lines] = -multipliers[len(self.groups) :]
         return tensions
 
     def hessian(
@@ -148,6 +174,6 @@ class Potential:
         blocks = self.line_blocks(place, multipliers, clip) if lines else np.zeros(9 * len(self.natural))
         centred = (place.points - self.model.volume.centre).ravel()
         layout = self.model.layout
-        push = -self.pressures(multipliers) if curved else np.zeros(2)
-        parts += [blocks.ravel(), push[0] * centred, push[1] * centred]
+        push = -self.pressures(multipliers) if curved else np.zeros(self.model.volume.zones)
+        parts += [blocks.ravel(), *(each * centred for each in push)]
         return np.asarray(layout.constant + layout.changing @ np.concatenate(parts))

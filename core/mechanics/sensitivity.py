@@ -58,16 +58,17 @@ class Sensitivities:
         forces = self.by_line(pull, lines)
         held = np.zeros((len(self.potential.wanted), len(lines)))
         of_line = model.sums(model.tapes_at_rest)
-        for row, line in enumerate(self.potential.held_lines, start=len(self.potential.sides)):
+        for row, line in enumerate(self.potential.held_lines, start=len(self.potential.groups)):
             held[row] = np.where(lines == line, -of_line[line], 0.0)
         return self._rates(forces, held)
 
     @cached_property
     def by_excess(self) -> Rates:
-        """Return the rates by what the left and the right volume have beyond rest [mm / mm^3]."""
-        held = np.zeros((len(self.potential.wanted), 2))
-        held[: len(self.potential.sides)] = -self.potential.sides / self.potential.area
-        return self._rates(np.zeros((self.place.gradient.size, 2)), held)
+        """Return the rates by what the volume of each zone has beyond rest [mm / mm^3]."""
+        zones = self.potential.model.volume.zones
+        held = np.zeros((len(self.potential.wanted), zones))
+        held[: len(self.potential.groups)] = -self.potential.groups / self.potential.area
+        return self._rates(np.zeros((self.place.gradient.size, zones)), held)
 
     def tensions(self, rates: Rates, natural: Floats) -> tuple[Floats, Floats]:
         """Return the tension of each line, (lines,) [1 mm], and its rates by the settings, (lines, p).
@@ -77,7 +78,7 @@ class Sensitivities:
         potential, model = self.potential, self.potential.model
         if len(potential.held_lines):
             by_setting = np.zeros_like(natural)
-            by_setting[potential.held_lines] = -rates.multipliers[len(potential.sides) :]
+            by_setting[potential.held_lines] = -rates.multipliers[len(potential.groups) :]
             return potential.tensions(self.balance.multipliers), by_setting
         slopes = self.stretch_slopes(range(len(model.lines)))
         share = self.taut_shares[:, None]
@@ -123,11 +124,9 @@ class Sensitivities:
         """Solve for what answers ``forces`` (3 f, p) and what is ``held`` (h, p) being off."""
         solve, along = self._system
         free = solve(-forces) if forces.shape[1] else forces
+        small = self.potential.small_matrix(self.place.slopes, along)
         multipliers = np.stack(
-            [
-                -small_solve(self.place.slopes @ along, column)
-                for column in (self.place.slopes @ free + held).T
-            ],
+            [-small_solve(small, column) for column in (self.place.slopes @ free + held).T],
             axis=1,
         )
         return Rates(free + along @ multipliers, multipliers)

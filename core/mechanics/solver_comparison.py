@@ -201,7 +201,7 @@ def carried(state: SolverState, old: ConstrainedModel, new: ConstrainedModel) ->
 
     Tensions of held lines begin anew, for they may be those of other lines.
     """
-    pressure = replace(state.pressure, value=state.pressure.value * old.pressure_unit / new.pressure_unit)
+    pressure = replace(state.pressure, value=new.pressure_like(old, state.pressure.value))
     return SolverState(state.moved, pressure, state.iteration)
 
 

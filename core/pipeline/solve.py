@@ -101,7 +101,7 @@ def exact_solution(
     model, excess = stages.model, None
     if stages.design.dense_volume:
         points = model.tensegric.expand(balance.state.moved)
-        excess = model.volume.side_volumes(points) - model.rest_sides
+        excess = model.volume.zone_volumes(points) - model.rest_zones
     return Sensitivities(Potential(model, ratios, excess), balance)
 
 

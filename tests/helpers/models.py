@@ -85,10 +85,10 @@ def volume_slopes(model: ConstrainedModel, points: np.ndarray) -> np.ndarray:
     """The derivatives of the left and of the right volume at all points, triangle by triangle."""
     slopes = np.zeros((2, *points.shape))
     centred = points - model.volume.centre
-    for corners, left in zip(model.volume.faces, model.volume.left, strict=True):
+    for corners, zone in zip(model.volume.faces, model.volume.zone, strict=True):
         for turn in range(3):
             i, j, k = np.roll(corners, turn)
-            slopes[0 if left else 1, i] += np.cross(centred[j], centred[k]) / 6.0
+            slopes[zone, i] += np.cross(centred[j], centred[k]) / 6.0
     return slopes
 
 
@@ -115,7 +115,7 @@ def check_sliding_derivative(
     Its error falls with the square of the step.
     """
     potential, skin = Potential(model, ratios), SlidingSurface(model)
-    multipliers = np.array([*[3e4, 2e4][: len(potential.sides)], -40.0, -30.0])[: len(potential.wanted)]
+    multipliers = np.array([*[3e4, 2e4][: len(potential.groups)], -40.0, -30.0])[: len(potential.wanted)]
 
     def balance(at: np.ndarray) -> np.ndarray:
         forces, push = skin.projected(potential.at(at))

@@ -187,7 +187,7 @@ def _slides(model: ConstrainedModel) -> bool:
 
 def _volume(skin: _Skin, place: Evaluation, pressures: Floats) -> ConstraintForce:
     model = skin.model
-    sides = pressures[:, None, None] * model.volume.side_gradients(place.points)
+    sides = pressures[:, None, None] * model.volume.zone_gradients(place.points)
     pull = skin.pull((), sides.sum(axis=0))
     if model.volume.closed or model.options.volume_of == "both":
         return pull

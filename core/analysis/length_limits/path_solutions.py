@@ -155,7 +155,7 @@ class PathSolver:
     ) -> PathPoint:
         excess = np.zeros(2)
         if self.body_change is not None:
-            excess = model.volume.side_volumes(model.tensegric.expand(balance.state.moved)) - model.rest_sides
+            excess = model.volume.zone_volumes(model.tensegric.expand(balance.state.moved)) - model.rest_zones
         return PathPoint(ratio, self._with(ratio), model, balance, log_ea, elongations, excess)
 
     def _wish(self, ratios: tuple[float, ...]) -> ElasticLines:

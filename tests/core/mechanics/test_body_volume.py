@@ -37,7 +37,7 @@ def test_what_the_body_lacks_is_given_to_the_control_mesh(built):
     model = constrained_model(stages.control, worn=["mid-bust"])
     balance = solve_body_exact(model, RATIOS, body_change(stages))
     points = model.tensegric.expand(balance.state.moved)
-    given = model.volume.side_volumes(points) - model.rest_sides
+    given = model.volume.zone_volumes(points) - model.rest_zones
     plain = model.tensegric.expand(solve_exact(model, RATIOS).state.moved)
     lacked = -body_change(stages)(plain)
     assert (np.sign(given) == np.sign(lacked)).all()

@@ -26,7 +26,7 @@ RNG = np.random.default_rng(11)
 def assert_exact(model, balance):
     """Balance, volumes and steps as promised, judged from outside the solver."""
     points = model.tensegric.expand(balance.state.moved)
-    missing = model.volume.side_volumes(points) - model.volume.side_volumes(model.tensegric.rest)
+    missing = model.volume.zone_volumes(points) - model.volume.zone_volumes(model.tensegric.rest)
     assert np.abs(missing).max() / model.volume.rest_volume < 1e-9
     assert balance.is_converged
     assert balance.residual < 1e-9
@@ -103,7 +103,7 @@ def test_at_rest_the_answer_is_rest():
 def test_the_balance_is_force_against_pressure():
     balance = solve_exact(SKEW, (1.0, 0.85, 0.9))
     moved = balance.state.moved
-    sides = SKEW.volume.side_gradients(SKEW.tensegric.expand(moved))
+    sides = SKEW.volume.zone_gradients(SKEW.tensegric.expand(moved))
     force = Potential(SKEW, (1.0, 0.85, 0.9)).at(moved).gradient.reshape(-1, 3)
     held = np.tensordot(balance.pressures, sides, axes=1)
     np.testing.assert_allclose(force, held, atol=1e-9 * np.abs(force).max())
@@ -165,15 +165,15 @@ def small_model():
 def test_a_general_optimiser_finds_the_same_place():
     model, ratios = small_model(), (1.0, 0.85, 0.95)
     energy, volume, tensegric = Potential(model, ratios), model.volume, model.tensegric
-    wanted, litre = volume.side_volumes(tensegric.rest), 1e6
+    wanted, litre = volume.zone_volumes(tensegric.rest), 1e6
     found = minimize(
         lambda d: energy_of(energy, d.reshape(-1, 3)),
         np.zeros(3 * len(tensegric.free)),
         jac=lambda d: energy.at(d.reshape(-1, 3)).gradient,
         constraints={
             "type": "eq",
-            "fun": lambda d: (volume.side_volumes(tensegric.expand(d.reshape(-1, 3))) - wanted) / litre,
-            "jac": lambda d: volume.side_gradients(tensegric.expand(d.reshape(-1, 3))).reshape(2, -1) / litre,
+            "fun": lambda d: (volume.zone_volumes(tensegric.expand(d.reshape(-1, 3))) - wanted) / litre,
+            "jac": lambda d: volume.zone_gradients(tensegric.expand(d.reshape(-1, 3))).reshape(2, -1) / litre,
         },
         method="SLSQP",
         options={"ftol": 1e-15, "maxiter": 1000},

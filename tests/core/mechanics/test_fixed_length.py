@@ -188,5 +188,5 @@ def test_under_one_tension_all_segments_pull_alike():
         rope[i] += balance.tensions[1] * way
         rope[j] -= balance.tensions[1] * way
     body = -model.tensegric.gradient(balance.state.moved)
-    body += np.tensordot(balance.pressures, model.volume.side_gradients(points), axes=1)
+    body += np.tensordot(balance.pressures, model.volume.zone_gradients(points), axes=1)
     np.testing.assert_allclose(body, -rope[model.tensegric.free], atol=1e-8)

@@ -31,7 +31,7 @@ def net(mesh: Mesh, mechanics: ModelOptions | None = None) -> TensegrityModel:
 
 def model_of(mesh, mechanics=None):
     tensegric = net(mesh, mechanics)
-    volume = volume_measure(mesh, tensegric.free, np.zeros(len(mesh.faces), dtype=bool))
+    volume = volume_measure(mesh, tensegric.free, np.ones(len(mesh.faces), dtype=np.int64))
     return assemble(tensegric, (), volume, ())
 
 

@@ -66,7 +66,7 @@ def plain_sides(model: ConstrainedModel, points: np.ndarray) -> np.ndarray:
     """The left and the right volume [litres], as determinants."""
     corners = (points - model.volume.centre)[model.volume.faces]
     each = np.linalg.det(corners) / 6.0
-    return np.array([each[model.volume.left].sum(), each[~model.volume.left].sum()]) / LITRE
+    return np.array([each[model.volume.zone == side].sum() for side in (0, 1)]) / LITRE
 
 
 def placed(model: ConstrainedModel, flat: np.ndarray) -> np.ndarray:

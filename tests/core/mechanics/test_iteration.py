@@ -57,7 +57,7 @@ def test_a_tape_of_unequal_segments_by_hand():
 def test_the_left_triangles_of_a_body_are_those_on_its_left():
     middles = TORSO.tensegric.rest[TORSO.volume.faces].mean(axis=1)[:, 0]
     assert np.abs(middles).min() > 1.0
-    np.testing.assert_array_equal(TORSO.volume.left, middles > 0.0)
+    np.testing.assert_array_equal(TORSO.volume.zone, np.where(middles > 0.0, 0, 1))
 
 
 def test_hooke_force_by_hand():

@@ -53,7 +53,7 @@ def assert_balanced(model, ratios, balance):
     force += np.tensordot(balance.pressures, volume_slopes(model, points), axes=1)
     assert balance.is_converged
     np.testing.assert_allclose(force[model.tensegric.free], 0.0, atol=1e-8)
-    change = model.volume.side_volumes(points) - model.volume.side_volumes(model.tensegric.rest)
+    change = model.volume.zone_volumes(points) - model.volume.zone_volumes(model.tensegric.rest)
     assert np.abs(change).max() < 1e-9 * model.volume.rest_volume
 
 
@@ -173,7 +173,7 @@ def test_every_choice_of_the_model_obeys_the_volume_asked_for_and_rests_without_
     balance = solve_exact(model, (1.0, 0.95, 1.0), excess=excess)
     assert balance.is_converged
     points = model.tensegric.expand(balance.state.moved)
-    gained = model.volume.side_volumes(points) - model.volume.side_volumes(model.tensegric.rest)
+    gained = model.volume.zone_volumes(points) - model.volume.zone_volumes(model.tensegric.rest)
     if volume_of == "each":
         np.testing.assert_allclose(gained, excess, atol=1e-4)
     else:

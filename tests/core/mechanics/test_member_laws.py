@@ -173,7 +173,7 @@ def test_derivatives_converge_with_second_order(law, hold, firm, volume_of):
     model = small(replace(law, line_hold=hold, firm_chest=firm, volume_of=volume_of))
     potential = Potential(model, RATIOS)
     moved = 2.0 * np.random.default_rng(3).normal(size=(len(model.tensegric.free), 3))
-    multipliers = np.array([*[3e4, 2e4][: len(potential.sides)], 40.0, -30.0])[: len(potential.wanted)]
+    multipliers = np.array([*[3e4, 2e4][: len(potential.groups)], 40.0, -30.0])[: len(potential.wanted)]
     coarse, fine = (errors_of_differences(potential, multipliers, moved, step) for step in (0.4, 0.2))
     quadratic = law.member_law == "force-density" and hold == "held"  # such an energy has no third derivative
     if quadratic:

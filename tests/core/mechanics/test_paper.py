@@ -131,7 +131,7 @@ def test_the_exact_answer_keeps_both_breasts(built: Built, sample: str, ratio: f
     balance = solve_exact(stages.model, (1.0, ratio, 1.0))
     volume = stages.model.volume
     points = stages.model.tensegric.expand(balance.state.moved)
-    change = volume.side_volumes(points) - volume.side_volumes(stages.model.tensegric.rest)
+    change = volume.zone_volumes(points) - volume.zone_volumes(stages.model.tensegric.rest)
     assert balance.residual < 1e-9
     assert balance.steps <= 12
     assert np.abs(change).max() / volume.rest_volume < 1e-9

@@ -232,6 +232,6 @@ def test_turns_that_balance_the_sum_are_shared_out_to_each_breast():
     assert case.mechanics.volume_of == "each"
     balance = solve_exact(case.model, case.targets)
     points = case.model.tensegric.expand(balance.state.moved)
-    away = case.model.volume.side_volumes(points) - case.model.rest_sides
+    away = case.model.volume.zone_volumes(points) - case.model.rest_zones
     assert balance.is_converged
     assert np.abs(away).max() < 1e-9 * case.model.volume.rest_volume

@@ -75,8 +75,8 @@ def test_softer_tissue_rises_as_far_in_a_cup_and_presses_less(person):
 def test_each_breast_keeps_its_volume_in_a_cup(person):
     stages = dressed(person, PUSH_UP)
     points = stages.model.tensegric.expand(exact_equilibrium(stages).state.moved)
-    change = stages.model.volume.side_volumes(points) - stages.model.rest_sides
-    assert np.abs(change).max() < 1e-6 * stages.model.rest_sides.min()
+    change = stages.model.volume.zone_volumes(points) - stages.model.rest_zones
+    assert np.abs(change).max() < 1e-6 * stages.model.rest_zones.min()
 
 
 def test_a_wire_wider_than_the_root_spreads_it(person):

@@ -77,8 +77,8 @@ def test_softer_tissue_takes_the_same_shape_at_forces_in_proportion(person: Stag
 
 def test_each_breast_keeps_its_volume(lifted: Stages) -> None:
     points = lifted.control.mesh.vertices + shift(lifted)
-    change = lifted.model.volume.side_volumes(points) - lifted.model.rest_sides
-    assert np.abs(change).max() < 1e-6 * lifted.model.rest_sides.min()
+    change = lifted.model.volume.zone_volumes(points) - lifted.model.rest_zones
+    assert np.abs(change).max() < 1e-6 * lifted.model.rest_zones.min()
 
 
 def test_gradient_and_curvature_are_those_of_the_energy(lifted: Stages) -> None:
