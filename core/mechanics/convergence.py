@@ -100,13 +100,16 @@ def assess_convergence(records: Sequence[Record], condition: MeshQuality | None 
         return Convergence("settling", 0, 0.0, condition=condition)
     last, recent = records[-1], records[-_LOOK_BACK:]
     errors = np.array([record.error for record in recent])
+    zones = np.array([record.zones for record in recent]).T
     if not np.isfinite(errors).all():
         return Convergence("diverging", last.iteration, last.error, condition=condition)
     if len(recent) >= _QUIET_TURNS and max(record.step for record in recent[-_QUIET_TURNS:]) < CONVERGED_STEP:
         return Convergence("settled", last.iteration, last.error, condition=condition)
-    if abs(last.error) > _DIVERGED:
+    if max(map(abs, (last.error, *last.zones))) > _DIVERGED:
         return Convergence("diverging", last.iteration, last.error, condition=condition)
-    swing = _strongest_swing(errors) or _shape_swing(recent)
+    # Zones of a trunk may swing against each other, so that their sum does not.
+    swings = [swing for course in (errors, *zones) if (swing := _strongest_swing(course))]
+    swing = max(swings, key=lambda each: each.amplitude, default=None) or _shape_swing(recent)
     if swing is None:
         return Convergence("settling", last.iteration, float(errors[-2:].mean()), condition=condition)
     mean = float(errors[-swing.window :].mean())

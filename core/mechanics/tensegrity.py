@@ -89,7 +89,8 @@ class TensegrityModel:
     ``rest`` (n, 3) [mm]; ``free`` (f,) indices of the moving points, ascending; ``cables`` (m, 2) the pairs
     that have at least one free end; ``density`` (m,) [1] their force densities, 1/length over the mean of
     1/length; ``ground`` (f,) [1] the stiffness that ties each free point to its rest. ``fixed_edges`` and
-    ``held_density`` are the edges between fixed points, which matter to co-rotated cells alone.
+    ``held_density`` are the edges between fixed points, which matter to co-rotated cells alone. ``depth``
+    (n,) [mm] is that of the tissue, where a template tells it.
     """
 
     rest: Points
@@ -100,6 +101,7 @@ class TensegrityModel:
     ground: Floats | None = None
     fixed_edges: Indices = field(default_factory=lambda: np.empty((0, 2), dtype=np.int64))
     held_density: Floats = field(default_factory=lambda: np.empty(0))
+    depth: Floats | None = None
 
     @cached_property
     def place(self) -> Indices:
@@ -245,8 +247,13 @@ def _isotropic(matrix: sparse.coo_array) -> Entries:
     return Entries(row.ravel(), column.ravel(), np.zeros(value.size, dtype=np.int64), value, 1)
 
 
-def tensegrity_model(mesh: Mesh, fixed: Flags, mechanics: ModelOptions | None = None) -> TensegrityModel:
-    """Build the model on a control mesh; ``fixed``, shape (n,), marks what stays (paper section 4)."""
+def tensegrity_model(
+    mesh: Mesh, fixed: Flags, mechanics: ModelOptions | None = None, depth: Floats | None = None
+) -> TensegrityModel:
+    """Build the model on a control mesh; ``fixed``, shape (n,), marks what stays (paper section 4).
+
+    ``depth`` (n,) [mm] is that of the tissue, if it is known.
+    """
     mechanics = mechanics or ModelOptions()
     lengths = np.linalg.norm(mesh.vertices[mesh.edges[:, 0]] - mesh.vertices[mesh.edges[:, 1]], axis=1)
     density = (1.0 / lengths) / np.mean(1.0 / lengths)
@@ -260,6 +267,7 @@ def tensegrity_model(mesh: Mesh, fixed: Flags, mechanics: ModelOptions | None = 
         mechanics,
         fixed_edges=mesh.edges[still],
         held_density=frozen(density[still]),
+        depth=depth,
     )
     return _grounded(model, mesh) if mechanics.firm_chest else model
 
@@ -270,18 +278,7 @@ SOFT_DEPTH, SKIN_DEPTH = 40.0, 4.0
 
 def _grounded(model: TensegrityModel, mesh: Mesh) -> TensegrityModel:
     """Tie each free point to its rest, the more the thinner the tissue under it (firm chest; ours)."""
-    mechanics = model.mechanics
-    ground = mechanics.firm_chest * firm_ground(model, mesh)
-    return TensegrityModel(
-        model.rest,
-        model.free,
-        model.cables,
-        model.density,
-        mechanics,
-        frozen(ground),
-        model.fixed_edges,
-        model.held_density,
-    )
+    return replace(model, ground=frozen(model.mechanics.firm_chest * firm_ground(model, mesh)))
 
 
 def firm_ground(model: TensegrityModel, mesh: Mesh) -> Floats:
@@ -291,10 +288,13 @@ def firm_ground(model: TensegrityModel, mesh: Mesh) -> Floats:
 
 
 def tissue_depth(model: TensegrityModel, mesh: Mesh) -> Floats:
-    """Return how far each free point stands before a soap film over the fixed points, shape (f,) [mm].
+    """Return how deep the tissue is at each free point, shape (f,) [mm].
 
-    The film stands for the chest wall: an estimate, no measurement (ours).
+    Where no template tells it, that is how far a point stands before a soap film over the fixed points,
+    which stands for the chest wall: an estimate, no measurement (ours).
     """
+    if model.depth is not None:
+        return model.depth[model.free]
     spans = springs(model.rest, model.place, model.cables, model.density)
     pulled = spans.sum(model.density[:, None] * spans.rest_spans)
     to_film = sparse_linalg.spsolve(sparse.csc_array(model._cable_laplacian), pulled)
