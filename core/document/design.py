@@ -23,6 +23,7 @@ from core.document.document_limits import (
 )
 from core.document.elastic import TISSUE_LIMITS, TISSUE_STIFFNESS, Elastic, check_elastics
 from core.document.lines import ActiveLine, CustomLine, LineSettings, partner_of
+from core.document.lower_trunk import LowerTrunk
 from core.document.printable_name import repeated
 from core.errors import LandmarkError, LineError, UserError
 from core.landmarks.manual import PlacedMark
@@ -53,8 +54,8 @@ class Design:
     elsewhere. ``tissue_stiffness`` [N/m] tells what the model's forces are in newtons, an estimate (see
     docs/explanation/forces.md). ``customer`` is whom it is for, in whatever words, ``worn_tight_mm`` what
     her sizes take off the under-bust. ``calibration`` names the scan with the garment on that its numbers
-    come from, if any. ``cup`` is what both breasts are worn in, if anything. ``unknown`` keeps what a later
-    version wrote.
+    come from, if any. ``cup`` is what both breasts are worn in, if anything. ``lower`` adds the region below
+    the bust, which a scan needs legs for. ``unknown`` keeps what a later version wrote.
     """
 
     scan: ScanSource
@@ -88,6 +89,7 @@ class Design:
     worn_tight_mm: float = 0.0
     calibration: Calibration | None = None
     cup: Cup | None = None
+    lower: LowerTrunk | None = None
     unknown: Mapping[str, Any] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:

@@ -158,8 +158,11 @@ class LineSettings:
 
 
 def partner_of(name: str) -> str:
-    """Return what a line's partner on the other side is called, or an empty text if it has no side."""
-    for side, other in ((" left", " right"), (" right", " left")):
+    """Return what a line's partner on the other side is called, or an empty text if it has no side.
+
+    Lines of the templates have a hyphen before their side, a designer's own a space.
+    """
+    for side, other in ((" left", " right"), (" right", " left"), ("-left", "-right"), ("-right", "-left")):
         if name.endswith(side):
             return name.removesuffix(side) + other
     return ""
