@@ -156,9 +156,15 @@ shading = remembered(bake_occlusion)
 
 
 @pytest.fixture(scope="session")
-def mannequin() -> Path:
-    """The sample body on which the program opens: a smooth, watertight scan."""
+def fine_mannequin() -> Path:
+    """The sample body on which the program opens, with all its vertices: a smooth, watertight scan."""
     return SAMPLES / "mannequin.ply"
+
+
+@pytest.fixture(scope="session")
+def mannequin(fine_mannequin: Path) -> Path:
+    """The same as the tests of a folder read it; where nothing is measured, on a fifth of its vertices."""
+    return fine_mannequin
 
 
 @pytest.fixture(scope="session")
@@ -168,16 +174,25 @@ def person() -> Path:
 
 
 @pytest.fixture(scope="session")
-def built() -> Callable[[str], Stages]:
+def finely_built() -> Callable[[str], Stages]:
     """The stages of a sample body with its mid-bust line at 97 %, built once for all tests."""
+    return cache(lambda sample: _with_mid_bust(SAMPLES / f"{sample}.ply"))
 
-    @cache
-    def stages(sample: str) -> Stages:
-        return build(
-            Design(ScanSource(str(SAMPLES / f"{sample}.ply")), lines=(ActiveLine("mid-bust", 0.97),))
-        )
 
-    return stages
+@pytest.fixture(scope="session")
+def coarsely_built(coarse_samples: Callable[[str], Path]) -> Callable[[str], Stages]:
+    """The same on a fifth of its vertices."""
+    return cache(lambda sample: _with_mid_bust(coarse_samples(sample)))
+
+
+def _with_mid_bust(file: Path) -> Stages:
+    return build(Design(ScanSource(str(file)), lines=(ActiveLine("mid-bust", 0.97),)))
+
+
+@pytest.fixture(scope="session")
+def built(finely_built: Callable[[str], Stages]) -> Callable[[str], Stages]:
+    """The stages on which the tests of a folder look; where nothing is measured, the coarse ones."""
+    return finely_built
 
 
 @pytest.fixture(scope="session")

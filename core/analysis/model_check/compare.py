@@ -36,6 +36,9 @@ DISC_MM = 20.0
 MOVABLE_MM = 6.0
 """Nodes further than this from skin that can move are not compared."""
 
+SAME_MM = 1e-9
+"""Control points that are no further apart are the same, stored by fits on two machines."""
+
 NO_WEIGHT = Message("This model has no weight: it does not respond to gravity.")
 NO_CUPS = Message("This model has no cups.")
 
@@ -98,10 +101,18 @@ def check_model(
     Bodies are looked for beside the case, among the samples, then in the folder ``bodies``. Raises UserError
     if one is not found, or a case cannot be solved.
     """
-    stages = None
-    for case in cases:
+    former = stages = None
+    for each in cases:
+        former = case = each if former is None else _on_points_of(each, former)
         stages = case_stages(case, design, body_file(case, bodies), stages)
         yield compare(case, stages)
+
+
+def _on_points_of(case: ReferenceCase, former: ReferenceCase) -> ReferenceCase:
+    """Return ``case`` on the very control points of ``former`` if these are its: stages know them again."""
+    own, points = case.control_points, former.control_points
+    alike = own.shape == points.shape and np.abs(own - points).max() < SAME_MM
+    return replace(case, control_points=points) if alike else case
 
 
 def body_file(case: ReferenceCase, bodies: Path | None = None) -> Path:

@@ -57,12 +57,23 @@ def test_solve_writes_everything(person: Path, tmp_path: Path) -> None:
     assert "read scan" in figures["seconds"]
 
 
-def test_the_written_body_is_the_scan_with_a_moved_bust(mannequin: Path, tmp_path: Path) -> None:
+def test_the_written_body_is_the_scan_with_a_moved_bust(fine_mannequin: Path, tmp_path: Path) -> None:
     assert (
-        main(["solve", str(mannequin), "--line", "mid-bust=95%", "--volume", "exact", "--out", str(tmp_path)])
+        main(
+            [
+                "solve",
+                str(fine_mannequin),
+                "--line",
+                "mid-bust=95%",
+                "--volume",
+                "exact",
+                "--out",
+                str(tmp_path),
+            ]
+        )
         == 0
     )
-    before = trimesh.load(mannequin, process=False)
+    before = trimesh.load(fine_mannequin, process=False)
     after = trimesh.load(tmp_path / "body.ply", process=False)
     assert np.array_equal(before.faces, after.faces)
     away = np.linalg.norm(before.vertices - after.vertices, axis=1)

@@ -25,7 +25,7 @@ from app.cli.main import main
     ],
 )
 def test_an_invalid_shape_is_named_with_its_line(
-    mannequin: Path,
+    fine_mannequin: Path,
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
     line: str,
@@ -33,7 +33,7 @@ def test_an_invalid_shape_is_named_with_its_line(
     state: str,
     sentence: str,
 ) -> None:
-    words = ["solve", str(mannequin), "--line", f"mid-bust={line}", "--line", "full-bust=99.5%"]
+    words = ["solve", str(fine_mannequin), "--line", f"mid-bust={line}", "--line", "full-bust=99.5%"]
     assert main([*words, "--volume", "exact", "--out", str(tmp_path)]) == code
     said = capsys.readouterr()
     figures = json.loads((tmp_path / "report.json").read_text("utf-8"))
@@ -45,7 +45,7 @@ def test_an_invalid_shape_is_named_with_its_line(
     assert (shape["folded"], shape["overstrained"]) == (state == "folded", state != "settled")
     assert shape["shortest_edge_percent"] < 100.0 < shape["longest_edge_percent"]
     assert abs(figures["volume"]["error_percent"]) < 1e-6
-    before, after = (trimesh.load(path, process=False) for path in (mannequin, tmp_path / "body.ply"))
+    before, after = (trimesh.load(path, process=False) for path in (fine_mannequin, tmp_path / "body.ply"))
     assert figures["volume"]["body_change_ml"] == pytest.approx(
         (after.volume - before.volume) / 1e3, abs=0.05
     )
@@ -66,7 +66,7 @@ def test_an_invalid_shape_is_named_with_its_line(
     ],
 )
 def test_the_last_line_states_the_result(
-    mannequin: Path,
+    fine_mannequin: Path,
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
     words: list[str],
@@ -74,7 +74,9 @@ def test_the_last_line_states_the_result(
     told: str,
     warned: str,
 ) -> None:
-    assert main(["solve", str(mannequin), "--line", "mid-bust=95%", *words, "--out", str(tmp_path)]) == code
+    assert (
+        main(["solve", str(fine_mannequin), "--line", "mid-bust=95%", *words, "--out", str(tmp_path)]) == code
+    )
     said = capsys.readouterr()
     assert told in said.out
     assert warned in said.err

@@ -39,9 +39,9 @@ ROOT = Path(__file__).parents[3]
 
 
 @pytest.fixture
-def bench(tmp_path: Path, built: Callable[[str], Stages]) -> SelfTestFixture:
+def bench(tmp_path: Path, finely_built: Callable[[str], Stages]) -> SelfTestFixture:
     result = SelfTestFixture(tmp_path)
-    result.stages = built("mannequin")
+    result.stages = finely_built("mannequin")
     return result
 
 

@@ -161,8 +161,10 @@ def test_a_band_covers_a_nipple() -> None:
 
 
 @pytest.mark.parametrize("name", ["mannequin", "person"])
-def test_no_skin_stands_through_a_band_however_wide_it_is(name: str, built: Callable[[str], Stages]) -> None:
-    stages, design = built(name), built(name).design
+def test_no_skin_stands_through_a_band_however_wide_it_is(
+    name: str, finely_built: Callable[[str], Stages]
+) -> None:
+    stages, design = finely_built(name), finely_built(name).design
     for line in ("full-bust", "mid-bust"):
         design = design.with_line(line, 0.9)
     solved = solve(build(design, stages))
@@ -199,9 +201,9 @@ def bare(skin: Mesh, cloth: np.ndarray) -> float:
 
 @pytest.mark.parametrize(("name", "calm"), [("mannequin", 0.6), ("person", 0.95)])
 def test_bands_of_the_template_go_round_a_body(
-    name: str, calm: float, built: Callable[[str], Stages]
+    name: str, calm: float, finely_built: Callable[[str], Stages]
 ) -> None:
-    stages = built(name)
+    stages = finely_built(name)
     surface = RibbonSurface(stages.body.mesh)
     shown = bands(stages, ())
     assert {band.name for band in shown} == {"full-bust", "mid-bust", "under-bust"}
