@@ -29,7 +29,8 @@ from core.document.design import Design
 from core.errors import UserError
 from core.garment.presets import built_in, with_preset
 from core.mechanics.solver_comparison import SolverComparison
-from core.pipeline.build import Stages, build, line_targets
+from core.pipeline.build import Stages, build
+from core.pipeline.model_stages import line_targets
 
 KINDS = ("vibrating", "diverging", "folded", "overstrained", "strained", "unreachable")
 WANTED = {"vibrating": 0.5, "diverging": 0.05, "folded": 0.1, "overstrained": 0.15, "strained": 0.15}

@@ -41,7 +41,8 @@ from core.mechanics.exact_solution import solve_exact
 from core.mechanics.iteration import LineTargets, initial_state, step
 from core.mechanics.solver_comparison import shape_of
 from core.pipeline.active_lines import free_lines
-from core.pipeline.build import Stages, build, line_targets
+from core.pipeline.build import Stages, build
+from core.pipeline.model_stages import line_targets
 
 NEAR = 0.005
 STEP, FINE = 0.005, 0.0005

@@ -29,8 +29,9 @@ from core.geometry.mesh import Floats, Indices, Mesh, Points
 from core.geometry.mirror_plane import SideComparison, mirror_plane
 from core.measurements.uncertain_value import OutputUncertainties
 from core.mechanics.mesh_quality import STRAIN_RANGE, STRAINED_RANGE
-from core.pipeline.build import Stages, line_targets
+from core.pipeline.build import Stages
 from core.pipeline.live_solver import Frame
+from core.pipeline.model_stages import line_targets
 from core.pipeline.surface_fields import (
     StrainOnBody,
     carrier,

@@ -14,7 +14,8 @@ from core.document.lines import ActiveLine
 from core.geometry.mesh import Floats, Points
 from core.mechanics.exact_solution import newton, solve_exact
 from core.mechanics.iteration import Record, iterate
-from core.pipeline.build import Stages, build, line_targets
+from core.pipeline.build import Stages, build
+from core.pipeline.model_stages import line_targets
 from core.pipeline.solve import Solution, solve
 
 LINE = "mid-bust"

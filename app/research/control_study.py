@@ -18,7 +18,7 @@ from core.mechanics.model import ConstrainedModel, constrained_model
 from core.mechanics.newton import Equilibrium
 from core.mechanics.options import ModelOptions
 from core.mechanics.solver_comparison import assess_equilibrium, shape_of
-from core.pipeline.build import GAIN_SHARE
+from core.pipeline.stages import GAIN_SHARE
 
 TURNS = 300
 """Turns of every run that does not diverge before."""

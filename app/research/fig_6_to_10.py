@@ -29,7 +29,8 @@ from app.research.parameter_study import routes
 from core.document.lines import CustomLine
 from core.geometry.mesh import Floats
 from core.mechanics.iteration import LineTargets, iterate
-from core.pipeline.build import GAIN_SHARE, line_targets
+from core.pipeline.model_stages import line_targets
+from core.pipeline.stages import GAIN_SHARE
 
 LENGTHS = (EXCESSIVE, MODEST)
 

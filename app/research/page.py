@@ -15,7 +15,8 @@ from core.deformation.tffd import GAUSS_WIDTH, HAT_RANGE
 from core.files.atomic_write import write_text
 from core.mechanics.options import DEFAULT_LINE_STIFFNESS
 from core.mechanics.volume import ADAPTIVE_DAMPING, ADAPTIVE_STEP
-from core.pipeline.build import GAIN_SHARE, Stages
+from core.pipeline.build import Stages
+from core.pipeline.stages import GAIN_SHARE
 
 NAME = "REPRODUCTION.md"
 

@@ -22,7 +22,8 @@ from core.mechanics.gain_limit import gain_limit
 from core.mechanics.iteration import LineTargets, Record, Watch, iterate
 from core.mechanics.model import ConstrainedModel, constrained_model
 from core.mechanics.options import CONTACTS, LAWS, ModelOptions
-from core.pipeline.build import GAIN_SHARE, Stages
+from core.pipeline.build import Stages
+from core.pipeline.stages import GAIN_SHARE
 
 TEMPLATES = ("120", "168")
 LINE_HEIGHTS = (0.25, 0.5, 0.75)

@@ -14,7 +14,8 @@ from core.mechanics.force_units import newtons_per_unit
 from core.mechanics.newton import SlidingSurface
 from core.mechanics.potential import Potential
 from core.messages import Message
-from core.pipeline.build import Stages, line_targets
+from core.pipeline.build import Stages
+from core.pipeline.model_stages import line_targets
 
 SLACK = 0.05
 """Up to this push of the model a line counts as without tension [N]: less is not shown."""

@@ -5,8 +5,9 @@ from __future__ import annotations
 from core.blas_threads import one_blas_thread
 from core.document.design import Design
 from core.mechanics.solver_comparison import MOST_TURNS, SolverComparison
-from core.pipeline.build import Stages, build, line_targets
+from core.pipeline.build import Stages, build
 from core.pipeline.frame import Frame, make_frame
+from core.pipeline.model_stages import line_targets
 from core.progress import Progress, quiet
 
 

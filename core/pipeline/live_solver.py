@@ -18,8 +18,9 @@ from core.document.design import Design
 from core.errors import UserError, as_exception
 from core.geometry import kernels
 from core.mechanics.solver_comparison import SolverComparison
-from core.pipeline.build import IncompleteBuildError, Stages, build, line_targets
+from core.pipeline.build import IncompleteBuildError, Stages, build
 from core.pipeline.frame import Failure, Frame, make_frame
+from core.pipeline.model_stages import line_targets
 from core.pipeline.solve import NoEquilibriumError
 from core.progress import Cancelled, Progress, quiet
 

@@ -30,7 +30,8 @@ from core.mechanics.potential import Potential
 from core.mechanics.sensitivity import Rates, Sensitivities
 from core.mechanics.solver_comparison import assess_equilibrium, shape_of
 from core.messages import LineName, Message
-from core.pipeline.build import Stages, line_targets
+from core.pipeline.build import Stages
+from core.pipeline.model_stages import line_targets
 from core.progress import Progress, quiet
 
 _NOT_FOUND = (

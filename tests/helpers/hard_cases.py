@@ -18,7 +18,7 @@ from core.mechanics.iteration import LineTargets, iterate
 from core.mechanics.model import ConstrainedModel, constrained_model
 from core.mechanics.options import CONTACTS, LAWS, LINE_HOLDS, VOLUMES, ModelOptions
 from core.mechanics.solver_comparison import assess_equilibrium, shape_of
-from core.pipeline.build import GAIN_SHARE
+from core.pipeline.stages import GAIN_SHARE
 
 BODIES = ("mannequin 168", "mannequin 120", "person 168", "person 120", "torso", "skew torso")
 TURNS = 300

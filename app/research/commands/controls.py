@@ -20,7 +20,8 @@ from app.research.sphere import sphere_control
 from core import __version__
 from core.files.atomic_write import atomic_path, write_text
 from core.mechanics.options import LAWS, ModelOptions
-from core.pipeline.build import GAIN_SHARE, build
+from core.pipeline.build import build
+from core.pipeline.stages import GAIN_SHARE
 
 LENGTHS = (1.10, 1.03, 0.97, 0.9, 0.8, 0.7, 0.6, 0.5)
 STIFFNESSES = (4.0, 16.0, 64.0)

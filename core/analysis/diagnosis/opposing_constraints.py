@@ -25,7 +25,8 @@ from core.mechanics.model import ConstrainedModel
 from core.mechanics.newton import Equilibrium, SlidingSurface
 from core.mechanics.potential import Evaluation, Potential
 from core.pipeline.active_lines import LineGroup, active_line_groups
-from core.pipeline.build import Stages, line_targets
+from core.pipeline.build import Stages
+from core.pipeline.model_stages import line_targets
 from core.progress import Progress, quiet
 
 OPPOSED = 100.0

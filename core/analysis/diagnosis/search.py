@@ -20,7 +20,8 @@ from core.document.design import Design
 from core.errors import UserError
 from core.mechanics.mesh_quality import STRAIN_RANGE, STRAINED_RANGE
 from core.mechanics.volume import KEEPS_VOLUME
-from core.pipeline.build import Stages, build, line_targets
+from core.pipeline.build import Stages, build
+from core.pipeline.model_stages import line_targets
 from core.progress import Progress
 
 _LOOKS = 80  # outlooks that a search on one kind of way may take

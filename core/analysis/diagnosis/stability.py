@@ -20,7 +20,8 @@ from core.mechanics.newton import Equilibrium, equilibrium_at
 from core.mechanics.potential import Potential
 from core.mechanics.solver_comparison import shape_of
 from core.mechanics.volume import KEEPS_VOLUME, Pressure
-from core.pipeline.build import Stages, line_targets
+from core.pipeline.build import Stages
+from core.pipeline.model_stages import line_targets
 
 FADES = 0.975
 """Growth of a swing per turn below which it is gone within the turns that a run is watched [1]; ours."""

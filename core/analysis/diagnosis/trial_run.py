@@ -12,7 +12,8 @@ from core.geometry.mesh import Points
 from core.mechanics.convergence import CONVERGED_STEP, Convergence
 from core.mechanics.iteration import SolverState, initial_state, step
 from core.mechanics.solver_comparison import COMPARED_CONTROLS, MOST_TURNS, ControlRun, carried, shape_of
-from core.pipeline.build import Stages, line_targets
+from core.pipeline.build import Stages
+from core.pipeline.model_stages import line_targets
 from core.pipeline.solve import exact_equilibrium, solve
 from core.progress import Progress, quiet
 

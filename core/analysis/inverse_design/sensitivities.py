@@ -14,7 +14,8 @@ from core.mechanics.mesh_quality import STRAINED_RANGE
 from core.mechanics.newton import Equilibrium
 from core.mechanics.sensitivity import Rates, Sensitivities
 from core.mechanics.solver_comparison import shape_of
-from core.pipeline.build import Stages, line_targets
+from core.pipeline.build import Stages
+from core.pipeline.model_stages import line_targets
 from core.pipeline.solve import NoEquilibriumError, body_volume_rates, exact_solution
 
 PERCENT = 0.01

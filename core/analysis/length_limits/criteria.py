@@ -23,7 +23,8 @@ from core.mechanics.model import ConstrainedModel
 from core.mechanics.newton import equilibrium_at
 from core.mechanics.potential import Potential
 from core.mechanics.solver_comparison import shape_of
-from core.pipeline.build import GAIN_SHARE, Stages
+from core.pipeline.build import Stages
+from core.pipeline.stages import GAIN_SHARE
 
 Criterion = Callable[[PathPoint], float]
 """How far an answer is from showing a sign; 0 or less where it does [1]."""

@@ -20,7 +20,8 @@ from core.document.lines import ActiveLine
 from core.mechanics.constraint_lines import Line
 from core.mechanics.force_units import newtons_per_unit
 from core.mechanics.model import ConstrainedModel
-from core.pipeline.build import Stages, build, line_targets
+from core.pipeline.build import Stages, build
+from core.pipeline.model_stages import line_targets
 from core.progress import Progress, quiet
 
 __all__ = ["PRECISION", "RED", "SIGNS", "Length", "Limits", "Span", "all_limits", "limits_from", "limits_of"]

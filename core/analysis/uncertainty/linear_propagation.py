@@ -31,7 +31,7 @@ from core.measurements.uncertain_value import ELASTIC, LANDMARKS, LINE, MODEL, S
 from core.mechanics.force_units import newtons_per_unit
 from core.mechanics.sensitivity import Rates
 from core.mechanics.stiffness_sensitivity import Changes, d_sag, stiffness_rates
-from core.pipeline.build import line_targets
+from core.pipeline.model_stages import line_targets
 
 
 @dataclass(frozen=True, eq=False)

@@ -30,7 +30,8 @@ from core.measurements.table import original_subject, reshaped_subject
 from core.mechanics.potential import Potential
 from core.mechanics.sensitivity import Rates, Sensitivities
 from core.mechanics.volume import KEEPS_VOLUME
-from core.pipeline.build import Stages, build, detect_landmarks, line_targets
+from core.pipeline.build import Stages, build, detect_landmarks
+from core.pipeline.model_stages import line_targets
 from core.pipeline.solve import NoEquilibriumError, body_volume_rates, exact_solution
 
 

@@ -12,8 +12,9 @@ from core.garment.cut_list import cut_list
 from core.garment.pressure_list import pressure_list
 from core.measurements.table import before_after, bust_girths
 from core.mechanics.solver_comparison import SolverComparison
-from core.pipeline.build import Stages, build, line_targets
+from core.pipeline.build import Stages, build
 from core.pipeline.live_solver import Frame, make_frame
+from core.pipeline.model_stages import line_targets
 
 
 def verdict_of(frame: Frame) -> ConvergenceView:

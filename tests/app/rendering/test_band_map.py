@@ -17,7 +17,8 @@ from app.rendering.vertex_colors import Ramp
 from core.garment.elastic_library import find_elastic
 from core.garment.presets import find_preset, with_preset
 from core.garment.pressure import LinePressure, pressures
-from core.pipeline.build import Stages, build, line_targets
+from core.pipeline.build import Stages, build
+from core.pipeline.model_stages import line_targets
 from core.pipeline.solve import Solution, solve
 from core.pipeline.surface_fields import line_forces
 from tests.app.rendering.conftest import MakeScene

@@ -28,8 +28,9 @@ from core.document.design import Design
 from core.document.line_notation import ready_made_lines
 from core.document.lines import LineSettings
 from core.mechanics.solver_comparison import SolverComparison
-from core.pipeline.build import Stages, build, line_targets
+from core.pipeline.build import Stages, build
 from core.pipeline.converged import converged_frame
+from core.pipeline.model_stages import line_targets
 from core.pipeline.solve import solve
 from core.progress import Cancelled, quiet
 

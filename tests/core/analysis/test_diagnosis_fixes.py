@@ -18,8 +18,9 @@ from core.analysis.diagnosis.trial_run import continue_run, run_trial
 from core.control_mesh.template import read_template
 from core.document.line_notation import ready_made_lines
 from core.mechanics.solver_comparison import SolverComparison
-from core.pipeline.build import Stages, build, line_targets
+from core.pipeline.build import Stages, build
 from core.pipeline.converged import converged_frame
+from core.pipeline.model_stages import line_targets
 
 
 @cache

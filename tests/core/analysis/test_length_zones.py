@@ -15,7 +15,8 @@ from core.garment.tension import line_tensions
 from core.mechanics.constraint_lines import RATIO_LIMITS
 from core.mechanics.exact_solution import solve_exact
 from core.mechanics.iteration import LineTargets, iterate
-from core.pipeline.build import Stages, build, line_targets
+from core.pipeline.build import Stages, build
+from core.pipeline.model_stages import line_targets
 
 
 def dressed(built, sample="mannequin", elastic=None, **lines) -> Stages:

@@ -25,7 +25,8 @@ from core.garment.tension import line_tensions
 from core.mechanics.exact_solution import solve_exact
 from core.mechanics.force_units import newtons_per_unit
 from core.mechanics.iteration import LineTargets, iterate
-from core.pipeline.build import build, line_targets
+from core.pipeline.build import build
+from core.pipeline.model_stages import line_targets
 from core.pipeline.solve import solve
 
 EDGE = Elastic("edge", 10.0, ((0.0, 0.0), (0.2, 0.8), (0.5, 1.8), (1.0, 4.0)), 15.0)

@@ -17,7 +17,8 @@ from core.garment.elastic_library import find_elastic
 from core.garment.match_shape import match_lengths, reached_points
 from core.garment.tension import line_tensions
 from core.mechanics.exact_solution import solve_exact
-from core.pipeline.build import build, line_targets
+from core.pipeline.build import build
+from core.pipeline.model_stages import line_targets
 from core.pipeline.solve import exact_equilibrium
 
 STRAP, BAND = find_elastic("strap 15"), find_elastic("plush 12")

@@ -27,7 +27,8 @@ from core.garment.presets import (
 )
 from core.mechanics.exact_solution import solve_exact
 from core.mechanics.solver_comparison import shape_of
-from core.pipeline.build import build, line_targets
+from core.pipeline.build import build
+from core.pipeline.model_stages import line_targets
 
 GOOD = {"format": FORMAT, "title": "X", "lines": [{"line": "mid-bust", "length": 0.97}]}
 

@@ -11,7 +11,8 @@ from core.document.lines import ActiveLine, LineSettings
 from core.errors import LineError
 from core.mechanics.exact_solution import solve_body_exact, solve_exact
 from core.mechanics.force_units import newtons_per_unit
-from core.pipeline.build import build, line_targets
+from core.pipeline.build import build
+from core.pipeline.model_stages import line_targets
 from core.pipeline.solve import solve
 
 

@@ -12,7 +12,8 @@ from core.control_mesh.template import read_template
 from core.document.line_notation import ready_made_lines
 from core.document.lines import ActiveLine
 from core.mechanics.exact_solution import solve_exact
-from core.pipeline.build import Stages, build, line_targets
+from core.pipeline.build import Stages, build
+from core.pipeline.model_stages import line_targets
 
 WORN = (("mid-bust", 0.909), ("full-bust", 0.96), ("strap left", 0.973), ("strap right", 0.973))
 

@@ -15,7 +15,8 @@ from core.errors import LandmarkError, LineError, ScanError, UserError
 from core.landmarks.detect import find_landmarks
 from core.messages import Message
 from core.pipeline import build as pipeline
-from core.pipeline.build import IncompleteBuildError, Stages, build, line_targets
+from core.pipeline.build import IncompleteBuildError, Stages, build
+from core.pipeline.model_stages import line_targets
 from core.progress import Cancelled
 
 Built = Callable[[str], Stages]

@@ -16,7 +16,8 @@ from core.garment.pressure_list import pressure_list
 from core.mechanics.gain_limit import OscillationLimit
 from core.mechanics.iteration import LineTargets, iterate
 from core.mechanics.potential import Potential
-from core.pipeline.build import Stages, build, line_targets
+from core.pipeline.build import Stages, build
+from core.pipeline.model_stages import line_targets
 from core.pipeline.solve import exact_equilibrium
 
 FULL_SUPPORT = Cup(coverage="half", lift=25.0, forward=5.0)

@@ -18,7 +18,8 @@ from core.mechanics.newton import Equilibrium
 from core.mechanics.potential import Potential
 from core.mechanics.sensitivity import Sensitivities
 from core.pipeline import build as pipeline
-from core.pipeline.build import Stages, build, line_targets
+from core.pipeline.build import Stages, build
+from core.pipeline.model_stages import line_targets
 from core.pipeline.solve import exact_equilibrium
 
 

@@ -23,7 +23,8 @@ from core.garment.tension import line_tensions
 from core.geometry.mesh import Floats
 from core.measurements.uncertain_value import CUT, LIFT, TENSION, TISSUE
 from core.mechanics.sensitivity import Sensitivities
-from core.pipeline.build import Stages, build, line_targets
+from core.pipeline.build import Stages, build
+from core.pipeline.model_stages import line_targets
 from core.pipeline.solve import exact_solution
 from core.pipeline.surface_fields import line_forces
 
