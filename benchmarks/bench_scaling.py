@@ -59,7 +59,7 @@ def torso(tall: int, half: int) -> ControlMesh:
     line = round(2 * tall / 7)
     path = tuple(int(line * wide + half + c) for c in across if abs(c) <= round(5 * half / 6))
     nowhere = (int(3 * wide), int(3 * wide))
-    return ControlMesh(mesh, fixed, row, column, {"mid-bust": path}, nowhere, mesh.boundary_loops[0], ())
+    return ControlMesh(mesh, fixed, row, column, {"mid-bust": path}, nowhere, mesh.boundary_loops[:1], ())
 
 
 def milliseconds(work: Work, least: int = 1) -> float:

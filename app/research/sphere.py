@@ -71,7 +71,7 @@ def sphere_control() -> ControlMesh:
     }
     row = np.concatenate([ring + 1, [0, RINGS + 1]])
     nobody, nowhere = np.zeros(len(row), dtype=bool), np.empty(0, dtype=np.int64)
-    return ControlMesh(mesh, nobody, row, np.zeros_like(row), paths, (north, north), nowhere, ())
+    return ControlMesh(mesh, nobody, row, np.zeros_like(row), paths, (north, north), (), ())
 
 
 def sphere(rings: int = RINGS, spokes: int = SPOKES, radius: float = RADIUS) -> Mesh:

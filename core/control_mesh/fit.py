@@ -24,6 +24,9 @@ from core.scan.body import Body
 MOST_HOLES = 0.5
 """A scan that lacks more than this part of a breast, or of all that the template lies on, is refused."""
 
+BUST, LOWER = "bust", "lower"
+"""The regions that a control mesh may cover."""
+
 LINE_HEIGHTS = (0.25, 0.75)
 """Where the line row may run between fold (0) and bust point (1)."""
 
@@ -34,10 +37,17 @@ class ControlMesh:
 
     ``fixed`` (n,) tells the points that do not move; ``row`` and ``column`` (n,) are their places in the
     template, column 0 the centre, positive the subject's left. ``paths`` are the control points of each named
-    line from right (-x) to left, ``embedded`` the vertices of lines that run between control points;
-    ``bust_points`` those at the bust points, (left, right). ``border`` (b,) is the border loop in order,
-    ``warnings`` what the user should know of the fit, ``quality`` its figures. ``anchored`` (n,) are points
-    at which bands are held in space though the skin may move there, if there are any.
+    line from right (-x) to left, a closed one from its first point round to this; ``embedded`` the vertices of
+    lines that run between control points; ``apexes`` those at the foremost places of both sides,
+    (left, right): the bust points, in the lower region the buttock points. ``borders`` are the border loops
+    in order, each (b,), ``warnings`` what the user should know of the fit, ``quality`` its figures.
+    ``anchored`` (n,) are points at which bands are held in space though the skin may move there, if there are
+    any.
+
+    ``region`` is "bust" or "lower". Where the template tells it, ``zone`` (m,) is the number of each
+    triangle's zone in ``zone_names``, ``kept`` [1] the part of its displaced volume that each zone keeps, and
+    ``depth`` (n,) [mm] that of the tissue under each point. ``inner_points`` are points far from the borders
+    beside the apexes, one in each part that a flood from these might not reach.
     """
 
     mesh: Mesh
@@ -45,12 +55,43 @@ class ControlMesh:
     row: Indices
     column: Indices
     paths: Mapping[str, tuple[int, ...]]
-    bust_points: tuple[int, int]
-    border: Indices
+    apexes: tuple[int, int]
+    borders: tuple[Indices, ...]
     warnings: tuple[Message, ...]
     quality: FitQuality | None = None
     embedded: Mapping[str, EmbeddedCurve] = field(default_factory=dict)
     anchored: Flags | None = None
+    region: str = BUST
+    zone: Indices | None = None
+    zone_names: tuple[str, ...] = ()
+    kept: Floats | None = None
+    depth: Floats | None = None
+    inner_points: tuple[int, ...] = ()
+
+    @property
+    def bust_points(self) -> tuple[int, int]:
+        """Return the control points at the bust points, (left, right). Raises ValueError in another region."""
+        return self._apexes_of(BUST)
+
+    @property
+    def buttock_points(self) -> tuple[int, int]:
+        """Return the control points at the buttock points, (left, right). Raises ValueError for the bust."""
+        return self._apexes_of(LOWER)
+
+    def _apexes_of(self, region: str) -> tuple[int, int]:
+        if self.region != region:
+            raise ValueError(f"a control mesh of region {self.region}, not {region}")
+        return self.apexes
+
+    @property
+    def seeds(self) -> tuple[int, ...]:
+        """Return points from which all that the control mesh covers is reached without crossing a border."""
+        return *self.apexes, *self.inner_points
+
+    @property
+    def border_points(self) -> Indices:
+        """Return the points of all borders, loop after loop, (b,)."""
+        return np.concatenate([np.empty(0, dtype=np.int64), *self.borders])
 
     @property
     def held(self) -> Flags:
@@ -291,6 +332,6 @@ def control_mesh_at(template: Template, points: Points) -> ControlMesh:
         template.column,
         template.paths,
         (left, right),
-        mesh.boundary_loops[0],
+        mesh.boundary_loops[:1],
         (),
     )

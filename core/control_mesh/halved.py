@@ -36,8 +36,8 @@ def halved(control: ControlMesh, skin: Mesh) -> ControlMesh:
     row, column = (np.concatenate([2 * at, at[ends].sum(axis=1)]) for at in (control.row, control.column))
     grid = Grid(row, column, faces)
     paths = {name: _through(path, number) for name, path in control.paths.items()}
-    border = np.array(_through((*control.border, control.border[0]), number)[:-1])
-    at_border = np.unique(faces[np.isin(faces, border).any(axis=1)])
+    borders = tuple(np.array(_through((*loop, loop[0]), number)[:-1]) for loop in control.borders)
+    at_border = np.unique(faces[np.isin(faces, np.concatenate(borders)).any(axis=1)])
     return replace(
         control,
         mesh=Mesh(np.concatenate([mesh.vertices, middles]), faces),
@@ -46,7 +46,9 @@ def halved(control: ControlMesh, skin: Mesh) -> ControlMesh:
         row=_with_outer(control.row, ends),
         column=_with_outer(control.column, ends),
         paths=paths,
-        border=border,
+        borders=borders,
+        zone=None if control.zone is None else np.tile(control.zone, len(parts)),
+        depth=None if control.depth is None else np.concatenate([control.depth, control.depth[ends].mean(1)]),
         embedded={name: _finer(curve, grid) for name, curve in control.embedded.items()},
     )
 

@@ -52,8 +52,8 @@ class _FenceError(Exception):
 def blend_weights(body: Mesh, control: ControlMesh, fade: float = 25.0) -> BlendRegion:
     """Find the patch of ``body`` under ``control``, with a soft border ``fade`` wide [mm] (ours).
 
-    Shortest edge paths between the border control points fence it in, a flood from the bust points fills it,
-    and the fade is a smooth step of the distance along the surface to that fence. Where the fence has a gap
+    Shortest edge paths between the points of each border fence it in, a flood from the control mesh's seeds
+    fills it, and the fade is a smooth step of the distance along the surface to that fence. Where the fence has a gap
     or the flood escapes, the fade follows from the nearest place on the control mesh instead.
     """
     try:
@@ -73,9 +73,10 @@ def _flooded(body: Mesh, control: ControlMesh, fade: float) -> Floats:
     graph = _edge_graph(body, around)
     tree = cKDTree(body.vertices[around])
     at = np.asarray(tree.query(control.mesh.vertices)[1], dtype=np.int64)
-    fence = _fence(graph, tree, at[control.border], control.mesh.vertices[control.border])
-    region = _flood(graph, fence, at[list(control.bust_points)])
-    inner = np.setdiff1d(at, at[control.border])
+    rings = [_fence(graph, tree, at[loop], control.mesh.vertices[loop]) for loop in control.borders]
+    fence = np.unique(np.concatenate(rings))
+    region = _flood(graph, fence, at[list(control.seeds)])
+    inner = np.setdiff1d(at, at[control.border_points])
     if region[inner].mean() < COVERED:
         raise _FenceError(Message("The scan is disconnected within the blend region."))
     if _touches_rest(body, around, region):
@@ -166,7 +167,7 @@ def _by_distance(body: Mesh, control: ControlMesh, fade: float) -> Floats:
     mesh = control.mesh
     around = _near_patch(body.vertices, mesh)
     distance2, triangle, spots = _nearest_spots(body.vertices[around], mesh)
-    inwards = _to_loop(spots, mesh.vertices[control.border])
+    inwards = np.min([_to_loop(spots, mesh.vertices[loop]) for loop in control.borders], axis=0)
     inwards[inwards < 1e-6] = 0.0  # before the border itself, but for rounding
     near = smooth_step((FAR - np.sqrt(distance2)) / (FAR - CLOSE))
     facing = np.einsum("ij,ij->i", body.vertex_normals[around], mesh.face_normals[triangle])

@@ -160,7 +160,7 @@ def _halves(places: Points, laid: CentreLine) -> tuple[Points, Points]:
 
 
 def _marks(stages: Stages, line: Line, control_points: Points) -> tuple[tuple[float, Message], ...]:
-    middle = float(stages.control.mesh.vertices[stages.control.border, 0].mean())
+    middle = float(stages.control.mesh.vertices[stages.control.border_points, 0].mean())
     places, back = line.places(control_points), stages.backs.get(line.name)
     s = arc_length(places)
     end = float(s[-1])

@@ -95,7 +95,7 @@ def mirrored_breasts(body: Body, control: ControlMesh, patch: BlendRegion) -> Mi
         fade = fade[cKDTree(body.mesh.vertices).query(calm.vertices)[1]]
     nearest = np.asarray(cKDTree(control.mesh.vertices).query(calm.vertices)[1])
     breasts = ~control.held[nearest] & (fade > 0.0)
-    middle = float(control.mesh.vertices[control.border, 0].mean())
+    middle = float(control.mesh.vertices[control.border_points, 0].mean())
     return MirroredSurface(calm, fade == 0.0, breasts, middle)
 
 

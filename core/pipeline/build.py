@@ -136,7 +136,7 @@ def _stages(
     patch = stage("find patch", blend_weights, body.mesh, control)
     weights = design.weights, design.scaled_normals
     binding = stage("bind body", bound, body.mesh, control, patch.fade, *weights, tissue)
-    middle = float(control.mesh.vertices[control.border, 0].mean())
+    middle = float(control.mesh.vertices[control.border_points, 0].mean())
     moving = stage("prepare normals", moving_faces, body.mesh, binding.moving, middle)
     watch = stage("watch body", BodyObservables, binding, control, landmarks)
     backs = stage("measure bands", _backs, body, control)

@@ -44,7 +44,7 @@ class BodyObservables:
         rows = np.concatenate([nipples, left, right])
         self._followed, self._bust_points = binding.few(rows), binding.few(rows[:2])
         self._away = points - rest[nipples]
-        self._back = float(control.mesh.vertices[control.border, 1].mean())
+        self._back = float(control.mesh.vertices[control.border_points, 1].mean())
 
     def bust_points(self, control_points: Points) -> Points:
         """Return where the left and the right bust point are, shape (2, 3) [mm]."""

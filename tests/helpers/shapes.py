@@ -42,7 +42,7 @@ def torso(skew: float = 0.0) -> ControlMesh:
     fixed = ~((row >= 2) & (row <= 5) & (np.abs(column) <= 4))
     paths = {name: tuple(_index(r, c) for c in range(-5, 6)) for r, name in enumerate(TORSO_LINES, start=1)}
     bust_points = (_index(3, 3), _index(3, -3))
-    return ControlMesh(mesh, fixed, row, column, paths, bust_points, mesh.boundary_loops[0], ())
+    return ControlMesh(mesh, fixed, row, column, paths, bust_points, mesh.boundary_loops[:1], ())
 
 
 def _index(row: int, column: int) -> int:
@@ -71,7 +71,7 @@ def mirrored(control: ControlMesh) -> tuple[ControlMesh, np.ndarray]:
         control.column,
         control.paths,
         (int(was[right]), int(was[left])),
-        mesh.boundary_loops[0],
+        mesh.boundary_loops[:1],
         (),
     )
     return twin, was

@@ -48,7 +48,7 @@ def model_error_mm(trials: PerturbedSolutions, assumed: InputUncertainty) -> Flo
     binding = trials.base.binding
     rest = binding.rest_moving
     moved = deform_moving(binding, trials.points) - rest
-    middle = trials.base.control.mesh.vertices[trials.base.control.border, 0].mean()
+    middle = trials.base.control.mesh.vertices[trials.base.control.border_points, 0].mean()
     left = rest[:, 0] > middle
     rms = np.array([np.sqrt(np.mean(np.sum(moved[side] ** 2, axis=1))) for side in (left, ~left)])
     share, least = assumed.of_model(trials.base.design.tissue)

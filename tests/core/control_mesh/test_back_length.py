@@ -16,7 +16,7 @@ def ends_only(points):
     """A control mesh that is nothing but a line from right to left."""
     none = np.empty(0, dtype=np.int64)
     mesh = Mesh(points, np.empty((0, 3), dtype=np.int64))
-    return ControlMesh(mesh, none, none, none, {"band": (0, 1)}, (0, 1), none, ())
+    return ControlMesh(mesh, none, none, none, {"band": (0, 1)}, (0, 1), (), ())
 
 
 def tube_ends(degrees, z):

@@ -101,10 +101,10 @@ def test_control_mesh_keeps_the_places_of_the_template(fit, template):
     assert np.array_equal(fit.mesh.faces, template.faces)
     assert np.array_equal(fit.fixed, template.fixed)
     assert fit.paths == template.paths
-    outermost = np.isin(fit.mesh.faces, fit.border).any(axis=1)
+    outermost = np.isin(fit.mesh.faces, fit.border_points).any(axis=1)
     assert fit.fixed[fit.mesh.faces[outermost]].all()
     for path in fit.paths.values():
-        at = fit.mesh.vertices[list(path)] - (0.0, fit.mesh.vertices[fit.border, 1].max(), 0.0)
+        at = fit.mesh.vertices[list(path)] - (0.0, fit.mesh.vertices[fit.border_points, 1].max(), 0.0)
         assert (np.diff(np.arctan2(at[:, 0], -at[:, 1])) > 0.0).all()
 
 

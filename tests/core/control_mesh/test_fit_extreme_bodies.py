@@ -126,7 +126,7 @@ def test_both_templates_fit_an_extreme_body(name, sample):
             left = Mesh(points, control.mesh.faces[control.column[control.mesh.faces].min(axis=1) >= 0])
             right = Mesh(points, control.mesh.faces[control.column[control.mesh.faces].max(axis=1) <= 0])
             assert len(left.faces) == len(right.faces) == len(control.mesh.faces) // 2
-            apex = points[control.border].mean(axis=0)
+            apex = points[control.border_points].mean(axis=0)
             both = left.enclosed_volume(apex) + right.enclosed_volume(apex)
             assert both == pytest.approx(control.mesh.enclosed_volume(apex))
             assert min(left.enclosed_volume(apex), right.enclosed_volume(apex)) > 0.0

@@ -141,7 +141,7 @@ def test_body_reshapes_sanely_where_the_control_mesh_bridges_a_fold(template, sa
     apex = body.mesh.vertices.mean(axis=0)
     grown = shaped.enclosed_volume(apex) - body.mesh.enclosed_volume(apex)
     assert abs(grown) < 0.005 * control.mesh.enclosed_volume(
-        control.mesh.vertices[control.border].mean(axis=0)
+        control.mesh.vertices[control.border_points].mean(axis=0)
     )
 
 

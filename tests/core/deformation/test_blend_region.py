@@ -37,7 +37,7 @@ def control_grid(columns: int = 9, rows: int = 6, step: float = 25.0) -> Control
     border = np.concatenate([ids[0, :-1], ids[:-1, -1], ids[-1, :0:-1], ids[:0:-1, 0]])
     fixed = np.isin(ids.ravel(), border)
     bust = int(ids[2, columns // 2 + 2]), int(ids[2, columns // 2 - 2])
-    return ControlMesh(mesh, fixed, row, column - columns // 2, {}, bust, border, ())
+    return ControlMesh(mesh, fixed, row, column - columns // 2, {}, bust, (border,), ())
 
 
 SHEET = grid(np.arange(-200.0, 201.0, 5.0), np.arange(-200.0, 251.0, 5.0))
@@ -134,7 +134,7 @@ def test_a_fence_that_does_not_close_is_noticed():
         CONTROL.column,
         {},
         (outside, outside),
-        CONTROL.border,
+        CONTROL.borders,
         (),
     )
     assert blend_weights(SHEET, control).rule == "distance"
@@ -216,7 +216,7 @@ def test_a_mirrored_sample_has_the_same_patch(name):
         -control.column,
         {},
         control.bust_points[::-1],
-        control.border[::-1],
+        tuple(loop[::-1] for loop in control.borders),
         (),
     )
     assert np.abs(blend_weights(mesh, mirrored).fade - patch.fade).max() < 1e-9
@@ -225,7 +225,7 @@ def test_a_mirrored_sample_has_the_same_patch(name):
 @SAMPLES
 def test_a_punched_sample_still_has_a_patch(name):
     body, control, patch = sample(name)
-    spot = control.mesh.vertices[control.border[5]]
+    spot = control.mesh.vertices[control.border_points[5]]
     scan = without(body.mesh, np.linalg.norm(centres(body.mesh) - spot, axis=1) < 60.0)
     punched = blend_weights(scan, control)
     assert punched.rule == "distance"

@@ -192,7 +192,7 @@ def test_the_volume_that_is_kept_is_that_of_another_library(volume_of):
     """The patch is closed by a fan to the middle of its border, and trimesh told to measure that."""
     control = torso(skew=0.3)
     model = constrained_model(control, mechanics=ModelOptions(volume_of=volume_of))
-    count, loop = len(control.mesh.vertices), control.border
+    count, loop = len(control.mesh.vertices), control.border_points
     lid = np.stack([np.roll(loop, -1), loop, np.full(len(loop), count)], axis=1)
     faces = np.concatenate([control.mesh.faces, lid])
 

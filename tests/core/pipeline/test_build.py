@@ -114,7 +114,7 @@ def test_the_watched_points_are_the_landmarks(built: Built, sample: str) -> None
     )
     # No bust point lies in front of the apex by more than the softness of its mean allows.
     foremost = -min(stages.landmarks.position(f"bust_point_{side}")[1] for side in ("left", "right"))
-    border = stages.control.mesh.vertices[stages.control.border, 1].mean()
+    border = stages.control.mesh.vertices[stages.control.border_points, 1].mean()
     assert marks.apex_protrusion > foremost + border - 2.0
     for side, out in (("left", marks.bust_point_left_out), ("right", marks.bust_point_right_out)):
         assert out == pytest.approx(border - stages.landmarks.position(f"bust_point_{side}")[1], abs=1e-9)
