@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from app.cli.lines import with_lines_and_elastics, with_lower_trunk
 from app.cli.options import NUMBERS, SWITCHES, WORDS, shown_text, stored_word
 from core.control_mesh.template import read_template
 from core.document.cup import CUP_RANGES, Cup
@@ -16,11 +17,9 @@ from core.document.document import Document
 from core.document.line_notation import parse_line
 from core.document.storage.backups import backup_before_write
 from core.document.storage.project_file import SUFFIX, is_project, open_project, save_project
-from core.errors import LineError, UserError
-from core.garment.elastic_library import find_elastic, read_elastic
+from core.errors import UserError
 from core.garment.presets import find_preset, with_preset
 from core.landmarks.manual import placed_mark
-from core.mechanics.constraint_lines import Line, length_ratio
 from core.messages import Message
 from core.pipeline.build import Stages, build
 from core.scan.source import ScanEdits, hole_centre
@@ -48,18 +47,13 @@ def design_of(options: argparse.Namespace) -> Design:
         design = replace(design, cup=cup_of(options.cup, design.cup), tissue=tissue)
     for mark in map(placed_mark, getattr(options, "landmark", None) or []):
         design = design.with_placed(mark.name, mark.position)
+    design = with_lower_trunk(design, getattr(options, "line", None) or [])
     return replace(design, volume=getattr(options, "volume", None) or design.volume)
 
 
 def stages_of(options: argparse.Namespace) -> Stages:
     """Build the design of ``design_of`` with the lines and elastics of the options. Raises UserError."""
     return with_lines_and_elastics(build(design_of(options)), options.line or [], options.elastic or [])
-
-
-def with_lines_and_elastics(stages: Stages, lines: Sequence[str], elastics: Sequence[str]) -> Stages:
-    """Return the stages of a design with ``lines``, NAME=LENGTH, and ``elastics``, LINE=ELASTIC."""
-    design = apply_lines(stages.design, stages.model.lines, lines)
-    return build(apply_elastics(design, elastics), stages)
 
 
 def _edits_of(edits: ScanEdits, options: argparse.Namespace) -> ScanEdits:
@@ -70,38 +64,6 @@ def _edits_of(edits: ScanEdits, options: argparse.Namespace) -> ScanEdits:
     for text in getattr(options, "fill", None) or []:
         edits = replace(edits, fill_all=True) if text == "all" else edits.with_filled(hole_centre(text))
     return edits
-
-
-def apply_lines(design: Design, lines: Sequence[Line], requests: Sequence[str]) -> Design:
-    """Return a design with lengths of ``lines`` set by requests, NAME=LENGTH each. Raises LineError."""
-    for request in requests:
-        name, equals, text = request.partition("=")
-        line = next((line for line in lines if line.name.lower() == name.strip().lower()), None)
-        if line is None or not equals:
-            names = ", ".join(line.name for line in lines)
-            raise LineError(
-                Message("'{request}' is not a line.", request=request),
-                Message("Enter NAME=LENGTH. Lines: {names}.", names=names),
-            )
-        ratio = length_ratio(text, line.name, line.rest_length, line.whole_length)
-        design = design.with_line(line.name, ratio)
-    return design
-
-
-def apply_elastics(design: Design, requests: Sequence[str]) -> Design:
-    """Return a design with elastics of active lines set by requests, LINE=ELASTIC each. Raises LineError."""
-    for request in requests:
-        name, equals, elastic = (part.strip() for part in request.partition("="))
-        line = next((each for each in design.active_lines() if each.lower() == name.lower()), None)
-        if line is None or not equals:
-            active = ", ".join(sorted(design.active_lines())) or "none"
-            raise LineError(
-                Message("'{request}' is not an active line.", request=request),
-                Message("Enter LINE=ELASTIC. Active lines: {active}.", active=active),
-            )
-        chosen = read_elastic(Path(elastic)) if elastic.lower().endswith(".csv") else find_elastic(elastic)
-        design = design.with_elastic(line, chosen)
-    return design
 
 
 def settings_of(pairs: Sequence[str]) -> dict[str, Any]:

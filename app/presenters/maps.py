@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import zip_longest
 
 import numpy as np
 
@@ -44,6 +45,9 @@ LINE_MAPS = ("pull", "pressure")
 
 MAPS = ("displacement", "strain", "sides", "worn", *LINE_MAPS)
 """Maps in the order in which a key goes through them, the first one first seen."""
+
+OF_BUST = ("worn", "pressure")
+"""Maps that have values on the skin of the bust alone."""
 
 BOTH_WAYS = ("displacement", "sides", "worn")
 """Maps whose values go both ways from zero, all of them lengths."""
@@ -245,6 +249,11 @@ class MapKind:
     marks: tuple[Mark, ...] = ()
 
 
+def _meshes(stages: Stages) -> tuple[object, ...]:
+    """Return all that a state of a body is laid on."""
+    return stages.skin.faces, *(mesh for each in stages.regions for mesh in (each.control, each.patch))
+
+
 class BodyState:
     """``places`` [mm] and ``normals`` [1] of all vertices, (n, 3), follow the frames of one body and fit."""
 
@@ -258,12 +267,12 @@ class BodyState:
     def belongs_to(self, frame: Frame) -> bool:
         """Return whether a frame is of the same body and fit."""
         old, new = self.stages, frame.stages
-        return old.moving is new.moving and old.control is new.control and old.patch is new.patch
+        return all(a is b for a, b in zip_longest(_meshes(old), _meshes(new)))
 
     def follow(self, frame: Frame) -> None:
         """Set the frame; ``belongs_to`` must hold."""
         self.frame, self.stages = frame, frame.stages
-        rows = frame.stages.moving.vertices
+        rows = frame.stages.skin.vertices
         self.places[rows], self.normals[rows] = frame.points, frame.normals
 
     @cached_property
@@ -275,28 +284,42 @@ class BodyState:
     def sides(self) -> SideComparison:
         """Return the left side over the mirrored right one."""
         stages = self.stages
-        middle = mirror_plane(self.rest, stages.patch.fade == 0.0, stages.moving.middle)
-        return SideComparison(self.rest, stages.moving.vertices, middle)
+        still = np.all([region.patch.fade == 0.0 for region in stages.regions], axis=0)
+        middle = mirror_plane(self.rest, still, stages.moving.middle)
+        return SideComparison(self.rest, stages.skin.vertices, middle)
 
     @cached_property
-    def _strain(self) -> StrainOnBody:
-        stages = self.stages
-        return StrainOnBody(stages.control, stages.moving.rest, stages.patch.fade[stages.moving.vertices])
+    def _strains(self) -> list[StrainOnBody]:
+        return [
+            StrainOnBody(each.control, each.moving.rest, each.patch.fade[each.moving.vertices])
+            for each in self.stages.regions
+        ]
+
+    def _strain(self) -> Floats:
+        """Return the strain of skin at the moving vertices of all regions, (r,) [1]."""
+        strains = np.zeros(len(self.stages.skin.vertices))
+        for strain, rows, points in zip(
+            self._strains, self.stages.skin.rows, self.frame.region_points, strict=True
+        ):
+            strains[rows] += strain(points)
+        return strains
 
     @cached_property
     def _rest_normals(self) -> Points:
-        return self.rest.vertex_normals[self.stages.moving.vertices]
+        return self.rest.vertex_normals[self.stages.skin.vertices]
 
     def rows(self, name: str) -> Indices:
         """Return the vertices at which the values of a map change from frame to frame, (k,)."""
-        return self.sides.rows if name == "sides" else self.stages.moving.vertices
+        if name == "sides":
+            return self.sides.rows
+        return (self.stages.moving if name in OF_BUST else self.stages.skin).vertices
 
     def values(self, name: str) -> Floats:
         """Return the values of a map of the body at ``rows`` [mm, %], (k,); NaN where there is none."""
         if name == "displacement":
-            return normal_displacement(self.stages.moving.rest, self._rest_normals, self.frame.points)
+            return normal_displacement(self.stages.skin.faces.rest, self._rest_normals, self.frame.points)
         if name == "strain":
-            return 100.0 * self._strain(self.frame.control_points)
+            return 100.0 * self._strain()
         if name == "pressure":
             return self._cup_pressures()
         return self.sides.protrusion_difference(self.places, self.normals, self.sides.rows)

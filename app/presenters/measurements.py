@@ -105,7 +105,8 @@ def _bust_rows(frame: Frame) -> Iterator[MeasureView]:
 def _volume_rows(frame: Frame) -> Iterator[MeasureView]:
     volume = frame.stages.model.volume.rest_volume / 1000.0
     # The body has no volume of its own there: what its skin gains is counted from the same rest volume.
-    skin = frame.stages.moving.volume_change(frame.points) / 1000.0
+    (places,) = frame.stages.skin.of_bust(frame.points)
+    skin = frame.stages.moving.volume_change(places) / 1000.0
     part = tr("inside the reshaped region, closed at the back")
     yield MeasureView(tr("Volume of the model"), "ml", volume, volume + frame.error_ml, part)
     yield MeasureView(tr("Volume under skin"), "ml", volume, volume + skin, part)

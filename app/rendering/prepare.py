@@ -15,7 +15,7 @@ def prepare_scene(built: Stages | IncompleteBuildError, progress: Progress = qui
     skin = render_mesh(mesh, lambda what, share: progress(what, 0.7 * share))
     progress(PREPARING, 0.7)
     _ = built.body.holes  # kept with the body: they are listed beside it
-    mesh_parts(skin, NONE if stages is None else stages.moving.vertices)
+    mesh_parts(skin, NONE if stages is None else stages.skin.vertices)
     if stages is None:
         return
     surface = RibbonSurface(mesh)

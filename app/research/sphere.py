@@ -70,7 +70,7 @@ def sphere_control() -> ControlMesh:
         "vertical": (north, *down, south, *reversed(up), north),
     }
     row = np.concatenate([ring + 1, [0, RINGS + 1]])
-    nobody, nowhere = np.zeros(len(row), dtype=bool), np.empty(0, dtype=np.int64)
+    nobody = np.zeros(len(row), dtype=bool)
     return ControlMesh(mesh, nobody, row, np.zeros_like(row), paths, (north, north), (), ())
 
 

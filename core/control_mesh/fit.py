@@ -37,8 +37,8 @@ class ControlMesh:
 
     ``fixed`` (n,) tells the points that do not move; ``row`` and ``column`` (n,) are their places in the
     template, column 0 the centre, positive the subject's left. ``paths`` are the control points of each named
-    line from right (-x) to left, a closed one from its first point round to this; ``embedded`` the vertices of
-    lines that run between control points; ``apexes`` those at the foremost places of both sides,
+    line from right (-x) to left, a closed one from its first point round to this; ``embedded`` the vertices
+    of lines that run between control points; ``apexes`` those at the foremost places of both sides,
     (left, right): the bust points, in the lower region the buttock points. ``borders`` are the border loops
     in order, each (b,), ``warnings`` what the user should know of the fit, ``quality`` its figures.
     ``anchored`` (n,) are points at which bands are held in space though the skin may move there, if there are
@@ -70,7 +70,7 @@ class ControlMesh:
 
     @property
     def bust_points(self) -> tuple[int, int]:
-        """Return the control points at the bust points, (left, right). Raises ValueError in another region."""
+        """Return the control points at the bust points, (left, right). Raises ValueError in the lower one."""
         return self._apexes_of(BUST)
 
     @property

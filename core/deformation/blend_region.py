@@ -53,8 +53,8 @@ def blend_weights(body: Mesh, control: ControlMesh, fade: float = 25.0) -> Blend
     """Find the patch of ``body`` under ``control``, with a soft border ``fade`` wide [mm] (ours).
 
     Shortest edge paths between the points of each border fence it in, a flood from the control mesh's seeds
-    fills it, and the fade is a smooth step of the distance along the surface to that fence. Where the fence has a gap
-    or the flood escapes, the fade follows from the nearest place on the control mesh instead.
+    fills it, and the fade is a smooth step of the distance along the surface to that fence. Where the fence
+    has a gap or the flood escapes, the fade follows from the nearest place on the control mesh instead.
     """
     try:
         return BlendRegion(frozen(_flooded(body, control, fade)), "flood")

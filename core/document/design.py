@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from functools import reduce
+from functools import cached_property, reduce
 from typing import Any
 
 from core.document.calibration_record import Calibration
@@ -23,7 +23,7 @@ from core.document.document_limits import (
 )
 from core.document.elastic import TISSUE_LIMITS, TISSUE_STIFFNESS, Elastic, check_elastics
 from core.document.lines import ActiveLine, CustomLine, LineSettings, partner_of
-from core.document.lower_trunk import LowerTrunk
+from core.document.lower_trunk import LowerTrunk, lower_line_names
 from core.document.printable_name import repeated
 from core.errors import LandmarkError, LineError, UserError
 from core.landmarks.manual import PlacedMark
@@ -130,7 +130,10 @@ class Design:
                 Message("Two measurements are named '{name}'.", name=twice),
                 Message("Give each measurement a unique name."),
             )
-        check_elastics(self.elastics, {each.name: each.elastic for each in self.traits if each.elastic})
+        traits = self.traits
+        if self.lower is not None:
+            traits = (*traits, *self.lower_design.traits)
+        check_elastics(self.elastics, {each.name: each.elastic for each in traits if each.elastic})
 
     def _check_counts(self) -> None:
         check_counts(
@@ -177,7 +180,47 @@ class Design:
 
     def ratio(self, name: str) -> float:
         """Return the ratio of a line, 1 if it is not worn."""
-        return next((line.ratio for line in self.lines if line.name == name), 1.0)
+        return next((line.ratio for line in self._region_of(name).lines if line.name == name), 1.0)
+
+    @property
+    def regions(self) -> tuple[Design, ...]:
+        """Return the design of each region by itself, the bust's first."""
+        return (self,) if self.lower is None else (self, self.lower_design)
+
+    @cached_property
+    def lower_design(self) -> Design:
+        """Return what is decided of the lower trunk as a design of its own, on a net without cups.
+
+        Raises ValueError without that region.
+        """
+        if self.lower is None:
+            raise ValueError("the design has no lower trunk")
+        lower = self.lower
+        return replace(
+            self,
+            lines=lower.lines,
+            traits=lower.traits,
+            own_lines=(),
+            cup=None,
+            lower=None,
+            tissue="net",
+            firm_chest=lower.firmness,
+            volume_of="each",
+            dense_volume=False,
+            tissue_stiffness=lower.stiffness,
+        )
+
+    def _region_of(self, name: str) -> Design:
+        """Return the design of the region that a line belongs to."""
+        return self.lower_design if self.lower is not None and name in lower_line_names() else self
+
+    def _with_region(self, region: Design) -> Design:
+        """Return the design with what another one of the lower trunk decides of its lines."""
+        assert self.lower is not None
+        lower = replace(self.lower, lines=region.lines, traits=region.traits)
+        known = {each.name: each for each in (*self.elastics, *region.elastics)}
+        used = {each.elastic for each in (*self.traits, *region.traits) if each.elastic}
+        return replace(self, lower=lower, elastics=tuple(known[name] for name in sorted(used)))
 
     def active_lines(self) -> frozenset[str]:
         """Return the names of the lines that are worn."""
@@ -187,7 +230,8 @@ class Design:
     def is_bare(self) -> bool:
         """Return whether nothing reshapes the body: no line, no cup, and it stands as it was scanned."""
         lies = self.tissue == "solid" and self.posture != "standing"
-        return not self.lines and self.cup is None and not lies
+        below = self.lower is not None and bool(self.lower.lines)
+        return not self.lines and self.cup is None and not lies and not below
 
     def line_stiffnesses(self) -> dict[str, float]:
         """Return the stiffness [1] of each worn line that has its own."""
@@ -205,6 +249,8 @@ class Design:
 
         Lines that share an elastic of this name share its curve.
         """
+        if (region := self._region_of(name)) is not self:
+            return self._with_region(region.with_elastic(name, elastic))
         if elastic is None:
             return self.with_line_settings(replace(self.line_settings(name), elastic="", width=None))
         others = tuple(each for each in self.elastics if each.name != elastic.name)
@@ -215,7 +261,11 @@ class Design:
     def is_equivalent(self, other: Design) -> bool:
         """Tell whether another design is solved alike: customer, measures, names, calibration do not act."""
         mine, others = (
-            reduce(Design.with_line_settings, map(LineSettings.mechanical, each.traits), each)
+            reduce(
+                Design.with_line_settings,
+                [traits.mechanical() for region in each.regions for traits in region.traits],
+                each,
+            )
             for each in (self, other)
         )
         neutral: dict[str, Any] = {
@@ -257,21 +307,25 @@ class Design:
 
     def line_settings(self, name: str) -> LineSettings:
         """Return how a line is treated."""
-        return next((traits for traits in self.traits if traits.name == name), LineSettings(name))
+        usual = LineSettings(name)
+        return next((traits for traits in self._region_of(name).traits if traits.name == name), usual)
 
     def with_line_settings(self, traits: LineSettings) -> Design:
         """Return the design with a line treated in another way."""
+        if (region := self._region_of(traits.name)) is not self:
+            return self._with_region(region.with_line_settings(traits))
         others = [each for each in self.traits if each.name != traits.name]
         kept = others if traits == LineSettings(traits.name) else [*others, traits]
-        used = {each.elastic for each in kept}
+        used = {each.elastic for each in (*kept, *(self.lower.traits if self.lower else ()))}
         elastics = tuple(each for each in self.elastics if each.name in used)
         return replace(self, traits=tuple(sorted(kept, key=lambda each: each.name)), elastics=elastics)
 
     def linked_pair(self, name: str) -> tuple[str, ...]:
-        """Return the own line ``name`` and its partner of the other side, if they share length and lock."""
+        """Return the line ``name`` and its partner of the other side, if they share length and lock."""
         partner = partner_of(name)
         sides = [self.line_settings(each) for each in (name, partner)]
-        both = partner in {line.name for line in self.own_lines} and all(side.linked for side in sides)
+        paired = {line.name for line in self.own_lines} | (lower_line_names() if self.lower else set())
+        both = partner in paired and all(side.linked for side in sides)
         alike = sides[0].locked == sides[1].locked and self.ratio(name) == self.ratio(partner)
         return (name, partner) if both and alike else (name,)
 
@@ -284,7 +338,8 @@ class Design:
         locked = any(self.line_settings(each).locked for each in names)
         after = self
         if self.ratio(names[0]) != self.ratio(names[1]):
-            after = self.with_line(names[1], self.ratio(name) if name in self.active_lines() else None)
+            worn = name in self._region_of(name).active_lines()
+            after = self.with_line(names[1], self.ratio(name) if worn else None)
         traits = [replace(self.line_settings(each), linked=True, locked=locked) for each in names]
         return reduce(Design.with_line_settings, traits, after)
 
@@ -307,6 +362,8 @@ class Design:
 
     def with_line(self, name: str, ratio: float | None) -> Design:
         """Return the design with a line at ``ratio``, or off (None). Raises LineError if it is locked."""
+        if (region := self._region_of(name)) is not self:
+            return self._with_region(region.with_line(name, ratio))
         if ratio != (self.ratio(name) if name in self.active_lines() else None):
             self._check_unlocked(name)
         others = [line for line in self.lines if line.name != name]
@@ -318,9 +375,19 @@ class Design:
         return reduce(lambda design, each: design.with_line(each, ratio), self.linked_pair(name), self)
 
     def with_lines_reset(self) -> Design:
-        """Return the design with every line taken off that is not locked."""
+        """Return the design with every line taken off that is not locked, in all regions."""
+        return self.with_bust_lines_reset().with_lower_lines_reset()
+
+    def with_bust_lines_reset(self) -> Design:
+        """Return the design with every line of the bust taken off that is not locked."""
         kept = tuple(line for line in self.lines if self.line_settings(line.name).locked)
         return replace(self, lines=kept)
+
+    def with_lower_lines_reset(self) -> Design:
+        """Return the design with every line of the lower trunk taken off that is not locked."""
+        if self.lower is None:
+            return self
+        return self._with_region(self.lower_design.with_bust_lines_reset())
 
     def _check_unlocked(self, name: str) -> None:
         if self.line_settings(name).locked:

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from types import MappingProxyType
 
+from core.control_mesh.lower_template import read_lower_template
 from core.document.document_limits import check_numbers
-from core.messages import SettingName
+from core.document.lines import ActiveLine, LineSettings
+from core.errors import LineError
+from core.messages import LineName, Message, SettingName
 
 LOWER_RANGES: Mapping[str, tuple[float, float]] = MappingProxyType(
     {
@@ -28,7 +32,7 @@ With it a waistband 25 mm wide and 5 % shorter presses with about 2.3 kPa, as wa
 
 @dataclass(frozen=True)
 class LowerTrunk:
-    """The region below the bust.
+    """The region below the bust, with the ``lines`` that are worn there and the ``traits`` of any.
 
     ``belly_height`` [1] is where the belly row runs from waist (0) to hip (1). ``firmness`` [1] ties skin to
     bone, the more the thinner the tissue: 0 not at all. ``waist_kept`` [1] is how much of the volume that
@@ -36,6 +40,8 @@ class LowerTrunk:
     tissue tells what forces are in newtons. Raises UserError for what cannot be.
     """
 
+    lines: tuple[ActiveLine, ...] = ()
+    traits: tuple[LineSettings, ...] = ()
     belly_height: float = 0.45
     firmness: float = 0.1
     waist_kept: float = 0.5
@@ -48,4 +54,22 @@ class LowerTrunk:
             "waist_kept": SettingName("volume kept at the waist"),
             "stiffness": SettingName("tissue stiffness of the lower trunk"),
         }
+        named = {line.name for line in self.lines} | {traits.name for traits in self.traits}
+        for name in sorted(named - lower_line_names()):
+            raise LineError(
+                Message("There is no line '{line}'.", line=LineName(name)),
+                Message("Available lines: {lines}.", lines=", ".join(sorted(lower_line_names()))),
+            )
         check_numbers((getattr(self, key), *limits, names[key]) for key, limits in LOWER_RANGES.items())
+
+
+@cache
+def lower_line_names() -> frozenset[str]:
+    """Return the names of all lines of the lower trunk: no line of the bust has one of them."""
+    return frozenset(read_lower_template().paths)
+
+
+def lower_lines_of(name: str) -> tuple[str, ...]:
+    """Return the lines of the lower trunk that a name stands for: one, both sides, or none."""
+    known = lower_line_names()
+    return tuple(each for each in (name, f"{name}-left", f"{name}-right") if each in known)

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from core import __version__
+from core.control_mesh.quality import FitQuality
 from core.document.serialization import to_json
 from core.export.mesh import write_control_points, write_mesh
 from core.files.atomic_write import atomic_path, write_text
@@ -22,7 +23,8 @@ from core.mechanics.iteration import Observables, Record
 from core.mechanics.mesh_quality import MeshQuality
 from core.messages import Message, plain
 from core.pipeline.build import Stages
-from core.pipeline.solve import Solution
+from core.pipeline.solve import RegionSolution, Solution
+from core.pipeline.stages import RegionStages
 from core.pipeline.warnings import immovable_lines, shape_warnings, warnings
 
 _LIBRARIES = ("numpy", "scipy", "trimesh")
@@ -40,17 +42,19 @@ _NOT_ON_SOLID = Message(
 
 
 def write_solution(solution: Solution, folder: Path, more: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """Write body.ply, control.ply, control.csv, turns.csv and report.json, and return the report.
+    """Write body.ply, report.json and for the bust control.ply, control.csv and turns.csv; return the report.
 
-    ``more`` stands in the report beside its own figures.
-
-    Raises UserError if something cannot be written.
+    Files of the lower trunk end in -lower. ``more`` stands in the report beside its own figures. Raises
+    UserError if something cannot be written.
     """
-    stages = solution.stages
     write_mesh(folder / "body.ply", solution.body)
-    write_mesh(folder / "control.ply", stages.control.mesh.moved(solution.control_points))
-    write_control_points(folder / "control.csv", stages.control)
-    write_iterations(folder / "turns.csv", solution.records, stages)
+    for region, ending in zip(solution.regions, ("", "-lower"), strict=False):
+        control = region.stages.control
+        write_mesh(folder / f"control{ending}.ply", control.mesh.moved(region.control_points))
+        write_control_points(folder / f"control{ending}.csv", control)
+    write_iterations(folder / "turns.csv", solution.records, solution.stages)
+    if solution.lower is not None:
+        _write_lower_iterations(folder / "turns-lower.csv", solution.lower)
     figures = {**(more or {}), **report(solution)}
     write_text(folder / "report.json", json.dumps(figures, indent=1, ensure_ascii=False) + "\n")
     return figures
@@ -61,20 +65,78 @@ def write_iterations(path: str | os.PathLike[str], records: Sequence[Record], st
     heading = ["turn", "volume_error_percent", "volume_error_ml", *_marks(stages.rest_marks)]
     heading += [*(f"length_{line.name}_mm" for line in stages.model.lines), "step_mm"]
     low = _lowest(stages)
+    rows = []
+    for row in records:
+        seen = _marks(row.marks, low).values()
+        rows.append((row.iteration, 100.0 * row.error, row.error_ml, *seen, *row.lengths, row.step))
+    _write_rows(path, heading, rows)
+
+
+def _write_lower_iterations(path: Path, solution: RegionSolution) -> None:
+    stages, rest_ml = solution.stages, solution.stages.model.volume.rest_volume / 1000.0
+    heading = ["turn", "volume_error_ml", *(f"volume_error_{name}_ml" for name in stages.control.zone_names)]
+    heading += [*(f"length_{line.name}_mm" for line in stages.model.lines), "step_mm"]
+    rows = [
+        (row.iteration, row.error_ml, *(rest_ml * each for each in row.zones), *row.lengths, row.step)
+        for row in solution.records
+    ]
+    _write_rows(path, heading, rows)
+
+
+def _write_rows(
+    path: str | os.PathLike[str], heading: Sequence[str], rows: Sequence[tuple[float, ...]]
+) -> None:
     with (
         atomic_path(Path(path)) as partial,
         open(partial, "w", newline="", encoding="utf-8") as file,
     ):
         writer = csv.writer(file)
         writer.writerow(heading)
-        for row in records:
-            seen = _marks(row.marks, low).values()
-            figures = (100.0 * row.error, row.error_ml, *seen, *row.lengths, row.step)
-            writer.writerow([row.iteration, *(f"{value:.9g}" for value in figures)])
+        writer.writerows([row[0], *(f"{value:.9g}" for value in row[1:])] for row in rows)
 
 
 def report(solution: Solution) -> dict[str, Any]:
     """Return the final figures of a solution, with definitions, versions and seconds, ready for JSON."""
+    stages, verdict = solution.stages, solution.verdict
+    figures = {
+        **_region_report(solution.bust),
+        "state": verdict.state,
+        "motion": verdict.motion,
+        "marks": {
+            "rest": _marks(solution.rest.marks, _lowest(stages)),
+            "final": _marks(solution.last.marks, _lowest(stages)),
+        },
+        **_cup_report(solution),
+        "settings": _settings(stages),
+        "notes": plain([*shape_warnings(solution), *notes(stages)]),
+        "seconds": {
+            **{name: round(seconds, 4) for name, seconds in stages.seconds.items()},
+            "solve": round(solution.seconds, 4),
+        },
+        "versions": {
+            "busk": __version__,
+            "python": platform.python_version(),
+            **{name: version(name) for name in _LIBRARIES},
+        },
+        "design": json.loads(to_json(stages.design)),
+    }
+    if solution.lower is not None:
+        figures["lower_trunk"] = _lower_report(solution.lower)
+    return figures
+
+
+def _lower_report(solution: RegionSolution) -> dict[str, Any]:
+    """Return the figures of the lower trunk."""
+    return {
+        **_region_report(solution),
+        "zones": _zones_report(solution),
+        "gain": solution.stages.gain,
+        "gain_limit_at_rest": solution.stages.gain_limit,
+    }
+
+
+def _region_report(solution: RegionSolution) -> dict[str, Any]:
+    """Return the figures that every region has."""
     stages, last, verdict = solution.stages, solution.last, solution.verdict
     return {
         "state": verdict.state,
@@ -93,24 +155,24 @@ def report(solution: Solution) -> dict[str, Any]:
             line.name: _line_report(line, stages, reached)
             for line, reached in zip(stages.model.lines, last.lengths, strict=True)
         },
-        "marks": {
-            "rest": _marks(solution.rest.marks, _lowest(stages)),
-            "final": _marks(last.marks, _lowest(stages)),
-        },
-        **_cup_report(solution),
-        "fit": _fit_report(stages),
-        "settings": _settings(stages),
-        "notes": plain([*shape_warnings(solution), *notes(stages)]),
-        "seconds": {
-            **{name: round(seconds, 4) for name, seconds in stages.seconds.items()},
-            "solve": round(solution.seconds, 4),
-        },
-        "versions": {
-            "busk": __version__,
-            "python": platform.python_version(),
-            **{name: version(name) for name in _LIBRARIES},
-        },
-        "design": json.loads(to_json(stages.design)),
+        "fit": _fit_report(stages.control.quality),
+    }
+
+
+def _zones_report(solution: RegionSolution) -> dict[str, Any]:
+    """Return what each zone of a region gained, and what it took up inside [ml]."""
+    model, state = solution.stages.model, solution.state
+    gained = model.volume.zone_volumes(solution.control_points) - model.rest_zones
+    off = model.zone_errors(solution.control_points, state.pressure.value) * model.volume.rest_volume
+    figures = zip(solution.stages.control.zone_names, model.volume.kept, gained, off, strict=True)
+    return {
+        name: {
+            "kept_percent": 100.0 * float(kept),
+            "change_ml": float(change) / 1000.0,
+            "taken_up_inside_ml": float(error - change) / 1000.0,
+            "error_ml": float(error) / 1000.0,
+        }
+        for name, kept, change, error in figures
     }
 
 
@@ -121,7 +183,7 @@ def _cup_report(solution: Solution) -> dict[str, Any]:
     return {"cups": WornCups(solution.stages).fit(solution.control_points).as_data()}
 
 
-def _volume_report(solution: Solution) -> dict[str, Any]:
+def _volume_report(solution: RegionSolution) -> dict[str, Any]:
     rest, last = solution.stages.model.volume.rest_volume / 1000.0, solution.last
     return {
         "rest_ml": rest,
@@ -152,8 +214,7 @@ def _condition_report(condition: MeshQuality | None) -> dict[str, Any]:
     }
 
 
-def _fit_report(stages: Stages) -> dict[str, Any]:
-    quality = stages.control.quality
+def _fit_report(quality: FitQuality | None) -> dict[str, Any]:
     if quality is None:
         return {}
     return {
@@ -193,7 +254,7 @@ def notes(stages: Stages) -> list[Message]:
     ]
 
 
-def _line_report(line: Line, stages: Stages, reached: float) -> dict[str, Any]:
+def _line_report(line: Line, stages: RegionStages, reached: float) -> dict[str, Any]:
     ratio = stages.design.ratio(line.name)
     return {
         "worn": line.name in stages.design.active_lines(),

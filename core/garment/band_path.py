@@ -13,8 +13,8 @@ from scipy.ndimage import gaussian_filter1d
 from core.garment.curve_smoothing import USUAL_WIDTH, CentreLine, LocalPlanes, centre_line
 from core.garment.tension import LineTension
 from core.geometry.mesh import Flags, Floats, Mesh, Points, unit
-from core.pipeline.build import Stages
 from core.pipeline.line_routes import NO_BACK, LineRoute
+from core.pipeline.stages import RegionStages
 
 _KEPT = 64
 """Bands that are kept as they lie on one body at rest."""
@@ -109,7 +109,7 @@ def band_path(
 
 
 def band_paths(
-    stages: Stages, control_points: Points, tensions: Mapping[str, LineTension]
+    stages: RegionStages, control_points: Points, tensions: Mapping[str, LineTension]
 ) -> Iterator[tuple[str, BandPath, float]]:
     """Yield the lines of ``tensions`` on the body as ``control_points``, (n, 3) [mm], shape it.
 

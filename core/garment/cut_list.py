@@ -17,7 +17,7 @@ from core.geometry.plane_sections import arc_length
 from core.mechanics.constraint_lines import Line
 from core.mechanics.force_units import newtons_per_unit
 from core.messages import EMPTY, ElasticName, Length, LineName, Message, join, length_of, plain
-from core.pipeline.build import Stages
+from core.pipeline.stages import RegionStages
 
 FAR = 0.8
 """The part of its table beyond which an elastic is stretched further than usual [1]: an estimate."""
@@ -100,14 +100,14 @@ class CutList:
         return data
 
 
-def cut_list(stages: Stages, control_points: Points) -> CutList:
+def cut_list(stages: RegionStages, control_points: Points) -> CutList:
     """Compute the cut list of the active lines at ``control_points``, shape (n, 3) [mm].
 
     Raises LineError for control points that are not a valid shape.
     """
     design = stages.design
     tensions = line_tensions(stages, control_points)
-    bust = float(stages.watch.bust_points(control_points)[:, 2].mean())
+    bust = stages.bust_height(control_points)
     rows = tuple(
         replace(
             _row(stages, line, line.length(control_points), tensions),
@@ -126,7 +126,7 @@ def _middle(places: Points) -> float:
     return float(np.interp(0.5 * along[-1], along, places[:, 2]))
 
 
-def _row(stages: Stages, line: Line, reached: float, tensions: Mapping[str, LineTension]) -> CutRow:
+def _row(stages: RegionStages, line: Line, reached: float, tensions: Mapping[str, LineTension]) -> CutRow:
     design = stages.design
     traits, elastic = design.line_settings(line.name), design.active_elastics().get(line.name)
     row = CutRow(
@@ -165,7 +165,7 @@ def _row(stages: Stages, line: Line, reached: float, tensions: Mapping[str, Line
     return _stretched(row, elastic, natural, elongation, elastic.force(elongation))
 
 
-def goes_on(stages: Stages, line: Line) -> bool:
+def goes_on(stages: RegionStages, line: Line) -> bool:
     """Return whether an open line has an end where nothing moves any more, and no band to be sewn to.
 
     A strap that is led over the shoulder has a band at the back.
@@ -179,7 +179,7 @@ def goes_on(stages: Stages, line: Line) -> bool:
     return any(held and not sewed for held, sewed in zip(fixed[[0, -1]], sewn, strict=True))
 
 
-def is_strap(stages: Stages, line: Line) -> bool:
+def is_strap(stages: RegionStages, line: Line) -> bool:
     """Return whether a line goes on over the shoulder, or would if the body were modelled there."""
     return line.tail_length > 0.0 or goes_on(stages, line)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cache
 from importlib import resources
@@ -18,6 +18,7 @@ from core.document.design import Design, ScanSource
 from core.document.json_values import value_of
 from core.document.line_notation import format_path, parse_line, ready_made_lines
 from core.document.lines import LONGEST_TITLE, CustomLine, LineSettings
+from core.document.lower_trunk import LowerTrunk, lower_lines_of
 from core.document.printable_name import is_blank, is_printable
 from core.document.storage.project_file import safe_name
 from core.errors import LineError, UserError, reason_of
@@ -26,8 +27,11 @@ from core.files.regular_file import read_text
 from core.garment.elastic_library import find_elastic, library
 from core.messages import ElasticName, LineName, Message, join
 
-FORMAT = 2
-"""The newest format of a preset that is read: 2 has tissue, cups and elastics. All else is written as 1."""
+FORMAT = 3
+"""The newest format of a preset that is read: 2 has tissue, cups and elastics, 3 lines of the lower trunk.
+
+Each preset is written in the oldest format that can hold it.
+"""
 
 _LARGEST = 1_000_000  # bytes of a preset's file
 _REMEDY = Message("Correct the file or remove it.")
@@ -76,6 +80,17 @@ class Preset:
                 Message("Use at most {count} characters.", count=LONGEST_TITLE),
             )
 
+    @property
+    def is_for_bust(self) -> bool:
+        """Return whether it says what is worn on the bust."""
+        of_bust = any(each.places or not lower_lines_of(each.line) for each in self.lines)
+        return of_bust or self.cup is not None
+
+    @property
+    def is_for_lower_trunk(self) -> bool:
+        """Return whether it says what is worn on the lower trunk."""
+        return any(not each.places and lower_lines_of(each.line) for each in self.lines)
+
     def lines_on_template(self, template: Template) -> Iterator[tuple[PresetLine, tuple[CustomLine, ...]]]:
         """Yield each line with the own lines that it is, none for one of the template. Raises LineError."""
         pairs = ready_made_lines(template)
@@ -84,7 +99,7 @@ class Preset:
                 yield line, (parse_line(f"{line.line}={line.places}", template),)
             elif line.line in pairs:
                 yield line, pairs[line.line]
-            elif line.line in template.lines:
+            elif line.line in template.lines or lower_lines_of(line.line):
                 yield line, ()
             else:
                 known = tuple(LineName(each) for each in (*template.lines, *pairs))
@@ -112,7 +127,7 @@ def preset_of(text: str) -> Preset:
     """Return the preset that a file's text describes. Raises ValueError or LineError if it is none."""
     try:
         values = dict(json.loads(text))
-        if values.pop("format") not in (1, FORMAT):
+        if values.pop("format") not in (1, 2, FORMAT):
             raise ValueError(f"it is not of format {FORMAT}")
         lines = tuple(_line(each) for each in values.pop("lines"))
         told = values.pop("cup", None)
@@ -204,8 +219,8 @@ def _as_values(preset: Preset) -> dict[str, Any]:
     """Return a preset as values of JSON: one that an older Busk can hold is one that it reads."""
     values = asdict(preset)
     newer = preset.tissue, preset.cup, *(line.elastic for line in preset.lines)
-    if any(newer):
-        return {"format": FORMAT, **values}
+    if any(newer) or preset.is_for_lower_trunk:
+        return {"format": FORMAT if preset.is_for_lower_trunk else 2, **values}
     del values["tissue"], values["cup"]
     for line in values["lines"]:
         del line["elastic"]
@@ -222,7 +237,8 @@ def preset_from(design: Design, title: str) -> Preset:
             Message("The elastic {name} is not in the library.", name=ElasticName(strange[0].name)),
             Message("Save it in the library first, or choose another elastic."),
         )
-    names = sorted(design.active_lines() - own.keys()) + list(own)
+    below = () if design.lower is None else sorted(design.lower_design.active_lines())
+    names = [*sorted(design.active_lines() - own.keys()), *own, *below]
     lines = tuple(_as_preset(name, design, own.get(name), template) for name in names)
     if not lines:
         raise LineError(
@@ -237,15 +253,17 @@ def preset_from(design: Design, title: str) -> Preset:
 def _as_preset(name: str, design: Design, line: CustomLine | None, template: Template) -> PresetLine:
     traits = design.line_settings(name)
     places = "" if line is None else format_path(line, template)
-    length = design.ratio(name) if name in design.active_lines() else None
-    elastic = traits.elastic if name in design.active_lines() else ""
+    worn = any(name in region.active_lines() for region in design.regions)
+    length = design.ratio(name) if worn else None
+    elastic = traits.elastic if worn else ""
     dress = (traits.width, traits.title, traits.colour, traits.stiffness, traits.linked, elastic)
     return PresetLine(name, places, length, *dress)
 
 
 def with_preset(design: Design, preset: Preset) -> Design:
-    """Return the design in a preset; its other lines stay, and are taken off unless locked; so are its cups.
+    """Return the design in a preset; other lines of its regions stay, taken off unless locked, as are cups.
 
+    A region that the preset has no lines for stays as it is.
     Ready-made lines that are there stay as they were led; those through places are led through these. Lines
     have the elastics of the preset, else none. Raises LineError if the preset's places are those of another
     template, an elastic of it is not in the library, or a line of it is locked.
@@ -259,9 +277,13 @@ def with_preset(design: Design, preset: Preset) -> Design:
             ),
             Message("Choose that control mesh first."),
         )
-    after = replace(design.with_lines_reset(), cup=preset.cup, tissue=preset.tissue or design.tissue)
+    after = design
+    if preset.is_for_bust:
+        after = replace(design.with_bust_lines_reset(), cup=preset.cup, tissue=preset.tissue or design.tissue)
+    if preset.is_for_lower_trunk:
+        after = replace(after, lower=after.lower or LowerTrunk()).with_lower_lines_reset()
     for line, own in preset.lines_on_template(read_template(design.template)):
-        names = [each.name for each in own] or [line.line]
+        names = _names(line, own)
         present = {each.name: each for each in after.own_lines}
         for each in own:
             if each.name not in present or (line.places and each != present[each.name]):
@@ -286,8 +308,19 @@ def is_active(design: Design, preset: Preset) -> bool:
         if None in there or (line.places and there != list(own)):
             return False
         if line.length is not None:
-            wanted.update([each.name for each in own] or [line.line])
-    return bool(wanted) and design.active_lines() == wanted and _has_cups_and_elastics(design, preset)
+            wanted.update(_names(line, own))
+    worn = {name for region in design.regions for name in region.active_lines()}
+    of_preset = {name for name in worn if lower_lines_of(name)} if preset.is_for_lower_trunk else set()
+    if preset.is_for_bust:
+        of_preset |= design.active_lines()
+        if not _has_cups_and_elastics(design, preset):
+            return False
+    return bool(wanted) and of_preset == wanted
+
+
+def _names(line: PresetLine, own: Sequence[CustomLine]) -> list[str]:
+    """Return the lines that a line of a preset is: own ones, both sides below the bust, or itself."""
+    return [each.name for each in own] or list(lower_lines_of(line.line)) or [line.line]
 
 
 def _has_cups_and_elastics(design: Design, preset: Preset) -> bool:

@@ -24,7 +24,7 @@ from core.garment.tension import LineTension, line_tensions
 from core.geometry.mesh import Flags, Floats, Points
 from core.measurements.size_table import LocalizedText, Source
 from core.messages import Length, Message
-from core.pipeline.build import Stages
+from core.pipeline.stages import RegionStages
 
 GREEN, AMBER, RED = "green", "amber", "red"
 
@@ -235,7 +235,7 @@ def band_pressure(course: BandPath, width: float) -> LinePressure:
     )
 
 
-def pressures(stages: Stages, control_points: Points) -> Mapping[str, LinePressure]:
+def pressures(stages: RegionStages, control_points: Points) -> Mapping[str, LinePressure]:
     """Return what worn lines press with on the body as ``control_points``, (n, 3) [mm], shape it, by line.
 
     A line whose tension is not known is left out; see ``core.garment.tension``.
@@ -249,7 +249,7 @@ def pressures(stages: Stages, control_points: Points) -> Mapping[str, LinePressu
     )
 
 
-def _told(stages: Stages, name: str, tension: LineTension) -> tuple[Message, ...]:
+def _told(stages: RegionStages, name: str, tension: LineTension) -> tuple[Message, ...]:
     """Return in sentences what was taken for granted."""
     texts = []
     if tension.estimate:

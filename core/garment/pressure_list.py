@@ -17,6 +17,7 @@ from core.geometry.mesh import Mesh, Points
 from core.mechanics.constraint_lines import Line
 from core.messages import Message, plain
 from core.pipeline.build import Stages
+from core.pipeline.stages import RegionStages
 
 
 @dataclass(frozen=True)
@@ -94,7 +95,7 @@ class PressureList:
         }
 
 
-def pressure_list(stages: Stages, control_points: Points) -> PressureList:
+def pressure_list(stages: RegionStages, control_points: Points) -> PressureList:
     """Compute the contact pressures of lines and cups at ``control_points``, shape (n, 3) [mm].
 
     Raises LineError for control points that are not a valid shape.
@@ -106,14 +107,14 @@ def pressure_list(stages: Stages, control_points: Points) -> PressureList:
         for line in stages.model.lines
         if line.name in stages.design.active_lines()
     ]
-    if stages.design.cup is not None:
+    if isinstance(stages, Stages) and stages.design.cup is not None:
         cups = WornCups(stages).fit(control_points)
         rows += [_cup_row(stages, body, side) for side in cups.sides]
     return PressureList(tuple(rows), worn)
 
 
 def _row(
-    stages: Stages, body: Mesh, line: Line, worn: LinePressure | None, tension: LineTension | None
+    stages: RegionStages, body: Mesh, line: Line, worn: LinePressure | None, tension: LineTension | None
 ) -> PressureRow:
     design = stages.design
     elastic = design.active_elastics().get(line.name)
@@ -141,7 +142,7 @@ def _row(
     )
 
 
-def _cup_row(stages: Stages, body: Mesh, side: CupSide) -> PressureRow:
+def _cup_row(stages: RegionStages, body: Mesh, side: CupSide) -> PressureRow:
     name, place = f"cup {side.side}", np.array(side.place)
     at = None
     if side.place:

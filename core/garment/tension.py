@@ -14,8 +14,8 @@ from core.mechanics.force_units import newtons_per_unit
 from core.mechanics.newton import SlidingSurface
 from core.mechanics.potential import Potential
 from core.messages import Message
-from core.pipeline.build import Stages
 from core.pipeline.model_stages import line_targets
+from core.pipeline.stages import RegionStages
 
 SLACK = 0.05
 """Up to this push of the model a line counts as without tension [N]: less is not shown."""
@@ -46,7 +46,9 @@ class LineTension:
         return -self.mean if self.mean < -SLACK else 0.0
 
 
-def mean_elongation(stages: Stages, elastic: Elastic, tension: LineTension | None, whole: float) -> float:
+def mean_elongation(
+    stages: RegionStages, elastic: Elastic, tension: LineTension | None, whole: float
+) -> float:
     """Return how far a line's elastic is stretched on the mean [1].
 
     It is that of the ``whole`` line, below 0 if it is slack; on solid tissue, where single pieces may be
@@ -65,7 +67,7 @@ def divergence_error() -> LineError:
     )
 
 
-def line_tensions(stages: Stages, control_points: Points) -> Mapping[str, LineTension]:
+def line_tensions(stages: RegionStages, control_points: Points) -> Mapping[str, LineTension]:
     """Return what each worn line pulls with at ``control_points``, shape (n, 3) [mm], by line.
 
     A line on points that do not move pulls as its elastic says, and has no answer without one, or when its
@@ -80,7 +82,7 @@ def line_tensions(stages: Stages, control_points: Points) -> Mapping[str, LineTe
     return pulling if held else {**pulling, **_on_ribs(stages)}
 
 
-def _springs(stages: Stages, points: Points) -> dict[str, LineTension]:
+def _springs(stages: RegionStages, points: Points) -> dict[str, LineTension]:
     model = stages.model
     unit = newtons_per_unit(model, stages.design.tissue_stiffness)
     potential = Potential(model, line_targets(stages.design, stages).ratios)
@@ -94,7 +96,7 @@ def _springs(stages: Stages, points: Points) -> dict[str, LineTension]:
     return tensions
 
 
-def _on_ribs(stages: Stages) -> dict[str, LineTension]:
+def _on_ribs(stages: RegionStages) -> dict[str, LineTension]:
     """Return the tensions of lines made of elastic that cannot move: their length is that at rest."""
     tensions = {}
     lines = {line.name: line for line in stages.model.lines}
@@ -105,7 +107,7 @@ def _on_ribs(stages: Stages) -> dict[str, LineTension]:
     return tensions
 
 
-def _held(stages: Stages, points: Points) -> dict[str, LineTension]:
+def _held(stages: RegionStages, points: Points) -> dict[str, LineTension]:
     """Return the tensions of held lines: what, with the pressures, balances the free points best."""
     model, design = stages.model, stages.design
     potential = Potential(model, line_targets(design, stages).ratios)

@@ -11,13 +11,13 @@ from core.errors import LandmarkError
 from core.geometry.closest_point import nearest_on
 from core.geometry.mesh import MAX_COORDINATE, Floats, Mesh, Points
 from core.geometry.mirror_plane import mirror
-from core.landmarks.types import CERTAIN, NAMES, Landmark
+from core.landmarks.types import ALL_NAMES, CERTAIN, Landmark
 from core.messages import LandmarkName, Length, Message
 
 HELP = (
     "NAME=x,y,z: a landmark that you place yourself, like bust_point_left=112.5,-140,1204; may be repeated. "
     "The numbers are those of the scan file, in its own frame and unit, as any 3D program shows them and as "
-    f"'busk detect' prints them. The names are: {', '.join(NAMES)}"
+    f"'busk detect' prints them. The names are: {', '.join(ALL_NAMES)}"
 )
 """What a user has to know to place a landmark."""
 
@@ -51,10 +51,10 @@ class PlacedMark:
 
 def check_place(name: str, place: Sequence[float] | Points) -> None:
     """Raise LandmarkError for a name that no landmark has, and for what is no place."""
-    if name not in NAMES:
+    if name not in ALL_NAMES:
         raise LandmarkError(
             Message("There is no landmark {name}.", name=name),
-            Message("Choose one of {choices}.", choices=", ".join(NAMES)),
+            Message("Choose one of {choices}.", choices=", ".join(ALL_NAMES)),
         )
     if np.shape(place) != (3,) or not (np.abs(place) < MAX_COORDINATE).all():
         raise LandmarkError(

@@ -25,7 +25,17 @@ SINGLE = (
 )
 
 NAMES = (*(f"{pair}_{side}" for pair in PAIRS for side in SIDES), *SINGLE)
-"""The names of all landmarks. One that the scan does not show is absent from what is found."""
+"""The names of all landmarks of the bust. One that the scan does not show is absent from what is found."""
+
+LOWER_PAIRS = ("buttock", "gluteal_fold", "iliac_crest", "side_seam", "leg_opening")
+LOWER_SINGLE = ("crotch", "waist", "belly", "hip")
+LOWER_NAMES = (*LOWER_SINGLE, *(f"{pair}_{side}" for pair in LOWER_PAIRS for side in SIDES))
+"""The names of all landmarks of the lower trunk.
+
+Waist, belly and hip are points of the front centre line at their levels, the crotch lies between the legs.
+"""
+
+ALL_NAMES = (*NAMES, *LOWER_NAMES)
 
 
 @dataclass(frozen=True, eq=False)

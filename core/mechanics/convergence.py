@@ -7,16 +7,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from core.geometry.mesh import Floats, Indices
 from core.mechanics.iteration import Record
-from core.mechanics.mesh_quality import MeshQuality
+from core.mechanics.mesh_quality import MeshQuality, worst_of
 
 MOTIONS = ("settled", "settling", "vibrating", "diverging")
-"""What a run can do."""
+"""What a run can do, from the best to the worst."""
 
 STATES = (*MOTIONS, "folded", "overstrained")
 """What can be said of a run in one word."""
@@ -92,6 +92,14 @@ class Convergence:
     def words(self) -> str:
         """Return the state, after the motion if that is another: "settled but folded"."""
         return self.motion if self.state == self.motion else f"{self.motion} but {self.state}"
+
+
+def combined(verdicts: Sequence[Convergence]) -> Convergence:
+    """Return one verdict on runs side by side: the worst motion, and the worst condition of all."""
+    worst = max(verdicts, key=lambda each: MOTIONS.index(each.motion))
+    known = [each.condition for each in verdicts if each.condition is not None]
+    count = max(each.iterations for each in verdicts)
+    return replace(worst, iterations=count, condition=worst_of(known) if known else None)
 
 
 def assess_convergence(records: Sequence[Record], condition: MeshQuality | None = None) -> Convergence:

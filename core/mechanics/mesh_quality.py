@@ -7,6 +7,7 @@ is read off the control mesh itself (ours, beyond the paper).
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -63,6 +64,13 @@ class MeshQuality:
 
     def _within(self, bounds: tuple[float, float]) -> bool:
         return bounds[0] <= self.shortest and self.longest <= bounds[1]
+
+
+def worst_of(qualities: Sequence[MeshQuality]) -> MeshQuality:
+    """Return the worst places of several control meshes; what is not a number counts as worst."""
+    figures = np.array([(each.least_cosine, each.shortest, -each.longest) for each in qualities])
+    cosine, shortest, longest = figures.min(axis=0).tolist()
+    return MeshQuality(cosine, shortest, -longest)
 
 
 @dataclass(frozen=True, eq=False)

@@ -271,7 +271,7 @@ def constrained_model(
     ``worn`` names the lines that act (all of them if None), the others are only measured; ``back_lengths``
     and ``tail_lengths`` [mm] see ``Line``, ``own_stiffness`` [1] see ``assemble``.
     """
-    tensegric: TissueModel = solid or tensegrity_model(control.mesh, control.fixed, mechanics)
+    tensegric: TissueModel = solid or tensegrity_model(control.mesh, control.fixed, mechanics, control.depth)
     backs, tails, points = back_lengths or {}, tail_lengths or {}, control.mesh.vertices
     through = [
         line_on(name, path, points, tensegric.free, backs.get(name, 0.0))
@@ -284,10 +284,17 @@ def constrained_model(
     lines = tuple(replace(line, tail_length=tails.get(line.name, 0.0)) for line in (*through, *between))
     if control.anchored is not None:
         lines = tuple(anchored_line(line, points, control.anchored, tensegric.free) for line in lines)
-    columns = control.column[control.mesh.faces].sum(axis=1)
-    volume = volume_measure(control.mesh, tensegric.free, np.where(columns > 0, 0, 1))
     worn = control.line_names if worn is None else worn
-    return assemble(tensegric, lines, volume, worn, own_stiffness or {})
+    return assemble(tensegric, lines, _volume(control, tensegric.free), worn, own_stiffness or {})
+
+
+def _volume(control: ControlMesh, free: Indices) -> VolumeMeasure:
+    """Return the volume of a control mesh in the zones of its template, else of the left and the right."""
+    if control.zone is None:
+        columns = control.column[control.mesh.faces].sum(axis=1)
+        return volume_measure(control.mesh, free, np.where(columns > 0, 0, 1))
+    kept = np.ones(len(control.zone_names)) if control.kept is None else control.kept
+    return volume_measure(control.mesh, free, control.zone, tuple(kept), separate=True)
 
 
 def assemble(

@@ -24,7 +24,7 @@ from core.errors import FitError, LandmarkError, LineError, TissueError, UserErr
 from core.geometry.mesh import Mesh, Points, frozen
 from core.landmarks.detect import FINDING, find_landmarks
 from core.landmarks.manual import PlacedMark, in_mm
-from core.landmarks.types import Landmarks
+from core.landmarks.types import LOWER_NAMES, Landmarks
 from core.mechanics.condensed_tissue import CondensedTissue
 from core.mechanics.cup_parts import CupPart
 from core.mechanics.iteration import Observables
@@ -32,8 +32,10 @@ from core.mechanics.options import ModelOptions
 from core.messages import Message
 from core.pipeline.cup_parts import CupLayout
 from core.pipeline.line_routes import line_routes, strap_tails
+from core.pipeline.lower_region import LowerStages, lower_stages
 from core.pipeline.model_stages import bound, model_stages
 from core.pipeline.observables import BodyObservables
+from core.pipeline.skin import MovingSkin, alone, joined
 from core.pipeline.stages import DenseVolumeChange, Memo, RegionStages, StageCache
 from core.progress import Progress, quiet
 from core.scan.body import Body, ImplausibleScanError, body_of
@@ -47,15 +49,37 @@ from core.tissue.solid import DENSITY as CONDENSED_DENSITY
 class Stages(RegionStages):
     """The results that a design leads to before any turn is made.
 
-    ``seconds`` is what each stage took when it was last made; ``memo`` holds each stage's inputs and result
-    for reuse.
+    ``skin`` is what all regions move. ``below`` is the lower trunk, if the design has it, or why there is
+    none. ``seconds`` is what each stage took when it was last made; ``memo`` holds each stage's inputs and
+    result for reuse.
     """
 
+    watch: BodyObservables
     scan: ScanFile
     landmarks: Landmarks
-    watch: BodyObservables
+    skin: MovingSkin
     seconds: Mapping[str, float]
     memo: Memo
+    below: LowerStages | UserError | None = None
+
+    @property
+    def lower(self) -> LowerStages | None:
+        """Return the stages of the lower trunk, if the design has it and the scan shows it."""
+        return self.below if isinstance(self.below, LowerStages) else None
+
+    @property
+    def lower_problem(self) -> UserError | None:
+        """Return why there is no lower trunk though the design has it."""
+        return self.below if isinstance(self.below, UserError) else None
+
+    @property
+    def regions(self) -> tuple[RegionStages, ...]:
+        """Return the stages of each region, the bust first."""
+        return (self,) if self.lower is None else (self, self.lower)
+
+    def bust_height(self, control_points: Points) -> float:
+        """Return how high the bust points are in the mean [mm]."""
+        return float(self.watch.bust_points(control_points)[:, 2].mean())
 
     @cached_property
     def rest_marks(self) -> Observables:
@@ -152,9 +176,19 @@ def _stages(
     change = stage("follow body", DenseVolumeChange, binding, moving) if design.dense_volume else None
     model, balance, limit = model_stages(stage, "", design, laid, lengths, solid, change)
     built = design, body, control, fitted, patch, binding, moving, backs, tails, routes
-    return Stages(
-        *built, model, balance, limit, tissue, scan, landmarks, watch, seconds=stage.seconds, memo=stage.memo
-    )
+    solved = model, balance, limit, tissue, watch
+    skin, lower = alone(moving, binding), _lower(stage, design, body, landmarks, fitted)
+    if isinstance(lower, LowerStages):
+        skin = stage("join regions", joined, (moving, binding), (lower.moving, lower.binding))
+    return Stages(*built, *solved, scan, landmarks, skin, stage.seconds, stage.memo, lower)
+
+
+def _lower(
+    stage: StageCache, design: Design, body: Body, landmarks: Landmarks, fitted: ControlMesh
+) -> LowerStages | UserError | None:
+    if design.lower is None:
+        return None
+    return lower_stages(stage, design.lower_design, design.lower, body, landmarks, fitted)
 
 
 def _fitted(
@@ -196,10 +230,11 @@ def _read_upright(source: ScanSource, progress: Progress) -> tuple[ScanFile, Bod
 
 def detect_landmarks(body: Body, placed: tuple[PlacedMark, ...], progress: Progress = quiet) -> Landmarks:
     """Return the landmarks of a body, with those placed by hand. Raises LandmarkError, Cancelled."""
+    of_bust = [mark for mark in placed if mark.name not in LOWER_NAMES]
     try:
-        return find_landmarks(body, in_mm(placed, body.pose.file_to_mm), progress)
+        return find_landmarks(body, in_mm(of_bust, body.pose.file_to_mm), progress)
     except LandmarkError as problem:
-        if not body.cut or placed:
+        if not body.cut or of_bust:
             raise
         raise LandmarkError(NO_BUST, KEEP_MORE) from problem
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from core.blas_threads import one_blas_thread
 from core.document.design import Design
-from core.mechanics.solver_comparison import MOST_TURNS, SolverComparison
+from core.mechanics.solver_comparison import MOST_TURNS
 from core.pipeline.build import Stages, build
 from core.pipeline.frame import Frame, make_frame
-from core.pipeline.model_stages import line_targets
+from core.pipeline.region_solvers import RegionSolvers
 from core.progress import Progress, quiet
 
 
@@ -18,13 +18,9 @@ def converged_frame(design: Design, near: Stages, progress: Progress = quiet) ->
     """
     with one_blas_thread():
         stages = build(design, near, progress)
-        change = stages.body_change if design.dense_volume else None
-        comparison = SolverComparison(
-            stages.model, line_targets(design, stages), stages.watch, change, stages.balance
-        )
-        turns = 0
-        while not comparison.is_finished:
+        solvers, turns = RegionSolvers(stages), 0
+        while not solvers.is_finished:
             progress("turns", min(turns / MOST_TURNS, 1.0))
-            comparison.advance()
+            solvers.advance()
             turns += 1
-        return make_frame(0, stages, comparison)
+        return make_frame(0, stages, solvers)

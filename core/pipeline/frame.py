@@ -7,20 +7,40 @@ from dataclasses import dataclass
 
 from core.errors import UserError
 from core.geometry.mesh import Points
-from core.mechanics.convergence import Convergence
+from core.mechanics.convergence import Convergence, combined
 from core.mechanics.iteration import Observables, Record
 from core.mechanics.solver_comparison import SolverComparison
 from core.pipeline.build import Stages
+from core.pipeline.region_solvers import RegionSolvers
+from core.pipeline.stages import RegionStages
+
+
+@dataclass(frozen=True, eq=False)
+class RegionFrame:
+    """What is shown of one region.
+
+    ``control_points`` (n, 3) [mm]; ``lengths`` [mm] of the lines' front parts, of closed lines all round;
+    ``tracks`` the records of each run so far, and ``changed_at`` the turn at which the design last changed.
+    """
+
+    stages: RegionStages
+    control_points: Points
+    lengths: Mapping[str, float]
+    tracks: Mapping[str, tuple[Record, ...]]
+    verdict: Convergence
+    error_ml: float
+    changed_at: int
 
 
 @dataclass(frozen=True, eq=False)
 class Frame:
     """What is shown: the moved part of the body and everything that is read off it.
 
-    ``points`` and ``normals`` (r, 3) belong to the body's vertices ``stages.moving.vertices``;
-    ``control_points`` (n, 3) [mm]; ``lengths`` [mm] of the lines' front parts; ``tracks`` the records of each
-    run so far; ``exact_marks`` what the exact answer ends at; ``is_running`` whether turns are still being
-    made; ``seconds`` spent on them since the design last changed, at turn ``changed_at``.
+    ``points`` and ``normals`` (r, 3) belong to the body's vertices ``stages.skin.vertices``;
+    ``verdict`` and ``is_running``, whether turns are still being made, are those of all regions.
+    ``control_points``, ``lengths``, ``tracks``, ``error_ml`` and ``changed_at`` are those of the bust, see
+    ``RegionFrame``, as are ``marks``, and ``exact_marks`` that the exact answer ends at. ``seconds`` were
+    spent since the design last changed. ``lower`` is shown of the lower trunk, if there is that region.
     """
 
     revision: int
@@ -37,6 +57,12 @@ class Frame:
     is_running: bool
     seconds: float
     changed_at: int
+    lower: RegionFrame | None = None
+
+    @property
+    def region_points(self) -> tuple[Points, ...]:
+        """Return the control points of each region, the bust's first, each (n, 3) [mm]."""
+        return (self.control_points, *(each.control_points for each in [self.lower] if each))
 
 
 @dataclass(frozen=True)
@@ -54,23 +80,42 @@ class Failure:
         return isinstance(self.error, UserError)
 
 
-def make_frame(revision: int, stages: Stages, comparison: SolverComparison, seconds: float = 0.0) -> Frame:
-    """Reshape the body to the comparison's shown state and read everything off it."""
-    control_points = stages.model.tensegric.expand(comparison.shown.moved)
-    change = stages.model.volume.volume(control_points) - stages.model.volume.rest_volume
-    shown = comparison.main or max(comparison.runs.values(), key=lambda run: run.changed_at)
+def make_frame(revision: int, stages: Stages, solvers: RegionSolvers, seconds: float = 0.0) -> Frame:
+    """Reshape the body to the shown state of all regions and read everything off it."""
+    shown = [
+        _region(region, comparison)
+        for region, comparison in zip(stages.regions, solvers.comparisons, strict=True)
+    ]
+    bust, lower = shown[0], shown[1] if len(shown) > 1 else None
+    exact = stages.model.tensegric.expand(solvers.bust.exact.state.moved)
     return Frame(
         revision,
         stages,
-        *stages.shape(control_points),
+        *stages.skin.shape([each.control_points for each in shown]),
+        bust.control_points,
+        bust.lengths,
+        bust.tracks,
+        stages.watch(exact),
+        combined([each.verdict for each in shown]),
+        bust.error_ml,
+        stages.watch(bust.control_points),
+        not solvers.is_finished,
+        seconds,
+        bust.changed_at,
+        lower,
+    )
+
+
+def _region(stages: RegionStages, comparison: SolverComparison) -> RegionFrame:
+    control_points = stages.model.tensegric.expand(comparison.shown.moved)
+    change = stages.model.volume.volume(control_points) - stages.model.volume.rest_volume
+    run = comparison.main or max(comparison.runs.values(), key=lambda run: run.changed_at)
+    return RegionFrame(
+        stages,
         control_points,
         {line.name: line.length(control_points) for line in stages.model.lines},
         {control: tuple(run.records) for control, run in comparison.runs.items()},
-        stages.watch(stages.model.tensegric.expand(comparison.exact.state.moved)),
         comparison.verdict,
         change / 1000.0,
-        stages.watch(control_points),
-        not comparison.is_finished,
-        seconds,
-        shown.changed_at,
+        run.changed_at,
     )

@@ -17,10 +17,9 @@ from core.blas_threads import one_blas_thread
 from core.document.design import Design
 from core.errors import UserError, as_exception
 from core.geometry import kernels
-from core.mechanics.solver_comparison import SolverComparison
 from core.pipeline.build import IncompleteBuildError, Stages, build
 from core.pipeline.frame import Failure, Frame, make_frame
-from core.pipeline.model_stages import line_targets
+from core.pipeline.region_solvers import RegionSolvers
 from core.pipeline.solve import NoEquilibriumError
 from core.progress import Cancelled, Progress, quiet
 
@@ -81,7 +80,7 @@ class LiveSolver:
         self._stopping = False
         self._stages: Stages | None = None
         self._stuck: IncompleteBuildError | None = None
-        self._comparison: SolverComparison | None = None
+        self._solvers: RegionSolvers | None = None
         self._seconds = 0.0
         self._held = False
         self._pace: float | None = None
@@ -167,7 +166,7 @@ class LiveSolver:
                 except BaseException as error:
                     # A fault, SystemExit included: no iterations before the next request. Arrays of the
                     # callers are released, as memory may be short.
-                    self._comparison = None
+                    self._solvers = None
                     traceback.clear_frames(error.__traceback__)
                     self._fail(Failure(self._asked, as_exception(error)))
                 time.sleep(_NAP)
@@ -187,14 +186,14 @@ class LiveSolver:
         unseen = request is None and self._frame is not None
         advanced = self._advance(_FIRST_SLICE if request else _LONG_SLICE if unseen else _SLICE)
         self._refuse_what_has_no_balance()
-        if self._stages is None or self._comparison is None or not (request or advanced):
+        if self._stages is None or self._solvers is None or not (request or advanced):
             return
-        self._publish(make_frame(self._taken, self._stages, self._comparison, self._seconds))
+        self._publish(make_frame(self._taken, self._stages, self._solvers, self._seconds))
         self._warm_up(self._stages)
 
     def _warm_up(self, stages: Stages) -> None:
         """Load the compiled loops once a body is shown that is large enough to gain from them."""
-        if self._warmer is None and len(stages.moving.vertices) >= LARGE:
+        if self._warmer is None and len(stages.skin.vertices) >= LARGE:
             warmer = threading.Thread(target=kernels.warm, name="busk-warm", daemon=True)
             with suppress(RuntimeError):  # memory for a thread is missing: the loops stay as they are
                 warmer.start()
@@ -211,7 +210,7 @@ class LiveSolver:
             return rests_at - now
         if self._request is not None:
             return 0.0
-        if self._comparison is None or self._comparison.is_finished or (unseen and self._pace is not None):
+        if self._solvers is None or self._solvers.is_finished or (unseen and self._pace is not None):
             return None
         return max(min(self._shown_at + _NEXT_MOVE, rests_at) - now, self._pause, 0.0)
 
@@ -239,29 +238,24 @@ class LiveSolver:
         finally:
             self._tell("", 1.0)
         old, self._stages, self._stuck = self._stages, stages, None
-        if self._comparison is not None and old is not None and not request.fresh:
+        if self._solvers is not None and old is not None and not request.fresh:
             before = old.design
             if before != request.design and before.is_equivalent(request.design):
                 return  # what is only called or treated otherwise lets the runs go on, or rest
-        targets = line_targets(request.design, stages)
         start = time.perf_counter()
-        same_body = old is not None and old.control is stages.control and old.binding is stages.binding
-        dense = stages.design.dense_volume
-        same_answer = same_body and old is not None and old.design.dense_volume == dense
-        if self._comparison is None or not same_answer:
-            change = stages.body_change if dense else None
-            self._comparison = SolverComparison(stages.model, targets, stages.watch, change, stages.balance)
+        if self._solvers is None:
+            self._solvers = RegionSolvers(stages)
         else:
-            self._comparison.retarget(stages.model, targets, request.fresh, stages.balance)
+            self._solvers.retarget(stages, request.fresh)
         self._seconds = time.perf_counter() - start
 
     def _advance(self, seconds: float) -> bool:
         """Make turns for so many seconds; returns whether there was time for one."""
-        comparison, advanced = self._comparison, False
-        if comparison is None:
+        solvers, advanced = self._solvers, False
+        if solvers is None:
             return False
         end = time.perf_counter() + seconds
-        while not comparison.is_finished and (start := time.perf_counter()) < end:
+        while not solvers.is_finished and (start := time.perf_counter()) < end:
             if self._held and not (self._stopping or self._request):
                 time.sleep(_NAP)
                 end = max(end, time.perf_counter() + _NAP)
@@ -269,21 +263,22 @@ class LiveSolver:
                 return advanced
             else:
                 self._turned_at = start
-                comparison.advance()
+                solvers.advance()
                 advanced = True
                 self._seconds += time.perf_counter() - start
         return advanced
 
     def _refuse_what_has_no_balance(self) -> None:
         """Rather than a body half way to a balance, or torn apart by held lines, the last frame stays."""
-        comparison, stages = self._comparison, self._stages
-        if comparison is None or stages is None:
+        solvers, stages = self._solvers, self._stages
+        if solvers is None or stages is None:
             return
         held = stages.design.line_hold == "held"
-        lost = (held or comparison.main is None) and not comparison.exact.is_converged
-        if lost or (held and comparison.main and not comparison.main.sane):
-            self._comparison = None
-            raise NoEquilibriumError(stages.design)
+        for each in solvers.comparisons:
+            lost = (held or each.main is None) and not each.exact.is_converged
+            if lost or (held and each.main and not each.main.sane):
+                self._solvers = None
+                raise NoEquilibriumError(stages.design)
 
     def _publish(self, frame: Frame) -> None:
         with self._wake:

@@ -11,12 +11,11 @@ from functools import cached_property
 import numpy as np
 
 from core.blas_threads import one_blas_thread
-from core.deformation.tffd import deform
 from core.document.design import Design
 from core.document.lines import ActiveLine
 from core.errors import LineError
 from core.geometry.mesh import Mesh, Points
-from core.mechanics.convergence import Convergence, assess_convergence
+from core.mechanics.convergence import Convergence, assess_convergence, combined
 from core.mechanics.exact_solution import (
     NEWTON_LIMIT,
     newton,
@@ -32,6 +31,7 @@ from core.mechanics.solver_comparison import assess_equilibrium, shape_of
 from core.messages import LineName, Message
 from core.pipeline.build import Stages
 from core.pipeline.model_stages import line_targets
+from core.pipeline.stages import RegionStages
 from core.progress import Progress, quiet
 
 _NOT_FOUND = (
@@ -67,7 +67,7 @@ def _cannot_hold(design: Design) -> tuple[Message, Message]:
 
 
 def exact_equilibrium(
-    stages: Stages,
+    stages: RegionStages,
     ratios: tuple[float, ...] | None = None,
     near: Equilibrium | None = None,
     limit: int = NEWTON_LIMIT,
@@ -87,7 +87,7 @@ def exact_equilibrium(
 
 
 def exact_solution(
-    stages: Stages,
+    stages: RegionStages,
     ratios: tuple[float, ...] | None = None,
     near: Equilibrium | None = None,
     limit: int = NEWTON_LIMIT,
@@ -106,7 +106,7 @@ def exact_solution(
     return Sensitivities(Potential(model, ratios, excess), balance)
 
 
-def body_volume_rates(stages: Stages, answer: Sensitivities) -> Callable[[Rates], Rates]:
+def body_volume_rates(stages: RegionStages, answer: Sensitivities) -> Callable[[Rates], Rates]:
     """Return what makes of rates those at which the body keeps its volume, where a design asks for that."""
     if not stages.design.dense_volume:
         return lambda rates: rates
@@ -119,18 +119,17 @@ def body_volume_rates(stages: Stages, answer: Sensitivities) -> Callable[[Rates]
 
 
 @dataclass(frozen=True, eq=False)
-class Solution:
-    """Hold the records of all iterations, the last state and the verdict.
+class RegionSolution:
+    """The records of all iterations of one region, the last state and the verdict.
 
-    ``rest`` is the record of the original shape; ``seconds`` the duration.
+    ``rest`` is the record of the original shape.
     """
 
-    stages: Stages
+    stages: RegionStages
     rest: Record
     records: tuple[Record, ...]
     state: SolverState
     verdict: Convergence
-    seconds: float
 
     @property
     def last(self) -> Record:
@@ -142,15 +141,68 @@ class Solution:
         """Return the control points at the end, shape (n, 3) [mm]."""
         return self.stages.model.tensegric.expand(self.state.moved)
 
-    @cached_property
-    def body(self) -> Mesh:
-        """Return the reshaped body."""
-        return self.stages.body.mesh.moved(deform(self.stages.binding, self.control_points))
+    @property
+    def body_change(self) -> float:
+        """Return the volume that the body has gained by this region [ml]."""
+        return float(self.stages.body_change(self.control_points).sum()) / 1000.0
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Hold what each region of a design was solved to, the ``bust`` and the ``lower`` trunk if there is one.
+
+    Records, state and control points are those of the bust; ``seconds`` is the duration.
+    """
+
+    stages: Stages
+    bust: RegionSolution
+    lower: RegionSolution | None
+    seconds: float
+
+    @property
+    def regions(self) -> tuple[RegionSolution, ...]:
+        """Return the solution of each region, the bust first."""
+        return (self.bust,) if self.lower is None else (self.bust, self.lower)
+
+    @property
+    def rest(self) -> Record:
+        """Return the record of the original shape."""
+        return self.bust.rest
+
+    @property
+    def records(self) -> tuple[Record, ...]:
+        """Return the records of all iterations."""
+        return self.bust.records
+
+    @property
+    def state(self) -> SolverState:
+        """Return the last state."""
+        return self.bust.state
+
+    @property
+    def last(self) -> Record:
+        """Return the last record."""
+        return self.bust.last
+
+    @property
+    def control_points(self) -> Points:
+        """Return the control points at the end, shape (n, 3) [mm]."""
+        return self.bust.control_points
 
     @property
     def body_change(self) -> float:
-        """Return the volume that the body has gained [ml]."""
-        return float(self.stages.body_change(self.control_points).sum()) / 1000.0
+        """Return the volume that the body has gained by the bust [ml]."""
+        return self.bust.body_change
+
+    @property
+    def verdict(self) -> Convergence:
+        """Return the verdict on all regions: the worst motion and condition."""
+        return combined([each.verdict for each in self.regions])
+
+    @cached_property
+    def body(self) -> Mesh:
+        """Return the reshaped body."""
+        return self.stages.skin.body([each.control_points for each in self.regions])
 
 
 def solve(stages: Stages, turns: int | None = None, progress: Progress = quiet) -> Solution:
@@ -160,17 +212,22 @@ def solve(stages: Stages, turns: int | None = None, progress: Progress = quiet) 
     uses Newton steps instead. ``progress`` receives each step. Raises Cancelled.
     """
     start = time.perf_counter()
+    with one_blas_thread():
+        solved = [_solved(region, turns, progress) for region in stages.regions]
+    lower = solved[1] if len(solved) > 1 else None
+    return Solution(stages, solved[0], lower, time.perf_counter() - start)
+
+
+def _solved(stages: RegionStages, turns: int | None, progress: Progress) -> RegionSolution:
     rest = record(stages.model, initial_state(stages.model), 0.0, stages.watch)
     solve = _run_exact if stages.design.volume == "exact" else _run_turns
-    with one_blas_thread():
-        records, state, verdict = solve(stages, rest, turns, progress)
+    records, state, verdict = solve(stages, rest, turns, progress)
     condition = shape_of(stages.model).quality(stages.model.tensegric.expand(state.moved))
-    verdict = replace(verdict, condition=condition)
-    return Solution(stages, rest, tuple(records), state, verdict, time.perf_counter() - start)
+    return RegionSolution(stages, rest, tuple(records), state, replace(verdict, condition=condition))
 
 
 def _run_turns(
-    stages: Stages, rest: Record, turns: int | None, progress: Progress
+    stages: RegionStages, rest: Record, turns: int | None, progress: Progress
 ) -> tuple[list[Record], SolverState, Convergence]:
     targets = line_targets(stages.design, stages)
     records: list[Record] = []
@@ -186,7 +243,7 @@ def _run_turns(
 
 
 def _run_exact(
-    stages: Stages, rest: Record, turns: int | None, progress: Progress
+    stages: RegionStages, rest: Record, turns: int | None, progress: Progress
 ) -> tuple[list[Record], SolverState, Convergence]:
     ratios = line_targets(stages.design, stages).ratios
     records: list[Record] = []

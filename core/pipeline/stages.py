@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
@@ -19,6 +20,7 @@ from core.document.design import Design
 from core.geometry.mesh import Floats, Points
 from core.landmarks.manual import PLACED, in_mm
 from core.landmarks.types import Landmark, Landmarks
+from core.mechanics.iteration import Watch
 from core.mechanics.model import ConstrainedModel
 from core.mechanics.newton import Equilibrium
 from core.pipeline.line_routes import LineRoute
@@ -59,14 +61,15 @@ Memo = Mapping[str, tuple[tuple[Any, ...], Any]]
 
 
 @dataclass(frozen=True, eq=False)
-class RegionStages:
+class RegionStages(ABC):
     """What a design leads to in one region of the body.
 
     ``fitted`` is the control mesh whose points own lines are named by, which ``control`` may have halved.
     ``backs`` complete the lines of the template to whole bands, ``tails`` own lines to straps; ``routes`` are
     where all of them run at rest. ``tissue`` is what the solid under the skin answers, where the model has
     one. ``balance`` is the exact answer where the elastics of lines were fitted to it. ``gain_limit`` is the
-    conventional gain at which it begins to vibrate at rest (probe units [1]).
+    conventional gain at which it begins to vibrate at rest (probe units [1]). ``watch`` tells what is watched
+    on the body.
     """
 
     design: Design
@@ -83,11 +86,16 @@ class RegionStages:
     balance: Equilibrium | None
     gain_limit: float
     tissue: TissueResponse | None
+    watch: Watch | None
 
     @property
     def gain(self) -> float:
         """Return the conventional gain in force [probe units]."""
         return GAIN_SHARE * self.gain_limit if self.design.gain is None else self.design.gain
+
+    @abstractmethod
+    def bust_height(self, control_points: Points) -> float:
+        """Return how high the bust points are in the mean [mm], for control points of this region."""
 
     def shape(self, control_points: Points) -> tuple[Points, Points]:
         """Return places [mm] and normals [1] of ``moving.vertices``, each of shape (r, 3).

@@ -94,4 +94,14 @@ def warnings(stages: Stages) -> list[Message]:
         if patch.rule == "flood"
         else [Message("The blend region is computed from distances to the border: {why}", why=patch.reason)]
     )
-    return [*stages.control.warnings, *faded]
+    return [*stages.control.warnings, *faded, *_lower_warnings(stages)]
+
+
+def _lower_warnings(stages: Stages) -> list[Message]:
+    """Return in sentences why there is no lower trunk, or what is doubtful about it."""
+    if stages.lower_problem is not None:
+        missing = Message("The lower trunk cannot be modelled.")
+        return [join((missing, stages.lower_problem.message, stages.lower_problem.hint))]
+    if stages.lower is None:
+        return []
+    return [*stages.lower.landmarks.warnings, *stages.lower.control.warnings]

@@ -8,7 +8,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import partial
 
-from app.cli.design import design_of, with_lines_and_elastics
+from app.cli.design import design_of
+from app.cli.lines import with_lines_and_elastics
 from app.cli.options import add_forms, add_lines, add_scan, form_of
 from app.cli.output import csv_text, finish, table_lines, write_output
 from app.cli.solved_design import SolvedDesign, solve_design

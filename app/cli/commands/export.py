@@ -6,7 +6,8 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Mapping
 from pathlib import Path
 
-from app.cli.design import design_of, with_lines_and_elastics
+from app.cli.design import design_of
+from app.cli.lines import with_lines_and_elastics
 from app.cli.options import add_lines, picture_size
 from app.cli.output import finish
 from app.cli.solved_design import is_converged, solve_valid

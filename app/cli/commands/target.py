@@ -14,7 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from app.cli.design import check_project_name, design_of, save_design, with_lines_and_elastics
+from app.cli.design import check_project_name, design_of, save_design
+from app.cli.lines import with_lines_and_elastics
 from app.cli.options import add_forms, add_lines, add_project_output, add_scan
 from app.cli.output import finish, table_lines
 from app.i18n.lengths import length

@@ -35,7 +35,7 @@ class BodyView:
         fresh = stages.body is not self.body
         laid = stages.control is not self._control
         if fresh:
-            self.show_body(stages.body, stages.moving.vertices)
+            self.show_body(stages.body, stages.skin.vertices)
         if laid:
             self._control = stages.control
             scene.show_control_mesh(stages.control.mesh, stages.control.fixed)
@@ -44,9 +44,9 @@ class BodyView:
         self._laid = stages
         if redrawn:
             self.show_bands()
-        scene.move_body(stages.moving.vertices, frame.points, frame.normals)
+        scene.move_body(stages.skin.vertices, frame.points, frame.normals)
         scene.move_control_mesh(frame.control_points)
-        scene.show_cups(stages, frame.points, frame.normals)
+        scene.show_cups(stages, *stages.skin.of_bust(frame.points, frame.normals))
         self.frame = frame
         self._show_label()
         if self.after or fresh or laid or redrawn:

@@ -11,10 +11,9 @@ from core.garment.assessment import assess_with
 from core.garment.cut_list import cut_list
 from core.garment.pressure_list import pressure_list
 from core.measurements.table import before_after, bust_girths
-from core.mechanics.solver_comparison import SolverComparison
 from core.pipeline.build import Stages, build
 from core.pipeline.live_solver import Frame, make_frame
-from core.pipeline.model_stages import line_targets
+from core.pipeline.region_solvers import RegionSolvers
 
 
 def verdict_of(frame: Frame) -> ConvergenceView:
@@ -27,10 +26,10 @@ def said(stages: Stages, **settings: object) -> ConvergenceView:
     """What is said once everything rests, with the mid-bust line at 80 %."""
     design = replace(stages.design.with_line("mid-bust", 0.8), **settings)  # type: ignore[arg-type]
     stages = build(design, stages)
-    comparison = SolverComparison(stages.model, line_targets(design, stages), stages.watch)
-    while not comparison.is_finished:
-        comparison.advance()
-    return verdict_of(make_frame(1, stages, comparison, 0.3))
+    solvers = RegionSolvers(stages)
+    while not solvers.is_finished:
+        solvers.advance()
+    return verdict_of(make_frame(1, stages, solvers, 0.3))
 
 
 def test_the_exact_answer_takes_newton_steps_and_not_turns(built: Callable[[str], Stages]) -> None:
@@ -42,9 +41,9 @@ def test_the_exact_answer_takes_newton_steps_and_not_turns(built: Callable[[str]
 
 def test_of_one_newton_step_it_says_step(built: Callable[[str], Stages]) -> None:
     stages = build(replace(built("mannequin").design.with_line("mid-bust", 0.8), volume="exact"))
-    comparison = SolverComparison(stages.model, line_targets(stages.design, stages), stages.watch)
-    comparison.exact = replace(comparison.exact, steps=1)
-    assert verdict_of(make_frame(1, stages, comparison)).effort == "Solved in one Newton iteration"
+    solvers = RegionSolvers(stages)
+    solvers.exact = replace(solvers.exact, steps=1)
+    assert verdict_of(make_frame(1, stages, solvers)).effort == "Solved in one Newton iteration"
 
 
 def test_a_run_that_ran_away_has_no_figures(built: Callable[[str], Stages]) -> None:
@@ -57,10 +56,10 @@ def test_a_run_that_ran_away_has_no_figures(built: Callable[[str], Stages]) -> N
 
 def test_what_a_designer_asks_first_stands_first(built: Callable[[str], Stages]) -> None:
     stages = build(built("mannequin").design.with_line("mid-bust", 0.97), built("mannequin"))
-    comparison = SolverComparison(stages.model, line_targets(stages.design, stages), stages.watch)
-    while not comparison.is_finished:
-        comparison.advance()
-    frame = make_frame(1, stages, comparison, 0.3)
+    solvers = RegionSolvers(stages)
+    while not solvers.is_finished:
+        solvers.advance()
+    frame = make_frame(1, stages, solvers, 0.3)
     pressed = pressure_list(stages, frame.control_points)
     overall = assessment_view(assess_with(frame, cut_list(stages, frame.control_points), pressed))
     girths = bust_girths(stages, frame.control_points)

@@ -98,7 +98,8 @@ def test_it_is_never_good_before_the_pressure_is_known(sure: Solution) -> None:
 def test_convergence_and_shape_decide_too(
     sure: Solution, motion: str, condition: MeshQuality, level: str, topic: str
 ) -> None:
-    run_so = replace(sure, verdict=Convergence(motion, 100, 0.0, condition=condition))
+    bust = replace(sure.bust, verdict=Convergence(motion, 100, 0.0, condition=condition))
+    run_so = replace(sure, bust=bust)
     found = assess_with(run_so, cuts(), pressed(row(0.5)))
     assert found.level == level
     assert [each.topic for each in found.findings] == ([topic] if topic else [])

@@ -1,0 +1,83 @@
+"""Lengths and elastics of lines as options give them: NAME=LENGTH and LINE=ELASTIC."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from core.document.design import Design
+from core.document.lower_trunk import LowerTrunk, lower_lines_of
+from core.errors import LineError
+from core.garment.elastic_library import find_elastic, read_elastic
+from core.mechanics.constraint_lines import Line, length_ratio
+from core.messages import Message
+from core.pipeline.build import Stages, build
+
+
+def with_lower_trunk(design: Design, requests: Sequence[str]) -> Design:
+    """Return a design that has the lower trunk if a request, NAME=LENGTH, is for one of its lines."""
+    if design.lower is None and any(lower_lines_of(_name(request)) for request in requests):
+        return replace(design, lower=LowerTrunk())
+    return design
+
+
+def with_lines_and_elastics(stages: Stages, lines: Sequence[str], elastics: Sequence[str]) -> Stages:
+    """Return the stages of a design with ``lines``, NAME=LENGTH, and ``elastics``, LINE=ELASTIC."""
+    if stages.lower_problem is not None and any(lower_lines_of(_name(request)) for request in lines):
+        raise stages.lower_problem
+    design = apply_lines(stages.design, all_lines(stages), lines)
+    return build(apply_elastics(design, elastics), stages)
+
+
+def all_lines(stages: Stages) -> tuple[Line, ...]:
+    """Return the lines of all regions, those of the bust first."""
+    return tuple(line for region in stages.regions for line in region.model.lines)
+
+
+def apply_lines(design: Design, lines: Sequence[Line], requests: Sequence[str]) -> Design:
+    """Return a design with lengths of ``lines`` set by requests, NAME=LENGTH each. Raises LineError.
+
+    A name that both sides have stands for both.
+    """
+    known = {line.name: line for line in lines}
+    for request in requests:
+        _, equals, text = request.partition("=")
+        names = _named(_name(request), known)
+        if not names or not equals:
+            raise LineError(
+                Message("'{request}' is not a line.", request=request),
+                Message("Enter NAME=LENGTH. Lines: {names}.", names=", ".join(known)),
+            )
+        for name in names:
+            line = known[name]
+            ratio = length_ratio(text, name, line.rest_length, line.whole_length)
+            design = design.with_line(name, ratio)
+    return design
+
+
+def apply_elastics(design: Design, requests: Sequence[str]) -> Design:
+    """Return a design with elastics of active lines set by requests, LINE=ELASTIC each. Raises LineError."""
+    active = sorted(name for region in design.regions for name in region.active_lines())
+    for request in requests:
+        _, equals, elastic = (part.strip() for part in request.partition("="))
+        names = _named(_name(request), active)
+        if not names or not equals:
+            raise LineError(
+                Message("'{request}' is not an active line.", request=request),
+                Message("Enter LINE=ELASTIC. Active lines: {active}.", active=", ".join(active) or "none"),
+            )
+        chosen = read_elastic(Path(elastic)) if elastic.lower().endswith(".csv") else find_elastic(elastic)
+        for name in names:
+            design = design.with_elastic(name, chosen)
+    return design
+
+
+def _name(request: str) -> str:
+    return request.partition("=")[0].strip().lower()
+
+
+def _named(name: str, known: Collection[str]) -> list[str]:
+    """Return which of the ``known`` lines a name stands for: one of them, or both sides."""
+    same = [each for each in known if each.lower() == name]
+    return same or [each for each in known if each.lower() in (f"{name}-left", f"{name}-right")]

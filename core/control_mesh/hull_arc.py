@@ -1,0 +1,139 @@
+"""Places on the outline of a section: by parts of the arc of its convex hull, and on rays through them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.geometry.mesh import Floats, Points
+from core.geometry.plane_sections import hull_corners
+
+OUT = 0.35
+"""Rays begin so far out from the middle on the way to the hull [1]; ours."""
+
+
+@dataclass(frozen=True, eq=False)
+class SectionArc:
+    """One outline of the trunk, (k, 2) [mm], about ``middle`` [mm], with the arcs of its convex hull.
+
+    Parts of an arc [1] go from the front centre (0) to the side (1), or from the side to the back centre.
+    """
+
+    outline: Points
+    middle: float
+
+    @property
+    def depth(self) -> float:
+        """Return y of the middle of the depth [mm]."""
+        y = self.outline[:, 1]
+        return 0.5 * float(y.min() + y.max())
+
+    def front(self, parts: Floats, sign: float) -> Points:
+        """Return skin at parts of the front quarter of a side, +1 the left one, (k, 2) [mm]."""
+        return self._on_skin(_at(self._quarter(sign, -1.0), parts))
+
+    def back(self, parts: Floats, sign: float) -> Points:
+        """Return skin at parts of the back quarter of a side, (k, 2) [mm]."""
+        return self._on_skin(_at(self._quarter(sign, 1.0)[::-1], parts))
+
+    def centre(self, way: float) -> Points:
+        """Return skin at the centre of the front (-1) or the back (+1), (2,) [mm]."""
+        y = way * crossing_y(self.outline, self.middle, way)
+        return np.array([self.middle, way * y])
+
+    def hull_centre(self, way: float) -> Points:
+        """Return the convex hull at the centre of the front (-1) or the back (+1), (2,) [mm]."""
+        hull = self._hull
+        return np.array([self.middle, crossing_y(hull, self.middle, way)])
+
+    def part_at(self, place: Points, sign: float) -> float:
+        """Return the part of the back quarter of the hull that is nearest to a place, (2,) [mm]."""
+        curve = self._quarter(sign, 1.0)[::-1]
+        a, b = curve[:-1], curve[1:]
+        step = b - a
+        share = ((place - a) * step).sum(axis=1) / np.maximum((step**2).sum(axis=1), 1e-12)
+        share = np.clip(share, 0.0, 1.0)
+        nearest = int(np.argmin(np.linalg.norm(a + share[:, None] * step - place, axis=1)))
+        lengths = np.linalg.norm(step, axis=1)
+        return float((lengths[:nearest].sum() + share[nearest] * lengths[nearest]) / lengths.sum())
+
+    @property
+    def _hull(self) -> Points:
+        return self.outline[hull_corners(self.outline)]
+
+    def _quarter(self, sign: float, way: float) -> Points:
+        """Return the hull from its centre, front (-1) or back (+1), to the side in the middle depth."""
+        hull = self._hull
+        side = np.array([_crossing_x(hull, self.depth, sign), self.depth])
+        inside = (sign * (hull[:, 0] - self.middle) > 0.0) & (way * (hull[:, 1] - self.depth) > 0.0)
+        corners = hull[inside]
+        angle = np.arctan2(way * (corners[:, 1] - self.depth), sign * (corners[:, 0] - self.middle))
+        return np.concatenate([self.hull_centre(way)[None], corners[np.argsort(-angle)], side[None]])
+
+    def _on_skin(self, places: Points) -> Points:
+        """Return the last crossings with the outline of rays through places of the hull, (k, 2) [mm]."""
+        start = np.column_stack(
+            [self.middle + OUT * (places[:, 0] - self.middle), np.full(len(places), self.depth)]
+        )
+        return np.array([last_crossing(self.outline, a, b) for a, b in zip(start, places, strict=True)])
+
+
+def _at(curve: Points, parts: Floats) -> Points:
+    """Return places at parts of the length of a curve, (k, 2)."""
+    steps = np.linalg.norm(np.diff(curve, axis=0), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    wanted = np.asarray(parts) * along[-1]
+    return np.column_stack([np.interp(wanted, along, each) for each in curve.T])
+
+
+def crossing_y(polygon: Points, x: float, way: float) -> float:
+    """Return the foremost (-1) or backmost (+1) y at which a closed polygon crosses ``x`` [mm].
+
+    Where it does not reach there, y of its corner nearest to that.
+    """
+    a, b = polygon[:, :2], np.roll(polygon[:, :2], -1, axis=0)
+    over = (a[:, 0] < x) != (b[:, 0] < x)
+    if not over.any():
+        return float(a[np.argmin(np.abs(a[:, 0] - x)), 1])
+    part = (x - a[over, 0]) / (b[over, 0] - a[over, 0])
+    y = a[over, 1] + part * (b[over, 1] - a[over, 1])
+    return way * float((way * y).max())
+
+
+def _crossing_x(polygon: Points, y: float, sign: float) -> float:
+    return crossing_y(polygon[:, [1, 0]], y, sign)
+
+
+def last_crossing(outline: Points, start: Points, through: Points) -> Points:
+    """Return where a ray from ``start`` through a place last crosses an outline; that place if nowhere."""
+    way = through - start
+    a, b = outline[:, :2] - start, np.roll(outline[:, :2], -1, axis=0) - start
+    beside = np.array([-way[1], way[0]])
+    p, q = a @ beside, b @ beside
+    over = (p < 0.0) != (q < 0.0)
+    part = (p[over] / (p[over] - q[over]))[:, None]
+    reach = (a[over] + part * (b[over] - a[over])) @ way / max(float(way @ way), 1e-12)
+    farthest = reach.max(initial=0.0)
+    return np.asarray(start + farthest * way if farthest > 0.0 else through)
+
+
+def leg_arcs(outline: Points, sign: float) -> tuple[Points, Points]:
+    """Return the front arc of a leg from its inside to its outside, and the back arc from there, (k, 2) [mm].
+
+    ``outline`` runs counterclockwise seen from above; ``sign`` is +1 for the left leg.
+    """
+    places = outline[:, :2]
+    inside, outside = int(np.argmin(sign * places[:, 0])), int(np.argmax(sign * places[:, 0]))
+    # Counterclockwise the left leg goes from its inside (towards -x) by the front (-y) to its outside.
+    way = places if sign > 0 else places[::-1]
+    if sign < 0:
+        inside, outside = len(places) - 1 - inside, len(places) - 1 - outside
+    around = np.roll(way, -inside, axis=0)
+    turn = (outside - inside) % len(places)
+    return around[: turn + 1], np.concatenate([around[turn:], around[:1]])
+
+
+def at_parts(curve: Points, parts: Floats) -> Points:
+    """Return places at parts of the length of an open curve, (k, 2) [mm]."""
+    return _at(curve, parts)
