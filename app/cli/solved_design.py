@@ -79,12 +79,14 @@ def solve_design(
     stages = build(design)
     design = apply_lines(design, all_lines(stages), lines)
     requested = apply_elastics(design, elastics)
-    if not design.lines and design.cup is None and not bare:
+    worn = any(region.lines for region in design.regions)
+    if not worn and design.cup is None and not bare:
         raise LineError(
             Message("No active lines."),
             Message("Set one: --line mid-bust=75% --elastic 'mid-bust=plush 12'."),
         )
-    named = [name for name in requested.active_elastics() if keep_fit or elastics]
+    regions = requested.regions if keep_fit or elastics else ()
+    named = [name for region in regions for name in region.active_elastics()]
     rigid = build(reduce(lambda each, name: each.with_elastic(name, None), named, design), stages)
     try:
         if keep_fit:

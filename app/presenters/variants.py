@@ -13,7 +13,7 @@ from app.presenters.lines import line_colours, row_title
 from app.presenters.messages import elastic_title, line_title
 from app.presenters.status import is_result
 from core.document.design import Design
-from core.garment.cut_list import CutRow, cut_list
+from core.garment.cut_list import CutRow, cut_list_of
 from core.garment.pressure_list import PressureList
 from core.pipeline.live_solver import Frame
 from core.pipeline.warnings import controlled_volume
@@ -123,10 +123,7 @@ def _reached(name: str, title: str, variants: Variants) -> VariantRow:
 def _pieces(variants: Variants, pressed: Pressed) -> list[VariantRow]:
     """Return a row for each line that is made of an elastic: to cut, of what, and what it presses with."""
     frames = [frame if frame is not None and is_result(frame) else None for _, _, frame in variants]
-    cuts = [
-        {} if frame is None else {row.line: row for row in cut_list(frame.stages, frame.control_points).rows}
-        for frame in frames
-    ]
+    cuts = [{} if frame is None else {row.line: row for row in cut_list_of(frame).rows} for frame in frames]
     lists = [
         pressed(frame) if frame is not None and frame.stages.design.active_elastics() else None
         for frame in frames

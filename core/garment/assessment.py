@@ -10,9 +10,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
-from core.garment.cut_list import CutList, CutRow, cut_list
+from core.garment.cut_list import CutList, CutRow, cut_list_of
 from core.garment.pressure import AMBER, GREEN, pressure_limits
-from core.garment.pressure_list import PressureList, PressureRow, pressure_list
+from core.garment.pressure_list import PressureList, PressureRow, pressure_list_of
 from core.landmarks.warnings import collect_warnings
 from core.mechanics.convergence import Convergence
 from core.messages import EMPTY, Length, LineName, Message, join, plain
@@ -90,8 +90,7 @@ def assess(shown: ShownState) -> Assessment:
     """Return the assessment of a run that has ended; cut list and pressures are computed for it."""
     if not shown.verdict.is_valid:
         return assess_with(shown, None, None)
-    stages, points = shown.stages, shown.control_points
-    return assess_with(shown, cut_list(stages, points), pressure_list(stages, points))
+    return assess_with(shown, cut_list_of(shown), pressure_list_of(shown))
 
 
 def assess_with(

@@ -18,6 +18,7 @@ from core.mechanics.constraint_lines import Line
 from core.mechanics.force_units import newtons_per_unit
 from core.messages import EMPTY, ElasticName, Length, LineName, Message, join, length_of, plain
 from core.pipeline.stages import RegionStages
+from core.pipeline.warnings import ShownState
 
 FAR = 0.8
 """The part of its table beyond which an elastic is stretched further than usual [1]: an estimate."""
@@ -98,6 +99,15 @@ class CutList:
         """Return the list ready for JSON."""
         data: dict[str, Any] = plain(self)
         return data
+
+
+def cut_list_of(shown: ShownState) -> CutList:
+    """Compute the cut list of the active lines of all regions of a body as it is shown.
+
+    Raises LineError for control points that are not a valid shape.
+    """
+    lists = [cut_list(*each) for each in zip(shown.stages.regions, shown.region_points, strict=True)]
+    return replace(lists[0], rows=tuple(row for each in lists for row in each.rows))
 
 
 def cut_list(stages: RegionStages, control_points: Points) -> CutList:

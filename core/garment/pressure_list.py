@@ -18,6 +18,7 @@ from core.mechanics.constraint_lines import Line
 from core.messages import Message, plain
 from core.pipeline.build import Stages
 from core.pipeline.stages import RegionStages
+from core.pipeline.warnings import ShownState
 
 
 @dataclass(frozen=True)
@@ -93,6 +94,16 @@ class PressureList:
             },
             "left_out": plain(LEFT_OUT),
         }
+
+
+def pressure_list_of(shown: ShownState) -> PressureList:
+    """Compute the contact pressures in all regions of a body as it is shown.
+
+    Raises LineError for control points that are not a valid shape.
+    """
+    lists = [pressure_list(*each) for each in zip(shown.stages.regions, shown.region_points, strict=True)]
+    worn = {name: line for each in lists for name, line in each.worn.items()}
+    return PressureList(tuple(row for each in lists for row in each.rows), worn)
 
 
 def pressure_list(stages: RegionStages, control_points: Points) -> PressureList:

@@ -69,7 +69,7 @@ def flip_limit(model: ConstrainedModel, pushes: Floats, flipped: Floats) -> floa
     """
     if not model.volume.separate:
         return model.probe / abs(float(pushes[:, 0] @ flipped[:, 0]))
-    answers = np.linalg.solve(model.zone_probes, pushes.T @ flipped + np.diag(model.give))
+    answers = np.linalg.solve(model.zone_responses, pushes.T @ flipped + np.diag(model.give))
     return 1.0 / float(np.abs(np.linalg.eigvals(answers)).max())
 
 
@@ -194,7 +194,7 @@ class OscillationLimit:
         if self._together:
             soft[0, 0] = self._model.probe / (gain * potential.area**2)
         else:
-            by_pressure = np.diag(self._model.give) + self._model.zone_probes / gain
+            by_pressure = np.diag(self._model.give) + self._model.zone_responses / gain
             soft[:first, :first] = by_pressure / potential.area**2
         return soft
 

@@ -29,7 +29,7 @@ from core.mechanics.hessian_layout import HessianLayout, layout_of
 from core.mechanics.options import ModelOptions
 from core.mechanics.springs import Springs, members
 from core.mechanics.tensegrity import TissueModel, tensegrity_model
-from core.mechanics.volume import VolumeMeasure, volume_measure
+from core.mechanics.volume import Pressure, VolumeMeasure, volume_measure
 
 _LEAST_KEPT = 1e-3
 """A share of displaced volume below this counts as this [1]."""
@@ -158,9 +158,10 @@ class ConstrainedModel:
         """Return what pressures change one zone alone by 100 % of the whole volume in one turn, (k, k).
 
         Each column is for a zone. The push of a zone moves the skin of its neighbours as well: without the
-        figures beside the diagonal each zone would answer what its neighbours do (ours).
+        figures beside the diagonal each zone would answer what its neighbours do; and what a zone takes up
+        inside follows a pressure at once: one that keeps little would overshoot (ours).
         """
-        return np.asarray(self.volume.rest_volume * np.linalg.inv(self.zone_probes))
+        return np.asarray(self.volume.rest_volume * np.linalg.inv(self.zone_responses))
 
     @cached_property
     def zone_probes(self) -> Floats:
@@ -169,6 +170,11 @@ class ConstrainedModel:
         still = np.zeros_like(directions[0])
         moves = np.stack([self.sweep.solve(each, still, self.rest_gradient) for each in directions])
         return np.tensordot(directions, moves, axes=((1, 2), (1, 2)))
+
+    @cached_property
+    def zone_responses(self) -> Floats:
+        """Return how each zone departs from what it is to have in a turn per pressure, (k, k) [mm^5]."""
+        return np.asarray(self.zone_probes + np.diag(self.give))
 
     def volume_force(self, pressure: float | Floats, gradients: Floats) -> Points:
         """Return the force of a pressure [probe units], (f, 3); ``gradients`` (k, f, 3) are the zones'."""
@@ -187,6 +193,12 @@ class ConstrainedModel:
         if not self.volume.separate:
             return pressure * other.pressure_unit / self.pressure_unit
         return np.asarray(np.linalg.solve(self.pressure_units, other.zone_pressures(pressure)))
+
+    def state_pressure(self, pressures: Floats) -> Pressure:
+        """Return the pressure of a state whose zones have ``pressures``, (k,), if they are held apart."""
+        if not self.volume.separate:
+            return Pressure()
+        return Pressure(np.asarray(np.linalg.solve(self.pressure_units, pressures), dtype=np.float64))
 
     def zone_errors(self, points: Points, pressure: float | Floats) -> Floats:
         """Return what each zone has beyond what it is to have, in parts of the whole volume, shape (k,).

@@ -93,8 +93,8 @@ def equilibrium_at(
     """Return a place as an iterate: ``moved`` (f, 3) [mm] with its residual and multipliers, 0 if None."""
     if multipliers is None:
         multipliers = np.zeros(len(potential.wanted))
-    state = SolverState(moved, iteration=steps)
     pressures, tensions = potential.pressures(multipliers), potential.tensions(multipliers)
+    state = SolverState(moved, potential.model.state_pressure(pressures), steps)
     return Equilibrium(state, residual, pressures, steps, multipliers, tensions)
 
 

@@ -190,6 +190,11 @@ class Solution:
         return self.bust.control_points
 
     @property
+    def region_points(self) -> tuple[Points, ...]:
+        """Return the control points of each region, the bust's first, each (n, 3) [mm]."""
+        return tuple(each.control_points for each in self.regions)
+
+    @property
     def body_change(self) -> float:
         """Return the volume that the body has gained by the bust [ml]."""
         return self.bust.body_change
@@ -202,7 +207,7 @@ class Solution:
     @cached_property
     def body(self) -> Mesh:
         """Return the reshaped body."""
-        return self.stages.skin.body([each.control_points for each in self.regions])
+        return self.stages.skin.body(self.region_points)
 
 
 def solve(stages: Stages, turns: int | None = None, progress: Progress = quiet) -> Solution:

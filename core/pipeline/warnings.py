@@ -22,6 +22,10 @@ class ShownState(Protocol):
         """Return the control points [mm]."""
 
     @property
+    def region_points(self) -> tuple[Points, ...]:
+        """Return the control points of each region, the bust's first [mm]."""
+
+    @property
     def verdict(self) -> Convergence:
         """Return how the run stands."""
 

@@ -17,7 +17,7 @@ from app.presenters.cut_list import as_table
 from app.presenters.elastics import choice_view, mode_text, title_of
 from core import __version__
 from core.errors import LineError, UserError
-from core.garment.cut_list import CutList, CutRow, cut_list
+from core.garment.cut_list import CutList, CutRow, cut_list_of
 from core.garment.elastic_library import library
 from core.garment.elastic_options import KEEP_CUT, KEEP_FIT, elastic_option
 from core.messages import LineName, Message, plain
@@ -59,7 +59,7 @@ def run(options: Namespace) -> int:
         forms |= dict.fromkeys(("csv", "json"), _refused)
         return finish(write_output(forms, make, form_of(options), options.out), True)
     solved = solve_design(design, lines, elastics, keep_fit=options.keep_fit)
-    cuts = cut_list(solved.solution.stages, solved.solution.control_points)
+    cuts = cut_list_of(solved.solution)
     text = write_output(FORMS, Cut(cuts, solved), form_of(options), options.out)
     return finish(text, solved.converged, solved.warnings)
 

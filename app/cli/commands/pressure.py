@@ -15,7 +15,7 @@ from app.presenters.messages import line_title
 from app.presenters.pressure import place_text, rating_limits, rating_text, total_text
 from core import __version__
 from core.document.design import Design
-from core.garment.pressure_list import PressureList, PressureRow, pressure_list
+from core.garment.pressure_list import PressureList, PressureRow, pressure_list_of
 from core.messages import plain
 
 COLUMNS = tuple(field.name for field in fields(PressureRow))
@@ -40,7 +40,7 @@ def add_options(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Print or write the contact pressures."""
     solved = solve_design(design_of(options), options.line or [], options.elastic or [])
-    listed = pressure_list(solved.solution.stages, solved.solution.control_points)
+    listed = pressure_list_of(solved.solution)
     text = write_output(_FORMS, Pressures(listed, solved), form_of(options), options.out)
     return finish(text, solved.converged, solved.warnings)
 

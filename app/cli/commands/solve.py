@@ -59,7 +59,8 @@ def run(options: Namespace) -> int:
 
 
 def _lines(values: Mapping[str, Any]) -> Iterator[str]:
-    for name, line in values["lines"].items():
+    lower = values.get("lower_trunk", {})
+    for name, line in (*values["lines"].items(), *lower.get("lines", {}).items()):
         if line["worn"]:
             closed = line["whole_band_rest_mm"] != line["rest_mm"]
             yield (
@@ -67,6 +68,9 @@ def _lines(values: Mapping[str, Any]) -> Iterator[str]:
                 f"({line['set_percent']:.1f} %), reached {line['reached_mm']:.1f} mm"
                 + (f"; full length {line['whole_band_reached_mm']:.1f} mm" if closed else "")
             )
+    taken = {name: zone["taken_up_inside_ml"] for name, zone in lower.get("zones", {}).items()}
+    if inside := [f"{name} {ml:.0f} ml" for name, ml in taken.items() if abs(ml) >= 0.5]:
+        yield f"taken up inside: {', '.join(inside)}"
     for cup in values.get("cups", ()):
         more = f", holds {cup['more_ml']:+z.0f} ml" if cup["more_ml"] is not None else ""
         wire = ""
@@ -83,7 +87,11 @@ def _end(values: Mapping[str, Any], solution: Solution, out: Path) -> str:
     design, volume, count = solution.stages.design, values["volume"], solution.last.iteration
     step = "iteration" if design.volume != "exact" else "Newton iteration"
     kept = "body_change" if design.volume == "exact" and design.dense_volume else "error"
+    below = ""
+    if solution.lower is not None:
+        more, error = solution.lower.last.iteration, values["lower_trunk"]["volume"]["error_ml"]
+        below = f"; lower trunk after {more}, volume error {error:+z.2f} ml"
     return (
         f"{solution.verdict.words} after {count} {step}{'s' if count != 1 else ''}, volume error "
-        f"{volume[f'{kept}_percent']:+z.4f} % ({volume[f'{kept}_ml']:+z.2f} ml); written to {out}"
+        f"{volume[f'{kept}_percent']:+z.4f} % ({volume[f'{kept}_ml']:+z.2f} ml){below}; written to {out}"
     )

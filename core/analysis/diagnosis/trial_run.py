@@ -58,6 +58,14 @@ class TrialResult:
         return self.stages.model.tensegric.expand(self.run.state.moved)
 
     @property
+    def region_points(self) -> tuple[Points, ...]:
+        """Return the control points of each region, (n, 3) [mm]; those of the lower trunk in balance."""
+        lower = self.stages.lower
+        if lower is None:
+            return (self.control_points,)
+        return self.control_points, lower.model.tensegric.expand(exact_equilibrium(lower).state.moved)
+
+    @property
     def rank(self) -> int:
         """Return how bad it is: 0 if it is well."""
         return severity_rank(self.problem)

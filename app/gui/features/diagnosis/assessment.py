@@ -12,7 +12,7 @@ from app.i18n.catalog import tr
 from app.presenters.assessment import IDLE, AssessmentView, assessment_view
 from app.presenters.status import ConvergenceView, convergence_view, out_of_date
 from core.garment.assessment import BAD, CAUTION, GOOD, PENDING, assess_with
-from core.garment.cut_list import CutList, cut_list
+from core.garment.cut_list import CutList, cut_list_of
 from core.garment.pressure_list import PressureList
 from core.measurements.table import bust_girths
 from core.pipeline.live_solver import Frame
@@ -66,7 +66,7 @@ class AssessmentController(QObject):
         if not running and frame.verdict.is_valid and not design.is_bare:
             cuts = self._cuts.get(frame)
             if cuts is None:
-                cuts = self._cuts[frame] = cut_list(frame.stages, frame.control_points)
+                cuts = self._cuts[frame] = cut_list_of(frame)
             pressed, failed = self._pressures.of(frame), self._pressures.has_failed(frame)
         found = assess_with(frame, cuts, pressed, running=running, failed=failed)
         return assessment_view(found, design)

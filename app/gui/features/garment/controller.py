@@ -14,7 +14,7 @@ from app.presenters.cut_list import CutListView, as_table, cut_list_view
 from app.presenters.messages import render
 from app.presenters.status import invalid_reason
 from core.errors import LineError
-from core.garment.cut_list import cut_list
+from core.garment.cut_list import cut_list_of
 from core.garment.pressure_list import PressureList
 from core.pipeline.live_solver import Frame
 
@@ -66,7 +66,7 @@ class GarmentController(QObject):
 
     def _show(self, frame: Frame) -> None:
         try:
-            cuts = cut_list(frame.stages, frame.control_points)
+            cuts = cut_list_of(frame)
         except LineError as problem:
             self._panel.set_view(CutListView(()), render(problem.message))
         else:
@@ -80,5 +80,5 @@ class GarmentController(QObject):
         frame = self._shown
         if frame is None:
             return []
-        cuts = cut_list(frame.stages, frame.control_points)
+        cuts = cut_list_of(frame)
         return as_table(frame.stages, cuts, self._pressures())

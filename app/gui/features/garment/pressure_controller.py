@@ -12,7 +12,7 @@ from app.gui.session.frame_cache import FrameCache
 from app.i18n.catalog import tr
 from app.presenters.pressure import pressure_summary, pressure_views, rating_limits, unknown_pressure
 from app.presenters.status import invalid_reason, not_computed
-from core.garment.pressure_list import PressureList, pressure_list
+from core.garment.pressure_list import PressureList, pressure_list_of
 from core.pipeline.live_solver import Frame
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ class PressureController(QObject):
             context.session,
             context.jobs,
             title,
-            lambda frame, _: pressure_list(frame.stages, frame.control_points),
+            lambda frame, _: pressure_list_of(frame),
             failed=context.notifications.error,
             stopped=lambda: context.notifications.stopped(title),
         )
