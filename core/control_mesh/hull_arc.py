@@ -137,3 +137,18 @@ def leg_arcs(outline: Points, sign: float) -> tuple[Points, Points]:
 def at_parts(curve: Points, parts: Floats) -> Points:
     """Return places at parts of the length of an open curve, (k, 2) [mm]."""
     return _at(curve, parts)
+
+
+def half_outline(outline: Points, middle: float, sign: float) -> Points | None:
+    """Return the part of a closed outline on one side of ``middle`` [mm], closed along it, (k, 3) [mm]."""
+    ahead = np.roll(outline, -1, axis=0)
+    here, there = sign * (outline[:, 0] - middle), sign * (ahead[:, 0] - middle)
+    over = (here >= 0.0) != (there >= 0.0)
+    part = np.where(over, here / np.where(over, here - there, 1.0), 0.0)[:, None]
+    crossing = outline + part * (ahead - outline)
+    kept = [
+        each
+        for own, cut, a, b in zip(here >= 0.0, over, outline, crossing, strict=True)
+        for each in ([a] if own else []) + ([b] if cut else [])
+    ]
+    return np.array(kept) if len(kept) > 2 else None

@@ -7,10 +7,10 @@ from functools import cached_property
 
 import numpy as np
 
-from core.control_mesh.hull_arc import SectionArc, at_parts, crossing_y, leg_arcs
+from core.control_mesh.hull_arc import SectionArc, at_parts, crossing_y, half_outline, leg_arcs
 from core.control_mesh.lower_template import FOLD_ROW, HALF, HIP_ROW, SEAT, SIDE, LowerTemplate
 from core.geometry.mesh import SIGNS, Floats, Points
-from core.landmarks.lower_trunk.levels import REACH_DOWN, REFERENCE_HALF_WIDTH
+from core.landmarks.lower_trunk.levels import body_scale
 from core.landmarks.lower_trunk.sections import LowerSection, LowerSections
 from core.landmarks.lower_trunk.types import LowerLandmarks
 from core.landmarks.types import SIDES
@@ -62,8 +62,7 @@ class LowerPlaces:
     @cached_property
     def scale(self) -> float:
         """Return the size of the body against one of the reference size [1]."""
-        near = self.sections.at(self.underbust - REACH_DOWN).trunk
-        return 1.0 if near is None else 0.5 * float(np.ptp(near[:, 0])) / REFERENCE_HALF_WIDTH
+        return body_scale(self.sections)
 
     @property
     def crotch(self) -> Points:
@@ -73,17 +72,17 @@ class LowerPlaces:
     @property
     def waist(self) -> float:
         """Return the height of the waist row [mm]."""
-        return self.landmarks.level("waist")
+        return self.landmarks.levels["waist"]
 
     @cached_property
     def hip(self) -> float:
         """Return the height of the hip row [mm]: that of the buttock points, unless they lie far off."""
         low, high = (float(self.crotch[2]) + each * self.scale for each in HIP_RANGE)
-        return float(np.clip(self.landmarks.level("buttock"), low, high))
+        return float(np.clip(self.landmarks.levels["buttock"], low, high))
 
     def fold(self, side: int) -> float:
         """Return the height of a gluteal fold [mm]; side 0 is the left one."""
-        return self.landmarks.level(f"gluteal_fold_{SIDES[side]}")
+        return self.landmarks.levels[f"gluteal_fold_{SIDES[side]}"]
 
     def buttock(self, side: int) -> Points:
         """Return a buttock point, (3,) [mm]."""
@@ -113,7 +112,7 @@ class LowerPlaces:
             for row in range(FOLD_ROW):
                 result[row, at] = self._row(row, side)
             result[FOLD_ROW, at] = self._fold_row(side)
-            if abs(self.hip - self.landmarks.level("buttock")) < 1.0:
+            if abs(self.hip - self.landmarks.levels["buttock"]) < 1.0:
                 result[HIP_ROW, at[SEAT]] = self.buttock(side)
         return result.reshape(-1, 3)
 
@@ -155,14 +154,14 @@ class LowerPlaces:
 
     def _back_centre(self, arc: SectionArc, z: float) -> Points:
         skin = arc.centre(1.0)
-        if z >= self.landmarks.level("buttock") + CLEFT:
+        if z >= self.landmarks.levels["buttock"] + CLEFT:
             return skin
         # At the bottom of the cleft lines would follow a crease, on the hull they would float.
         return np.asarray(0.5 * (skin + arc.hull_centre(1.0)))
 
     def _leg_columns(self, section: LowerSection, side: int) -> Points:
         """Return the places of the columns on a leg's outline, (12, 2) [mm]."""
-        outline = section.legs[side]
+        outline = self._leg(section, side)
         if outline is None:
             return np.tile(self.crotch[:2], (HALF + 1, 1))
         front, back = leg_arcs(outline, SIGNS[side])
@@ -174,7 +173,7 @@ class LowerPlaces:
         heights, sign, middle = self.heights[FOLD_ROW, side], SIGNS[side], float(self.crotch[0])
         row = self._row(FOLD_ROW, side)
         section = self.sections.at(float(heights[SEAT]))
-        leg = section.legs[side]
+        leg = self._leg(section, side)
         if leg is None:
             return row
         x = IN_CREASE * self.buttock(side)[0] + (1.0 - IN_CREASE) * _middle_x(leg)
@@ -183,7 +182,7 @@ class LowerPlaces:
         upto = _part_of(back, row[SEAT, :2])
         row[SIDE : SEAT + 1, :2] = at_parts(back, upto * np.linspace(0.0, 1.0, 4))
         inner = self.sections.at(float(heights[SEAT + 1]))
-        outline = inner.trunk if inner.trunk is not None else inner.legs[side]
+        outline = inner.trunk if inner.trunk is not None else self._leg(inner, side)
         if outline is not None:
             x = middle + INNER_SEAT * (x - middle)
             row[SEAT + 1, :2] = x, crossing_y(outline, x, 1.0)
@@ -196,7 +195,7 @@ class LowerPlaces:
 
     def _ring(self, side: int, row: int) -> Points:
         z = self._ring_heights(side)[row]
-        outline = self.sections.at(z).legs[side]
+        outline = self._leg(self.sections.at(z), side)
         assert outline is not None  # heights are those at which the leg is seen
         front, back = leg_arcs(outline, SIGNS[side])
         parts = self.template.leg_front, self.template.leg_back
@@ -211,10 +210,16 @@ class LowerPlaces:
         second = max(second, lowest)
         return max(first, 0.5 * (below + second)), second
 
+    def _leg(self, section: LowerSection, side: int) -> Points | None:
+        """Return the outline of a leg, (k, 3) [mm]; of thighs that touch the half of theirs."""
+        if section.trunk is None or section.z >= self.crotch[2]:
+            return section.legs[side]
+        return half_outline(section.trunk, float(self.crotch[0]), SIGNS[side])
+
     def _lowest(self, side: int) -> float:
         """Return the lowest height at which a leg can be cut [mm]."""
         levels = self.sections.levels[self.sections.levels < self.crotch[2]]
-        seen = [section.legs[side] is not None for section in self.sections.many(levels)]
+        seen = [self._leg(section, side) is not None for section in self.sections.many(levels)]
         gaps = np.flatnonzero(~np.array(seen, dtype=bool))
         first = int(gaps[-1]) + 1 if len(gaps) else 0
         return float(levels[min(first, len(levels) - 1)]) + EDGE

@@ -1,1 +1,1 @@
-"""Landmarks of the lower trunk: waist, belly, hips, seat and the tops of the legs."""
+"""Landmarks of the lower trunk: crotch, hip, waist, belly, buttocks, gluteal folds."""

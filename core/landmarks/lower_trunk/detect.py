@@ -1,150 +1,121 @@
-"""Detect the landmarks of the lower trunk on the skin; those that are placed by hand stand."""
+"""Landmarks of the lower trunk: detection, placed points, warnings."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from types import MappingProxyType
 
 import numpy as np
 
-from core.errors import LandmarkError
-from core.geometry.mesh import SIGNS, Mesh, Points
-from core.landmarks.lower_trunk.levels import Level, Profile
-from core.landmarks.lower_trunk.seat import CREASE, buttock_point, gluteal_fold
-from core.landmarks.lower_trunk.sections import LowerSections, crossings
-from core.landmarks.lower_trunk.suggestions import suggestions
+from core.geometry.mesh import Points
+from core.landmarks.detect import FINDING, NOTHING
+from core.landmarks.lower_trunk.levels import (
+    belly,
+    body_scale,
+    crotch,
+    hip,
+    no_crotch,
+    on_midline,
+    tape_profile,
+    waist,
+)
+from core.landmarks.lower_trunk.seat import buttock_point, gluteal_fold
+from core.landmarks.lower_trunk.sections import LowerSections, lower_sections
+from core.landmarks.lower_trunk.suggestions import iliac_crest, leg_opening, side_seam
 from core.landmarks.lower_trunk.types import LowerLandmarks
 from core.landmarks.manual import project_to_skin, reconcile_with_detected
-from core.landmarks.types import SIDES, Landmark, Landmarks
-from core.messages import Message
+from core.landmarks.types import CERTAIN, LOWER_NAMES, SIDES, Landmark, Landmarks
+from core.messages import LandmarkName, Message
 from core.progress import Progress, quiet
 from core.scan.body import Body
 
-CROTCH = Message("Highest level at which the legs are apart.")
-HIP = Message("On the front centre line, at the largest tape of the hips.")
-WAIST = Message("On the front centre line, at the narrowest level between hips and breasts.")
-NO_WAIST = Message("No narrowest level between hips and breasts: a usual height below the under-bust.")
-BELLY = Message("Foremost place of the front centre line between pubis and waist.")
-NO_BELLY = Message("Farthest place of the front centre line before a chord from pubis to waist.")
-BUTTOCK = Message("Most prominent place of the seat.")
-FLAT_SEAT = Message("Most prominent place of the seat: it lies high, as on a flat seat.")
-FOLD = Message("Deepest crease below the seat.")
-NO_FOLD = Message("No crease below the seat: most hollow place, approximate.")
-
-HIGHEST_SEAT = 110.0
-"""A most backward place higher over the crotch than this is not that of the seat [mm]; ours, by size."""
-
-BELOW_CROTCH = 40.0
-"""So far below the crotch a scan must show the legs [mm]; ours, by size."""
-
-LEAST_HEIGHT = 300.0
-"""Between under-bust and crotch there is at least so much on a body [mm]; ours, by size."""
-
-NOTHING: Mapping[str, Points] = MappingProxyType({})
-
-_SURE, _CLEAR, _APPROXIMATE = 0.95, 0.9, 0.4
+SUGGESTIONS = ("iliac_crest", "side_seam", "leg_opening")
+"""Landmarks that are never sure: no warning says so."""
 
 
 def find_lower_landmarks(
-    body: Body, bust: Landmarks, placed: Mapping[str, Points] = NOTHING, progress: Progress = quiet
+    body: Body,
+    bust: Landmarks,
+    placed: Mapping[str, Points] = NOTHING,
+    progress: Progress = quiet,
+    sections: LowerSections | None = None,
 ) -> LowerLandmarks:
-    """Return the landmarks of the lower trunk of a body whose ``bust`` is known.
+    """Detect the landmarks of the lower trunk of ``body``, below the under-bust of ``bust``.
 
-    ``placed`` (3,) [mm] by name stand in place of what is found, and what depends on them follows. Raises
-    LandmarkError where the legs are not seen, or a placed landmark is not near the skin, and Cancelled.
+    ``placed`` points by name, shape (3,) [mm], replace detected ones, and levels that depend on them follow;
+    ``sections`` are those of ``body.smoothed`` up to the under-bust if they are known already. Raises
+    LandmarkError if the scan ends above the crotch, if the thighs touch all the way and no crotch is placed,
+    or for an invalid name or place; Cancelled. Source: ours.
     """
     mesh = body.smoothed
-    hand = project_to_skin(mesh, placed)
-    progress("find lower landmarks", 0.0)
-    given = float(hand["crotch"].position[2]) if "crotch" in hand else None
-    sections = LowerSections(mesh, bust.underbust_level, given)
-    crotch = _crotch(sections)
-    progress("find lower landmarks", 0.4)
-    profile = Profile(sections, crotch)
-    _check_reach(sections, profile)
-    found = {mark.name: mark for mark in _found(mesh, sections, profile, hand)}
-    points = {name: reconcile_with_detected(hand.get(name), mark) for name, mark in found.items()}
-    for mark in suggestions(sections, profile, points):
-        points[mark.name] = reconcile_with_detected(hand.get(mark.name), mark)
-    return LowerLandmarks(MappingProxyType(points), sections, tuple(_warnings(points)))
+    cuts = lower_sections(mesh, bust.underbust_level) if sections is None else sections
+    by_hand = project_to_skin(mesh, placed)
+    progress(FINDING, 0.2)
+    points = _levels(cuts, by_hand)
+    progress(FINDING, 0.6)
+    points |= _seat(cuts, by_hand, points)
+    progress(FINDING, 0.8)
+    points |= _suggested(cuts, by_hand, points)
+    points = {name: points[name] for name in LOWER_NAMES if name in points}
+    levels = {name: float(points[name].position[2]) for name in ("waist", "belly", "hip", "crotch")}
+    levels |= {f"gluteal_fold_{side}": float(points[f"gluteal_fold_{side}"].position[2]) for side in SIDES}
+    levels["buttock"] = float(np.mean([points[f"buttock_{side}"].position[2] for side in SIDES]))
+    return LowerLandmarks(MappingProxyType(points), MappingProxyType(levels), cuts, _warnings(points))
 
 
-def _crotch(sections: LowerSections) -> float:
-    """Return the height of the crotch [mm]. Raises LandmarkError if the scan does not show it."""
-    crotch = sections.crotch
-    if crotch is not None:
-        return crotch
-    if sections.top - sections.bottom < LEAST_HEIGHT:
-        raise LandmarkError(
-            Message("The scan ends above the crotch."),
-            Message("The lower trunk requires a scan down to mid-thigh."),
+def _levels(cuts: LowerSections, by_hand: Mapping[str, Landmark]) -> dict[str, Landmark]:
+    """Return crotch, hip, waist and belly: each follows those before it."""
+    scale = body_scale(cuts)
+    if cuts.search == "ends" or (cuts.search == "touch" and "crotch" not in by_hand):
+        raise no_crotch(cuts)
+    seen = by_hand["crotch"] if cuts.search == "touch" else crotch(cuts, scale)
+    points = {"crotch": reconcile_with_detected(by_hand.get("crotch"), seen)}
+    low = float(points["crotch"].position[2])
+    profile = tape_profile(cuts, low + 4.0)
+    hips = on_midline("hip", cuts, hip(profile, low, cuts.top))
+    points["hip"] = reconcile_with_detected(by_hand.get("hip"), hips)
+    level = float(points["hip"].position[2])
+    narrow = on_midline("waist", cuts, waist(profile, level, cuts.top, scale))
+    points["waist"] = reconcile_with_detected(by_hand.get("waist"), narrow)
+    high = float(points["waist"].position[2])
+    round_ = on_midline("belly", cuts, belly(cuts, low, high, scale))
+    points["belly"] = reconcile_with_detected(by_hand.get("belly"), round_)
+    return points
+
+
+def _seat(
+    cuts: LowerSections, by_hand: Mapping[str, Landmark], points: Mapping[str, Landmark]
+) -> dict[str, Landmark]:
+    """Return buttock points and gluteal folds."""
+    low, scale, found = float(points["crotch"].position[2]), body_scale(cuts), {}
+    for k, side in enumerate(SIDES):
+        name = f"buttock_{side}"
+        found[name] = reconcile_with_detected(by_hand.get(name), buttock_point(cuts, k, low, scale))
+        fold = gluteal_fold(cuts, k, low, found[name])
+        found[fold.name] = reconcile_with_detected(by_hand.get(fold.name), fold)
+    return found
+
+
+def _suggested(
+    cuts: LowerSections, by_hand: Mapping[str, Landmark], points: Mapping[str, Landmark]
+) -> dict[str, Landmark]:
+    """Return what is suggested, as far as the scan has skin there."""
+    low, hips, high = (float(points[name].position[2]) for name in ("crotch", "hip", "waist"))
+    marks = []
+    for k, side in enumerate(SIDES):
+        fold = float(points[f"gluteal_fold_{side}"].position[2])
+        marks += [iliac_crest(cuts, k, low), side_seam(cuts, k, low, hips, high)]
+        marks.append(leg_opening(cuts, k, low, fold))
+    found = {mark.name: mark for mark in marks if mark is not None}
+    return found | {name: mark for name, mark in by_hand.items() if name.startswith(SUGGESTIONS)}
+
+
+def _warnings(points: Mapping[str, Landmark]) -> tuple[Message, ...]:
+    """Return one sentence for each landmark that needs a second look."""
+    return tuple(
+        Message(
+            "Check the landmark {name}: {rule}", name=LandmarkName(name.replace("_", " ")), rule=mark.rule
         )
-    raise LandmarkError(
-        Message("The legs are not separate anywhere: the crotch is not detectable."),
-        Message("Place the crotch landmark, or scan with the legs slightly apart."),
+        for name, mark in points.items()
+        if mark.confidence < CERTAIN and not name.startswith(SUGGESTIONS)
     )
-
-
-def _check_reach(sections: LowerSections, profile: Profile) -> None:
-    if profile.crotch - sections.bottom < BELOW_CROTCH * profile.scale:
-        raise LandmarkError(
-            Message("The scan ends just below the crotch."),
-            Message("The lower trunk requires a scan down to mid-thigh."),
-        )
-
-
-def _found(
-    mesh: Mesh, sections: LowerSections, profile: Profile, hand: Mapping[str, Landmark]
-) -> Iterator[Landmark]:
-    """Yield what is found; a level that is placed counts for those that are sought from it."""
-    yield hand.get("crotch") or Landmark("crotch", _between_legs(sections, profile.crotch), _SURE, CROTCH)
-    hip = profile.hip()
-    yield _on_front(sections, "hip", hip, HIP)
-    waist = profile.waist(_height(hand, "hip", hip))
-    yield _on_front(sections, "waist", waist, WAIST if waist.found else NO_WAIST)
-    belly = profile.belly(_height(hand, "waist", waist))
-    yield _on_front(sections, "belly", belly, BELLY if belly.found else NO_BELLY)
-    for side, sign in zip(SIDES, SIGNS, strict=True):
-        place = buttock_point(mesh, sections, profile.crotch, sign)
-        high = float(place[2]) - profile.crotch > HIGHEST_SEAT * profile.scale
-        sure, rule = (_APPROXIMATE, FLAT_SEAT) if high else (_CLEAR, BUTTOCK)
-        yield Landmark(f"buttock_{side}", place, sure, rule)
-        seat = hand[f"buttock_{side}"].position if f"buttock_{side}" in hand else place
-        fold, bend = gluteal_fold(sections, seat, profile.crotch)
-        creased = bend >= CREASE
-        sure, rule = (0.7, FOLD) if creased else (_APPROXIMATE, NO_FOLD)
-        yield Landmark(f"gluteal_fold_{side}", fold, sure, rule)
-
-
-def _height(hand: Mapping[str, Landmark], name: str, level: Level) -> float:
-    return float(hand[name].position[2]) if name in hand else level.z
-
-
-def _on_front(sections: LowerSections, name: str, level: Level, rule: Message) -> Landmark:
-    trunk = sections.at(level.z).trunk
-    y = crossings(trunk, sections.middle) if trunk is not None else np.empty(0)
-    if not len(y):
-        raise LandmarkError(
-            Message("The trunk has a hole at the height of {name}.", name=name),
-            Message("Fill the holes at the Scan step."),
-        )
-    place = np.array([sections.middle, y[0], level.z])
-    assert trunk is not None
-    return Landmark(name, place, level.confidence, rule, evidence=np.concatenate([trunk, trunk[:1]]))
-
-
-def _between_legs(sections: LowerSections, crotch: float) -> Points:
-    """Return the place between the legs where they meet, (3,) [mm]."""
-    left, right = sections.at(crotch).legs
-    if left is None or right is None:
-        return np.array([sections.middle, 0.0, crotch])
-    inner = left[np.argmin(left[:, 0])], right[np.argmax(right[:, 0])]
-    return np.array([*(0.5 * (inner[0] + inner[1]))[:2], crotch])
-
-
-def _warnings(points: Mapping[str, Landmark]) -> Iterator[Message]:
-    waist = points["waist"]
-    if waist.rule == NO_WAIST:
-        yield Message("This body has no waist between hips and breasts: check the waist height.")
-    if any(points[f"buttock_{side}"].rule == FLAT_SEAT for side in SIDES):
-        yield Message("The seat is flat: check the buttock points.")

@@ -1,102 +1,111 @@
-"""The seat: buttock points and gluteal folds."""
+"""Buttock points and gluteal folds, found on the back of the lower trunk."""
 
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 
-from core.geometry.mesh import Floats, Mesh, Points
-from core.geometry.plane_sections import arc_length
-from core.landmarks.lower_trunk.sections import LowerSection, LowerSections, crossings
+from core.geometry.mesh import SIGNS, Floats
+from core.geometry.plane_sections import arc_length, curvature
+from core.landmarks.lower_trunk.outline_profiles import FINE, back, heights, smoothed
+from core.landmarks.lower_trunk.sections import STEP, LowerSection, LowerSections
+from core.landmarks.types import SIDES, Landmark
+from core.messages import Message
 
-SEAT_UP_TO = 0.55
-"""The most backward place of the seat lies below this part of the way from crotch to under-bust [1]; ours."""
+SEAT = 0.6
+"""Buttock points are sought up to this part of the way from crotch to under-bust [1]. Source: measured."""
 
-BESIDE = 15.0
-"""The seat begins so far beside the middle [mm]; ours."""
+NEAR_MIDDLE = 15.0
+"""The cleft is nearer to the middle than this [mm]: no buttock point lies there. Ours."""
 
-NEAR = 1.0
-"""Vertices so near behind the most backward one count as it [mm]; ours."""
+FLAT_TOP = 1.0
+"""The height of a buttock point is the mean of skin within this of the hindmost [mm]. Source: measured."""
 
-OFFSETS = (-16.0, -8.0, 0.0, 8.0, 16.0)
-"""Profiles that the fold is read from, beside the buttock point [mm]; ours."""
+HIGH_SEAT = 125.0
+"""Higher above the crotch the most backward skin is that of the flank [mm, at scale 1]. Source: measured."""
 
-FINE = 2.0
-"""Distance of the levels that a profile is read at [mm]; ours."""
+ASIDE = np.array([-16.0, -8.0, 0.0, 8.0, 16.0])
+"""Sagittal profiles through a fold, so far from the buttock point [mm]. Source: measured on bodies."""
 
-LOWEST = 80.0
-"""The fold lies at most so far below the crotch [mm]; ours."""
+USUAL_FOLD, FREE, SLOPE = 22.0, 15.0, 0.00012
+"""A fold lies about so far below the crotch [mm]; beyond the second [mm] each mm costs curvature [1/mm^2]."""
 
-USUAL, WITHIN, LESS = 22.0, 15.0, 1.2e-4
-"""Where the fold usually lies below the crotch [mm], how far from there each place counts alike [mm], and by
-how much less each further mm counts [1/mm^2]; ours.
-"""
+FOLD_RANGE = 85.0
+"""Folds are sought so far above and below their usual place [mm]. Ours."""
 
-CREASE = 0.012
-"""A fold that is bent less than this is a soft hollow [1/mm]; ours."""
+BELOW_POINT = 20.0
+"""A fold lies at least this far below the buttock point [mm]. Ours."""
 
-SMOOTHING = 8.0
-_ARC = 1.0
+EVEN = 8.0
+"""The mean curvature is smoothed over this height [mm]. Source: measured with noise."""
 
-
-def buttock_point(mesh: Mesh, sections: LowerSections, crotch: float, sign: float) -> Points:
-    """Return the most backward place of one side, +1 the left one, (3,) [mm]."""
-    vertices = mesh.vertices
-    top = crotch + SEAT_UP_TO * (sections.top - crotch)
-    half = np.abs(_trunk_width(sections, 0.5 * (crotch + top)))
-    beside = sign * (vertices[:, 0] - sections.middle)
-    here = (vertices[:, 2] > crotch) & (vertices[:, 2] < top) & (beside > BESIDE) & (beside < half)
-    seat = vertices[here]
-    return np.asarray(seat[seat[:, 1] > seat[:, 1].max() - NEAR].mean(axis=0))
+CREASE = 0.009
+"""A less curved hollow is no crease [1/mm]. Source: measured on bodies."""
 
 
-def _trunk_width(sections: LowerSections, z: float) -> float:
-    trunk = sections.at(z).trunk
-    return np.inf if trunk is None else float(np.ptp(trunk[:, 0]) / 2.0)
+def buttock_point(sections: LowerSections, side: int, low: float, scale: float) -> Landmark:
+    """Return the most backward point of a side (0 left), from the crotch at ``low`` [mm] up."""
+    z = heights(low + 4.0, low + SEAT * (sections.top - low), STEP)
+    places = np.array([_hindmost(section, sections.middle, side) for section in sections.many(z.tolist())])
+    fine = heights(float(z[0]), float(z[-1]), 0.5)
+    depth = np.interp(fine, z, smoothed(places[:, 1], STEP, STEP))
+    at = float(fine[depth > np.nanmax(depth) - FLAT_TOP].mean())
+    x, y = _hindmost(sections.at(at), sections.middle, side)
+    inside = z[0] + 8.0 < at < z[-1] - 8.0
+    usual = at - low < HIGH_SEAT * scale
+    rule = Message("Most backward point of the side.")
+    if not usual or not inside:
+        rule = Message("Flat seat: the most backward point of the side lies on the flank.")
+    return Landmark(f"buttock_{SIDES[side]}", np.array([x, y, at]), 0.8 if inside and usual else 0.4, rule)
 
 
-def gluteal_fold(sections: LowerSections, buttock: Points, crotch: float) -> tuple[Points, float]:
-    """Return the place of a fold below a buttock point, (3,) [mm], and how much it is bent there [1/mm]."""
-    side = 0 if buttock[0] > sections.middle else 1
-    heights = np.arange(max(crotch - LOWEST, sections.bottom + FINE), float(buttock[2]), FINE)
-    levels = sections.many(heights)
-    bends = np.array([_bend(heights, levels, float(buttock[0]) + each, side) for each in OFFSETS])
-    seen = np.isfinite(bends)
-    bend = np.where(seen.any(axis=0), np.nansum(bends, axis=0) / np.maximum(seen.sum(axis=0), 1), -np.inf)
-    bend[seen.sum(axis=0) < 3] = -np.inf
-    away = np.abs(heights - (crotch - USUAL))
-    score = bend - LESS * np.maximum(away - WITHIN, 0.0)
-    at = int(np.argmax(score))
-    y = _back(levels[at], float(buttock[0]), side)
-    return np.array([buttock[0], y, heights[at]]), float(bend[at])
+def _hindmost(section: LowerSection, middle: float, side: int) -> tuple[float, float]:
+    """Return x and y of the hindmost skin of one side of a trunk [mm]; NaN without a trunk."""
+    if section.trunk is None:
+        return np.nan, np.nan
+    own = section.trunk[SIGNS[side] * (section.trunk[:, 0] - middle) > NEAR_MIDDLE]
+    if len(own) == 0:
+        return np.nan, np.nan
+    x, y, _ = own[np.argmax(own[:, 1])]
+    return float(x), float(y)
 
 
-def _back(level: LowerSection, x: float, side: int) -> float:
-    """Return the most backward y of trunk or leg at ``x`` [mm], NaN where neither is there."""
-    outline = level.trunk if level.trunk is not None else level.legs[side]
-    found = crossings(outline, x) if outline is not None else np.empty(0)
-    return float(found[-1]) if len(found) else np.nan
+def gluteal_fold(sections: LowerSections, side: int, low: float, point: Landmark) -> Landmark:
+    """Return the gluteal fold under the buttock ``point`` of a side (0 left), the crotch at ``low`` [mm]."""
+    name = f"gluteal_fold_{SIDES[side]}"
+    usual, x = low - USUAL_FOLD, float(point.position[0])
+    bottom = max(usual - FOLD_RANGE, sections.bottom + 2.0)
+    z = heights(bottom - 20.0, min(usual + FOLD_RANGE, float(point.position[2])) + 20.0)
+    depth = back(sections.many(z.tolist()), x + ASIDE, side)
+    bend = np.stack([_hollow(z, column) for column in depth.T], axis=1)
+    enough = np.isfinite(bend).sum(axis=1) >= 3
+    mean = np.full(len(z), np.nan)
+    mean[enough] = np.nanmean(bend[enough], axis=1)
+    mean = smoothed(mean, FINE, EVEN)
+    mean[(z < bottom) | (z > min(usual + FOLD_RANGE, float(point.position[2]) - BELOW_POINT))] = np.nan
+    score = mean - SLOPE * np.maximum(np.abs(z - usual) - FREE, 0.0)
+    middle = depth[:, len(ASIDE) // 2]
+    curve = np.stack([np.full(len(z), x), middle, z], axis=1)[np.isfinite(middle)]
+    if not np.isfinite(score).any() or len(curve) == 0:
+        place = np.array([x, float(point.position[1]), usual])
+        return Landmark(name, place, 0.1, Message("The scan does not show the gluteal fold: about here."))
+    best = int(np.nanargmax(score))
+    place = np.array([x, np.interp(z[best], curve[:, 2], curve[:, 1]), z[best]])
+    sharp, edge = float(mean[best]), np.isnan(score[max(best - 2, 0) : best + 3]).any()
+    if edge or sharp < CREASE:
+        return Landmark(name, place, 0.35, Message("No crease under the buttock: about here."), curve)
+    return Landmark(name, place, 0.7, Message("Sharpest hollow under the buttock."), curve)
 
 
-def _bend(heights: Floats, levels: list[LowerSection], x: float, side: int) -> Floats:
-    """Return how hollow the back is at each height in the sagittal plane at ``x``, (k,) [1/mm]; else NaN."""
-    y = np.array([_back(level, x, side) for level in levels])
-    result = np.full(len(y), np.nan)
-    gone = np.flatnonzero(~np.isfinite(y))
-    begin = int(gone[-1]) + 1 if len(gone) else 0
-    if len(y) - begin < 12:
-        return result
-    curve = np.column_stack([y[begin:], heights[begin:]])
+def _hollow(z: Floats, depth: Floats) -> Floats:
+    """Return how hollow a profile is behind, shape (k,) [1/mm], at even heights ``z``; NaN where unknown."""
+    known = np.flatnonzero(np.isfinite(depth))
+    if len(known) < 12:
+        return np.full(len(z), np.nan)
+    curve = np.stack([z[known], depth[known]], axis=1)[::-1]
     along = arc_length(curve)
-    even = np.arange(0.0, along[-1], _ARC)
-    smooth = np.column_stack([np.interp(even, along, each) for each in curve.T])
-    smooth = gaussian_filter1d(smooth, SMOOTHING / _ARC, axis=0, mode="nearest")
-    first = np.gradient(smooth, _ARC, axis=0)
-    second = np.gradient(first, _ARC, axis=0)
-    speed = np.maximum(np.linalg.norm(first, axis=1), 1e-9)
-    # going up the back: hollow where the way turns to the back (+y), that is to the right
-    turn = (second[:, 0] * first[:, 1] - second[:, 1] * first[:, 0]) / speed**3
-    result[begin:] = np.interp(along, even, turn)
-    ends = int(2.0 * SMOOTHING / FINE)
-    result[begin : begin + ends // 2] = np.nan
+    even = np.arange(0.0, along[-1], FINE)
+    down, out = (smoothed(np.interp(even, along, values), FINE) for values in curve.T)
+    bend = np.interp(along, even, curvature(-down, out))
+    result = np.full(len(z), np.nan)
+    result[known[::-1]] = bend
     return result

@@ -1,167 +1,224 @@
-"""Horizontal sections of the lower trunk: one outline above the crotch, two of the legs below it."""
+"""Horizontal sections of the lower trunk and the legs, without arms and hands, computed once a height."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 
 from core.geometry.level_outlines import Outlines, outlines, ring
-from core.geometry.mesh import Floats, Indices, Mesh, Points, frozen
-from core.geometry.plane_sections import hull_perimeter
-
-REACH = 20.0
-"""An outline that reaches so far to both sides of the middle is the trunk's [mm]; ours."""
-
-LEAST_LEG = 60.0
-"""The outline of a leg is at least so wide and so deep [mm]; ours."""
+from core.geometry.mesh import SIGNS, Flags, Floats, Indices, Mesh, Points, frozen
+from core.landmarks.torso.contour_classification import GAP
+from core.landmarks.torso.torso_axis import arm_segments, torso_axis
 
 STEP = 4.0
-"""Distance of the levels that are looked at over the whole height [mm]; ours."""
+"""Distance of the levels in which the crotch is sought [mm]. Ours."""
 
-SURE_LEGS = 3
-"""So many levels below the crotch show two legs; fewer are a hole between them; ours."""
+SHIFT = 0.01
+"""A level that would run along edges of the mesh is raised by this [mm]. Ours."""
 
-_CROTCH_STEPS = 6
+ACROSS = 20.0
+"""The outline of a trunk reaches at least so far to both sides of the middle [mm]. Ours."""
+
+OFF_CENTRE = 0.25
+"""The middle of a trunk is nearer to the middle of the body than this part of its width [1]. Ours."""
+
+THIN = 50.0
+"""An outline less wide and less deep than this is no leg [mm]. Ours."""
+
+HALVINGS = 7
+"""The level of the crotch is halved so many times: to 0.03 mm. Ours."""
+
+NARROW = 0.5
+"""A trunk less deep in its middle than this part of its sides is two thighs that touch [1]. Ours."""
+
+Search = Literal["found", "ends", "touch"]
+"""How the search for two legs ended: found, the scan ends above the crotch, or the thighs touch."""
 
 
 @dataclass(frozen=True, eq=False)
 class LowerSection:
-    """What a level shows: the outline of the trunk, or those of the left (+x) and the right leg, or neither.
+    """The outlines of the body at height ``z`` [mm]: of the ``trunk``, or of both ``legs``, left (+x) first.
 
-    Outlines are closed polygons without the first point repeated, (k, 3) [mm], counterclockwise seen from
-    above.
+    Each outline, shape (k, 3) [mm], is closed (its last point is followed by its first, which is not
+    repeated), counterclockwise seen from above, without arms and hands; None where there is none. ``bridged``
+    [mm] is how much of the outlines goes over holes of the scan or where an arm was cut off.
     """
 
     z: float
-    trunk: Points | None = None
-    legs: tuple[Points | None, Points | None] = (None, None)
+    trunk: Points | None
+    legs: tuple[Points | None, Points | None]
+    bridged: float = 0.0
 
     @property
-    def has_legs(self) -> bool:
-        """Return whether both legs are shown."""
+    def two_legs(self) -> bool:
+        """Return whether there are outlines of both legs."""
         return self.legs[0] is not None and self.legs[1] is not None
 
-    @property
-    def tape(self) -> float:
-        """Return the length of a tape round the trunk or round both legs together [mm]; 0 without any."""
-        parts = [each for each in (self.trunk, *self.legs) if each is not None]
-        return hull_perimeter(np.concatenate(parts)) if parts else 0.0
+
+NO_LEGS = (None, None)
 
 
+@dataclass(frozen=True, eq=False)
 class LowerSections:
-    """The sections of a body below the height ``top`` [mm], each made once.
+    """Sections of ``mesh`` from its lowest level ``bottom`` to ``top`` [mm], about x = ``middle`` [mm]."""
 
-    Below a crotch that was ``placed`` by hand [mm] thighs that touch are parted at the middle.
-    """
-
-    def __init__(self, mesh: Mesh, top: float, placed: float | None = None) -> None:
-        self.mesh, self.top, self.placed = mesh, top, placed
-        self.bottom = float(mesh.vertices[:, 2].min())
-        self._known: dict[float, LowerSection] = {}
+    mesh: Mesh
+    top: float
+    bottom: float
+    middle: float
+    _known: dict[float, LowerSection] = field(default_factory=dict, repr=False)
 
     def at(self, z: float) -> LowerSection:
-        """Return the section at a height [mm]."""
+        """Return the section at height ``z`` [mm]; without any outline where the scan shows none."""
         return self.many([z])[0]
 
-    def many(self, heights: Sequence[float] | Floats) -> list[LowerSection]:
-        """Return the sections at heights, (k,) [mm]; those that are new are cut in one pass."""
-        wanted = [round(float(z), 4) for z in heights]
-        new = np.array(sorted(set(wanted) - self._known.keys()))
+    def many(self, heights: Iterable[float]) -> list[LowerSection]:
+        """Return the sections at ``heights`` [mm], in their order; those not known yet in one pass.
+
+        Raises LandmarkError if the mesh is no skin.
+        """
+        asked = [float(z) for z in heights]
+        new = np.unique([z for z in asked if z not in self._known])
         if len(new):
-            self._known.update({found.z: found for found in self._cut(new)})
-        return [self._known[z] for z in wanted]
+            at = np.where(np.isin(new, self._heights), new + SHIFT, new)
+            cuts = outlines(self.mesh, at)
+            shares = zip(new.tolist(), cuts.rows(), cuts.piece_rows(), strict=True)
+            for z, rows, pieces in shares:
+                self._known[z] = self._section(cuts, z, rows, pieces)
+        return [self._known[z] for z in asked]
 
     @cached_property
     def levels(self) -> Floats:
-        """Return heights over the whole of what is looked at, (k,) [mm], from below."""
-        return np.arange(self.bottom + 0.5 * STEP, self.top, STEP)
+        """Heights every ``STEP`` from the bottom to the top, ascending, shape (k,) [mm]."""
+        count = max(int((self.top - self.bottom - 2.0) / STEP), 0)
+        return frozen(self.bottom + 1.0 + STEP * np.arange(count + 1))
 
-    @cached_property
-    def middle(self) -> float:
-        """Return x of the middle of the trunk [mm]: the median of three sections below the bust."""
-        heights = self.top - np.array([20.0, 60.0, 100.0])
-        cuts = outlines(self.mesh, np.sort(heights[heights > self.bottom]))
-        centres = [cuts.pieces.centre[rows[np.argmax(cuts.pieces.size[rows])], 0] for rows in _shown(cuts)]
-        return float(np.median(centres)) if centres else 0.0
-
-    @cached_property
+    @property
     def crotch(self) -> float | None:
-        """Return the greatest height at which two legs are apart [mm], None if no level shows two."""
-        if self.placed is not None:
-            return self.placed
-        apart = np.array([section.has_legs for section in self.many(self.levels)])
-        sure = np.array([apart[max(k - SURE_LEGS + 1, 0) : k + 1].all() for k in range(len(apart))])
-        if not sure.any():
-            return None
-        low = float(self.levels[np.flatnonzero(sure)[-1]])
-        high = low + STEP
-        for _ in range(_CROTCH_STEPS):
-            z = 0.5 * (low + high)
-            low, high = (z, high) if self.at(z).has_legs else (low, z)
-        return low
+        """Return the highest level with two legs [mm]; None without any, ``search`` tells why."""
+        return self._searched[1]
 
-    def _cut(self, z: Floats) -> list[LowerSection]:
-        cuts = outlines(self.mesh, z)
-        return [
-            self._section(cuts, float(height), rows, pieces)
-            for height, rows, pieces in zip(z, cuts.rows(), cuts.piece_rows(), strict=True)
-        ]
+    @property
+    def search(self) -> Search:
+        """Return how the search for the crotch ended."""
+        return self._searched[0]
+
+    @cached_property
+    def _heights(self) -> Floats:
+        return np.unique(self.mesh.vertices[:, 2])
+
+    @cached_property
+    def _searched(self) -> tuple[Search, float | None]:
+        found = self.many(self.levels.tolist())
+        two = np.array([section.two_legs for section in found])
+        trunk = np.array([section.trunk is not None for section in found])
+        if not two.any():
+            lowest = next((section.trunk for section in found if section.trunk is not None), None)
+            return ("touch" if lowest is not None and self._is_narrow(lowest) else "ends"), None
+        # A hole may look like legs: the border is where most levels below are legs, most above are trunk.
+        score = np.cumsum(two) + trunk.sum() - np.cumsum(trunk)
+        last = int(np.flatnonzero(two & (score == score[two].max()))[-1])
+        low, high = float(self.levels[last]), float(self.levels[min(last + 1, len(found) - 1)])
+        for _ in range(HALVINGS):
+            z = 0.5 * (low + high)
+            low, high = (z, high) if self.at(z).two_legs else (low, z)
+        return "found", low
+
+    def _is_narrow(self, trunk: Points) -> bool:
+        """Return whether a trunk is hardly joined in its middle."""
+        near = np.abs(trunk[:, 0] - self.middle) < 0.05 * float(np.ptp(trunk[:, 0]))
+        return not near.any() or float(np.ptp(trunk[near, 1])) < NARROW * float(np.ptp(trunk[:, 1]))
 
     def _section(self, cuts: Outlines, z: float, rows: Indices, pieces: Indices) -> LowerSection:
-        low, high, middle = cuts.pieces.low[pieces], cuts.pieces.high[pieces], self.middle
-        size = cuts.pieces.size[pieces]
-        across = (low[:, 0] < middle - REACH) & (high[:, 0] > middle + REACH)
-        if across.any():
-            trunk = _outline(cuts, rows, pieces[np.argmax(np.where(across, size, -1.0))], z)
-            if self.placed is not None and z < self.placed:
-                return LowerSection(z, None, (_half(trunk, middle, 1.0), _half(trunk, middle, -1.0)))
-            return LowerSection(z, trunk)
-        wide = (high - low > LEAST_LEG).all(axis=1)
-        legs = []
-        for sign in (1.0, -1.0):
-            own = wide & (sign * (0.5 * (low + high)[:, 0] - middle) > 0.0)
-            found = pieces[np.argmax(np.where(own, size, -1.0))] if own.any() else None
-            legs.append(None if found is None else _outline(cuts, rows, found, z))
-        return LowerSection(z, None, (legs[0], legs[1]))
+        main = self._main(cuts, pieces)
+        if main is not None:
+            own = rows[_with_loose(cuts, pieces, main)[cuts.piece[rows]]]
+            own = self._armless(cuts, own, z)
+            outline, bridged = _closed(cuts, own, z)
+            return LowerSection(z, outline, NO_LEGS, bridged)
+        legs, bridged = [], 0.0
+        for side in SIGNS:
+            leg = self._leg(cuts, pieces, side)
+            own = rows[:0] if leg is None else rows[_with_loose(cuts, leg, int(leg[0]))[cuts.piece[rows]]]
+            outline, gap = _closed(cuts, own, z)
+            legs.append(outline)
+            bridged += gap
+        return LowerSection(z, None, (legs[0], legs[1]), bridged)
+
+    def _armless(self, cuts: Outlines, own: Indices, z: float) -> Indices:
+        """Return those of the segments ``own`` of a trunk that no hand is, where one joins it by a neck.
+
+        Where the axis only tells that the width jumps, thighs that touch may have begun: nothing is cut.
+        """
+        guide = torso_axis(self.mesh)
+        joined = np.any(guide.necks[list(guide.between(z)[:2])], axis=0)
+        if joined.any():
+            arms = arm_segments(cuts, own, guide.centre_at(z))
+            for arm, joins in zip(arms, joined.tolist(), strict=True):
+                own = own[~np.isin(own, arm)] if joins else own
+        return own
+
+    def _main(self, cuts: Outlines, rows: Indices) -> int | None:
+        """Return the piece of the trunk among those of a level: closed, else open; None without any."""
+        low, high = cuts.pieces.low[rows, 0] - self.middle, cuts.pieces.high[rows, 0] - self.middle
+        over = (low < -ACROSS) & (high > ACROSS)
+        whole = over & cuts.pieces.closed[rows] & (0.5 * np.abs(low + high) < OFF_CENTRE * (high - low))
+        for fits in (whole, over & ~cuts.pieces.closed[rows]):
+            if fits.any():
+                return int(rows[fits][np.argmax(cuts.pieces.size[rows[fits]])])
+        return None
+
+    def _leg(self, cuts: Outlines, rows: Indices, side: float) -> Indices | None:
+        """Return the pieces on one side, that of the leg first; None without a leg."""
+        own = rows[side * (cuts.pieces.centre[rows, 0] - self.middle) > 0.0]
+        own = own[np.argsort(-cuts.pieces.size[own], kind="stable")]
+        big = len(own) > 0 and (cuts.pieces.high - cuts.pieces.low)[own[0]].max() > THIN
+        return own if big else None
 
 
-def _shown(cuts: Outlines) -> list[Indices]:
-    return [rows for rows in cuts.piece_rows() if len(rows)]
+def lower_sections(mesh: Mesh, top: float) -> LowerSections:
+    """Return the sections of ``mesh`` from its lowest level up to ``top`` [mm], at or below the under-bust.
+
+    Their middle is the median middle of the trunk from ``top`` to 120 mm below it. Raises LandmarkError if
+    the mesh is no skin. Source: ours.
+    """
+    bottom = float(mesh.vertices[:, 2].min())
+    first = LowerSections(mesh, top, bottom, torso_axis(mesh).middle)
+    high = [section.trunk for section in first.many(top - 20.0 * np.arange(7))]
+    middles = [0.5 * (trunk[:, 0].min() + trunk[:, 0].max()) for trunk in high if trunk is not None]
+    middle = float(np.median(middles)) if middles else first.middle
+    return LowerSections(mesh, top, bottom, middle)
 
 
-def _outline(cuts: Outlines, rows: Indices, piece: Indices, z: float) -> Points:
-    """Return the polygon of one piece of a level, counterclockwise, (k, 3) [mm]."""
-    own = rows[cuts.piece[rows] == piece]
-    _, corners = ring(cuts.segments[own], cuts.ids[own])
-    return _polygon(corners, z)
+def _with_loose(cuts: Outlines, rows: Indices, main: int) -> Flags:
+    """Return which pieces make one outline: ``main``, and if that is open, open ones of ``rows`` near it."""
+    pieces = cuts.pieces
+    kept = np.zeros(len(pieces.level), dtype=bool)
+    kept[main] = True
+    if not pieces.closed[main]:
+        loose = rows[~pieces.closed[rows]]
+        low, high = pieces.low[main, 0] - GAP, pieces.high[main, 0] + GAP
+        kept[loose[(pieces.low[loose, 0] < high) & (pieces.high[loose, 0] > low)]] = True
+    return kept
 
 
-def _polygon(corners: Points, z: float) -> Points:
-    x, y = corners.T
-    if float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) < 0.0:
-        corners = corners[::-1]
-    return frozen(np.column_stack([corners, np.full(len(corners), z)]))
-
-
-def _half(polygon: Points, middle: float, sign: float) -> Points | None:
-    """Return the part of a polygon on one side of the middle, closed along it."""
-    a, b = polygon[:, :2], np.roll(polygon[:, :2], -1, axis=0)
-    here, there = sign * (a[:, 0] - middle), sign * (b[:, 0] - middle)
-    points = []
-    for start, end, h, t in zip(a, b, here, there, strict=True):
-        if h >= 0.0:
-            points.append(start)
-        if (h > 0.0) != (t > 0.0) and h != t:
-            points.append(start + (end - start) * (h / (h - t)))
-    return _polygon(np.array(points), float(polygon[0, 2])) if len(points) > 2 else None
-
-
-def crossings(outline: Points, x: float) -> Floats:
-    """Return y where an outline, (k, 3) [mm], crosses the plane at ``x`` [mm], ascending."""
-    a, b = outline[:, :2], np.roll(outline[:, :2], -1, axis=0)
-    over = (a[:, 0] < x) != (b[:, 0] < x)
-    part = (x - a[over, 0]) / (b[over, 0] - a[over, 0])
-    return np.sort(a[over, 1] + part * (b[over, 1] - a[over, 1]))
+def _closed(cuts: Outlines, own: Indices, z: float) -> tuple[Points | None, float]:
+    """Return segments as one outline counterclockwise, (k, 3) [mm], and how much of it is no skin [mm]."""
+    if len(own) < 3:
+        return None, 0.0
+    order, start = ring(cuts.segments[own], cuts.ids[own])
+    step = np.roll(start, -1, axis=0) - start
+    skin = np.linalg.norm(cuts.segments[own[order], 1, :2] - cuts.segments[own[order], 0, :2], axis=1)
+    length = np.linalg.norm(step, axis=1)
+    bridged = float(np.maximum(length - skin, 0.0).sum())
+    start = start[length > 0.0]
+    if len(start) < 3:
+        return None, 0.0
+    x, y = (start - start[0]).T
+    if np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) < 0.0:
+        start = start[::-1]
+    return frozen(np.column_stack([start, np.full(len(start), z)])), bridged

@@ -1,123 +1,109 @@
-"""Suggestions of landmarks that the skin does not show: hip bones, side seams, leg openings."""
+"""Suggestions for places that a skin does not show: iliac crest, side seam, leg opening."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from core.geometry.mesh import SIGNS, Points
-from core.landmarks.lower_trunk.levels import Profile
-from core.landmarks.lower_trunk.sections import LowerSection, LowerSections
+from core.landmarks.lower_trunk.outline_profiles import crossings, heights
+from core.landmarks.lower_trunk.sections import LowerSections
 from core.landmarks.types import SIDES, Landmark
 from core.messages import Message
 
-CREST = Message("Estimated from body height: the hip bone is not visible on the skin.")
-SEAM = Message("Outermost line of the side, in the plane through the middle of the waist.")
-OPENING = Message("Smooth curve through crotch, gluteal fold, hip joint and groin.")
-
 STATURE = 4.3
-"""Stature over the height from crotch to under-bust where no head is seen [1]; ours, 4.1 to 5.2."""
+"""Stature over the distance from crotch to under-bust [1]. Source: measured on bodies, 4.1 to 5.2."""
 
-JOINT, CREST_HEIGHT, FRONT_POINT = 0.055, 0.122, 0.092
-"""Heights of hip joint, iliac crest and front hip point over the crotch, in parts of the stature [1]: ratios
-of standing women, within 15 mm.
+HIP_JOINT, FRONT_HIP, CREST = 0.055, 0.092, 0.122
+"""Heights above the crotch of hip joint, front hip point and iliac crest over the stature [1].
+
+Source: ratios of standing women.
 """
 
-SUGGESTED = 0.2
-"""How sure a suggestion is [1]; ours."""
+SUGGESTED = 0.3
+"""The confidence of what no skin shows [1]. Ours."""
 
-_EVERY = 20.0
-_AROUND = 72
-_BELOW_CROTCH, _ABOVE_GROIN = 6.0, 8.0
+BELOW_CROTCH, ABOVE_FRONT = 6.0, 8.0
+"""A leg opening runs so far below the crotch, and above half way to the front hip point [mm]. Ours."""
 
+AROUND = 36
+"""Points of a leg opening. Ours."""
 
-def suggestions(
-    sections: LowerSections, profile: Profile, points: Mapping[str, Landmark]
-) -> Iterator[Landmark]:
-    """Yield what the skin does not show, by side; ``points`` are the landmarks that were found."""
-    stature = STATURE * (sections.top - profile.crotch)
-    depth = _middle_depth(sections, points["waist"])
-    for side, sign in zip(SIDES, SIGNS, strict=True):
-        seam = _seam(sections, profile, depth, sign)
-        hip = points["hip"].position[2]
-        at = int(np.argmin(np.abs(seam[:, 2] - hip)))
-        yield Landmark(f"side_seam_{side}", seam[at], SUGGESTED, SEAM, evidence=seam)
-        crest = profile.crotch + CREST_HEIGHT * stature
-        place = _outermost(sections.at(crest), depth, sign)
-        if place is not None:
-            yield Landmark(f"iliac_crest_{side}", place, SUGGESTED, CREST)
-        opening = _opening(sections, profile, points, side, sign, stature)
-        if len(opening):
-            place = opening[np.argmax(sign * opening[:, 0])]
-            yield Landmark(f"leg_opening_{side}", place, SUGGESTED, OPENING, evidence=opening)
+SEAM_STEP = 20.0
+"""Distance of the points of a side seam [mm]. Ours."""
+
+RULES = {
+    "iliac_crest": Message("By proportion: the skin does not show the bone."),
+    "side_seam": Message("Frontal plane through the middle of the waist."),
+    "leg_opening": Message("Curve through crotch, gluteal fold, hip joint and groin."),
+}
 
 
-def _middle_depth(sections: LowerSections, waist: Landmark) -> float:
-    """Return y of the middle of the waist's depth [mm]."""
-    outline = sections.at(float(waist.position[2])).trunk
-    y = waist.position[1:2] if outline is None else outline[:, 1]
-    return 0.5 * float(y.min() + y.max())
-
-
-def _seam(sections: LowerSections, profile: Profile, y: float, sign: float) -> Points:
-    """Return the side seam from the crotch up, (k, 3) [mm]."""
-    heights = np.arange(profile.crotch + 1.0, sections.top, _EVERY)
-    found = [_outermost(level, y, sign) for level in sections.many(heights)]
-    return np.array([each for each in found if each is not None])
-
-
-def _outermost(level: LowerSection, y: float, sign: float) -> Points | None:
-    """Return the outermost place of one side in the plane at ``y`` [mm], (3,) [mm]."""
-    outline = level.trunk if level.trunk is not None else level.legs[0 if sign > 0 else 1]
-    if outline is None:
+def iliac_crest(sections: LowerSections, side: int, low: float) -> Landmark | None:
+    """Return the suggested crest of a side (0 left), the crotch at ``low`` [mm]; None without a trunk."""
+    z = low + CREST * STATURE * (sections.top - low)
+    trunk = sections.at(z).trunk
+    if trunk is None:
         return None
-    a, b = outline[:, :2], np.roll(outline[:, :2], -1, axis=0)
-    over = (a[:, 1] < y) != (b[:, 1] < y)
-    if not over.any():
-        return np.asarray(outline[np.argmax(sign * outline[:, 0])])
-    part = (y - a[over, 1]) / (b[over, 1] - a[over, 1])
-    x = a[over, 0] + part * (b[over, 0] - a[over, 0])
-    return np.array([x[np.argmax(sign * x)], y, level.z])
+    place = trunk[np.argmax(SIGNS[side] * trunk[:, 0])]
+    return _suggested("iliac_crest", side, np.array([place[0], place[1], z]), np.empty((0, 3)))
 
 
-def _opening(
-    sections: LowerSections,
-    profile: Profile,
-    points: Mapping[str, Landmark],
-    side: str,
-    sign: float,
-    stature: float,
-) -> Points:
-    """Return a leg opening as a closed curve, (k, 3) [mm]; empty where the skin has a hole there."""
-    crotch = profile.crotch
-    joint, front = crotch + JOINT * stature, crotch + FRONT_POINT * stature
-    low, fold = crotch - _BELOW_CROTCH, float(points[f"gluteal_fold_{side}"].position[2])
-    marks = [low, fold, joint, 0.5 * (crotch + front) + _ABOVE_GROIN, low]
-    angles = np.linspace(0.0, 2.0 * np.pi, _AROUND, endpoint=False)
-    heights = CubicSpline(np.linspace(0.0, 2.0 * np.pi, 5), marks, bc_type="periodic")(angles)
-    leg = sections.at(low).legs[0 if sign > 0 else 1]
-    if leg is None:
-        return np.empty((0, 3))
-    centre = 0.5 * (leg[:, :2].min(axis=0) + leg[:, :2].max(axis=0))
-    ways = np.stack([-sign * np.cos(angles), np.sin(angles)], axis=1)
+def side_seam(sections: LowerSections, side: int, low: float, hip: float, waist: float) -> Landmark | None:
+    """Return the suggested side seam at the ``hip`` level [mm], its curve from crotch to under-bust."""
+    trunk = sections.at(waist).trunk
+    if trunk is None:
+        return None
+    y = 0.5 * float(trunk[:, 1].min() + trunk[:, 1].max())
+    z = np.append(heights(low, sections.top, SEAM_STEP), hip)
     curve = []
-    for level, way in zip(sections.many(heights), ways, strict=True):
-        outline = level.trunk if level.trunk is not None else level.legs[0 if sign > 0 else 1]
-        place = None if outline is None else _along(outline, centre, way)
-        if place is not None and sign * (place[0] - sections.middle) > 0.0:  # not on the other side
-            curve.append([*place, level.z])
-    return np.array([*curve, curve[0]]) if curve else np.empty((0, 3))
+    for height, section in zip(z.tolist(), sections.many(z.tolist()), strict=True):
+        outline = section.legs[side] if section.trunk is None else section.trunk
+        xs = np.empty(0) if outline is None else crossings(outline, y, axis=1)
+        if len(xs):
+            curve.append([xs[-1] if side == 0 else xs[0], y, height])
+    if not curve or curve[-1][2] != hip:
+        return None
+    return _suggested("side_seam", side, np.array(curve[-1]), np.array(curve[:-1]).reshape(-1, 3))
 
 
-def _along(outline: Points, centre: Points, way: Points) -> Points | None:
-    """Return the farthest place of an outline on a ray from ``centre`` along ``way``, (2,) [mm]."""
-    a = outline[:, :2] - centre
-    b = np.roll(a, -1, axis=0)
-    beside = np.array([-way[1], way[0]])
-    p, q = a @ beside, b @ beside
-    over = (p < 0.0) != (q < 0.0)
-    part = p[over] / (p[over] - q[over])
-    reach = (a[over] + part[:, None] * (b[over] - a[over])) @ way
-    return None if not len(reach) or reach.max() <= 0.0 else np.asarray(centre + reach.max() * way)
+def leg_opening(sections: LowerSections, side: int, low: float, fold: float) -> Landmark | None:
+    """Return the suggested leg opening of a side: its outermost point, its closed curve as evidence.
+
+    Its height runs evenly through four: below the crotch at ``low`` [mm] inside, the ``fold`` behind, the hip
+    joint outside, half way to the front hip point in front.
+    """
+    leg = sections.at(low - BELOW_CROTCH).legs[side]
+    if leg is None:
+        return None
+    stature = STATURE * (sections.top - low)
+    groin = low + 0.5 * FRONT_HIP * stature + ABOVE_FRONT
+    knots = [low - BELOW_CROTCH, fold, low + HIP_JOINT * stature, groin, low - BELOW_CROTCH]
+    turn = 2.0 * np.pi * np.arange(AROUND) / AROUND
+    quarter, share = np.divmod(4.0 * np.arange(AROUND) / AROUND, 1.0)
+    eased = quarter + 0.5 - 0.5 * np.cos(np.pi * share)
+    z = np.interp(eased, np.arange(5.0), knots)
+    centre = 0.5 * (leg[:, :2].min(axis=0) + leg[:, :2].max(axis=0))
+    out = np.stack([-SIGNS[side] * np.cos(turn), np.sin(turn)], axis=1)
+    curve = []
+    for way, height, section in zip(out, z.tolist(), sections.many(z.tolist()), strict=True):
+        outline = section.legs[side] if section.trunk is None else section.trunk
+        place = None if outline is None else _hit(outline, centre, way)
+        if place is not None and SIGNS[side] * (place[0] - sections.middle) >= 0.0:
+            curve.append([*place, height])
+    if len(curve) < AROUND // 2:
+        return None
+    line = np.array([*curve, curve[0]])
+    place = line[np.argmax(SIGNS[side] * line[:, 0])]
+    return _suggested("leg_opening", side, place, line)
+
+
+def _hit(outline: Points, centre: Points, way: Points) -> Points | None:
+    """Return where a ray from ``centre`` (2,) along ``way`` (2,) leaves a closed outline, (2,) [mm]."""
+    flat = outline[:, :2] - centre
+    turned = np.stack([flat @ [-way[1], way[0]], flat @ way, np.zeros(len(flat))], axis=1)
+    far = crossings(turned, 0.0)
+    return centre + way * far[-1] if len(far) and far[-1] > 0.0 else None
+
+
+def _suggested(name: str, side: int, place: Points, curve: Points) -> Landmark:
+    return Landmark(f"{name}_{SIDES[side]}", place, SUGGESTED, RULES[name], curve)

@@ -1,4 +1,4 @@
-"""Landmarks of the lower trunk: names, levels, and what belongs together."""
+"""Landmarks of the lower trunk and their levels."""
 
 from __future__ import annotations
 
@@ -7,26 +7,22 @@ from dataclasses import dataclass
 
 from core.geometry.mesh import Points
 from core.landmarks.lower_trunk.sections import LowerSections
-from core.landmarks.types import SIDES, Landmark
+from core.landmarks.types import Landmark
 from core.messages import Message
 
 
 @dataclass(frozen=True, eq=False)
 class LowerLandmarks:
-    """The landmarks of the lower trunk by name, and the ``sections`` that they were read from.
+    """The landmarks of the lower trunk by name, of ``LOWER_NAMES``, and the heights of its ``levels`` [mm].
 
-    ``points`` have names of ``LOWER_NAMES``; _left is +x. ``warnings`` are sentences.
+    Levels are waist, belly, hip, buttock (mean of both sides), gluteal_fold_left, gluteal_fold_right and
+    crotch. ``sections`` are those that they were read from. ``warnings`` hold one sentence each.
     """
 
     points: Mapping[str, Landmark]
+    levels: Mapping[str, float]
     sections: LowerSections
     warnings: tuple[Message, ...] = ()
-
-    def level(self, name: str) -> float:
-        """Return the height of a landmark [mm]; that of a pair without its side is the mean of both."""
-        if name in self.points:
-            return float(self.points[name].position[2])
-        return sum(float(self.points[f"{name}_{side}"].position[2]) for side in SIDES) / len(SIDES)
 
     def position(self, name: str) -> Points:
         """Return where landmark ``name`` is, shape (3,) [mm]."""
