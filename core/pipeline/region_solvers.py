@@ -22,16 +22,16 @@ class RegionSolvers:
     def retarget(self, stages: Stages, fresh: bool = False) -> None:
         """Take another design: a region on the same control mesh goes on from where it is, any other begins.
 
-        ``fresh`` begins new records.
+        ``fresh`` begins new records. Where there are two regions, one that nothing changes for is left alone.
         """
         old, self._stages = self._stages, stages
-        self.bust = _retargeted(self.bust, old, stages, fresh)
+        self.bust = _retargeted(self.bust, old, stages, fresh, beside=stages.lower is not None)
         if stages.lower is None:
             self.lower = None
         elif self.lower is None or old.lower is None:
             self.lower = _comparison(stages.lower)
         else:
-            self.lower = _retargeted(self.lower, old.lower, stages.lower, fresh)
+            self.lower = _retargeted(self.lower, old.lower, stages.lower, fresh, beside=True)
 
     @property
     def comparisons(self) -> tuple[SolverComparison, ...]:
@@ -58,10 +58,13 @@ def _comparison(stages: RegionStages) -> SolverComparison:
 
 
 def _retargeted(
-    comparison: SolverComparison, old: RegionStages, stages: RegionStages, fresh: bool
+    comparison: SolverComparison, old: RegionStages, stages: RegionStages, fresh: bool, *, beside: bool
 ) -> SolverComparison:
     same_body = old.control is stages.control and old.binding is stages.binding
     if not same_body or old.design.dense_volume != stages.design.dense_volume:
         return _comparison(stages)
-    comparison.retarget(stages.model, line_targets(stages.design, stages), fresh, stages.balance)
+    targets = line_targets(stages.design, stages)
+    untouched = stages.model is comparison.model and targets == comparison.targets
+    if fresh or not (beside and untouched):
+        comparison.retarget(stages.model, targets, fresh, stages.balance)
     return comparison

@@ -17,8 +17,8 @@ from core.landmarks.lower_trunk.girths import lower_girths
 from core.landmarks.lower_trunk.levels import tape_profile, waist
 from core.landmarks.lower_trunk.outline_profiles import crossings, peak
 from core.landmarks.lower_trunk.sections import lower_sections
-from core.landmarks.lower_trunk.types import LOWER_NAMES, LowerLandmarks
-from core.landmarks.types import CERTAIN, Landmarks
+from core.landmarks.lower_trunk.types import LowerLandmarks
+from core.landmarks.types import CERTAIN, LOWER_NAMES, Landmarks
 from core.scan.body import Body, read_scan
 
 ROOT = Path(__file__).parents[4]
