@@ -110,7 +110,13 @@ class Design:
                         high=f"{100 * RATIO_LIMITS[1]:.0f}",
                     ),
                 )
-        if twice := repeated(line.name for line in self.own_lines):
+        self._check_names()
+        traits = [each for region in self.regions for each in region.traits]
+        check_elastics(self.elastics, {each.name: each.elastic for each in traits if each.elastic})
+
+    def _check_names(self) -> None:
+        below = () if self.lower is None else sorted(lower_line_names())
+        if twice := repeated((*(line.name for line in self.own_lines), *below)):
             raise LineError(
                 Message("Two lines are named '{name}'.", name=LineName(twice)),
                 Message("Give each line a unique name."),
@@ -130,10 +136,6 @@ class Design:
                 Message("Two measurements are named '{name}'.", name=twice),
                 Message("Give each measurement a unique name."),
             )
-        traits = self.traits
-        if self.lower is not None:
-            traits = (*traits, *self.lower_design.traits)
-        check_elastics(self.elastics, {each.name: each.elastic for each in traits if each.elastic})
 
     def _check_counts(self) -> None:
         check_counts(

@@ -141,10 +141,10 @@ def test_an_elastic_that_is_not_in_the_library_is_no_part_of_a_preset(built):
 @pytest.mark.parametrize(
     ("change", "why"),
     [
-        ({"format": 9}, "format 2"),
+        ({"format": 9}, "format 3"),
         ({"lines": []}, "title and lines"),
         ({"title": " "}, "title and lines"),
-        ({"lines": [{"line": "waist"}]}, "no line 'waist'"),
+        ({"lines": [{"line": "waste"}]}, "no line 'waste'"),
         ({"lines": [{"line": "mid-bust", "length": 3.0}]}, "300.0 %"),
         ({"lines": [{"line": "mid-bust", "colour": "red"}]}, "'red' is not a colour"),
         ({"lines": [{"line": "mid-bust", "width": 900}]}, "900 mm"),
