@@ -9,6 +9,8 @@ import numpy as np
 
 from core.geometry.mesh import Points
 from core.landmarks.detect import find_landmarks
+from core.landmarks.lower_trunk.girths import lower_girths
+from core.landmarks.lower_trunk.types import LowerLandmarks
 from core.landmarks.torso.girths import girth_warnings, girths, levels
 from core.landmarks.types import Landmarks
 from core.landmarks.warnings import collect_warnings
@@ -19,14 +21,25 @@ MOST = 60
 """So many points of a curve are told at most."""
 
 
-def detection(body: Body, landmarks: Landmarks | None = None) -> dict[str, Any]:
+def detection(
+    body: Body, landmarks: Landmarks | None = None, lower: LowerLandmarks | None = None
+) -> dict[str, Any]:
     """Return landmarks, levels [mm], girths [mm] and pose of a body, ready for JSON.
 
-    ``landmarks`` are found if they are not given. A landmark stands there in the file's own frame and in mm,
-    with at most 60 points [mm] of the curve that it was read from. Raises LandmarkError.
+    ``landmarks`` are found if they are not given; those of the ``lower`` trunk stand beside them, and its
+    waist and hip in place of theirs. A landmark stands there in the file's own frame and in mm, with at most
+    60 points [mm] of the curve that it was read from. Raises LandmarkError.
     """
     landmarks = landmarks or find_landmarks(body)
-    found = girths(body, landmarks)
+    found, heights, points = dict(girths(body, landmarks)), dict(levels(landmarks)), dict(landmarks.points)
+    doubts = girth_warnings(found)
+    if lower is not None:
+        found |= lower_girths(lower.sections, lower)
+        heights |= lower.levels | {
+            name: float(mark.position[2]) for name, mark in lower.points.items() if name.startswith("buttock")
+        }
+        points |= lower.points
+        doubts = [*doubts, *lower.warnings]
     to_file = np.linalg.inv(body.pose.file_to_mm)
     marks = {
         name: {
@@ -37,11 +50,11 @@ def detection(body: Body, landmarks: Landmarks | None = None) -> dict[str, Any]:
             "by_hand": mark.by_hand,
             "evidence": _thinned(mark.evidence),
         }
-        for name, mark in landmarks.points.items()
+        for name, mark in points.items()
     }
     return {
         "landmarks": marks,
-        "levels": levels(landmarks),
+        "levels": heights,
         "girths": {name: asdict(girth) for name, girth in found.items()},
         "noise_mm": round(body.noise, 3),
         "unit": body.pose.unit,
@@ -53,7 +66,7 @@ def detection(body: Body, landmarks: Landmarks | None = None) -> dict[str, Any]:
         "upright": landmarks.upright,
         "reason": str(body.pose.reason),
         "repairs": plain(body.repairs),
-        "warnings": plain(collect_warnings(body, landmarks) + girth_warnings(found)),
+        "warnings": plain([*collect_warnings(body, landmarks), *doubts]),
     }
 
 

@@ -53,7 +53,7 @@ def lower_stages(
     ``design`` is that of the region, see ``Design.lower_design``; ``upper`` is the control mesh of the bust,
     whose lowest rows the lower mesh joins. Raises LineError for lines that it cannot have.
     """
-    detect = partial(_detected, progress=stage.inside)
+    detect = partial(detect_lower_landmarks, progress=stage.inside)
     landmarks = stage("find lower landmarks", detect, body, bust, design.placed)
     if isinstance(landmarks, UserError):
         return landmarks
@@ -75,9 +75,10 @@ def lower_stages(
     )
 
 
-def _detected(
+def detect_lower_landmarks(
     body: Body, bust: Landmarks, placed: tuple[PlacedMark, ...], progress: Progress = quiet
 ) -> LowerLandmarks | UserError:
+    """Return the landmarks of the lower trunk, with those placed by hand, or why there are none."""
     own = tuple(mark for mark in placed if mark.name in LOWER_NAMES)
     try:
         return find_lower_landmarks(body, bust, in_mm(own, body.pose.file_to_mm), progress)

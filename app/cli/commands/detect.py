@@ -12,8 +12,11 @@ import numpy as np
 from app.cli.design import design_of
 from app.cli.options import add_forms, add_scan
 from app.cli.output import finish, table_lines
+from core.errors import UserError
 from core.landmarks.as_dict import detection
+from core.landmarks.types import LOWER_NAMES
 from core.pipeline.build import detect_landmarks, read_body
+from core.pipeline.lower_region import detect_lower_landmarks
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -26,7 +29,12 @@ def run(options: Namespace) -> int:
     """Detect the landmarks and print them."""
     design = design_of(options)
     _, body = read_body(design.scan)
-    found = detection(body, detect_landmarks(body, design.placed))
+    bust = detect_landmarks(body, design.placed)
+    lower = detect_lower_landmarks(body, bust, design.placed)
+    # A scan of the bust alone is nothing to be told of, a landmark that was placed in vain is.
+    if isinstance(lower, UserError) and any(mark.name in LOWER_NAMES for mark in design.placed):
+        raise lower
+    found = detection(body, bust, None if isinstance(lower, UserError) else lower)
     text = json.dumps(found, indent=1) if options.json else landmarks_text(found)
     return finish(text, True, found["warnings"])
 
