@@ -21,7 +21,7 @@ from scenes import (
     vibrating,
 )
 
-from app.presenters.samples import STRAP, sample_design, sample_in_bra
+from app.presenters.samples import STRAP, dressed_sample, sample_design
 from core.document.design import Design
 
 
@@ -68,7 +68,7 @@ FIRST: tuple[tuple[str, Callable[[], Design], Scene], ...] = (
 
 # Of each screen, in both languages.
 SCREENS: tuple[tuple[str, Callable[[], Design], Scene], ...] = (
-    ("tour", sample_in_bra, scenes.touring),
+    ("tour", dressed_sample, scenes.touring),
     ("start", _mannequin, scenes.start_page),
     *((name, _person, step(name)) for name in ("landmarks", "lines", "result")),
     ("ask", _person, scenes.asking),
@@ -91,7 +91,7 @@ SCREENS: tuple[tuple[str, Callable[[], Design], Scene], ...] = (
 
 # Of README and of pages in one language.
 ONCE = (
-    Shot("window", sample_in_bra, scenes.nothing, {"size": LARGE}),
+    Shot("window", dressed_sample, scenes.nothing, {"size": LARGE}),
     Shot("map", _mannequin, scenes.mapped, {"size": LARGE}),
     Shot("vibrating", vibrating, scenes.with_control_mesh, {"dark": True, "size": SMALL}),
     Shot("spread", bra, advice_scenes.sure, {"size": LARGE}),

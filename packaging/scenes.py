@@ -20,7 +20,7 @@ from app.gui.features.project.recent_files import forget_file, recent_files
 from app.gui.main_window import MainWindow
 from app.gui.session.settings import set_setting
 from app.i18n.catalog import language
-from app.presenters.samples import sample_design, sample_in_bra, sample_path
+from app.presenters.samples import dressed_sample, sample_design, sample_path
 from core.document.design import Design, ScanSource, new_design
 from core.garment.elastic_library import find_elastic
 from core.garment.presets import find_preset, with_preset
@@ -64,7 +64,7 @@ def bra() -> Design:
 
 def in_bra() -> Design:
     """Return the bra of the samples on a customer's scan, its cups higher."""
-    design = replace(sample_in_bra("person"), scan=own_scan().scan)
+    design = replace(dressed_sample("person"), scan=own_scan().scan)
     assert design.cup is not None
     return replace(design, cup=replace(design.cup, lift=25.0))
 

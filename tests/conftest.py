@@ -313,8 +313,8 @@ def empty_house(
         monkeypatch.setattr("app.presenters.samples.sample_path", coarse_samples)
     if "opened_as_in_the_program" not in request.fixturenames:
         opened = sample_design() if "fine_samples" in request.fixturenames else coarse_sample
-        monkeypatch.setattr("app.gui.startup.sample_in_bra", lambda: opened)
-        monkeypatch.setattr("app.gui.features.project.controller.sample_in_bra", sample_design)
+        monkeypatch.setattr("app.gui.startup.dressed_sample", lambda: opened)
+        monkeypatch.setattr("app.gui.features.project.controller.dressed_sample", sample_design)
     if not {"opened_as_in_the_program", "on_solid"}.intersection(request.fixturenames):
         monkeypatch.setattr("app.gui.session.session.new_design", Design)
     if not {"opened_as_in_the_program", "first_tour"}.intersection(request.fixturenames):

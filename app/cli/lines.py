@@ -26,13 +26,8 @@ def with_lines_and_elastics(stages: Stages, lines: Sequence[str], elastics: Sequ
     """Return the stages of a design with ``lines``, NAME=LENGTH, and ``elastics``, LINE=ELASTIC."""
     if stages.lower_problem is not None and any(lower_lines_of(_name(request)) for request in lines):
         raise stages.lower_problem
-    design = apply_lines(stages.design, all_lines(stages), lines)
+    design = apply_lines(stages.design, stages.lines, lines)
     return build(apply_elastics(design, elastics), stages)
-
-
-def all_lines(stages: Stages) -> tuple[Line, ...]:
-    """Return the lines of all regions, those of the bust first."""
-    return tuple(line for region in stages.regions for line in region.model.lines)
 
 
 def apply_lines(design: Design, lines: Sequence[Line], requests: Sequence[str]) -> Design:

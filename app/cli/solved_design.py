@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, reduce
 
-from app.cli.lines import all_lines, apply_elastics, apply_lines
+from app.cli.lines import apply_elastics, apply_lines
 from app.presenters.assessment import assessment_lines
 from app.presenters.elastics import effect_text, next_step
 from core.document.design import Design
@@ -77,7 +77,7 @@ def solve_design(
     also for a design without active lines and cups unless it may be ``bare``.
     """
     stages = build(design)
-    design = apply_lines(design, all_lines(stages), lines)
+    design = apply_lines(design, stages.lines, lines)
     requested = apply_elastics(design, elastics)
     worn = any(region.lines for region in design.regions)
     if not worn and design.cup is None and not bare:

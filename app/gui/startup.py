@@ -13,7 +13,7 @@ from app.gui.features.project.recent_files import file_at_start, is_first_start
 from app.gui.session.termination import Termination
 from app.gui.viewport.opengl import begin_graphics, graphics_work
 from app.gui.widgets.first_paint import when_painted
-from app.presenters.samples import sample_in_bra
+from app.presenters.samples import dressed_sample
 from app.rendering.display import has_display
 from core.document.design import Design
 from core.errors import UserError
@@ -72,7 +72,7 @@ def _run(app: QApplication, window: MainWindow) -> int:
 
 def _at_start() -> str | Design | None:
     """Return what to open unasked: the sample at first, later the last file if that is wished, or nothing."""
-    return sample_in_bra() if is_first_start() else file_at_start() or None
+    return dressed_sample() if is_first_start() else file_at_start() or None
 
 
 def _go_on(window: MainWindow, what: str | Design | None) -> None:

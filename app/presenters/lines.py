@@ -16,10 +16,23 @@ from core.control_mesh.straps import Tail
 from core.control_mesh.template import Template, read_template
 from core.document.design import Design
 from core.document.lines import partner_of
+from core.document.lower_trunk import line_group
 from core.document.split_lines import can_split, is_split
 from core.mechanics.constraint_lines import Line
 from core.pipeline.build import Stages
 from core.pipeline.live_solver import Frame
+
+LOWER_COLOURS = {
+    **dict.fromkeys(("above-waist", "waist", "below-waist"), "#E2A32F"),
+    **dict.fromkeys(("belly", "belly-panel", "low-belly-panel", "belly-cross"), "#6FA3F5"),
+    **dict.fromkeys(("high-hip", "hip", "under-hip"), "#8C8B2C"),
+    **dict.fromkeys(("sling", "high-sling", "buttock-lift"), "#C2571A"),
+    **dict.fromkeys(("leg-opening", "high-leg"), "#7A1F2E"),
+}
+"""Colours of the lines of the lower trunk, by kind."""
+
+SEAMS = "#A9ABC9"
+"""The colour of lines there that are seams or measured."""
 
 LINE_COLOURS = {"full-bust": "#0A5F73", "mid-bust": "#E5536B", "under-bust": "#5A3F94"}
 """Colours of the template's lines in both themes, told apart by the colour-blind; top line first."""
@@ -39,7 +52,7 @@ def pair_title(name: str, design: Design) -> str:
         "sling": tr("Slings"),
         "oblique": tr("Obliques"),
         "ring": tr("Rings"),
-        **({kind: line_title(kind)} if kind in LINE_COLOURS else {}),
+        **({kind: line_title(kind)} if kind in LINE_COLOURS or line_group(name) != "bust" else {}),
     }
     if kind == "strap" and not all(each.over_shoulder for each in design.own_lines if each.name == name):
         titles[kind] = tr("Upper-chest straps")
@@ -69,11 +82,13 @@ def line_colours(names: Iterable[str], design: Design | None = None) -> dict[str
     """
     given = list(names)
     halves = {name: LINE_COLOURS[kind_of(name)] for name in given if kind_of(name) in LINE_COLOURS}
-    own = [name for name in given if name not in halves]
+    below = {name: LOWER_COLOURS.get(kind_of(name), SEAMS) for name in given if line_group(name) != "bust"}
+    own = [name for name in given if name not in halves and name not in below]
     kinds = list(dict.fromkeys(kind_of(name) for name in own))
     order = list(LINE_COLOURS)
     colours = {name: halves[name] for name in sorted(halves, key=lambda each: order.index(kind_of(each)))}
     colours |= {name: OWN_COLOURS[kinds.index(kind_of(name)) % len(OWN_COLOURS)] for name in own}
+    colours |= below
     if design is None:
         return colours
     return {name: design.line_settings(name).colour or colour for name, colour in colours.items()}
@@ -82,8 +97,11 @@ def line_colours(names: Iterable[str], design: Design | None = None) -> dict[str
 def line_views(
     design: Design, frame: Frame, hidden: Collection[str], leeways: Mapping[str, Shown] | None = None
 ) -> list[LineView]:
-    """Return the rows of the list, top line first, then own lines; a linked pair is one row."""
-    lines = {line.name: line for line in frame.stages.model.lines}
+    """Return the rows of the list, top line first, then own lines; a linked pair is one row.
+
+    Those of the lower trunk follow, from above, if there is that region.
+    """
+    lines = {line.name: line for line in frame.stages.lines}
     rows = []
     for name, colour in line_colours(lines, design).items():
         pair = tuple(each for each in sorted(design.linked_pair(name)) if each in lines)
@@ -102,15 +120,16 @@ def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineV
     name, traits = lines[0].name, design.line_settings(lines[0].name)
     tail = frame.stages.tails.get(name)
     own = {each.name for each in design.own_lines}
-    sides = [SideView(side_of(line.name), line.rest_length, frame.lengths[line.name]) for line in lines]
-    partner = partner_of(name) if partner_of(name) in own else ""
+    lengths, group = frame.line_lengths, line_group(name)
+    sides = [SideView(side_of(line.name), line.rest_length, lengths[line.name]) for line in lines]
+    partner = partner_of(name) if partner_of(name) in own or (group != "bust" and partner_of(name)) else ""
     return LineView(
         name,
         row_title(name, design),
         colour,
         design.ratio(name),
         sum(side.rest_mm for side in sides) / len(sides),
-        sum(frame.lengths[line.name] for line in lines) / len(lines),
+        sum(lengths[line.name] for line in lines) / len(lines),
         any(line.constrains for line in lines),
         True,
         sum(line.whole_length for line in lines) / len(lines),
@@ -122,14 +141,23 @@ def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineV
         width_mm=band_width(name, design),
         stiffness=traits.stiffness,
         usual_stiffness=design.line_stiffness,
-        apart=name.rsplit(" ", 1)[-1] if partner and len(lines) == 1 else "",
+        apart=name[len(kind_of(name)) + 1 :] if partner and len(lines) == 1 else "",
         pair_title=pair_title(name, design),
         elastic=elastic_title(traits.elastic),
         splits=not partner and can_split(design, _template(design.template), name),
         parted=is_split(design, name),
         strap="" if tail is None else _strap_text(tail),
         over_shoulder=_over_shoulder(design, frame, name),
+        group=group,
+        whole_band=group != "bust" and _is_closed(frame, name),
+        worn=any(line.name in region.active_lines() for region in design.regions for line in lines),
     )
+
+
+def _is_closed(frame: Frame, name: str) -> bool:
+    """Return whether a line of the lower trunk comes back to where it begins."""
+    path = frame.stages.lower.control.paths[name] if frame.stages.lower is not None else (0, 1)
+    return path[0] == path[-1]
 
 
 def _over_shoulder(design: Design, frame: Frame, name: str) -> bool | None:
@@ -198,6 +226,8 @@ class LineView:
     ``strap`` is where it goes on over the shoulder, as words; its lengths are then those of all of it.
     ``over_shoulder``: whether it does, None for a line that cannot.
     ``width_mm`` is that of its band; ``stiffness`` [1] its own, or None for the ``usual_stiffness``.
+    ``group`` is where the garment has it, "bust" or one of ``lower_trunk.GROUPS``; ``worn`` whether it acts.
+    A ``whole_band`` is closed without a back that stays.
     """
 
     name: str
@@ -229,6 +259,9 @@ class LineView:
     parted: bool = False
     strap: str = ""
     over_shoulder: bool | None = None
+    group: str = "bust"
+    whole_band: bool = False
+    worn: bool = True
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -254,13 +287,16 @@ class _Drawn:
 
 def drawn(stages: Stages) -> tuple[_Drawn, ...]:
     """Return how the lines of a body are drawn, in the order of the list."""
-    names, design = [line.name for line in stages.model.lines], stages.design
+    design = stages.design
+    worn = {name for region in design.regions for name in region.active_lines()}
+    names = [line.name for line in stages.drawn_lines]
     # What cannot pull is not put on and taken off: it measures, and is drawn as it lies.
-    off = {line.name for line in stages.model.lines if line.constrains} - design.active_lines()
+    off = {line.name for line in stages.lines if line.constrains} - worn
+    routes = stages.all_routes
     return tuple(
         _Drawn(
             name,
-            stages.routes[name].path.tobytes() + stages.routes[name].back.tobytes(),
+            routes[name].path.tobytes() + routes[name].back.tobytes(),
             colour,
             OFF_WIDTH if name in off else band_width(name, design),
             name in off,
@@ -274,7 +310,8 @@ def bands(stages: Stages, hidden: Collection[str]) -> list[Band]:
 
     Those with a back are drawn as whole bands and straps over the shoulder; the others end where they end.
     """
-    shown = [(line, stages.routes[line.name]) for line in drawn(stages) if line.name not in hidden]
+    routes = stages.all_routes
+    shown = [(line, routes[line.name]) for line in drawn(stages) if line.name not in hidden]
     return [
         Band(line.name, route.path, line.colour, line.width, route.back, line.off, route.drawn)
         for line, route in shown
@@ -286,14 +323,14 @@ def band_label(design: Design, frame: Frame, name: str) -> tuple[str, str]:
 
     Of an elastic, which is stretched far, the length that it reaches.
     """
-    line = next(line for line in frame.stages.model.lines if line.name == name)
+    line = next(line for line in frame.stages.lines if line.name == name)
     title = line_title(name, design)
     if not line.constrains:
         return title, length(line.rest_length)
     ratio = design.ratio(name)
     if design.line_settings(name).elastic:
-        stretch = frame.lengths[name] / (ratio * line.rest_length) - 1.0
+        stretch = frame.line_lengths[name] / (ratio * line.rest_length) - 1.0
         text = tr("elongation {value}").format(value=f"{number(100.0 * stretch)} %")
-        return f"{title} {length(frame.lengths[name])}", text
+        return f"{title} {length(frame.line_lengths[name])}", text
     change = (ratio - 1.0) * line.rest_length
     return f"{title} {number(100.0 * ratio)} %", length(change, signed=True)

@@ -8,7 +8,6 @@ from functools import cache
 from app.i18n.catalog import joined, listed, template, tr, tr_context
 from app.i18n.lengths import length, length_number, width
 from core.document.design import Design
-from core.document.lines import partner_of
 from core.garment.elastic_library import built_in
 from core.garment.presets import Preset
 from core.messages import ElasticName, Length, LengthRange, LineName, Message, Name, Parameter
@@ -92,20 +91,46 @@ def line_title(name: str, design: Design | None = None) -> str:
         "ring right": tr("Ring right"),
         "cup left": tr("Cup left"),
         "cup right": tr("Cup right"),
+        **_lower_titles(),
     }
     kind = kind_of(name)
     usual = _with_side(titles.get(kind) or _generated(kind), name)
     return titles.get(name, usual[:1].upper() + usual[1:])
 
 
+def _lower_titles() -> dict[str, str]:
+    """Return the names of the lines of the lower trunk, by kind."""
+    return {
+        "under-bust-whole": tr("Under-bust, all round"),
+        "above-waist": tr("Above waist"),
+        "waist": tr("Waist"),
+        "below-waist": tr("Below waist"),
+        "belly": tr("Belly"),
+        "high-hip": tr("High hip"),
+        "hip": tr("Hip"),
+        "under-hip": tr("Under hip"),
+        "belly-panel": tr("Belly panel"),
+        "low-belly-panel": tr("Low belly panel"),
+        "belly-cross": tr("Belly cross"),
+        "sling": tr("Seat sling"),
+        "high-sling": tr("High seat sling"),
+        "buttock-lift": tr("Buttock lift"),
+        "leg-opening": tr("Leg opening"),
+        "high-leg": tr("High leg opening"),
+        "princess-front": tr("Princess seam, front"),
+        "princess-back": tr("Princess seam, back"),
+        "side": tr("Side seam"),
+    }
+
+
 def kind_of(name: str) -> str:
     """Return the name of a line without its side."""
-    return name.removesuffix(" left").removesuffix(" right")
+    return re.sub(r"[ -](left|right)$", "", name)
 
 
 def side_of(name: str) -> str:
     """Return the side of a line in words; empty for one that is not one of a pair."""
-    return {" left": tr("left"), "right": tr("right")}.get(name[-5:], "") if partner_of(name) else ""
+    return {"left": tr("left"), "right": tr("right")}.get(name[len(kind_of(name)) + 1 :], "")
 
 
 def _with_side(title: str, name: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import reduce
 from importlib import resources
 from pathlib import Path
 
@@ -9,7 +10,7 @@ from core.document.design import Design, ScanSource
 from core.document.lines import ActiveLine
 from core.garment.presets import built_in, with_preset
 
-SAMPLES = {"mannequin": "Mannequin", "person": "Person"}
+SAMPLES = {"mannequin": "Mannequin", "person": "Person", "trunk": "Whole trunk"}
 """The sample bodies by file name, each with what it is called in the window."""
 
 FIRST_RATIO = 0.95
@@ -21,6 +22,9 @@ FIRST_SAMPLE = "person"
 
 FIRST_PRESET = "Underwired bra"
 """The preset in which sample bodies open: it lifts the bust by about a centimetre, and presses gently."""
+
+WHOLE_TRUNK, LOWER_PRESET = "trunk", "Girdle"
+"""The sample that shows a body to the thighs, and the preset that it wears below its bra."""
 
 STRAP = "strap left"
 """The line of it that is selected at first."""
@@ -38,7 +42,8 @@ def sample_design(name: str = "mannequin") -> Design:
     return Design(scan, lines=(ActiveLine("mid-bust", FIRST_RATIO),))
 
 
-def sample_in_bra(name: str = FIRST_SAMPLE) -> Design:
-    """Return the design that a sample body opens with: in a bra that lifts the bust."""
-    preset = next(each for each in built_in() if each.title == FIRST_PRESET)
-    return with_preset(sample_design(name), preset)
+def dressed_sample(name: str = FIRST_SAMPLE) -> Design:
+    """Return the design that a sample body opens with: in a bra that lifts the bust, and in a girdle."""
+    titles = [FIRST_PRESET, *([LOWER_PRESET] if name == WHOLE_TRUNK else [])]
+    presets = [each for each in built_in() if each.title in titles]
+    return reduce(with_preset, presets, sample_design(name))

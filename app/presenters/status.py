@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -96,12 +97,12 @@ def is_result(frame: Frame) -> bool:
 def convergence_view(
     frame: Frame,
     overall: AssessmentView,
-    girths: tuple[float, float] | None = None,
+    girths: Mapping[str, tuple[float, float]] | None = None,
     pressed: PressureList | None = None,
 ) -> ConvergenceView:
     """Return how a frame stands under its ``overall`` verdict, with the values that matter then.
 
-    ``girths`` at the bust points before and after [mm], and contact pressures, as far as they are known.
+    ``girths`` before and after by name [mm], see ``figure_girths``, and contact pressures, as far as known.
     """
     state, seconds = display_state(frame), tr("{seconds} s").format(seconds=number(frame.seconds))
     return ConvergenceView(
@@ -162,7 +163,7 @@ def _effort(frame: Frame) -> str:
 
 
 def _figures(
-    frame: Frame, girths: tuple[float, float] | None, pressed: PressureList | None
+    frame: Frame, girths: Mapping[str, tuple[float, float]] | None, pressed: PressureList | None
 ) -> list[tuple[str, str]]:
     verdict, state = frame.verdict, display_state(frame)
     if state == "diverging":
@@ -177,9 +178,9 @@ def _figures(
         return [kept, (tr("Skin strain"), _strain(verdict.condition))]
     move = bust_shift(frame)
     told = [(tr("Bust point"), step_text(move.mean))]
-    if girths is not None:
-        change = f"{length_number(girths[0])} → {length(girths[1])}"
-        told.append((tr("Bust girth"), change))
+    titles = {"bust": tr("Bust girth"), "waist": tr("Waist girth"), "hip": tr("Hip girth")}
+    for name, (before, after) in (girths or {}).items():
+        told.append((titles[name], f"{length_number(before)} → {length(after)}"))
     hardest = None if pressed is None else pressed.highest
     if hardest is not None and hardest.max_kpa is not None:
         told.append((tr("Max. pressure"), f"{number(hardest.max_kpa)} kPa"))

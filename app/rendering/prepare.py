@@ -19,7 +19,8 @@ def prepare_scene(built: Stages | IncompleteBuildError, progress: Progress = qui
     if stages is None:
         return
     surface = RibbonSurface(mesh)
-    for done, line in enumerate(stages.model.lines):
-        progress(PREPARING, 0.9 + 0.1 * done / len(stages.model.lines))
-        for width in (band_width(line.name, stages.design), OFF_WIDTH):
-            surface.lay_ready(stages.routes[line.name], width)
+    routes, lines = stages.all_routes, [line.name for line in stages.drawn_lines]
+    for done, name in enumerate(lines):
+        progress(PREPARING, 0.9 + 0.1 * done / len(lines))
+        for width in (band_width(name, stages.design), OFF_WIDTH):
+            surface.lay_ready(routes[name], width)

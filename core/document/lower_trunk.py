@@ -69,6 +69,21 @@ def lower_line_names() -> frozenset[str]:
     return frozenset(read_lower_template().paths)
 
 
+GROUPS = ("waist", "seat", "legs")
+"""Where a garment has lines of the lower trunk, from above."""
+
+
+def line_group(name: str) -> str:
+    """Return which of GROUPS a line belongs to, "bust" for one above."""
+    if name not in lower_line_names():
+        return "bust"
+    kind = name.removesuffix("-left").removesuffix("-right")
+    if kind in ("leg-opening", "high-leg"):
+        return "legs"
+    on_seat = ("high-hip", "hip", "under-hip", "sling", "high-sling", "buttock-lift")
+    return "seat" if kind in on_seat else "waist"
+
+
 def lower_lines_of(name: str) -> tuple[str, ...]:
     """Return the lines of the lower trunk that a name stands for: one, both sides, or none."""
     known = lower_line_names()

@@ -18,11 +18,13 @@ from core.document.serialization import to_json
 from core.export.mesh import write_control_points, write_mesh
 from core.files.atomic_write import atomic_path, write_text
 from core.garment.cup_fit import WornCups
+from core.measurements.lower_trunk import lower_before_after
 from core.mechanics.constraint_lines import Line
 from core.mechanics.iteration import Observables, Record
 from core.mechanics.mesh_quality import MeshQuality
 from core.messages import Message, plain
 from core.pipeline.build import Stages
+from core.pipeline.lower_region import LowerStages
 from core.pipeline.solve import RegionSolution, Solution
 from core.pipeline.stages import RegionStages
 from core.pipeline.warnings import immovable_lines, shape_warnings, warnings
@@ -120,18 +122,22 @@ def report(solution: Solution) -> dict[str, Any]:
         },
         "design": json.loads(to_json(stages.design)),
     }
-    if solution.lower is not None:
-        figures["lower_trunk"] = _lower_report(solution.lower)
+    if stages.lower is not None and solution.lower is not None:
+        figures["lower_trunk"] = _lower_report(stages.lower, solution.lower)
     return figures
 
 
-def _lower_report(solution: RegionSolution) -> dict[str, Any]:
+def _lower_report(stages: LowerStages, solution: RegionSolution) -> dict[str, Any]:
     """Return the figures of the lower trunk."""
     return {
         **_region_report(solution),
         "zones": _zones_report(solution),
-        "gain": solution.stages.gain,
-        "gain_limit_at_rest": solution.stages.gain_limit,
+        "girths": {
+            name: {"level_mm": before.level_mm, "before_mm": before.tape_mm, "after_mm": after.tape_mm}
+            for name, (before, after) in lower_before_after(stages, solution.control_points).items()
+        },
+        "gain": stages.gain,
+        "gain_limit_at_rest": stages.gain_limit,
     }
 
 

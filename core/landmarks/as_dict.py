@@ -34,11 +34,9 @@ def detection(
     found, heights, points = dict(girths(body, landmarks)), dict(levels(landmarks)), dict(landmarks.points)
     doubts = girth_warnings(found)
     if lower is not None:
-        found |= lower_girths(lower.sections, lower)
-        heights |= lower.levels | {
-            name: float(mark.position[2]) for name, mark in lower.points.items() if name.startswith("buttock")
-        }
-        points |= lower.points
+        found.update(lower_girths(lower.sections, lower))
+        heights.update(lower.levels)
+        points.update(lower.points)
         doubts = [*doubts, *lower.warnings]
     to_file = np.linalg.inv(body.pose.file_to_mm)
     marks = {

@@ -26,12 +26,13 @@ from core.landmarks.detect import FINDING, find_landmarks
 from core.landmarks.manual import PlacedMark, in_mm
 from core.landmarks.types import LOWER_NAMES, Landmarks
 from core.mechanics.condensed_tissue import CondensedTissue
+from core.mechanics.constraint_lines import Line
 from core.mechanics.cup_parts import CupPart
 from core.mechanics.iteration import Observables
 from core.mechanics.options import ModelOptions
 from core.messages import Message
 from core.pipeline.cup_parts import CupLayout
-from core.pipeline.line_routes import line_routes, strap_tails
+from core.pipeline.line_routes import LineRoute, line_routes, strap_tails
 from core.pipeline.lower_region import LowerStages, lower_stages
 from core.pipeline.model_stages import bound, model_stages
 from core.pipeline.observables import BodyObservables
@@ -76,6 +77,24 @@ class Stages(RegionStages):
     def regions(self) -> tuple[RegionStages, ...]:
         """Return the stages of each region, the bust first."""
         return (self,) if self.lower is None else (self, self.lower)
+
+    @property
+    def lines(self) -> tuple[Line, ...]:
+        """Return the lines of all regions, those of the bust first."""
+        return tuple(line for region in self.regions for line in region.model.lines)
+
+    @property
+    def drawn_lines(self) -> tuple[Line, ...]:
+        """Return the lines that are drawn on the body: of the lower trunk, which has many, those worn."""
+        if self.lower is None:
+            return self.model.lines
+        worn = self.lower.design.active_lines()
+        return (*self.model.lines, *(line for line in self.lower.model.lines if line.name in worn))
+
+    @property
+    def all_routes(self) -> Mapping[str, LineRoute]:
+        """Return where the lines of all regions run at rest, by name."""
+        return {name: route for region in self.regions for name, route in region.routes.items()}
 
     def bust_height(self, control_points: Points) -> float:
         """Return how high the bust points are in the mean [mm]."""

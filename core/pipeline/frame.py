@@ -60,6 +60,11 @@ class Frame:
     lower: RegionFrame | None = None
 
     @property
+    def line_lengths(self) -> Mapping[str, float]:
+        """Return the lengths of the lines of all regions [mm]."""
+        return self.lengths if self.lower is None else {**self.lengths, **self.lower.lengths}
+
+    @property
     def region_points(self) -> tuple[Points, ...]:
         """Return the control points of each region, the bust's first, each (n, 3) [mm]."""
         return (self.control_points, *(each.control_points for each in [self.lower] if each))

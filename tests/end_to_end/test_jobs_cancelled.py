@@ -135,11 +135,11 @@ def test_what_fails_is_told_and_waits_no_longer(monkeypatch: pytest.MonkeyPatch)
 def test_the_bust_girth_of_the_strip_is_measured_beside_the_window(monkeypatch: pytest.MonkeyPatch) -> None:
     threads = []
 
-    def measured(*_: object) -> tuple[float, float]:
+    def measured(*_: object) -> dict[str, tuple[float, float]]:
         threads.append(threading.current_thread())
-        return 900.0, 880.0
+        return {"bust": (900.0, 880.0)}
 
-    monkeypatch.setattr(verdict_desk, "bust_girths", measured)
+    monkeypatch.setattr(verdict_desk, "figure_girths", measured)
 
     def script(window: MainWindow) -> Script:
         undrawn(window)

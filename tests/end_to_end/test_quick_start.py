@@ -16,7 +16,7 @@ from window_tools import Script, run_main, settled, undrawn
 
 from app.gui.main_window import MainWindow
 from app.presenters.bust_shift import bust_shift, shift_between
-from app.presenters.samples import FIRST_PRESET, STRAP, sample_in_bra, sample_path
+from app.presenters.samples import FIRST_PRESET, STRAP, dressed_sample, sample_path
 from core.document.design import ScanSource
 from core.document.storage.project_file import open_project
 from core.garment.cut_list import cut_list
@@ -181,7 +181,7 @@ def kept(window: MainWindow, folder: Path) -> Script:
 
 def test_the_figures_of_the_guide_are_those_of_its_steps() -> None:
     """Of steps 1 and 7 to 14, on the sample as the pictures show it."""
-    design = replace(sample_in_bra("person"), scan=ScanSource(str(sample_path("person"))))
+    design = replace(dressed_sample("person"), scan=ScanSource(str(sample_path("person"))))
     higher = replace(design, cup=replace(design.cup, lift=HIGH))
     first = build(design)
     worn, shorter = (build(each, first) for each in (higher, higher.with_line(BAND, SHORT)))

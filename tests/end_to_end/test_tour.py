@@ -16,7 +16,7 @@ from app.gui.features.report.controller import ReportController
 from app.gui.main_window import MainWindow
 from app.gui.widgets.coach_mark import CoachMark
 from app.presenters.bust_shift import bust_shift, shift_between, up_text
-from app.presenters.samples import FIRST_SAMPLE, SAMPLES, sample_in_bra
+from app.presenters.samples import FIRST_SAMPLE, SAMPLES, dressed_sample
 from core.garment.assessment import BAD, GOOD, assess
 from core.pipeline.build import build
 from core.pipeline.solve import solve
@@ -31,7 +31,7 @@ SEEN = 5.0
 @pytest.mark.usefixtures("fine_samples")
 @pytest.mark.parametrize("name", SAMPLES)
 def test_the_bra_of_a_sample_lifts_the_bust_and_can_be_worn(name: str) -> None:
-    solution = solve(build(sample_in_bra(name)))
+    solution = solve(build(dressed_sample(name)))
     stages = solution.stages
     assert shift_between(stages.rest_marks, stages.watch(solution.control_points)).mean.up > SEEN
     assert assess(solution).level == GOOD
@@ -43,7 +43,7 @@ def test_the_tour_leads_from_the_lifted_bust_to_the_sheet() -> None:
         yield settled(window)
         tour = window.start_controller.tour
         yield lambda: tour.place == 0
-        assert window.session.design == sample_in_bra(FIRST_SAMPLE)
+        assert window.session.design == dressed_sample(FIRST_SAMPLE)
         yield lambda: window.strip.chip.state() != "pending"
         assert window.strip.chip.state() != BAD
         assert window.view.compare.actions_by_name["ghost"].isChecked()
@@ -195,7 +195,7 @@ def the_samples_open_as_at_first(window: MainWindow) -> None:
         patch.setattr(window.project_controller, "may_leave", lambda: True)
         for action in window.actions_.samples.values():
             action.trigger()
-    assert opened == [sample_in_bra(name) for name in SAMPLES]
+    assert opened == [dressed_sample(name) for name in SAMPLES]
 
 
 def lift(window: MainWindow) -> float:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from app.cli.commands.picture import draw_picture, draw_window
 from app.cli.options import add_folder_output
 from app.cli.output import DONE, make_folder
-from app.presenters.samples import sample_in_bra
+from app.presenters.samples import dressed_sample
 from core.export.solution_report import write_solution
 from core.pipeline.build import build
 from core.pipeline.solve import solve
@@ -21,7 +21,7 @@ def add_options(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Write pictures, reshaped body and report of the sample, and print their names."""
-    out, design = make_folder(options.out), sample_in_bra()
+    out, design = make_folder(options.out), dressed_sample()
     print("No display available: the sample session is written to files.")
     draw_window(design, out / "window.png")
     print(f"  {out / 'window.png'}: the window")

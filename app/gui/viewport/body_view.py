@@ -104,7 +104,7 @@ class BodyView:
         self.selected_line = name
         if self.body is None:
             return
-        names = {line.name for line in self._laid.model.lines} if self._laid is not None else set()
+        names = {line.name for line in self._laid.lines} if self._laid is not None else set()
         shown = name in names - self.hidden_lines
         self._show_label()
         self.viewport.select_band(name if shown else None)
@@ -113,7 +113,7 @@ class BodyView:
         """Write beside the selected line, if it can be seen."""
         name, frame = self.selected_line, self.frame
         seen = self.after and name not in self.hidden_lines and self.viewport.scene.is_visible("bands")
-        if seen and frame is not None and name in frame.lengths:
+        if seen and frame is not None and name in frame.line_lengths:
             self.viewport.label_band(name, *band_label(frame.stages.design, frame, name))
         else:
             self.viewport.label_band(None)

@@ -84,6 +84,10 @@ def _faded_out(picture: QImage) -> QImage:
     return result
 
 
+LOWER_ROWS = {"waist": (2, 6), "seat": (6, 9)}
+"""Rows of the control mesh of the lower trunk that are framed with each of its parts."""
+
+
 class ViewArea(QWidget):
     """Shows frames; ``is_shaded`` says whether the soft shadows of the body have been worked out.
 
@@ -154,14 +158,16 @@ class ViewArea(QWidget):
 
     def show_frame(self, frame: Frame) -> None:
         """Update all visible parts of the document."""
-        first = frame.stages.body is not self._main.body
+        first, former = frame.stages.body is not self._main.body, self._main.frame
         if first:
             self.viewport.paint_later()
         for body in self.beside.live:
             body.show_frame(frame)
         if first:
             self._show_new(frame.stages.body)
-            self.viewport.frame_bust()
+        whole = frame.lower is not None
+        if first or whole != (former is not None and former.lower is not None):
+            (self.viewport.frame_all if whole else self.viewport.frame_bust)()
         self.pins.set_landmarks(frame.stages.landmarks.points)
 
     def show_stuck(self, body: Body, landmarks: Mapping[str, Landmark]) -> None:
@@ -224,6 +230,19 @@ class ViewArea(QWidget):
             self.viewport.frame_points(place[None])
         elif self.selected_line in bands.names:
             self.viewport.frame_points(bands.spine(self.selected_line)[0])
+
+    def frame_part(self, part: str) -> None:
+        """Zoom to the bust, the waist or the seat; to the whole body where the design has no such part."""
+        frame = self._main.frame
+        if part == "bust" or frame is None or frame.lower is None:
+            (self.viewport.frame_bust if part == "bust" else self.viewport.frame_all)()
+            return
+        control = frame.lower.stages.control
+        low, high = LOWER_ROWS[part]
+        own = (control.row >= low) & (control.row <= high)
+        if part == "seat":
+            self.viewport.set_view("back")
+        self.viewport.frame_points(control.mesh.vertices[own])
 
     # -- before and after
 

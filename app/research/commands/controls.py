@@ -91,7 +91,7 @@ def run_trials(out: Path, quick: bool = False) -> list[Trial]:
 
 def subjects(quick: bool) -> Iterator[Subject]:
     """Yield the bodies with each choice of the model that is tried on them."""
-    names = list(SAMPLES)[:1] if quick else list(SAMPLES)
+    names = list(SAMPLES)[: 1 if quick else 2]
     bodies = [(name, build(sample_design(name)).control, "mid-bust") for name in names]
     bodies += [] if quick else [("sphere", sphere_control(), "horizontal")]
     choices = [("force-density", "explicit", EXPLICIT_STIFFNESS)]

@@ -58,7 +58,8 @@ def find_lower_landmarks(
     points |= _suggested(cuts, by_hand, points)
     points = {name: points[name] for name in LOWER_NAMES if name in points}
     levels = {name: float(points[name].position[2]) for name in ("waist", "belly", "hip", "crotch")}
-    levels |= {f"gluteal_fold_{side}": float(points[f"gluteal_fold_{side}"].position[2]) for side in SIDES}
+    pairs = (f"{name}_{side}" for name in ("buttock", "gluteal_fold") for side in SIDES)
+    levels |= {name: float(points[name].position[2]) for name in pairs}
     levels["buttock"] = float(np.mean([points[f"buttock_{side}"].position[2] for side in SIDES]))
     return LowerLandmarks(MappingProxyType(points), MappingProxyType(levels), cuts, _warnings(points))
 

@@ -15,8 +15,8 @@ from core.messages import Message
 class LowerLandmarks:
     """The landmarks of the lower trunk by name, of ``LOWER_NAMES``, and the heights of its ``levels`` [mm].
 
-    Levels are waist, belly, hip, buttock (mean of both sides), gluteal_fold_left, gluteal_fold_right and
-    crotch. ``sections`` are those that they were read from. ``warnings`` hold one sentence each.
+    Levels are waist, belly, hip, crotch, those of buttocks and gluteal folds of both sides, and buttock, the
+    mean of these. ``sections`` are those that they were read from. ``warnings`` hold one sentence each.
     """
 
     points: Mapping[str, Landmark]

@@ -10,7 +10,8 @@ from app.presenters.status import ConvergenceView, convergence_view
 from core.garment.assessment import assess_with
 from core.garment.cut_list import cut_list
 from core.garment.pressure_list import pressure_list
-from core.measurements.table import before_after, bust_girths
+from core.measurements.figure import figure_girths
+from core.measurements.table import before_after
 from core.pipeline.build import Stages, build
 from core.pipeline.live_solver import Frame, make_frame
 from core.pipeline.region_solvers import RegionSolvers
@@ -62,12 +63,11 @@ def test_what_a_designer_asks_first_stands_first(built: Callable[[str], Stages])
     frame = make_frame(1, stages, solvers, 0.3)
     pressed = pressure_list(stages, frame.control_points)
     overall = assessment_view(assess_with(frame, cut_list(stages, frame.control_points), pressed))
-    girths = bust_girths(stages, frame.control_points)
-    assert girths is not None
-    before, after = girths
+    girths = figure_girths(frame)
+    before, after = girths["bust"]
     measured = [each["bust_girth"].value for each in before_after(stages, frame.control_points)]
     assert measured == [before, after], "one girth, wherever it is shown"
-    shown = convergence_view(frame, overall, (before, after), pressed).numbers
+    shown = convergence_view(frame, overall, girths, pressed).numbers
     assert [name for name, _ in shown] == [
         "Bust point",
         "Bust girth",

@@ -14,7 +14,7 @@ from app.presenters.status import ConvergenceView, convergence_view, out_of_date
 from core.garment.assessment import BAD, CAUTION, GOOD, PENDING, assess_with
 from core.garment.cut_list import CutList, cut_list_of
 from core.garment.pressure_list import PressureList
-from core.measurements.table import bust_girths
+from core.measurements.figure import figure_girths
 from core.pipeline.live_solver import Frame
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ class AssessmentController(QObject):
             context.session,
             context.jobs,
             tr("Measuring bust girth…"),
-            lambda frame, _: bust_girths(frame.stages, frame.control_points),
+            lambda frame, _: figure_girths(frame),
             failed=context.notifications.error,
         )
         self._girths.changed.connect(self.refresh)

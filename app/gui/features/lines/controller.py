@@ -12,11 +12,12 @@ from PySide6.QtCore import QObject, Qt
 from app.gui.features.lines.panel import LinesPanel
 from app.i18n.catalog import number, tr
 from app.presenters.lines import Shown, line_views, pair_title, row_title
-from app.presenters.messages import kind_of
+from app.presenters.messages import kind_of, render_all
 from app.presenters.pressure import line_pressure_view
 from core.control_mesh.template import read_template
 from core.document.design import Design
 from core.document.lines import partner_of
+from core.document.lower_trunk import LowerTrunk, line_group
 from core.document.split_lines import is_split, split
 from core.garment.pressure_list import PressureList
 from core.pipeline.live_solver import Frame
@@ -57,6 +58,7 @@ class LinesController(QObject):
         panel.decided.connect(self.decide)
         panel.reset_all.connect(context.session.reset_lines)
         panel.removed.connect(self.remove)
+        panel.lower_trunk_requested.connect(self.add_lower_trunk)
         context.selection.line_selected.connect(panel.select)
         context.actions.reset.triggered.connect(context.session.reset_lines)
 
@@ -93,6 +95,9 @@ class LinesController(QObject):
             tried, design = self.sources.is_on_trial, frame.stages.design
             views = [replace(view, tried=tried(view.names, design)) for view in views]
             self._panel.set_lines([line_pressure_view(view, pressed) for view in views])
+            problem = frame.stages.lower_problem
+            why_not = "" if problem is None else " ".join(render_all([problem.message, problem.hint]))
+            self._panel.show_lower_trunk(offered=design.lower is None, why_not=why_not)
 
     def commit_length(self, name: str, ratio: float) -> None:
         """Set the length of a line and its linked partner."""
@@ -105,7 +110,7 @@ class LinesController(QObject):
         if design is None:
             return
         sides = {line.name for line in design.own_lines}
-        if trait == "linked" and not value and partner_of(name) not in sides:
+        if trait == "linked" and not value and partner_of(name) not in sides and line_group(name) == "bust":
             self._split(name, design)
             return
         if trait == "over_shoulder":
@@ -123,6 +128,11 @@ class LinesController(QObject):
             return reduce(lambda d, each: _with_trait(d, each, trait, value), names, before)
 
         self._session.edit(decided, text)
+
+    def add_lower_trunk(self) -> None:
+        """Let the design have lines below the bust."""
+        text = tr("Waist, hips and seat added")
+        self._session.edit(lambda design: replace(design, lower=design.lower or LowerTrunk()), text)
 
     def set_visible(self, name: str, visible: bool) -> None:
         """Show or hide the bands of a line and its linked partner."""

@@ -219,7 +219,9 @@ def _part_words(view: LineView) -> str:
     """Return what the set length is a share of."""
     if view.elastic:
         return tr("Unstretched: {percent} % of the original length")
-    if view.own:
+    if view.group != "bust" and view.whole_band:
+        return tr("{percent} % of the whole band")
+    if view.own or view.group != "bust":
         return tr("{percent} % of its original length")
     return tr("{percent} % of the front length, side to side")
 

@@ -1,6 +1,5 @@
 """The list of constraining lines, where each is set shorter or longer."""
 
-# ruff: noqa: N802 - Qt names its events and says what they are
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 
 from __future__ import annotations
@@ -17,6 +16,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.gui.features.lines.groups import LineGroups
 from app.gui.features.lines.row import LineRow, LineView
 from app.gui.theme.icons import paint_icon
 from app.gui.theme.stylesheet import font, tokens_of
@@ -134,7 +134,7 @@ def _no_lines() -> tuple[str, str]:
 class LinesPanel(QWidget):
     """All lines, one row each, a linked pair in one; lengths in the signals are shares of those at rest [1].
 
-    ``cards`` takes what stands above them in the list.
+    ``cards`` takes what stands above them in the list. Lines below the bust stand under headings.
     Signals name a line, a pair by its left one; ``decided`` carries one of its traits and the value,
     ``elastic_requested`` one whose elastic is to be chosen; ``opened`` when the list comes to be seen.
     """
@@ -153,6 +153,7 @@ class LinesPanel(QWidget):
     draw_requested = Signal()
     add_requested = Signal()
     presets_requested = Signal()
+    lower_trunk_requested = Signal()
     reset_all = Signal()
 
     def __init__(self) -> None:
@@ -186,6 +187,7 @@ class LinesPanel(QWidget):
         self._of = {name: view.name for view in lines for name in view.names}
         for view in lines:
             self.rows[view.name].show_view(view)
+        self._show_rows()
         if self._bereft and self.rows:
             # What had the keyboard is gone: it goes on in the line that is selected now.
             row = self.rows.get(self._selected or "") or next(iter(self.rows.values()))
@@ -194,9 +196,17 @@ class LinesPanel(QWidget):
         self._empty.setVisible(not lines)
         for tool in (self.head.presets, self.head.add, self.head.draw):
             tool.setEnabled(bool(lines))
-        self._reach.setVisible(bool(lines))
         self._scroll.setVisible(bool(lines))
         self.head.reset.setEnabled(any(view.settable and view.ratio != 1.0 for view in lines))
+
+    def show_lower_trunk(self, *, offered: bool, why_not: str) -> None:
+        """Show whether the lower trunk can be added, or why there is none though the design has it."""
+        self.add_lower.setVisible(offered)
+        self._why_not.setText(why_not)
+        self._why_not.setVisible(bool(why_not))
+
+    def _show_rows(self) -> None:
+        self.groups.show(list(self.rows.values()), self._selected)
 
     def show_opening(self, name: str) -> None:
         """Show that a document is being opened in place of lines; an empty name: that there are none."""
@@ -211,6 +221,7 @@ class LinesPanel(QWidget):
         self._selected = self._of.get(name or "", name)
         for each, row in self.rows.items():
             row.set_open(each == self._selected)
+        self._show_rows()
         if self._selected in self.rows:
             self._scroll.ensureWidgetVisible(self.rows[self._selected], 0, 8)
 
@@ -255,13 +266,15 @@ class LinesPanel(QWidget):
         self._list.setSpacing(2)
         self._scroll.column.addLayout(self.cards)
         self._scroll.column.addLayout(self._list)
-        # Lasting, and before anybody looks for a waist to lock.
-        message = tr(
-            "Lines run on the control mesh, from under-bust to armpits. Waist, hip and shoulders are outside."
-        )
-        self._reach = sentence(message, "caption")
-        self._reach.setContentsMargins(10, 10, 10, 0)
-        self._scroll.column.addWidget(self._reach)
+        self.groups = LineGroups(self._list, self._show_rows)
+        self.add_lower = button(tr("Add waist, hips and seat"))
+        set_tip(self.add_lower, tr("Lines below the under-bust: requires a scan down to mid-thigh"))
+        self.add_lower.clicked.connect(self.lower_trunk_requested)
+        self._why_not = sentence("", "caption")
+        self._why_not.setContentsMargins(10, 10, 10, 0)
+        for part in (self.add_lower, self._why_not):
+            self._scroll.column.addWidget(part)
+        self.show_lower_trunk(offered=False, why_not="")
         self._scroll.column.addStretch(1)
         return self._scroll
 
@@ -277,11 +290,11 @@ class LinesPanel(QWidget):
                 self._bereft = self._bereft or (has is not None and (has is row or row.isAncestorOf(has)))
                 row.deleteLater()
         former, self.rows = self.rows, {}
-        for place, view in enumerate(lines):
+        for view in lines:
             row = self.rows[view.name] = former.get(view.name) or LineRow(view)
-            self._list.insertWidget(place, row)
             if view.name not in former:
                 self._connect(view.name, row)
+        self.groups.lay(list(self.rows.values()))
         self.select(self._selected if self._selected in self.rows else None)
 
     def _connect(self, name: str, row: LineRow) -> None:
@@ -301,7 +314,7 @@ class LinesPanel(QWidget):
             self.selected.emit(name)
 
     def _step(self, step: int) -> None:
-        names = list(self.rows)
+        names = [name for name, row in self.rows.items() if not row.isHidden()]
         here = names.index(self._selected) if self._selected in names else -1 if step > 0 else len(names)
         name = names[min(max(here + step, 0), len(names) - 1)]
         self._choose(name)

@@ -14,7 +14,7 @@ from app.gui.session.project_thumbnail import project_picture
 from app.gui.widgets.file_dialogs import ask_about_changes, ask_open, ask_overwrite, ask_save, remember_folder
 from app.gui.widgets.notification_bar import FILES
 from app.i18n.catalog import tr
-from app.presenters.samples import sample_in_bra
+from app.presenters.samples import dressed_sample
 from core.document.design import Design
 from core.document.storage.project_file import is_project, is_protected
 from core.pipeline.live_solver import Frame
@@ -116,7 +116,7 @@ class ProjectController(QObject):
     def open_sample(self, name: str) -> None:
         """Open one of the sample bodies."""
         if self.may_leave():
-            self._session.open_design(sample_in_bra(name))
+            self._session.open_design(dressed_sample(name))
 
     def save(self) -> bool:
         """Save the project, asking for a place the first time; returns whether it is being saved."""

@@ -14,7 +14,7 @@ from app.gui.features.project.recent_files import forget_file, project_views, re
 from app.gui.features.project.start_page import DropVeil, StartPage
 from app.gui.widgets.file_dialogs import ask_open
 from app.i18n.catalog import tr
-from app.presenters.samples import FIRST_SAMPLE, SAMPLES, STRAP, sample_in_bra, sample_path
+from app.presenters.samples import FIRST_SAMPLE, SAMPLES, STRAP, dressed_sample, sample_path
 from core.document.storage.recovery import recovery_folder
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ class StartController(QObject):
         if session.path is not None:
             remember_file(str(session.path))
             return
-        if session.design in [sample_in_bra(name) for name in SAMPLES]:
+        if session.design in [dressed_sample(name) for name in SAMPLES]:
             # As soon as the view has framed the body that is new to it.
             session.frame_ready.connect(self._show_lift, Qt.ConnectionType.SingleShotConnection)
         scan = session.design.scan if session.design is not None else None
