@@ -19,7 +19,7 @@ from app.i18n.catalog import LANGUAGES, translations  # noqa: E402
 from app.presenters.samples import SAMPLES  # noqa: E402
 from core.garment.elastic_library import built_in as elastics  # noqa: E402
 from core.garment.presets import built_in as presets  # noqa: E402
-from core.landmarks.types import NAMES, SIDES  # noqa: E402
+from core.landmarks.types import ALL_NAMES, SIDES  # noqa: E402
 from core.mechanics.options import CHOICES, RANGES  # noqa: E402
 from core.messages import LandmarkName, SettingName, SideName  # noqa: E402
 from core.scan.orientation.unit_detection import MILLIMETRES  # noqa: E402
@@ -70,7 +70,7 @@ def texts_of_data() -> Iterator[Text]:
         yield from (("elastic", kind, ""), ("elastic", elastic.source, ""))
     for preset in presets():
         yield from (("preset", each, "") for each in (preset.title, preset.leaves_out) if each)
-    named = (*map(LandmarkName, NAMES), *map(SideName, SIDES))
+    named = (*map(LandmarkName, ALL_NAMES), *map(SideName, SIDES))
     settings = map(SettingName, (*CHOICES, *RANGES, "scaled_normals", "dense_volume"))
     yield from ((name.context, str(name), "") for name in (*named, *settings))
     yield from (("sample", title, "") for title in SAMPLES.values())
