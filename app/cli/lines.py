@@ -10,6 +10,7 @@ from core.document.design import Design
 from core.document.lower_trunk import LowerTrunk, lower_lines_of
 from core.errors import LineError
 from core.garment.elastic_library import find_elastic, read_elastic
+from core.landmarks.types import SIDES
 from core.mechanics.constraint_lines import Line, length_ratio
 from core.messages import Message
 from core.pipeline.build import Stages, build
@@ -17,7 +18,9 @@ from core.pipeline.build import Stages, build
 
 def with_lower_trunk(design: Design, requests: Sequence[str]) -> Design:
     """Return a design that has the lower trunk if a request, NAME=LENGTH, is for one of its lines."""
-    if design.lower is None and any(lower_lines_of(_name(request)) for request in requests):
+    own = [line.name for line in design.own_lines]
+    asked = [name for request in requests if not _named(name := _name(request), own)]
+    if design.lower is None and any(map(lower_lines_of, asked)):
         return replace(design, lower=LowerTrunk())
     return design
 
@@ -75,4 +78,5 @@ def _name(request: str) -> str:
 def _named(name: str, known: Collection[str]) -> list[str]:
     """Return which of the ``known`` lines a name stands for: one of them, or both sides."""
     same = [each for each in known if each.lower() == name]
-    return same or [each for each in known if each.lower() in (f"{name}-left", f"{name}-right")]
+    sides = [f"{name}{gap}{side}" for gap in (" ", "-") for side in SIDES]
+    return same or [each for each in known if each.lower() in sides]

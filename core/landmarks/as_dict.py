@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
@@ -12,7 +13,7 @@ from core.landmarks.detect import find_landmarks
 from core.landmarks.lower_trunk.girths import lower_girths
 from core.landmarks.lower_trunk.types import LowerLandmarks
 from core.landmarks.torso.girths import girth_warnings, girths, levels
-from core.landmarks.types import Landmarks
+from core.landmarks.types import Landmark, Landmarks
 from core.landmarks.warnings import collect_warnings
 from core.messages import plain
 from core.scan.body import Body
@@ -38,20 +39,8 @@ def detection(
         heights.update(lower.levels)
         points.update(lower.points)
         doubts = [*doubts, *lower.warnings]
-    to_file = np.linalg.inv(body.pose.file_to_mm)
-    marks = {
-        name: {
-            "file": (to_file[:3, :3] @ mark.position + to_file[:3, 3]).tolist(),
-            "mm": mark.position.tolist(),
-            "confidence": float(mark.confidence),
-            "rule": str(mark.rule),
-            "by_hand": mark.by_hand,
-            "evidence": _thinned(mark.evidence),
-        }
-        for name, mark in points.items()
-    }
     return {
-        "landmarks": marks,
+        "landmarks": _marks(body, points),
         "levels": heights,
         "girths": {name: asdict(girth) for name, girth in found.items()},
         "noise_mm": round(body.noise, 3),
@@ -65,6 +54,22 @@ def detection(
         "reason": str(body.pose.reason),
         "repairs": plain(body.repairs),
         "warnings": plain([*collect_warnings(body, landmarks), *doubts]),
+    }
+
+
+def _marks(body: Body, points: Mapping[str, Landmark]) -> dict[str, Any]:
+    """Return landmarks in the file's own frame and in mm."""
+    to_file = np.linalg.inv(body.pose.file_to_mm)
+    return {
+        name: {
+            "file": (to_file[:3, :3] @ mark.position + to_file[:3, 3]).tolist(),
+            "mm": mark.position.tolist(),
+            "confidence": float(mark.confidence),
+            "rule": str(mark.rule),
+            "by_hand": mark.by_hand,
+            "evidence": _thinned(mark.evidence),
+        }
+        for name, mark in points.items()
     }
 
 

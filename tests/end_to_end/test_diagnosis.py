@@ -14,7 +14,7 @@ from app.gui.features.diagnosis.controller import ABOUT
 from app.gui.main_window import MainWindow
 from app.gui.widgets.notification_bar import REFUSED, Notification
 from app.presenters.assessment import tone
-from core.garment.pressure_list import pressure_list
+from core.garment.pressure_list import pressure_list_of
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -146,11 +146,11 @@ def test_asked_before_the_verdict_is_known_he_says_what_presses(monkeypatch: pyt
 
     def slow(*arguments: object) -> object:
         known.wait(PATIENCE)
-        return pressure_list(*arguments)  # type: ignore[arg-type]
+        return pressure_list_of(*arguments)  # type: ignore[arg-type]
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        monkeypatch.setattr(app.gui.features.garment.pressure_controller, "pressure_list", slow)
+        monkeypatch.setattr(app.gui.features.garment.pressure_controller, "pressure_list_of", slow)
         window.lines_controller.commit_length("mid-bust", 0.93)
         yield settled(window)
         frame = window.session.frame

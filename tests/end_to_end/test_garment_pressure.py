@@ -17,7 +17,8 @@ from app.gui.main_window import MainWindow
 from app.presenters.maps import pressure_note
 from core.garment.elastic_library import find_elastic
 from core.garment.pressure import LEFT_OUT, pressure_limits
-from core.garment.pressure_list import PressureList, pressure_list
+from core.garment.pressure_list import PressureList, pressure_list_of
+from core.pipeline.warnings import ShownState
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -27,11 +28,11 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """The lengths that the mid-bust line was pressed with, one for each time that it was worked out."""
     told: list[float] = []
 
-    def counted(stages: object, points: np.ndarray) -> PressureList:
-        told.append(stages.design.ratio("mid-bust"))  # type: ignore[attr-defined]
-        return pressure_list(stages, points)  # type: ignore[arg-type]
+    def counted(shown: ShownState) -> PressureList:
+        told.append(shown.stages.design.ratio("mid-bust"))
+        return pressure_list_of(shown)
 
-    monkeypatch.setattr(desk_module, "pressure_list", counted)
+    monkeypatch.setattr(desk_module, "pressure_list_of", counted)
     return told
 
 
@@ -46,7 +47,7 @@ def wear(window: MainWindow) -> None:
 def known(window: MainWindow) -> PressureList:
     frame = window.session.frame
     assert frame is not None
-    return pressure_list(frame.stages, frame.control_points)
+    return pressure_list_of(frame)
 
 
 def pressed(window: MainWindow) -> BandValues:
@@ -267,8 +268,8 @@ def test_pressures_that_cannot_be_computed_are_no_reason_to_wait(monkeypatch: py
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        pressing = desk_module.pressure_list
-        monkeypatch.setattr(desk_module, "pressure_list", fail)
+        pressing = desk_module.pressure_list_of
+        monkeypatch.setattr(desk_module, "pressure_list_of", fail)
         drag(window, "mid-bust", -10)
         yield settled(window)
         yield lambda: window.notices.notice() is not None
@@ -276,7 +277,7 @@ def test_pressures_that_cannot_be_computed_are_no_reason_to_wait(monkeypatch: py
         assert (view.level, view.waiting) == ("caution", "")
         assert view.first.startswith("The contact pressure was not computed.")
         assert window.rail.items["result"].state() == "look"
-        monkeypatch.setattr(desk_module, "pressure_list", pressing)
+        monkeypatch.setattr(desk_module, "pressure_list_of", pressing)
         drag(window, "mid-bust", -10)
         yield settled(window)
         yield lambda: window.assessment_controller.of(window.session.frame).level == "bad"

@@ -36,7 +36,7 @@ def gate(monkeypatch: pytest.MonkeyPatch) -> threading.Event:
     for module, name in (
         (measures_desk, "before_after"),
         (own_measures_desk, "custom_before_after"),
-        (pressure_desk, "pressure_list"),
+        (pressure_desk, "pressure_list_of"),
         (report_desk, "make_report"),
     ):
         monkeypatch.setattr(module, name, behind(getattr(module, name)))
@@ -116,7 +116,7 @@ def test_what_fails_is_told_and_waits_no_longer(monkeypatch: pytest.MonkeyPatch)
         raise ValueError("no")
 
     monkeypatch.setattr(measures_desk, "before_after", fail)
-    monkeypatch.setattr(pressure_desk, "pressure_list", fail)
+    monkeypatch.setattr(pressure_desk, "pressure_list_of", fail)
     monkeypatch.setattr(report_desk, "make_report", fail)
 
     def script(window: MainWindow) -> Script:

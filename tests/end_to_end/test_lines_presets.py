@@ -25,13 +25,13 @@ def test_the_worn_preset_stands_over_the_list_with_what_it_leaves_out() -> None:
         menu = window.actions_.menus["presets"]
         yield menu.isVisible
         bodysuit = next(each for each in menu.actions() if each.text().startswith("Bodysuit"))
-        assert "bust part" in bodysuit.text(), "said before it is worn"
+        assert "gusset" in bodysuit.toolTip(), "said before it is worn"
         bodysuit.trigger()
         menu.close()
         yield settled(window)
         assert head.presets.text() == bodysuit.text()
         assert head.note.isVisible()
-        assert "hip" in head.note.text()
+        assert "gusset" in head.note.text()
         window.lines_controller.commit_length("mid-bust", 0.93)
         assert head.presets.text() == bodysuit.text(), "another length, the same set"
         window.lines_controller.commit_length("mid-bust", 1.0)

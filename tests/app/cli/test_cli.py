@@ -158,7 +158,7 @@ def test_settings_reach_the_solver(mannequin: Path, tmp_path: Path) -> None:
         (["--line", "mid-bust=60%", *HELD], "mid-bust cannot be fixed at 60.0 %"),
         (["--path", "strap=r9c0,r3c0"], "no position 'r9c0'"),
         (["--path", "mid-bust=r2c0,r3c0"], "Two lines are named 'mid-bust'"),
-        (["--path", "strap=r2c0,r3c0", "--line", "sling=97%"], "full-bust, strap"),
+        (["--path", "strap=r2c0,r3c0", "--line", "swing=97%"], "full-bust, strap"),
     ],
 )
 def test_bad_requests_get_one_sentence(

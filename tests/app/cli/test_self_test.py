@@ -141,7 +141,7 @@ def test_without_isolation_the_self_test_does_not_start(
 
 
 def test_a_missing_file_is_named(bench: SelfTestFixture, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert "8 presets" in checks.shipped_files(bench)
+    assert "13 presets" in checks.shipped_files(bench)
     with monkeypatch.context() as patch:
         patch.setattr(core.garment.presets, "built_in", lambda: core.garment.presets.preset_of("{"))
         with pytest.raises(PartError, match=r"^presets "):

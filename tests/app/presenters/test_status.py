@@ -43,7 +43,7 @@ def test_the_exact_answer_takes_newton_steps_and_not_turns(built: Callable[[str]
 def test_of_one_newton_step_it_says_step(built: Callable[[str], Stages]) -> None:
     stages = build(replace(built("mannequin").design.with_line("mid-bust", 0.8), volume="exact"))
     solvers = RegionSolvers(stages)
-    solvers.exact = replace(solvers.exact, steps=1)
+    solvers.bust.exact = replace(solvers.bust.exact, steps=1)
     assert verdict_of(make_frame(1, stages, solvers)).effort == "Solved in one Newton iteration"
 
 

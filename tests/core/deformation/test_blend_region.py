@@ -17,7 +17,7 @@ from core.deformation.tffd import bind, deform
 from core.errors import FitError
 from core.geometry.mesh import Mesh
 from core.landmarks.detect import find_landmarks
-from core.pipeline import build as pipeline
+from core.pipeline.model_stages import bound
 from core.scan.body import Body, read_scan
 
 
@@ -143,10 +143,10 @@ def test_a_fence_that_does_not_close_is_noticed():
 def test_a_control_mesh_whose_border_triangles_move_is_refused():
     """The points of CONTROL are fixed on the border only."""
     with pytest.raises(FitError, match=r"at the border of the control mesh: [1-9]"):
-        pipeline._bind(SHEET, CONTROL, np.ones(len(SHEET.vertices)), "smooth", False)
+        bound(SHEET, CONTROL, np.ones(len(SHEET.vertices)), "smooth", False, None)
     two_rings = (np.abs(CONTROL.column) > 2) | (np.abs(CONTROL.row - 2.5) > 1.0)
     collared = replace(CONTROL, fixed=two_rings)
-    binding = pipeline._bind(SHEET, collared, np.ones(len(SHEET.vertices)), "smooth", False)
+    binding = bound(SHEET, collared, np.ones(len(SHEET.vertices)), "smooth", False, None)
     assert np.array_equal(binding.changes.points, np.flatnonzero(~two_rings))
 
 
