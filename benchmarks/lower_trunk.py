@@ -3,8 +3,8 @@
     python benchmarks/lower_trunk.py FOLDER [routes|control|shapes|limits ...]
 
 ``FOLDER`` holds NAME.ply of whole trunks in mm, upright. ``routes``: 14 routes at four lengths, Newton steps;
-``control``: adaptive and conventional runs of the routes; ``limits``: where the conventional control begins to
-swing against the computed limit; ``shapes``: what lines and presets do to girths, fold and seat.
+``control``: adaptive and conventional runs of the routes; ``limits``: where the conventional control begins
+to swing against the computed limit; ``shapes``: what lines and presets do to girths, fold and seat.
 """
 
 from __future__ import annotations
@@ -90,9 +90,8 @@ def routes(folder: Path) -> None:
 
 def control(folder: Path) -> None:
     """Print how many adaptive runs settle, how far off the exact answer, and how many conventional ones."""
-    print(
-        "| body | adaptive settled | off exact mm, max | ripple, max | conventional calm |\n|---|---|---|---|---|"
-    )
+    print("| body | adaptive settled | off exact mm, max | ripple, max | conventional calm |")
+    print("|---|---|---|---|---|")
     for name, stages in bodies(folder):
         settled, calm, off, ripple = 0, 0, 0.0, 0.0
         for route in ROUTES:
@@ -116,7 +115,7 @@ def control(folder: Path) -> None:
 
 
 def limits(folder: Path) -> None:
-    """Print the computed limit of the conventional gain, and the least gain at which a run was seen to swing."""
+    """Print the computed limit of the conventional gain, and the least gain at which a run swings."""
     print("| body | lines | computed | swings from |\n|---|---|---|---|")
     for name, stages in bodies(folder):
         for route in (
