@@ -16,7 +16,7 @@ from core.control_mesh.straps import Tail
 from core.control_mesh.template import Template, read_template
 from core.document.design import Design
 from core.document.lines import partner_of
-from core.document.lower_trunk import line_group
+from core.document.lower_trunk import GROUPS, line_group
 from core.document.split_lines import can_split, is_split
 from core.mechanics.constraint_lines import Line
 from core.pipeline.build import Stages
@@ -82,7 +82,8 @@ def line_colours(names: Iterable[str], design: Design | None = None) -> dict[str
     """
     given = list(names)
     halves = {name: LINE_COLOURS[kind_of(name)] for name in given if kind_of(name) in LINE_COLOURS}
-    below = {name: LOWER_COLOURS.get(kind_of(name), SEAMS) for name in given if line_group(name) != "bust"}
+    lower = sorted((name for name in given if line_group(name) != "bust"), key=_by_group)
+    below = {name: LOWER_COLOURS.get(kind_of(name), SEAMS) for name in lower}
     own = [name for name in given if name not in halves and name not in below]
     kinds = list(dict.fromkeys(kind_of(name) for name in own))
     order = list(LINE_COLOURS)
@@ -92,6 +93,10 @@ def line_colours(names: Iterable[str], design: Design | None = None) -> dict[str
     if design is None:
         return colours
     return {name: design.line_settings(name).colour or colour for name, colour in colours.items()}
+
+
+def _by_group(name: str) -> int:
+    return GROUPS.index(line_group(name))
 
 
 def line_views(

@@ -178,15 +178,24 @@ def _figures(
         return [kept, (tr("Skin strain"), _strain(verdict.condition))]
     move = bust_shift(frame)
     told = [(tr("Bust point"), step_text(move.mean))]
-    titles = {"bust": tr("Bust girth"), "waist": tr("Waist girth"), "hip": tr("Hip girth")}
-    for name, (before, after) in (girths or {}).items():
-        told.append((titles[name], f"{length_number(before)} → {length(after)}"))
+    told += _girths(girths or {})
     hardest = None if pressed is None else pressed.highest
     if hardest is not None and hardest.max_kpa is not None:
         told.append((tr("Max. pressure"), f"{number(hardest.max_kpa)} kPa"))
     elif move.differs:
         told.append((tr("Left · right"), " · ".join(sides_text(move))))
     return [*told, kept]
+
+
+def _girths(girths: Mapping[str, tuple[float, float]]) -> list[tuple[str, str]]:
+    """Return the girth of the bust before and after, or how those of bust, waist and hip change."""
+    if len(girths) == 1:
+        return [(tr("Bust girth"), f"{length_number(was)} → {length(now)}") for was, now in girths.values()]
+    titles = {"bust": tr("Bust"), "waist": tr("Waist"), "hip": tr("Hip")}
+    *others, last = [now - was for was, now in girths.values()] or [0.0]
+    changes = [*(length_number(each, signed=True) for each in others), length(last, signed=True)]
+    names = " · ".join(titles[name] for name in girths)
+    return [(tr("{parts}, girth").format(parts=names), " · ".join(changes))] if girths else []
 
 
 def _swing_figures(frame: Frame) -> list[tuple[str, str]]:
