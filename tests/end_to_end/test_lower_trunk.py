@@ -1,0 +1,61 @@
+"""A girdle in the window: its preset, its lines under headings, a drag, undo, and a scan without legs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from PySide6.QtWidgets import QLabel
+from window_tools import Script, drag, run_main, run_undrawn, settled
+
+from app.gui.main_window import MainWindow
+from app.presenters.samples import sample_path
+from core.garment.presets import find_preset
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+def test_a_girdle_is_worn_dragged_and_taken_back() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        panel, session = window.lines, window.session
+        window.presets_controller.wear(find_preset("girdle"))
+        yield settled(window)
+        assert panel.head.presets.text() == "Girdle"
+        shown = [name for name, row in panel.rows.items() if not row.isHidden()]
+        assert {"waist", "hip", "sling-left", "leg-opening-left"} <= set(shown)
+        assert "above-waist" not in shown, "its group is closed, and it is not worn"
+        panel.groups.headings["waist"].click()
+        assert not panel.rows["above-waist"].isHidden()
+        frame = session.frame
+        assert frame is not None
+        assert frame.lower is not None
+        before = frame.lower.lengths["waist"]
+        drag(window, "waist", -20)
+        yield settled(window)
+        assert session.frame.lower.lengths["waist"] < before - 3.0
+        session.undo_stack.undo()
+        yield settled(window)
+        assert session.frame.lower.lengths["waist"] == pytest.approx(before, abs=0.2)
+        lower = session.frame.lower
+        moved = lower.control_points - lower.stages.control.mesh.vertices
+        assert np.abs(moved).max() > 3.0
+        yield lambda: any("Waist" in label.text() for label in window.strip.findChildren(QLabel))
+
+    run_main([str(sample_path("trunk"))], script)
+
+
+def test_a_scan_without_legs_keeps_its_bust_and_says_why() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        panel = window.lines
+        panel.add_lower.click()
+        yield settled(window)
+        assert panel.add_lower.isHidden()
+        assert "Scan down to the middle of both thighs." in panel._why_not.text()
+        assert window.session.frame.lower is None
+        assert "waist" not in panel.rows
+        window.session.undo_stack.undo()
+        yield settled(window)
+        assert not panel.add_lower.isHidden()
+
+    run_undrawn([], script)
