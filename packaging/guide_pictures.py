@@ -93,6 +93,7 @@ SCREENS: tuple[tuple[str, Callable[[], Design], Scene], ...] = (
 ONCE = (
     Shot("window", dressed_sample, scenes.nothing, {"size": LARGE}),
     Shot("map", _mannequin, scenes.mapped, {"size": LARGE}),
+    Shot("girdle", lambda: dressed_sample("trunk"), scenes.girdle, {"size": SMALL}, small=True),
     Shot("vibrating", vibrating, scenes.with_control_mesh, {"dark": True, "size": SMALL}),
     Shot("spread", bra, advice_scenes.sure, {"size": LARGE}),
     Shot("even", bra, advice_scenes.even, {"size": SMALL}),

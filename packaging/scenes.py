@@ -105,6 +105,12 @@ def nothing(window: MainWindow) -> None:
     """Leave the window as it opens."""
 
 
+def girdle(window: MainWindow) -> None:
+    """Show the whole body, with the waist selected in the list."""
+    window.selection.select_line("waist")
+    window.view.viewport.frame_all()
+
+
 def step(name: str) -> Scene:
     """Go to one of the steps."""
 
