@@ -54,7 +54,7 @@ def at_once(scene: Scene, size: tuple[int, int]) -> float:
 def main() -> None:
     off_screen()
     stages = build(Design(ScanSource(str(SAMPLE))).with_line("mid-bust", 0.95))
-    points, worn = solve(stages).control_points, bands(stages, ())
+    points, worn = solve(stages).region_points, bands(stages, ())
     begun = time.perf_counter()
     studio = OffscreenRenderer(stages, points, worn, bake_occlusion(stages.body.mesh))
     in_one_go(studio.set_up())

@@ -14,7 +14,6 @@ from app.presenters.messages import line_title
 from app.presenters.model_options import Choice
 from app.rendering.band import band_width
 from app.rendering.camera import View
-from core.deformation.tffd import deform
 from core.document.design import Design
 from core.export.units_and_axes import AXES, GLTF, UNITS
 from core.geometry.mesh import Floats, Mesh, Points
@@ -277,7 +276,7 @@ class ExportSource:
 
     What is worked out for one file is kept for the next. ``hidden`` are lines that pictures leave out,
     ``material`` what the body looks made of in them, ``named`` project and customer, None as
-    they were opened.
+    they were opened. ``lower_points`` (m, 3) [mm] are the control points of the lower trunk, if there is one.
     """
 
     stages: Stages
@@ -286,6 +285,7 @@ class ExportSource:
     hidden: frozenset[str] = frozenset()
     material: str = "clay"
     named: tuple[str, str] | None = None
+    lower_points: Points | None = None
 
     @property
     def whose(self) -> str:
@@ -302,10 +302,17 @@ class ExportSource:
         """Return the control points at rest or reshaped, shape (n, 3) [mm]."""
         return self.stages.control.mesh.vertices if before else self.control_points
 
+    def region_points(self, before: bool) -> tuple[Points, ...]:
+        """Return the control points of each region at rest or reshaped, the bust's first."""
+        lower = self.stages.lower
+        if lower is None:
+            return (self.points(before),)
+        below = lower.control.mesh.vertices if before or self.lower_points is None else self.lower_points
+        return self.points(before), below
+
     def body(self, before: bool) -> Mesh:
         """Return the whole body at rest or reshaped."""
-        mesh = self.stages.body.mesh
-        return mesh.moved(deform(self.stages.binding, self.points(before)))
+        return self.stages.skin.body(self.region_points(before))
 
     @cached_property
     def measures(self) -> list[dict[str, Any]]:

@@ -198,7 +198,7 @@ def _picture(path: str, outcome: ExportSource, manner: ExportOptions) -> ExportP
         with _studio(outcome, manner) as studio:
             yield from part_of(studio.set_up(), 0.0, 0.0)
             if isinstance(manner.view, str):
-                studio.frame_bust(manner.size, manner.view)
+                studio.frame_worn(manner.size, manner.view)
             else:
                 studio.scene.set_camera(manner.view)
             studio.scene.before(manner.before)
@@ -251,7 +251,7 @@ def _studio(outcome: ExportSource, manner: ExportOptions) -> Iterator[OffscreenR
     shown = bands(outcome.stages, outcome.hidden)
     with OffscreenRenderer(
         outcome.stages,
-        outcome.control_points,
+        outcome.region_points(before=False),
         shown,
         outcome.occlusion,
         dark=manner.dark,

@@ -49,7 +49,7 @@ class OffscreenRenderer:
     def __init__(
         self,
         stages: Stages,
-        control_points: Points,
+        region_points: Sequence[Points],
         bands: Sequence[Band],
         occlusion: Floats,
         *,
@@ -69,11 +69,11 @@ class OffscreenRenderer:
         except BaseException:
             plotter.close()
             raise
-        self._shows = stages, control_points, bands, occlusion
+        self._shows = stages, region_points, bands, occlusion
 
     def set_up(self) -> Pieces[None]:
         """Add body and bands to the scene, part by part, before the first image."""
-        scene, (stages, control_points, bands, occlusion) = self.scene, self._shows
+        scene, (stages, region_points, bands, occlusion) = self.scene, self._shows
         yield 0.0  # the window was opened
         scene.show_body(stages.body.mesh)
         yield 0.2
@@ -83,9 +83,9 @@ class OffscreenRenderer:
         yield 0.5
         scene.show_bands(bands)
         yield 0.7
-        shape = stages.shape(control_points)
-        scene.move_body(stages.moving.vertices, *shape)
-        scene.show_cups(stages, *shape)
+        shape = stages.skin.shape(region_points)
+        scene.move_body(stages.skin.vertices, *shape)
+        scene.show_cups(stages, *stages.skin.of_bust(*shape))
         yield 1.0
 
     def __enter__(self) -> OffscreenRenderer:
@@ -96,10 +96,12 @@ class OffscreenRenderer:
     ) -> None:
         self._plotter.close()
 
-    def frame_bust(self, size: tuple[int, int], side: str) -> None:
-        """Frame shoulders to waist from the side called ``side`` in ``app.rendering.camera.VIEWS``."""
+    def frame_worn(self, size: tuple[int, int], side: str) -> None:
+        """Frame shoulders to waist, with the lower trunk all of the body, from ``side`` in ``VIEWS``."""
         self.scene.set_view(side)
-        self.scene.set_camera(self.scene.framing_bust(size[0] / size[1]))
+        whole = self._shows[0].lower is not None
+        framing = self.scene.framing_all if whole else self.scene.framing_bust
+        self.scene.set_camera(framing(size[0] / size[1]))
 
     def render(self, size: tuple[int, int]) -> Pieces[Picture]:
         """Return a picture of ``size`` [px] on one pale or dark colour.

@@ -81,7 +81,7 @@ def render_turntable(studio: OffscreenRenderer, turntable: Turntable) -> Pieces[
     parts = 1 + turntable.side_by_side
     each, shots = 1.0 / (parts * turntable.frames), list[Picture]()
     size = width // parts, height
-    studio.frame_bust(size, "front")
+    studio.frame_worn(size, "front")
     start = scene.view.orbit(0.0, 4.0)
     for before in (True, False)[-parts:]:
         scene.before(before)

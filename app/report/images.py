@@ -28,7 +28,7 @@ def render_images(shown: ShownState, occlusion: Floats) -> Pieces[dict[str, QIma
     """
     stages = shown.stages
     unworn = {line.name for line in stages.model.lines} - stages.design.active_lines()
-    with OffscreenRenderer(stages, shown.control_points, bands(stages, unworn), occlusion) as studio:
+    with OffscreenRenderer(stages, shown.region_points, bands(stages, unworn), occlusion) as studio:
         yield from part_of(studio.set_up(), 0.0, 0.0)
         scene, sizes = studio.scene, {side: _pixels(SHOT_SIZES[side]) for side in _SIDES}
         scene.set_visible("floor", False)
@@ -56,7 +56,7 @@ def _views(studio: OffscreenRenderer, sizes: Mapping[str, tuple[int, int]]) -> d
     """Return where each side is seen from: all from as far away, so that heights compare."""
     views = {}
     for side, name in _SIDES.items():
-        studio.frame_bust(sizes[side], name)
+        studio.frame_worn(sizes[side], name)
         views[side] = studio.scene.view
     farthest = max(view.distance for view in views.values())
     return {side: replace(view, distance=farthest) for side, view in views.items()}

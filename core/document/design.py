@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property, reduce
 from typing import Any
@@ -182,7 +182,7 @@ class Design:
 
     def ratio(self, name: str) -> float:
         """Return the ratio of a line, 1 if it is not worn."""
-        return next((line.ratio for line in self._region_of(name).lines if line.name == name), 1.0)
+        return next((line.ratio for line in self.region_of(name).lines if line.name == name), 1.0)
 
     @property
     def regions(self) -> tuple[Design, ...]:
@@ -212,7 +212,7 @@ class Design:
             tissue_stiffness=lower.stiffness,
         )
 
-    def _region_of(self, name: str) -> Design:
+    def region_of(self, name: str) -> Design:
         """Return the design of the region that a line belongs to."""
         return self.lower_design if self.lower is not None and name in lower_line_names() else self
 
@@ -223,6 +223,13 @@ class Design:
         known = {each.name: each for each in (*self.elastics, *region.elastics)}
         used = {each.elastic for each in (*self.traits, *region.traits) if each.elastic}
         return replace(self, lower=lower, elastics=tuple(known[name] for name in sorted(used)))
+
+    def wearing(self, names: Collection[str]) -> Design:
+        """Return the design with lines of one region worn, those that are not at 100 %, locked or not."""
+        region = self.region_of(next(iter(names)))
+        off = sorted(set(names) - region.active_lines())
+        after = replace(region, lines=(*region.lines, *(ActiveLine(name, 1.0) for name in off)))
+        return after if region is self else self._with_region(after)
 
     def active_lines(self) -> frozenset[str]:
         """Return the names of the lines that are worn."""
@@ -251,7 +258,7 @@ class Design:
 
         Lines that share an elastic of this name share its curve.
         """
-        if (region := self._region_of(name)) is not self:
+        if (region := self.region_of(name)) is not self:
             return self._with_region(region.with_elastic(name, elastic))
         if elastic is None:
             return self.with_line_settings(replace(self.line_settings(name), elastic="", width=None))
@@ -310,11 +317,11 @@ class Design:
     def line_settings(self, name: str) -> LineSettings:
         """Return how a line is treated."""
         usual = LineSettings(name)
-        return next((traits for traits in self._region_of(name).traits if traits.name == name), usual)
+        return next((traits for traits in self.region_of(name).traits if traits.name == name), usual)
 
     def with_line_settings(self, traits: LineSettings) -> Design:
         """Return the design with a line treated in another way."""
-        if (region := self._region_of(traits.name)) is not self:
+        if (region := self.region_of(traits.name)) is not self:
             return self._with_region(region.with_line_settings(traits))
         others = [each for each in self.traits if each.name != traits.name]
         kept = others if traits == LineSettings(traits.name) else [*others, traits]
@@ -340,7 +347,7 @@ class Design:
         locked = any(self.line_settings(each).locked for each in names)
         after = self
         if self.ratio(names[0]) != self.ratio(names[1]):
-            worn = name in self._region_of(name).active_lines()
+            worn = name in self.region_of(name).active_lines()
             after = self.with_line(names[1], self.ratio(name) if worn else None)
         traits = [replace(self.line_settings(each), linked=True, locked=locked) for each in names]
         return reduce(Design.with_line_settings, traits, after)
@@ -364,7 +371,7 @@ class Design:
 
     def with_line(self, name: str, ratio: float | None) -> Design:
         """Return the design with a line at ``ratio``, or off (None). Raises LineError if it is locked."""
-        if (region := self._region_of(name)) is not self:
+        if (region := self.region_of(name)) is not self:
             return self._with_region(region.with_line(name, ratio))
         if ratio != (self.ratio(name) if name in self.active_lines() else None):
             self._check_unlocked(name)

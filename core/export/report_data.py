@@ -12,9 +12,9 @@ import numpy as np
 from core import __version__
 from core.deformation.tffd import deform
 from core.garment.assessment import Assessment, assess_with
-from core.garment.cut_list import CutList, cut_list
+from core.garment.cut_list import CutList, cut_list_of
 from core.garment.pressure import LEFT_OUT
-from core.garment.pressure_list import PressureRow, pressure_list
+from core.garment.pressure_list import PressureRow, pressure_list_of
 from core.garment.tension import divergence_error
 from core.geometry.mesh import Floats, Mesh, Points
 from core.geometry.planar_curves import AXES, Curve, Plane, Slicer, nearest
@@ -188,7 +188,7 @@ def make_report(
     before, after = before_after(stages, points)
     found, why = _sizes(before, heading)
     progress("pressing", 0.8)
-    cuts, pressed = cut_list(stages, points), pressure_list(stages, points)
+    cuts, pressed = cut_list_of(shown), pressure_list_of(shown)
     percent, error_ml = controlled_volume(shown)
     return Report(
         heading=heading,

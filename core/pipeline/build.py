@@ -78,6 +78,11 @@ class Stages(RegionStages):
         """Return the stages of each region, the bust first."""
         return (self,) if self.lower is None else (self, self.lower)
 
+    def region_of(self, name: str) -> RegionStages:
+        """Return the stages of the region that a line belongs to."""
+        lower = self.lower
+        return lower if lower is not None and name in lower.control.paths else self
+
     @property
     def lines(self) -> tuple[Line, ...]:
         """Return the lines of all regions, those of the bust first."""

@@ -70,7 +70,8 @@ def run(options: Namespace) -> int:
     _check(files, manner)
     stages = with_lines_and_elastics(build(design_of(options)), options.line or [], options.elastic or [])
     solution = solve_valid(stages)
-    outcome = ExportSource(solution.stages, solution.control_points, solution.records)
+    lower = None if solution.lower is None else solution.lower.control_points
+    outcome = ExportSource(solution.stages, solution.control_points, solution.records, lower_points=lower)
     for kind, name in files.items():
         print(_write(kind, name, outcome, manner))
     text = "\n".join(assessment_lines(assess(solution), solution.stages.design))

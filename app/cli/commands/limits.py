@@ -74,7 +74,7 @@ def _text(found: Sequence[Limits], stages: Stages, assessment: Assessment) -> It
 
 
 def _present(limits: Limits, stages: Stages) -> str:
-    if limits.line.name not in stages.design.active_lines():
+    if limits.line.name not in stages.region_of(limits.line.name).design.active_lines():
         return "inactive"
     if limits.present is None:
         return "no equilibrium found at the set length"
@@ -90,7 +90,7 @@ def limits_data(found: Sequence[Limits], stages: Stages) -> dict[str, Any]:
     return {
         "lines": {
             limits.line.name: {
-                "worn": limits.line.name in stages.design.active_lines(),
+                "worn": limits.line.name in stages.region_of(limits.line.name).design.active_lines(),
                 "rest_mm": limits.line.rest_length,
                 "present": _length(limits.present, limits),
                 "beyond": list(limits.beyond),

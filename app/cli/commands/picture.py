@@ -76,7 +76,8 @@ def draw_picture(
             Message("Choose one of: {choices}, side.", choices=", ".join(VIEWS)),
         )
     solution = solve(build(design))
-    outcome = ExportSource(solution.stages, solution.control_points)
+    lower = None if solution.lower is None else solution.lower.control_points
+    outcome = ExportSource(solution.stages, solution.control_points, lower_points=lower)
     ready = prepare_export("picture", out, outcome, ExportOptions(view=side, size=size, dark=dark))
     assert ready.draw is not None
     ready.write(out, in_one_go(ready.draw()), quiet)

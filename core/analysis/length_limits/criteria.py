@@ -23,8 +23,7 @@ from core.mechanics.model import ConstrainedModel
 from core.mechanics.newton import equilibrium_at
 from core.mechanics.potential import Potential
 from core.mechanics.solver_comparison import shape_of
-from core.pipeline.build import Stages
-from core.pipeline.stages import GAIN_SHARE
+from core.pipeline.stages import GAIN_SHARE, RegionStages
 
 Criterion = Callable[[PathPoint], float]
 """How far an answer is from showing a sign; 0 or less where it does [1]."""
@@ -61,7 +60,7 @@ def model_criteria(
 
 
 def elastic_criteria(
-    stages: Stages, names: Collection[str], elastics: Mapping[str, Elastic]
+    stages: RegionStages, names: Collection[str], elastics: Mapping[str, Elastic]
 ) -> dict[str, Criterion]:
     """Return what can be looked at because worn lines of a design are made of ``elastics``, by sign.
 
@@ -158,7 +157,7 @@ def _room_in_curves(found: PathPoint, elastics: Mapping[str, Elastic]) -> float:
     return min(elastic.max_elongation - found.elongations[name] for name, elastic in elastics.items())
 
 
-def _pressing(found: PathPoint, stages: Stages, names: tuple[str, ...]) -> float:
+def _pressing(found: PathPoint, stages: RegionStages, names: tuple[str, ...]) -> float:
     """Return by how much the lines ``names`` press less than the red light begins with, over that [1]."""
     design = stages.design
     tried = {line.name: ratio for line, ratio in zip(found.model.lines, found.ratios, strict=True)}

@@ -15,8 +15,6 @@ from core.analysis.length_limits.criteria import Criterion, elastic_criteria, mo
 from core.analysis.length_limits.line_search import PRECISION, RED, LineSearch
 from core.analysis.length_limits.path_solutions import PathSolver
 from core.analysis.length_limits.samples import Length, Span
-from core.document.design import Design
-from core.document.lines import ActiveLine
 from core.mechanics.constraint_lines import Line
 from core.mechanics.force_units import newtons_per_unit
 from core.mechanics.model import ConstrainedModel
@@ -100,8 +98,8 @@ def limits_of(stages: Stages, name: str, progress: Progress = quiet, *, through:
     A linked partner goes with it. Lines made of elastics pull as these do at each length. ``through``: go on
     where it is red, to tell all of SIGNS, and look at the line as it is set too. Raises Cancelled.
     """
-    both, worn = stages.design.linked_pair(name), name in stages.design.active_lines()
-    tried = build(_wearing(stages.design, both), stages)
+    both, worn = stages.design.linked_pair(name), name in stages.region_of(name).design.active_lines()
+    tried = build(stages.design.wearing(both), stages).region_of(name)
     design, model = tried.design, tried.model
     lines = [line.name for line in model.lines]
     together = {lines.index(each) for each in both}
@@ -117,8 +115,11 @@ def limits_of(stages: Stages, name: str, progress: Progress = quiet, *, through:
 
 
 def all_limits(stages: Stages) -> Iterator[Limits]:
-    """Yield the limits of each line that moves anything, worn or not; see ``limits_of``."""
-    return (limits_of(stages, line.name) for line in stages.model.lines if line.constrains)
+    """Yield the limits of each line that moves anything, worn or not, of the lower trunk of those worn.
+
+    See ``limits_of``.
+    """
+    return (limits_of(stages, line.name) for line in stages.drawn_lines if line.constrains)
 
 
 def _limits(ground: PathSolver, index: int, looks: Mapping[str, Criterion], through: bool) -> Limits:
@@ -150,9 +151,3 @@ def _within_curves(
         sign: tuple(span for span in spans if sign == "stretched" or span.long.ratio > ends[0].ratio)
         for sign, spans in shows.items()
     }
-
-
-def _wearing(design: Design, names: Collection[str]) -> Design:
-    """Return the design with these lines worn, whether they are locked or not."""
-    off = set(names) - design.active_lines()
-    return replace(design, lines=(*design.lines, *(ActiveLine(name, 1.0) for name in sorted(off))))

@@ -32,7 +32,7 @@ class PathPoint:
     """An answer with the line at ``ratio`` [1]: the ``model`` and its exact ``balance``.
 
     Lines made of elastics pull as their curves say at ``elongations`` [1], by line; ``log_ea`` (e,) are the
-    logarithms of their EA [N]. ``excess`` (2,) [mm^3] is what the control mesh has there beyond its volume.
+    logarithms of their EA [N]. ``excess`` (k,) [mm^3] is what the control mesh has there beyond its volume.
     """
 
     ratio: float
@@ -153,7 +153,7 @@ class PathSolver:
         log_ea: Floats,
         elongations: Mapping[str, float],
     ) -> PathPoint:
-        excess = np.zeros(2)
+        excess = np.zeros(model.volume.zones)
         if self.body_change is not None:
             excess = model.volume.zone_volumes(model.tensegric.expand(balance.state.moved)) - model.rest_zones
         return PathPoint(ratio, self._with(ratio), model, balance, log_ea, elongations, excess)

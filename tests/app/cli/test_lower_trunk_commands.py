@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
+import trimesh
 
 from app.cli.main import main
 from app.presenters.samples import dressed_sample, sample_path
@@ -89,3 +91,14 @@ def test_a_project_keeps_the_lower_trunk(tmp_path: Path) -> None:
     bare = ("--cup", "none", "--settings", "tissue=net", "--volume", "exact")
     assert main(["solve", str(project), *bare, "--out", str(out)]) == 0
     assert "lower_trunk" in json.loads((out / "report.json").read_text("utf-8"))
+
+
+def test_the_exported_body_is_that_of_both_regions(tmp_path: Path) -> None:
+    worn = ("--line", "waist=90%", "--settings", "tissue=net", "--volume=exact")
+    assert main(["solve", *TRUNK, *worn, "--out", str(tmp_path)]) == 0
+    assert main(["export", TRUNK[0], *worn[:-1], "--body", str(tmp_path / "exported.ply")]) == 0
+    solved, exported = (trimesh.load(tmp_path / name, process=False) for name in ("body.ply", "exported.ply"))
+    assert len(solved.vertices) == len(exported.vertices)
+    rest = trimesh.load(TRUNK[0], process=False).vertices
+    assert np.abs(exported.vertices - rest).max() > 5.0
+    assert np.abs(exported.vertices - solved.vertices).max() < 0.2  # adaptive turns end a little earlier

@@ -20,14 +20,14 @@ SIZE = (150, 180)
 @pytest.fixture(scope="module")
 def reshaped(built):
     stages = built("mannequin")
-    return stages, solve(stages).control_points, bands(stages, ()), np.ones(len(stages.body.mesh.vertices))
+    return stages, solve(stages).region_points, bands(stages, ()), np.ones(len(stages.body.mesh.vertices))
 
 
 @pytest.fixture
 def studio(reshaped):
     with OffscreenRenderer(*reshaped) as studio:
         assert len(list(studio.set_up())) > 4, "a window answers between the parts"
-        studio.frame_bust(SIZE, "three-quarter")
+        studio.frame_worn(SIZE, "three-quarter")
         yield studio
 
 
@@ -47,7 +47,7 @@ def test_pieces_are_one_picture(monkeypatch, studio, parallel):
 
 def test_it_is_what_the_views_draw(reshaped, studio):
     drawn = with_background(in_one_go(studio.render(SIZE)), dark=False).astype(float)
-    stages, points, worn, occlusion = reshaped
+    stages, (points,), worn, occlusion = reshaped
     off_screen()
     plotter = pv.Plotter(off_screen=True, window_size=[2 * side for side in SIZE], lighting="none")
     try:

@@ -20,7 +20,7 @@ SMALL = Turntable(frames=4, size=(120, 100), seconds=2.0)
 def reshaped(built):
     """A body with its bands, and no soft shadows, which are another test's."""
     stages = built("mannequin")
-    return stages, solve(stages).control_points, bands(stages, ()), np.ones(len(stages.body.mesh.vertices))
+    return stages, solve(stages).region_points, bands(stages, ()), np.ones(len(stages.body.mesh.vertices))
 
 
 def shots_of(reshaped, turntable, hear=lambda *_: None):

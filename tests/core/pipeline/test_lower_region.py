@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from whole_trunk import trunk_stages, wearing
 
+from core.analysis.length_limits.limits import all_limits, limits_of
 from core.control_mesh.lower_template import HIP_ROW, read_lower_template
 from core.document.design import Design, ScanSource
 from core.document.lower_trunk import LowerTrunk
@@ -173,3 +174,17 @@ def test_a_design_of_two_regions_is_not_that_of_one() -> None:
     assert not design.with_line("waist", 0.9).is_bare
     assert not design.with_line("waist", 0.9).is_equivalent(design)
     assert design.with_line("waist", 0.9).with_lines_reset().is_bare
+
+
+def test_the_limits_of_a_lower_line_are_those_of_its_own_region() -> None:
+    stages = wearing({"mid-bust": 0.97, "waist": 0.95})
+    limits = limits_of(stages, "waist")
+    assert limits.present is not None
+    assert limits.present.ratio == 0.95
+    strained = limits.onsets["strained"]
+    assert strained is not None
+    assert strained.ratio < 0.9
+    assert {found.line.name for found in all_limits(stages)} >= {"mid-bust", "waist"}
+    free = limits_of(wearing({"waist": 0.95}), "waist").onsets["strained"]
+    assert free is not None
+    assert free.ratio == strained.ratio, "what the bust wears does not matter"

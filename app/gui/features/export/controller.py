@@ -175,11 +175,15 @@ class ExportController(QObject):
         session = self._context.session
         named = session.name, session.design.customer if session.design else ""
         looks = view.hidden_lines, material, named
+        lower = None if frame.lower is None else frame.lower.control_points
         same = known is not None and known.control_points is frame.control_points
+        same = same and known is not None and known.lower_points is lower
         if known is None or not same or looks != (known.hidden, known.material, known.named):
             tracks = frame.tracks
             records = tracks.get(frame.stages.design.volume) or next(iter(tracks.values()), ())
-            known = self._outcome = ExportSource(frame.stages, frame.control_points, records, *looks)
+            known = self._outcome = ExportSource(
+                frame.stages, frame.control_points, records, *looks, lower_points=lower
+            )
         return known
 
     def _manner(self, what: str, kind: str = "") -> ExportOptions:

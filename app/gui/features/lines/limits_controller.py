@@ -63,7 +63,7 @@ class LimitsController(QObject):
         design, (shown, leeways) = frame.stages.design, self._shown
         if design is shown:
             return leeways
-        lines = [line.name for line in frame.stages.model.lines if line.constrains]
+        lines = [line.name for line in frame.stages.lines if line.constrains]
         keys = {name: _key(design, name) for name in lines}
         found = {name: self._known.get(key) for name, key in keys.items()}
         self._last |= {name: known for name, known in found.items() if known is not None}
@@ -111,7 +111,11 @@ class LimitsController(QObject):
         """Return the lines, those first that are in hand or under the pointer."""
         selected = self._context.view.selected_line
         hovered = {name for row in self._panel.rows.values() if row.underMouse() for name in row.view.names}
-        lines = (line for line in stages.model.lines if line.constrains)
+        lines = (
+            line
+            for line in stages.lines
+            if line.constrains and (line in stages.drawn_lines or line.name in {selected, *hovered})
+        )
         return sorted(lines, key=lambda line: (line.name != selected, line.name not in hovered))
 
     def _work(self, stages: Stages, keys: Sequence[Key], progress: Progress) -> None:
@@ -156,5 +160,6 @@ def _key(design: Design, name: str) -> Key:
     Of that only whether it is so short that its slider reaches far into what may be red.
     """
     both = design.linked_pair(name)
-    others = tuple(line for line in design.lines if line.name not in both)
-    return replace(design, lines=others, volume="exact"), name, design.ratio(name) < SHORTEST
+    region = design.region_of(name)
+    others = tuple(line for line in region.lines if line.name not in both)
+    return replace(region, lines=others, lower=None, volume="exact"), name, design.ratio(name) < SHORTEST
