@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from app.i18n.catalog import tr
 from app.i18n.lengths import length
 from app.presenters.messages import render
-from core.landmarks.types import CERTAIN, NAMES, POOR, Landmark
+from core.landmarks.types import ALL_NAMES, CERTAIN, LOWER_NAMES, NAMES, POOR, Landmark
 from core.landmarks.warnings import ESSENTIAL
 
 GROUPS = {
@@ -17,6 +17,8 @@ GROUPS = {
     "fold": "under",
     "root_inner": "under",
     "root_outer": "under",
+    **dict.fromkeys(("crotch", "waist", "belly", "hip", "buttock", "gluteal_fold"), "lower"),
+    **dict.fromkeys(("iliac_crest", "side_seam", "leg_opening"), "lower"),
 }
 """The group of each kind of landmark in the list; all others are further ones."""
 
@@ -56,6 +58,15 @@ def landmark_title(name: str) -> str:
         "hip_front": tr("Hip, front"),
         "neck_front": tr("Neck, front"),
         "neck_back": tr("Neck, back"),
+        "crotch": tr("Crotch"),
+        "waist": tr("Waist"),
+        "belly": tr("Belly"),
+        "hip": tr("Hip"),
+        "buttock": tr("Buttock point"),
+        "gluteal_fold": tr("Gluteal fold"),
+        "iliac_crest": tr("Iliac crest"),
+        "side_seam": tr("Side seam"),
+        "leg_opening": tr("Leg opening"),
     }
     kind = kind_of(name)
     sides = {"_left": tr("{name} left"), "_right": tr("{name} right")}
@@ -73,11 +84,12 @@ def other_side(name: str) -> str:
 def landmark_views(points: Mapping[str, Landmark], accepted: Collection[Spot] = ()) -> list[LandmarkView]:
     """Return the rows of the list of landmarks, those of the bust first; the absent ones are among them.
 
-    What is ``accepted`` need not be looked at again.
+    Those of the lower trunk are there if any was found. What is ``accepted`` need not be looked at again.
     """
     order = list(GROUPS)
+    names = ALL_NAMES if any(name in points for name in LOWER_NAMES) else NAMES
     known = sorted(
-        NAMES, key=lambda name: order.index(kind_of(name)) if kind_of(name) in order else len(order)
+        names, key=lambda name: order.index(kind_of(name)) if kind_of(name) in order else len(order)
     )
     return [landmark_view(name, points.get(name), accepted) for name in known]
 
@@ -110,7 +122,7 @@ def tone_of(confidence: float) -> str:
 
 @dataclass(frozen=True)
 class LandmarkView:
-    """What is shown of a landmark; ``confidence`` 0..1, ``group`` bust, under or further.
+    """What is shown of a landmark; ``confidence`` 0..1, ``group`` bust, under, lower or further.
 
     ``absent``: it was not found, and can be placed. ``weak``: the control mesh hangs on it and it could
     hardly be seen, or a hand has put it ``off_mm`` from where its rule finds it. ``traced``: it was

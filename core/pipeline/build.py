@@ -24,7 +24,7 @@ from core.errors import FitError, LandmarkError, LineError, TissueError, UserErr
 from core.geometry.mesh import Mesh, Points, frozen
 from core.landmarks.detect import FINDING, find_landmarks
 from core.landmarks.manual import PlacedMark, in_mm
-from core.landmarks.types import LOWER_NAMES, Landmarks
+from core.landmarks.types import LOWER_NAMES, Landmark, Landmarks
 from core.mechanics.condensed_tissue import CondensedTissue
 from core.mechanics.constraint_lines import Line
 from core.mechanics.cup_parts import CupPart
@@ -87,6 +87,11 @@ class Stages(RegionStages):
     def lines(self) -> tuple[Line, ...]:
         """Return the lines of all regions, those of the bust first."""
         return tuple(line for region in self.regions for line in region.model.lines)
+
+    @cached_property
+    def all_landmarks(self) -> Mapping[str, Landmark]:
+        """Return the landmarks of all regions, by name."""
+        return {**self.landmarks.points, **(self.lower.landmarks.points if self.lower else {})}
 
     @property
     def drawn_lines(self) -> tuple[Line, ...]:

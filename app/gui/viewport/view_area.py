@@ -168,7 +168,7 @@ class ViewArea(QWidget):
         whole = frame.lower is not None
         if first or whole != (former is not None and former.lower is not None):
             (self.viewport.frame_all if whole else self.viewport.frame_bust)()
-        self.pins.set_landmarks(frame.stages.landmarks.points)
+        self.pins.set_landmarks(frame.stages.all_landmarks)
 
     def show_stuck(self, body: Body, landmarks: Mapping[str, Landmark]) -> None:
         """Show a body on which no control mesh lies, and what landmarks there are."""

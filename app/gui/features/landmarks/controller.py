@@ -102,7 +102,7 @@ class LandmarksController(QObject):
     def show_found(self, stages: Stages) -> None:
         """Show what was found on a body."""
         context, warnings = self._context, landmark_warnings(stages.landmarks)
-        views = landmark_views(stages.landmarks.points, context.view.pins.accepted)
+        views = landmark_views(stages.all_landmarks, context.view.pins.accepted)
         self._panel.set_landmarks(views, render_all([each.message for each in warnings]))
         weak = sum(view.weak for view in views)
         context.navigation.mark_step("landmarks", "look" if weak or warnings else "done", weak)
@@ -239,14 +239,14 @@ class LandmarksController(QObject):
         frame = self._session.frame
         if frame is None or self._session.design is None:
             return
-        marks = frame.stages.landmarks.points
+        marks = frame.stages.all_landmarks
         self._context.view.pins.accepted.update(spot_of(marks[name]) for name in names if marks[name].by_hand)
         names = [name for name in names if not marks[name].by_hand]
         if not names:
             self.show_found(frame.stages)
             self._context.view.pins.set_landmarks(dict(marks))
             return
-        self._carried = {name: frame.stages.landmarks.position(name) for name in names}
+        self._carried = {name: marks[name].position for name in names}
         after, self._carried = self._placed(self._session.design), {}
         text = tr("{name} confirmed").format(name=landmark_title(names[0]))
         self._session.edit(lambda _: after, text if len(names) == 1 else tr("Landmarks confirmed"))

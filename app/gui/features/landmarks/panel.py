@@ -91,6 +91,7 @@ class LandmarksPanel(QWidget):
         self._heads: dict[str, QWidget] = {
             "bust": label(tr("Bust"), "caption"),
             "under": label(tr("Folds and breast roots"), "caption"),
+            "lower": label(tr("Waist, hips and seat"), "caption"),
             "further": Disclosure(tr("Other landmarks")),
         }
         self.further = QWidget()
@@ -244,6 +245,7 @@ class LandmarksPanel(QWidget):
             row.clicked.connect(lambda _=False, chosen=name: self._choose(chosen))
             row.reached.connect(lambda chosen=name: self._reach(chosen))
             row.hovered.connect(lambda over, name=name: self.hovered.emit(name if over else ""))
+        self._heads["lower"].setVisible(any(view.group == "lower" for view in landmarks))
 
     def _choose(self, name: str) -> None:
         self.select(name)
