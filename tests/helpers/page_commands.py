@@ -25,7 +25,7 @@ INLINE = re.compile(r"(?<!`)`busk ([a-z][^`]*)`")
 PLACEHOLDER = re.compile(r"\b(?:DIR|FOLDER|FILE|COMMAND|LINE|NAME)\b")
 """What stands for something of the reader's: such a command is parsed alone."""
 
-SCANS = {"scan": "mannequin", "worn": "person"}
+SCANS = {"scan": "mannequin", "worn": "person", "trunk": "trunk"}
 """Scans that pages name, and the samples that stand for them."""
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from PySide6.QtWidgets import QVBoxLayout
+from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.gui.features.lines.row import LineRow
 from app.gui.widgets.basic import Disclosure
@@ -22,10 +22,11 @@ class LineGroups:
     ``changed`` is called when one was opened or closed.
     """
 
-    def __init__(self, column: QVBoxLayout, changed: Callable[[], None]) -> None:
+    def __init__(self, column: QVBoxLayout, owner: QWidget, changed: Callable[[], None]) -> None:
         self._column = column
         self.headings = {name: Disclosure(title) for name, title in _titles().items()}
         for heading in self.headings.values():
+            heading.setParent(owner)  # also while no row stands under it
             heading.hide()
             heading.toggled.connect(lambda _: changed())
 

@@ -266,7 +266,7 @@ class LinesPanel(QWidget):
         self._list.setSpacing(2)
         self._scroll.column.addLayout(self.cards)
         self._scroll.column.addLayout(self._list)
-        self.groups = LineGroups(self._list, self._show_rows)
+        self.groups = LineGroups(self._list, self, self._show_rows)
         self.add_lower = button(tr("Add waist, hips and seat"))
         set_tip(self.add_lower, tr("Lines below the under-bust: requires a scan down to mid-thigh"))
         self.add_lower.clicked.connect(self.lower_trunk_requested)

@@ -34,10 +34,11 @@ class ViewController(QObject):
         do = context.actions
         CompareKey(context.window, do.flip, context.view, show_variants)
         text = tr("Zoom to the selected line or landmark")
-        self.fit = do.add("view", tr("Zoom to selection"), "F", text, do=self._view.frame_selection)
+        do.submenu("view", "zoom", tr("Zoom"))
+        self.fit = do.add("zoom", tr("Zoom to selection"), "F", text, do=self._view.frame_selection)
         parts = {"bust": tr("Zoom to bust"), "waist": tr("Zoom to waist"), "seat": tr("Zoom to seat")}
         for key, (part, title) in enumerate(parts.items(), start=1):
-            do.add("view", title, f"Shift+{key}", do=partial(self._view.frame_part, part), of_document=True)
+            do.add("zoom", title, f"Shift+{key}", do=partial(self._view.frame_part, part), of_document=True)
         self._add_maps()
         for name, title in (("variants", tr("Table of variants")), ("history", tr("History"))):
             do.add("window", title, do=partial(self._open_tab, name), of_document=True)
