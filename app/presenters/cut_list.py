@@ -20,7 +20,7 @@ from core.pipeline.live_solver import Frame
 def cut_list_view(frame: Frame, cuts: CutList) -> CutListView:
     """Return the pieces of a frame in the order of the list of lines."""
     design = frame.stages.design
-    colours = line_colours((line.name for line in frame.stages.model.lines), design)
+    colours = line_colours((line.name for line in frame.stages.drawn_lines), design)
     pieces = {row.line: row for row in cuts.rows}
     still = {line.name for line in frame.stages.model.lines if not line.constrains}
     views = [
@@ -46,7 +46,7 @@ def as_table(
     all. Lengths are in mm, as in files.
     """
     design = stages.design
-    order = list(line_colours((line.name for line in stages.model.lines), design))
+    order = list(line_colours((line.name for line in stages.drawn_lines), design))
     rows = sorted(cuts.rows, key=lambda row: order.index(row.line))
     most = {row.line: row.max_kpa for row in pressed.rows} if pressed is not None else {}
     with using_unit("mm"):

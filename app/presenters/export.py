@@ -329,7 +329,7 @@ class ExportSource:
     @cached_property
     def looks(self) -> tuple[Mapping[str, str], Mapping[str, float]]:
         """Return titles and widths [mm] of the lines as the window shows them."""
-        names = [line.name for line in self.stages.model.lines]
+        names = [line.name for line in self.stages.drawn_lines]
         titles = {name: line_title(name, self.design) for name in names}
         return titles, {name: band_width(name, self.design) for name in names}
 

@@ -16,7 +16,7 @@ from app.presenters.measurements import measure_title
 from app.presenters.messages import render
 from core import __version__
 from core.errors import UserError
-from core.export.band_geometry import line_curves, strips
+from core.export.band_geometry import line_curves, strips, worn_regions
 from core.export.csv_cells import write_table
 from core.export.drawings import CURVE_FORMATS, STRIP_FORMATS, drawing_kind, write_curves, write_strips
 from core.export.measurement_files import (
@@ -139,14 +139,16 @@ def _mesh(path: str, mesh: Mesh, manner: ExportOptions) -> ExportPreview:
 
 
 def _lines(path: str, outcome: ExportSource, manner: ExportOptions) -> ExportPreview:
-    curves = line_curves(outcome.stages, outcome.points(manner.before), *outcome.looks)
+    worn = worn_regions(outcome.stages, outcome.region_points(manner.before))
+    curves = tuple(curve for each in worn for curve in line_curves(*each, *outcome.looks))
     space = space_of(drawing_kind(path, CURVE_FORMATS), manner.unit, manner.axes)
     told = listed(f"{curve.title} {length(curve.length)}" for curve in curves)
     return ExportPreview(told, _in_space(space), lambda at, _, hear: write_curves(at, curves, space))
 
 
 def _flat(path: str, outcome: ExportSource, manner: ExportOptions) -> ExportPreview:
-    drawn = strips(outcome.stages, outcome.control_points, *outcome.looks)
+    worn = worn_regions(outcome.stages, outcome.region_points(before=False))
+    drawn = tuple(strip for each in worn for strip in strips(*each, *outcome.looks))
     told = listed(f"{each.title} {length(each.length)}" for each in drawn)
     heading = f"Busk {__version__} · {outcome.whose}"
     return ExportPreview(told, "1:1", lambda at, _, hear: write_strips(at, drawn, heading, _strip_text))

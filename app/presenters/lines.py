@@ -154,15 +154,9 @@ def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineV
         strap="" if tail is None else _strap_text(tail),
         over_shoulder=_over_shoulder(design, frame, name),
         group=group,
-        whole_band=group != "bust" and _is_closed(frame, name),
+        whole_band=group != "bust" and lines[0].closed,
         worn=any(line.name in region.active_lines() for region in design.regions for line in lines),
     )
-
-
-def _is_closed(frame: Frame, name: str) -> bool:
-    """Return whether a line of the lower trunk comes back to where it begins."""
-    path = frame.stages.lower.control.paths[name] if frame.stages.lower is not None else (0, 1)
-    return path[0] == path[-1]
 
 
 def _over_shoulder(design: Design, frame: Frame, name: str) -> bool | None:

@@ -111,7 +111,7 @@ def _lengths(variants: Variants) -> list[VariantRow]:
 
 def _reached(name: str, title: str, variants: Variants) -> VariantRow:
     """Return how long a line is on the body, if its variant is solved."""
-    lengths = tuple(None if frame is None else frame.lengths.get(name) for _, _, frame in variants)
+    lengths = tuple(None if frame is None else frame.line_lengths.get(name) for _, _, frame in variants)
     rests = (_rests(frame).get(name) for _, _, frame in variants)
     percent = tuple(
         100.0 * length / rest if length and rest else None
@@ -152,7 +152,7 @@ def _named(variants: Variants) -> dict[str, Design]:
     """Return all lines in the order of the list, each with a design that has it."""
     found: dict[str, Design] = {}
     for _, design, frame in variants:
-        lines = frame.stages.model.lines if frame is not None else ()
+        lines = frame.stages.drawn_lines if frame is not None else ()
         found = dict.fromkeys(line_colours(line.name for line in lines), design) | found
     return {name: found[name] for name in line_colours(found)}
 
@@ -168,7 +168,7 @@ def _rests(frame: Frame | None) -> dict[str, float]:
     """Return the lines whose length can be set with their length at rest [mm], in the order of the list."""
     if frame is None:
         return {}
-    lines = {line.name: line for line in frame.stages.model.lines}
+    lines = {line.name: line for line in frame.stages.drawn_lines}
     return {name: lines[name].rest_length for name in line_colours(lines) if lines[name].constrains}
 
 

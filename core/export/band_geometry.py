@@ -17,6 +17,7 @@ from core.mechanics.constraint_lines import Line
 from core.messages import EMPTY, ElasticName, Length, Message, length_of
 from core.pipeline.build import Stages
 from core.pipeline.line_routes import NO_BACK
+from core.pipeline.stages import RegionStages
 
 SIDE_SEAM, LEFT = Message("right side, seam"), Message("left side")
 CENTRE, BACK, SEAM = Message("centre front"), Message("centre back"), Message("seam allowance")
@@ -79,8 +80,20 @@ class Strip:
     to_cut: bool = True
 
 
+def worn_regions(stages: Stages, region_points: Sequence[Points]) -> list[tuple[RegionStages, Points]]:
+    """Return the regions in which lines are worn, with their control points [mm].
+
+    Raises LineError if there is none.
+    """
+    pairs = zip(stages.regions, region_points, strict=True)
+    worn = [(region, points) for region, points in pairs if region.design.active_lines()]
+    if not worn:
+        raise _no_lines()
+    return worn
+
+
 def line_curves(
-    stages: Stages, control_points: Points, titles: Mapping[str, str], widths: Mapping[str, float]
+    stages: RegionStages, control_points: Points, titles: Mapping[str, str], widths: Mapping[str, float]
 ) -> tuple[LineCurve, ...]:
     """Return the worn lines on the body as ``control_points``, (n, 3) [mm], shape it, in the model's order.
 
@@ -98,7 +111,7 @@ def line_curves(
 
 
 def strips(
-    stages: Stages, control_points: Points, titles: Mapping[str, str], widths: Mapping[str, float]
+    stages: RegionStages, control_points: Points, titles: Mapping[str, str], widths: Mapping[str, float]
 ) -> tuple[Strip, ...]:
     """Return the worn lines as flat strips: as they are to be cut, or as worn where no elastic is chosen.
 
@@ -140,11 +153,15 @@ def _cut(worn: Strip, row: CutRow) -> Strip:
     return replace(worn, length=row.cut_mm, width=width, marks=tuple(sorted(marks)), note=note, to_cut=True)
 
 
-def _worn(stages: Stages) -> Sequence[Line]:
+def _worn(stages: RegionStages) -> Sequence[Line]:
     worn = [line for line in stages.model.lines if line.name in stages.design.active_lines()]
     if not worn:
-        raise LineError(Message("No active lines."), Message("Set a line length first."))
+        raise _no_lines()
     return worn
+
+
+def _no_lines() -> LineError:
+    return LineError(Message("No active lines."), Message("Set a line length first."))
 
 
 def _halves(places: Points, laid: CentreLine) -> tuple[Points, Points]:
@@ -159,7 +176,7 @@ def _halves(places: Points, laid: CentreLine) -> tuple[Points, Points]:
     return places[: last + 1], np.concatenate([places[last:], places[:1]])
 
 
-def _marks(stages: Stages, line: Line, control_points: Points) -> tuple[tuple[float, Message], ...]:
+def _marks(stages: RegionStages, line: Line, control_points: Points) -> tuple[tuple[float, Message], ...]:
     middle = float(stages.control.mesh.vertices[stages.control.border_points, 0].mean())
     places, back = line.places(control_points), stages.backs.get(line.name)
     s = arc_length(places)

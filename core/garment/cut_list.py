@@ -107,7 +107,9 @@ def cut_list_of(shown: ShownState) -> CutList:
     Raises LineError for control points that are not a valid shape.
     """
     lists = [cut_list(*each) for each in zip(shown.stages.regions, shown.region_points, strict=True)]
-    return replace(lists[0], rows=tuple(row for each in lists for row in each.rows))
+    rows = tuple(row for each in lists for row in each.rows)
+    notes = tuple(dict.fromkeys(note for each in lists if each.rows for note in each.notes))
+    return replace(lists[0], rows=rows, notes=notes or lists[0].notes)
 
 
 def cut_list(stages: RegionStages, control_points: Points) -> CutList:

@@ -174,6 +174,11 @@ def build(
     raise stuck
 
 
+def of_bust_alone(stages: Stages) -> Stages:
+    """Return the stages without the lower trunk, for what asks nothing of it."""
+    return stages if stages.design.lower is None else build(replace(stages.design, lower=None), stages)
+
+
 def _stages(
     stage: StageCache,
     design: Design,

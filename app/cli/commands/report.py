@@ -159,7 +159,7 @@ def _write(solution: Solution, sheet: Report, how: ReportOptions) -> list[str]:
     from app.report.pages import pages_of, write_pdf  # noqa: PLC0415
 
     application(unit=how.length_unit)
-    names = [line.name for line in solution.stages.model.lines]
+    names = [line.name for line in solution.stages.drawn_lines]
     handout = ReportDocument(sheet, {}, line_colours(names, solution.stages.design))
     title = " ".join(filter(None, (sheet.heading.customer, sheet.heading.project)))
     fresh = not Path(how.out).exists()

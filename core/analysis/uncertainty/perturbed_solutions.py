@@ -30,7 +30,7 @@ from core.measurements.table import original_subject, reshaped_subject
 from core.mechanics.potential import Potential
 from core.mechanics.sensitivity import Rates, Sensitivities
 from core.mechanics.volume import KEEPS_VOLUME
-from core.pipeline.build import Stages, build, detect_landmarks
+from core.pipeline.build import Stages, build, detect_landmarks, of_bust_alone
 from core.pipeline.model_stages import line_targets
 from core.pipeline.solve import NoEquilibriumError, body_volume_rates, exact_solution
 
@@ -115,7 +115,7 @@ class PerturbedSolutions:
     """
 
     def __init__(self, base: Stages, former: PerturbedSolutions | None = None) -> None:
-        self.base = base
+        self.base = base = of_bust_alone(base)
         self._known: dict[tuple[PlacedMark, ...], tuple[Stages, OriginalMeasurements]] = {}
         if former is not None and _alike(base, former.base) and self.steps == former.steps:
             self._known = former._known

@@ -102,3 +102,18 @@ def test_the_exported_body_is_that_of_both_regions(tmp_path: Path) -> None:
     rest = trimesh.load(TRUNK[0], process=False).vertices
     assert np.abs(exported.vertices - rest).max() > 5.0
     assert np.abs(exported.vertices - solved.vertices).max() < 0.2  # adaptive turns end a little earlier
+
+
+def test_cut_list_and_drawings_have_the_lines_below(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    worn = ("--line", "waist=97%", "--line", "sling=97%", "--settings", "tissue=net")
+    assert main(["cut", *TRUNK, *worn, "--csv"]) == 0
+    assert [row.split(",")[0] for row in capsys.readouterr().out.splitlines()[1:]] == [
+        "waist",
+        "sling-left",
+        "sling-right",
+    ]
+    drawings = ("--lines", str(tmp_path / "lines.dxf"), "--strips", str(tmp_path / "strips.svg"))
+    assert main(["export", TRUNK[0], *worn, *drawings]) == 0
+    assert "Seat sling" in (tmp_path / "strips.svg").read_text("utf-8")

@@ -241,7 +241,7 @@ class ReportController(QObject):
         )
 
     def _colours(self, frame: Frame) -> dict[str, str]:
-        return line_colours([line.name for line in frame.stages.model.lines], frame.stages.design)
+        return line_colours([line.name for line in frame.stages.drawn_lines], frame.stages.design)
 
     # -- what leaves the window
 
