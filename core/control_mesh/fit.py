@@ -71,16 +71,8 @@ class ControlMesh:
     @property
     def bust_points(self) -> tuple[int, int]:
         """Return the control points at the bust points, (left, right). Raises ValueError in the lower one."""
-        return self._apexes_of(BUST)
-
-    @property
-    def buttock_points(self) -> tuple[int, int]:
-        """Return the control points at the buttock points, (left, right). Raises ValueError for the bust."""
-        return self._apexes_of(LOWER)
-
-    def _apexes_of(self, region: str) -> tuple[int, int]:
-        if self.region != region:
-            raise ValueError(f"a control mesh of region {self.region}, not {region}")
+        if self.region != BUST:
+            raise ValueError(f"a control mesh of region {self.region}, not {BUST}")
         return self.apexes
 
     @property

@@ -47,8 +47,6 @@ def halved(control: ControlMesh, skin: Mesh) -> ControlMesh:
         column=_with_outer(control.column, ends),
         paths=paths,
         borders=borders,
-        zone=None if control.zone is None else np.tile(control.zone, len(parts)),
-        depth=None if control.depth is None else np.concatenate([control.depth, control.depth[ends].mean(1)]),
         embedded={name: _finer(curve, grid) for name, curve in control.embedded.items()},
     )
 

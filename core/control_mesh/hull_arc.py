@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.geometry.mesh import Floats, Points
-from core.geometry.plane_sections import hull_corners
+from core.geometry.mesh import Floats, Points, unit
+from core.geometry.plane_sections import arc_length, hull_corners
+from core.landmarks.lower_trunk.outline_profiles import crossings
 
 OUT = 0.35
 """Rays begin so far out from the middle on the way to the hull [1]; ours."""
@@ -31,21 +32,19 @@ class SectionArc:
 
     def front(self, parts: Floats, sign: float) -> Points:
         """Return skin at parts of the front quarter of a side, +1 the left one, (k, 2) [mm]."""
-        return self._on_skin(_at(self._quarter(sign, -1.0), parts))
+        return self._on_skin(at_parts(self._quarter(sign, -1.0), parts))
 
     def back(self, parts: Floats, sign: float) -> Points:
         """Return skin at parts of the back quarter of a side, (k, 2) [mm]."""
-        return self._on_skin(_at(self._quarter(sign, 1.0)[::-1], parts))
+        return self._on_skin(at_parts(self._quarter(sign, 1.0)[::-1], parts))
 
     def centre(self, way: float) -> Points:
         """Return skin at the centre of the front (-1) or the back (+1), (2,) [mm]."""
-        y = way * crossing_y(self.outline, self.middle, way)
-        return np.array([self.middle, way * y])
+        return np.array([self.middle, crossing_y(self.outline, self.middle, way)])
 
     def hull_centre(self, way: float) -> Points:
         """Return the convex hull at the centre of the front (-1) or the back (+1), (2,) [mm]."""
-        hull = self._hull
-        return np.array([self.middle, crossing_y(hull, self.middle, way)])
+        return np.array([self.middle, crossing_y(self._hull, self.middle, way)])
 
     def part_at(self, place: Points, sign: float) -> float:
         """Return the part of the back quarter of the hull that is nearest to a place, (2,) [mm]."""
@@ -65,7 +64,7 @@ class SectionArc:
     def _quarter(self, sign: float, way: float) -> Points:
         """Return the hull from its centre, front (-1) or back (+1), to the side in the middle depth."""
         hull = self._hull
-        side = np.array([_crossing_x(hull, self.depth, sign), self.depth])
+        side = np.array([crossing_y(hull[:, ::-1], self.depth, sign), self.depth])
         inside = (sign * (hull[:, 0] - self.middle) > 0.0) & (way * (hull[:, 1] - self.depth) > 0.0)
         corners = hull[inside]
         angle = np.arctan2(way * (corners[:, 1] - self.depth), sign * (corners[:, 0] - self.middle))
@@ -79,12 +78,10 @@ class SectionArc:
         return np.array([last_crossing(self.outline, a, b) for a, b in zip(start, places, strict=True)])
 
 
-def _at(curve: Points, parts: Floats) -> Points:
-    """Return places at parts of the length of a curve, (k, 2)."""
-    steps = np.linalg.norm(np.diff(curve, axis=0), axis=1)
-    along = np.concatenate([[0.0], np.cumsum(steps)])
-    wanted = np.asarray(parts) * along[-1]
-    return np.column_stack([np.interp(wanted, along, each) for each in curve.T])
+def at_parts(curve: Points, parts: Floats) -> Points:
+    """Return places at parts of the length of an open curve, (k, 2) [mm]."""
+    along = arc_length(curve)
+    return np.column_stack([np.interp(parts * along[-1], along, each) for each in curve.T])
 
 
 def crossing_y(polygon: Points, x: float, way: float) -> float:
@@ -92,30 +89,17 @@ def crossing_y(polygon: Points, x: float, way: float) -> float:
 
     Where it does not reach there, y of its corner nearest to that.
     """
-    a, b = polygon[:, :2], np.roll(polygon[:, :2], -1, axis=0)
-    over = (a[:, 0] < x) != (b[:, 0] < x)
-    if not over.any():
-        return float(a[np.argmin(np.abs(a[:, 0] - x)), 1])
-    part = (x - a[over, 0]) / (b[over, 0] - a[over, 0])
-    y = a[over, 1] + part * (b[over, 1] - a[over, 1])
-    return way * float((way * y).max())
-
-
-def _crossing_x(polygon: Points, y: float, sign: float) -> float:
-    return crossing_y(polygon[:, [1, 0]], y, sign)
+    found = crossings(polygon, x)
+    if not len(found):
+        return float(polygon[np.argmin(np.abs(polygon[:, 0] - x)), 1])
+    return float(found[-1 if way > 0.0 else 0])
 
 
 def last_crossing(outline: Points, start: Points, through: Points) -> Points:
     """Return where a ray from ``start`` through a place last crosses an outline; that place if nowhere."""
-    way = through - start
-    a, b = outline[:, :2] - start, np.roll(outline[:, :2], -1, axis=0) - start
-    beside = np.array([-way[1], way[0]])
-    p, q = a @ beside, b @ beside
-    over = (p < 0.0) != (q < 0.0)
-    part = (p[over] / (p[over] - q[over]))[:, None]
-    reach = (a[over] + part * (b[over] - a[over])) @ way / max(float(way @ way), 1e-12)
-    farthest = reach.max(initial=0.0)
-    return np.asarray(start + farthest * way if farthest > 0.0 else through)
+    way = unit(through - start)
+    ahead = crossings((outline - start) @ np.array([[-way[1], way[0]], way]).T, 0.0)
+    return np.asarray(start + ahead[-1] * way if len(ahead) and ahead[-1] > 0.0 else through)
 
 
 def leg_arcs(outline: Points, sign: float) -> tuple[Points, Points]:
@@ -132,11 +116,6 @@ def leg_arcs(outline: Points, sign: float) -> tuple[Points, Points]:
     around = np.roll(way, -inside, axis=0)
     turn = (outside - inside) % len(places)
     return around[: turn + 1], np.concatenate([around[turn:], around[:1]])
-
-
-def at_parts(curve: Points, parts: Floats) -> Points:
-    """Return places at parts of the length of an open curve, (k, 2) [mm]."""
-    return _at(curve, parts)
 
 
 def half_outline(outline: Points, middle: float, sign: float) -> Points | None:

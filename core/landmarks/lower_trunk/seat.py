@@ -87,12 +87,12 @@ def gluteal_fold(sections: LowerSections, side: int, low: float, point: Landmark
     curve = np.stack([np.full(len(z), x), middle, z], axis=1)[np.isfinite(middle)]
     if not np.isfinite(score).any() or len(curve) == 0:
         place = np.array([x, float(point.position[1]), usual])
-        return Landmark(name, place, 0.1, Message("The scan does not show the gluteal fold: about here."))
+        return Landmark(name, place, 0.1, Message("The scan does not show the gluteal fold: approximate."))
     best = int(np.nanargmax(score))
     place = np.array([x, np.interp(z[best], curve[:, 2], curve[:, 1]), z[best]])
     sharp, edge = float(mean[best]), np.isnan(score[max(best - 2, 0) : best + 3]).any()
     if edge or sharp < CREASE:
-        return Landmark(name, place, 0.35, Message("No crease under the buttock: about here."), curve)
+        return Landmark(name, place, 0.35, Message("No crease under the buttock: approximate."), curve)
     return Landmark(name, place, 0.7, Message("Sharpest hollow under the buttock."), curve)
 
 

@@ -10,9 +10,10 @@ import pytest
 from whole_trunk import trunk_stages
 
 from core.control_mesh.fit import ControlMesh
+from core.control_mesh.hull_arc import half_outline
 from core.control_mesh.lower_fit import fit_lower_mesh
 from core.control_mesh.lower_places import LowerPlaces
-from core.control_mesh.lower_template import BELLY_ROW, FOLD_ROW, HALF, HIP_ROW, read_lower_template
+from core.control_mesh.lower_template import BELLY_ROW, FOLD_ROW, HIP_ROW, read_lower_template
 from core.control_mesh.validation import agreement, corner_angles
 from core.errors import FitError
 from core.landmarks.lower_trunk.types import LowerLandmarks
@@ -103,9 +104,18 @@ def test_a_fold_over_the_waist_is_refused(lower: LowerStages) -> None:
         fit_lower_mesh(TEMPLATE, lower.body, marks, underbust=trunk_stages().landmarks.underbust_level)
 
 
-def test_thighs_that_touch_are_parted_below_a_crotch(lower: LowerStages) -> None:
+def test_legs_stay_on_their_sides(lower: LowerStages) -> None:
     places = LowerPlaces(TEMPLATE, lower.landmarks, trunk_stages().landmarks.underbust_level, 0.45)
     left, right = (leg[:, 0] - lower.landmarks.position("crotch")[0] for leg in places.legs())
     assert left.min() > 0.0 > right.max()
     assert {len(left), len(right)} == {26}
-    assert HALF == 11
+
+
+def test_an_outline_of_both_thighs_is_parted_at_the_middle() -> None:
+    both = np.array([[-3.0, 0.0, 5.0], [4.0, 0.0, 5.0], [4.0, 2.0, 5.0], [-3.0, 2.0, 5.0]])
+    left, right = (half_outline(both, 1.0, sign) for sign in (1.0, -1.0))
+    assert left is not None
+    assert right is not None
+    assert left.tolist() == [[1.0, 0.0, 5.0], [4.0, 0.0, 5.0], [4.0, 2.0, 5.0], [1.0, 2.0, 5.0]]
+    assert (right[:, 0].min(), right[:, 0].max(), len(right)) == (-3.0, 1.0, 4)
+    assert half_outline(both, 9.0, 1.0) is None

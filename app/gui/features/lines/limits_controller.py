@@ -63,7 +63,12 @@ class LimitsController(QObject):
         design, (shown, leeways) = frame.stages.design, self._shown
         if design is shown:
             return leeways
-        lines = [line.name for line in frame.stages.lines if line.constrains]
+        drawn = frame.stages.drawn_lines
+        lines = [
+            line.name
+            for line in frame.stages.lines
+            if line.constrains and (line in drawn or line.name in self._last)
+        ]
         keys = {name: _key(design, name) for name in lines}
         found = {name: self._known.get(key) for name, key in keys.items()}
         self._last |= {name: known for name, known in found.items() if known is not None}
