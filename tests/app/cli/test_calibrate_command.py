@@ -48,7 +48,7 @@ def test_residuals_and_parameters_are_printed_and_saved(
     [
         (["--thickness", "25"], "thickness 25 mm is out of range"),
         (["--out", "found.ply"], "found.ply is not a project file name"),
-        (["--unit", "cm"], "In cm, the trunk girth would be 8726 mm"),
+        (["--unit", "cm"], "In cm, the trunk girth would be 872"),
     ],
 )
 def test_invalid_options_are_refused(pair: tuple[str, str], words: list[str], said: str, capsys) -> None:
