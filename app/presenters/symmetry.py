@@ -12,7 +12,9 @@ from app.presenters.lines import row_title
 from app.presenters.measurements import length_uncertainty, plus_minus
 from app.presenters.messages import render
 from app.presenters.target_shape import is_met, is_signed, stop_text, target_title
-from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER, LIFT, OUT, Goal, section_of
+from core.analysis.inverse_design.bust_quantities import FURTHER_OUT, HIGHER, LIFT, OUT
+from core.analysis.inverse_design.profile_quantities import section_of
+from core.analysis.inverse_design.quantity import Goal
 from core.analysis.symmetry.compare import BeforeAfter, SideDifference, SymmetryRow, symmetry_rows
 from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, splittable_lines
 from core.control_mesh.template import read_template

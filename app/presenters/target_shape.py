@@ -10,16 +10,9 @@ import numpy as np
 from app.i18n.catalog import colon, joined, listed, number, tr
 from app.i18n.lengths import length, length_number, length_unit
 from app.presenters.lines import told_title
-from core.analysis.inverse_design.quantities import (
-    FURTHER_OUT,
-    GIRTH,
-    HIGHER,
-    LIFT,
-    OUT,
-    Goal,
-    profile_deviations,
-    section_of,
-)
+from core.analysis.inverse_design.bust_quantities import FURTHER_OUT, GIRTH, HIGHER, LIFT, OUT
+from core.analysis.inverse_design.profile_quantities import profile_deviations, section_of
+from core.analysis.inverse_design.quantity import Goal
 from core.document.design import Design
 from core.geometry.mesh import Floats
 from core.mechanics.mesh_quality import STRAINED_RANGE
@@ -46,6 +39,13 @@ def target_title(name: str) -> str:
         "apex lift": tr("Apex lift"),
         "apex out": tr("Apex, forward"),
         GIRTH: tr("Bust girth"),
+        "waist girth": tr("Waist girth"),
+        "belly girth": tr("Belly girth"),
+        "hip girth": tr("Hip girth"),
+        "belly out": tr("Belly, forward"),
+        "buttock lift": tr("Buttock point lift"),
+        "buttock out": tr("Buttock point, backward"),
+        "fold lift": tr("Gluteal fold lift"),
         HIGHER: tr("Left higher than right"),
         FURTHER_OUT: tr("Left further forward than right"),
     }
@@ -69,7 +69,7 @@ def profile_title(section: str) -> str:
 
 def is_signed(name: str) -> bool:
     """Return whether a quantity is relative to the original, so that its plus is written."""
-    return name != GIRTH and not section_of(name)
+    return "girth" not in name and not section_of(name)
 
 
 def target_text(name: str, value: float) -> str:
@@ -255,7 +255,7 @@ def _limits(reply: InverseResult) -> list[str]:
 def change_text(before: Design, reply: InverseResult) -> list[str]:
     """Return how lengths would change, row by row, what elastics press with, and if others were not asked."""
     after, texts = reply.design, []
-    for title, name in _rows(sorted(after.active_lines()), after):
+    for title, name in _rows(sorted(after.worn_lines()), after):
         one, other = before.ratio(name), after.ratio(name)
         if abs(one - other) >= SAME:
             words = tr("{line} {before} → {after} %") + " ({change})"
@@ -276,13 +276,13 @@ def change_text(before: Design, reply: InverseResult) -> list[str]:
 
 def locked_lines_text(design: Design, kept: Collection[str]) -> str:
     """Return which worn lines stay because they are locked, if any do."""
-    lines = _titles([name for name in sorted(design.active_lines()) if name in kept], design)
+    lines = _titles([name for name in sorted(design.worn_lines()) if name in kept], design)
     return tr("Locked, not changed: {lines}.").format(lines=lines) if lines else ""
 
 
 def missing_input_text(design: Design, moving: Collection[str]) -> str:
     """Return what has to be done before anything can be asked, if there is something; see ``free_lines``."""
-    lines = design.active_lines() & set(moving)
+    lines = design.worn_lines() & set(moving)
     if not lines:
         return tr("Activate lines first: choose a preset or shorten a line.")
     if all(design.line_settings(name).locked for name in lines):
@@ -374,7 +374,7 @@ def unlimited_text(free: InverseResult, goals: Sequence[Goal], now: Mapping[str,
 
 def activated_text(before: Design, after: Design) -> str:
     """Return which lines an answer switches on, if it does."""
-    lines = _titles(sorted(after.active_lines() - before.active_lines()), after)
+    lines = _titles(sorted(after.worn_lines() - before.worn_lines()), after)
     return tr("Activated: {lines}.").format(lines=lines) if lines else ""
 
 

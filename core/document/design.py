@@ -235,6 +235,10 @@ class Design:
         """Return the names of the lines that are worn."""
         return frozenset(line.name for line in self.lines)
 
+    def worn_lines(self) -> frozenset[str]:
+        """Return the names of the lines that are worn in any region."""
+        return frozenset(line.name for region in self.regions for line in region.lines)
+
     @property
     def is_bare(self) -> bool:
         """Return whether nothing reshapes the body: no line, no cup, and it stands as it was scanned."""
@@ -333,7 +337,7 @@ class Design:
         """Return the line ``name`` and its partner of the other side, if they share length and lock."""
         partner = partner_of(name)
         sides = [self.line_settings(each) for each in (name, partner)]
-        paired = {line.name for line in self.own_lines} | (lower_line_names() if self.lower else set())
+        paired = {line.name for line in self.own_lines} | lower_line_names()
         both = partner in paired and all(side.linked for side in sides)
         alike = sides[0].locked == sides[1].locked and self.ratio(name) == self.ratio(partner)
         return (name, partner) if both and alike else (name,)

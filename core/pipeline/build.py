@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -77,6 +78,23 @@ class Stages(RegionStages):
     def regions(self) -> tuple[RegionStages, ...]:
         """Return the stages of each region, the bust first."""
         return (self,) if self.lower is None else (self, self.lower)
+
+    @cached_property
+    def region_rows(self) -> tuple[slice, ...]:
+        """Return which rows belong to each region where the control points of all are one array."""
+        ends = np.cumsum([0, *(len(region.control.mesh.vertices) for region in self.regions)]).tolist()
+        return tuple(slice(start, end) for start, end in pairwise(ends))
+
+    @cached_property
+    def rest_points(self) -> Points:
+        """Return the control points of all regions at rest, the bust's first, (n, 3) [mm]."""
+        return np.concatenate([region.control.mesh.vertices for region in self.regions])
+
+    def at_lengths(self, design: Design) -> Stages:
+        """Return the same stages, asked for the lengths of another ``design``: nothing is built anew."""
+        lower = self.lower
+        below = self.below if lower is None else replace(lower, design=design.lower_design)
+        return replace(self, design=design, below=below)
 
     def region_of(self, name: str) -> RegionStages:
         """Return the stages of the region that a line belongs to."""

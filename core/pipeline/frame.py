@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from core.errors import UserError
 from core.geometry.mesh import Points
 from core.mechanics.convergence import Convergence, combined
@@ -68,6 +70,11 @@ class Frame:
     def region_points(self) -> tuple[Points, ...]:
         """Return the control points of each region, the bust's first, each (n, 3) [mm]."""
         return (self.control_points, *(each.control_points for each in [self.lower] if each))
+
+    @property
+    def all_points(self) -> Points:
+        """Return the control points of all regions in one array, (n, 3) [mm]; see ``Stages.region_rows``."""
+        return np.concatenate(self.region_points)
 
 
 @dataclass(frozen=True)

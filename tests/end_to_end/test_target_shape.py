@@ -13,7 +13,7 @@ from PySide6.QtTest import QTest
 from window_tools import Script, points, run_undrawn, settled
 
 from app.gui.main_window import MainWindow
-from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.quantity import Goal
 from core.document.design import Design
 from core.document.storage.project_file import open_project
 from core.garment.elastic_library import find_elastic

@@ -8,7 +8,7 @@ from ask_tools import answered, drag, type_wish, wear
 from window_tools import Script, run_undrawn, settled
 
 from app.gui.main_window import MainWindow
-from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.quantity import Goal
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

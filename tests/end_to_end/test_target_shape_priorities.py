@@ -9,7 +9,7 @@ from PySide6.QtTest import QTest
 from window_tools import Script, run_bodiless, settled
 
 from app.gui.main_window import MainWindow
-from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.quantity import Goal
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -10,7 +10,7 @@ from window_tools import Script, run_bodiless, settled
 
 from app.gui.main_window import MainWindow
 from app.gui.widgets.value_edit import ValueEdit
-from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.quantity import Goal
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

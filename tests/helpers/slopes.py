@@ -7,9 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from core.deformation.tffd import bind
+from core.deformation.tffd import Binding, bind
 from core.pipeline.build import Stages
 from core.pipeline.observables import BodyObservables
+from core.pipeline.stages import RegionStages
 
 
 def slope(values: Callable[[float], np.ndarray | float], step: float = 0.01) -> np.ndarray:
@@ -20,6 +21,13 @@ def slope(values: Callable[[float], np.ndarray | float], step: float = 0.01) -> 
 
 def doubled(stages: Stages) -> Stages:
     """The same stages with the body bound in double precision."""
+    control, lower = stages.control, stages.lower
+    binding = _bound(stages)
+    below = stages.below if lower is None else replace(lower, binding=_bound(lower))
+    watch = BodyObservables(binding, control, stages.landmarks)
+    return replace(stages, binding=binding, watch=watch, below=below)
+
+
+def _bound(stages: RegionStages) -> Binding:
     control = stages.control
-    binding = bind(stages.body.mesh, control.mesh, stages.patch.fade, fixed=control.fixed)
-    return replace(stages, binding=binding, watch=BodyObservables(binding, control, stages.landmarks))
+    return bind(stages.body.mesh, control.mesh, stages.patch.fade, fixed=control.fixed)

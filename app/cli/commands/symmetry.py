@@ -16,7 +16,7 @@ from app.presenters.assessment import assessment_lines
 from app.presenters.symmetry import balance_result_texts, not_balanced_reason, split_titles, symmetry_view
 from app.presenters.target_shape import change_text, reasons
 from core import __version__
-from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER
+from core.analysis.inverse_design.bust_quantities import FURTHER_OUT, HIGHER
 from core.analysis.symmetry.balance import EVEN, BalanceResult, balance_sides
 from core.analysis.symmetry.compare import BeforeAfter, SideDifference, compare_sides, symmetry_rows
 from core.analysis.symmetry.split_sides import ENOUGH, split_sides

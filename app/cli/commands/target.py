@@ -34,7 +34,9 @@ from core import __version__
 from core.analysis.inverse_design.conflicts import Conflict
 from core.analysis.inverse_design.line_selection import LineSelection, activated, optional_lines
 from core.analysis.inverse_design.profile_curve import profile_goals, read_profile
-from core.analysis.inverse_design.quantities import NAMES, Goal, section_of
+from core.analysis.inverse_design.profile_quantities import section_of
+from core.analysis.inverse_design.quantities import NAMES, reading
+from core.analysis.inverse_design.quantity import Goal
 from core.analysis.inverse_design.search import Bounds
 from core.analysis.inverse_design.solve import InverseResult
 from core.errors import LineError, UserError
@@ -49,8 +51,9 @@ TARGET_HELP = (
     "target value in mm (also cm, in); may be repeated. If targets conflict, append @high or @low "
     "(lift=12mm@high) for four times or a quarter of the weight. lift, out: upward and forward movement of "
     "the bust points from the original body; apex: the same for the foremost point of the breast; girth: "
-    "girth at bust point height; left higher, left further out: difference of left and right. Names: "
-    + ", ".join(NAMES)
+    "girth at bust point height; left higher, left further out: difference of left and right. With lines of "
+    "waist, hips or seat: girths there, belly out, movement of buttock points and gluteal folds. A girth "
+    "with a sign is a change from the original body (waist girth=-4cm). Names: " + ", ".join(NAMES)
 )
 PROFILE_HELP = (
     "target profile of the skin in a section, fitted by least squares: a table with the columns height_mm "
@@ -119,7 +122,8 @@ def run(options: Namespace) -> int:
 
 def find_lengths(options: Namespace) -> TargetResult:
     """Compute the lengths: requests that are not valid are refused before. Raises UserError."""
-    goals, curves = goals_of(options.target or []), [_curve(each) for each in options.profile or []]
+    goals, changes = goals_of(options.target or []), changes_of(options.target or [])
+    curves = [_curve(each) for each in options.profile or []]
     if not goals and not curves:
         raise UserError(Message("No target specified."), Message("Specify a target: --target lift=5mm."))
     limit = options.pressure
@@ -130,35 +134,48 @@ def find_lengths(options: Namespace) -> TargetResult:
         )
     check_project_name(options.out)
     stages = with_lines_and_elastics(build(design_of(options)), options.line or [], options.elastic or [])
-    if not stages.design.lines and not options.optional:
+    if not stages.design.worn_lines() and not options.optional:
         raise LineError(
             Message("No active lines."), Message("Activate the lines to use: --line mid-bust=100%.")
         )
-    chosen = stages.design.active_lines()
-    active = {line.name.lower(): line for line in stages.model.lines if line.name in chosen}
-    locked = [_active(active, name, name).name for name in options.lock or []]
+    chosen = stages.design.worn_lines()
+    active = {line.name.lower(): line for line in stages.lines if line.name in chosen}
+    locked = [line.name for name in options.lock or [] for line in _active(active, name, name)]
+    goals = tuple(_absolute(stages, goal) if goal.name in changes else goal for goal in goals)
     for section, priority, curve in curves:
         goals += tuple(replace(goal, priority=priority) for goal in profile_goals(stages, section, curve))
-    shortest = dict(_shortest(active, each) for each in options.shortest or [])
+    shortest = dict(pair for each in options.shortest or [] for pair in _shortest(active, each))
     solver = LineSelection(stages, _inactive(stages, options.optional or []), Bounds(shortest, locked), limit)
     reply = solver.solve(goals)
     assessment = assess(solve(build(reply.design, stages)))
     return TargetResult(stages, goals, reply, assessment, solver.conflicts(reply, goals))
 
 
+def changes_of(texts: Sequence[str]) -> frozenset[str]:
+    """Return the names of girths that texts, NAME=VALUE, tell with a sign: changes from the original body."""
+    matches = filter(None, map(_matched, texts))
+    return frozenset(name for name, value, *_ in matches if value[0] in "+-" and not is_signed(name))
+
+
+def _matched(text: str) -> tuple[str, str, str | None, str | None] | None:
+    """Return name, value, unit and priority of a text, NAME=VALUE, None if it is none."""
+    plain = unicodedata.normalize("NFKC", text).replace("\N{MINUS SIGN}", "-").lower()
+    match = _TARGET.fullmatch(plain)
+    return None if match is None else (" ".join(match[1].split()), match[2], match[3], match[4])
+
+
 def goals_of(texts: Sequence[str]) -> tuple[Goal, ...]:
     """Return the goals of NAME=VALUE texts. Raises UserError with the valid names."""
     goals: dict[str, Goal] = {}
     for text in texts:
-        match = _TARGET.fullmatch(unicodedata.normalize("NFKC", text).replace("\N{MINUS SIGN}", "-").lower())
-        name = " ".join(match[1].split()) if match else ""
-        if match is None or name not in NAMES:
+        name, number, unit, priority = _matched(text) or ("", "0", None, None)
+        if name not in NAMES:
             names = ", ".join(NAMES)
             raise UserError(
                 Message("'{text}' is not a target.", text=text),
                 Message("Enter NAME=12mm. Names: {names}.", names=names),
             )
-        value = float(match[2].replace(",", ".")) * _MM[match[3]]
+        value = float(number.replace(",", ".")) * _MM[unit]
         if abs(value) > _LARGEST:
             raise UserError(
                 Message("'{text}' is not a valid body length.", text=text),
@@ -168,7 +185,7 @@ def goals_of(texts: Sequence[str]) -> tuple[Goal, ...]:
             raise UserError(
                 Message("{name} is specified twice.", name=name), Message("Specify each name only once.")
             )
-        goals[name] = Goal(name, value, match[4] or "normal")
+        goals[name] = Goal(name, value, priority or "normal")
     return tuple(goals.values())
 
 
@@ -202,20 +219,28 @@ def _inactive(stages: Stages, requests: Sequence[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(chosen))
 
 
-def _active(active: Mapping[str, Line], name: str, request: str) -> Line:
-    if name.strip().lower() not in active:
+def _active(active: Mapping[str, Line], name: str, request: str) -> list[Line]:
+    """Return the active line of a name, or those of both sides. Raises LineError."""
+    name = name.strip().lower()
+    found = [active[each] for each in (name, f"{name}-left", f"{name}-right") if each in active]
+    if not found:
         names = ", ".join(line.name for line in active.values())
         raise LineError(
             Message("'{request}' is not an active line.", request=request),
             Message("Active lines: {names}.", names=names),
         )
-    return active[name.strip().lower()]
+    return found
 
 
-def _shortest(active: Mapping[str, Line], request: str) -> tuple[str, float]:
+def _shortest(active: Mapping[str, Line], request: str) -> Iterator[tuple[str, float]]:
     name, _, text = request.partition("=")
-    line = _active(active, name, request)
-    return line.name, length_ratio(text, line.name, line.rest_length, line.whole_length)
+    for line in _active(active, name, request):
+        yield line.name, length_ratio(text, line.name, line.rest_length, line.whole_length)
+
+
+def _absolute(stages: Stages, goal: Goal) -> Goal:
+    """Return the goal of a girth that was told as what it is to change by from the original body."""
+    return replace(goal, value=goal.value + reading(stages, goal.name)(stages.rest_points).value)
 
 
 def _text(found: TargetResult, out: str) -> Iterator[str]:
@@ -245,7 +270,7 @@ def _value(goal: Goal, value: float) -> str:
 def target_data(found: TargetResult, out: str) -> dict[str, Any]:
     """Return the result as plain values, ready for JSON."""
     reply, before = found.reply, found.stages.design
-    lines = {line.name: line for line in found.stages.model.lines if line.name in reply.design.active_lines()}
+    lines = {line.name: line for line in found.stages.lines if line.name in reply.design.worn_lines()}
     return {
         "assessment": found.assessment.as_data(),
         "figures": {

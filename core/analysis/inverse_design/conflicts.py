@@ -8,7 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.analysis.inverse_design.objective import NEAR
-from core.analysis.inverse_design.quantities import PRIORITIES, Goal, section_of, tolerance
+from core.analysis.inverse_design.profile_quantities import section_of
+from core.analysis.inverse_design.quantities import tolerance
+from core.analysis.inverse_design.quantity import PRIORITIES, Goal
 from core.analysis.inverse_design.search import Search
 from core.geometry.mesh import Floats
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Collection, Sequence
 
 from core.analysis.inverse_design.conflicts import Conflict
-from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.quantity import Goal
 from core.analysis.inverse_design.search import Bounds
 from core.analysis.inverse_design.solve import InverseResult, InverseSolver
 from core.document.design import Design
@@ -23,9 +23,9 @@ Chosen = tuple[str, ...]
 
 def optional_lines(stages: Stages) -> tuple[Chosen, ...]:
     """Return the inactive lines that could move the body, linked ones together."""
-    design, moving = stages.design, [line.name for line in stages.model.lines if line.constrains]
+    design, moving = stages.design, [line.name for line in stages.lines if line.constrains]
     off = [
-        name for name in moving if name not in design.active_lines() and not design.line_settings(name).locked
+        name for name in moving if name not in design.worn_lines() and not design.line_settings(name).locked
     ]
     groups = (tuple(sorted(set(design.linked_pair(name)).intersection(off))) for name in off)
     return tuple(dict.fromkeys(groups))
@@ -93,7 +93,7 @@ class LineSelection:
         """
         if reply.reachable or not reply.at_pressure_limit:
             return None
-        chosen = [name for name in self._chosen if name in reply.design.active_lines()]
+        chosen = [name for name in self._chosen if name in reply.design.worn_lines()]
         free = LineSelection(self._stages, chosen, self._bounds, math.inf)
         return free.solve(goals, progress)
 
@@ -104,7 +104,7 @@ class LineSelection:
         return self._solver(()).current_values(names)
 
     def values_at(self, names: Collection[str], points: Points) -> dict[str, float]:
-        """Return the quantities ``names`` where the control points are at ``points`` (n, 3) [mm]."""
+        """Return the quantities ``names`` at control points of all regions, ``points`` (n, 3) [mm]."""
         return self._solver(()).values_at(names, points)
 
     def _candidates(self) -> Sequence[Chosen]:
@@ -125,4 +125,4 @@ class LineSelection:
 
 def activated(before: Design, after: Design) -> tuple[str, ...]:
     """Return the lines that are active ``after`` and were not ``before``."""
-    return tuple(sorted(after.active_lines() - before.active_lines()))
+    return tuple(sorted(after.worn_lines() - before.worn_lines()))

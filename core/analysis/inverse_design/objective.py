@@ -7,8 +7,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from core.analysis.inverse_design.profile_quantities import section_of
 from core.analysis.inverse_design.quadratic_model import QuadraticModel, violation
-from core.analysis.inverse_design.quantities import PRIORITIES, Goal, section_of, tolerance
+from core.analysis.inverse_design.quantities import tolerance
+from core.analysis.inverse_design.quantity import PRIORITIES, Goal
 from core.analysis.inverse_design.sensitivities import LinearizedSolution
 from core.geometry.mesh import Floats
 
@@ -31,8 +33,8 @@ class Objective:
     """Figures that are to have ``values`` (m,) [mm], with ``low`` and ``high`` ends of lengths (p,) [%].
 
     ``weights`` (m,) are what figures count for; those of no weight are read and not wanted. ``lines`` names
-    those of the model; ``hardest`` is the most that some may pull with and ``loosest`` the least, negative
-    where they may push, in the model's unit. ``newton`` is one newton in that unit.
+    those of all regions; ``hardest`` is the most that some may pull with and ``loosest`` the least, negative
+    where they may push [N].
     """
 
     values: Floats
@@ -42,7 +44,6 @@ class Objective:
     lines: Sequence[str]
     hardest: Mapping[str, float] = field(default_factory=dict)
     loosest: Mapping[str, float] = field(default_factory=dict)
-    newton: float = 1.0
 
     def margins(self, look: LinearizedSolution) -> tuple[Floats, Floats]:
         """Return the room to the most and least tensions and to strain of the edges, (k,) [1], and slopes."""
@@ -58,9 +59,10 @@ class Objective:
     def _pulls(self, look: LinearizedSolution) -> tuple[Floats, Floats]:
         hard, loose = ([self.lines.index(name) for name in each] for each in (self.hardest, self.loosest))
         most, least = (np.array(list(each.values())) for each in (self.hardest, self.loosest))
-        firm = _FIRM * self.newton
-        room = np.append(1.0 - look.tensions[hard] / most, (look.tensions[loose] - least) / firm)
-        return room, np.concatenate([-look.by_tensions[hard] / most[:, None], look.by_tensions[loose] / firm])
+        room = np.append(1.0 - look.tensions[hard] / most, (look.tensions[loose] - least) / _FIRM)
+        return room, np.concatenate(
+            [-look.by_tensions[hard] / most[:, None], look.by_tensions[loose] / _FIRM]
+        )
 
     def is_met(self, look: LinearizedSolution) -> bool:
         """Return whether a candidate meets all targets within all limits."""

@@ -27,8 +27,8 @@ class PressureLimit:
 
     ``kpa`` is the limit; where ``most_kpa`` is None that is where the red light begins, for lines made of
     elastic that are no straps. One that is given holds for all lines, estimated pressures included.
-    ``pressure`` [kPa] is the largest of each line that was computed, ``hardest`` what lines may pull with, in
-    the model's unit.
+    ``pressure`` [kPa] is the largest of each line that was computed, ``hardest`` what lines may pull with
+    [N].
     """
 
     def __init__(self, design: Design, most_kpa: float | None) -> None:
@@ -56,7 +56,7 @@ class PressureLimit:
         Tell whether none of them does. Unless ``firm``, a limit of before may turn out to have been too low.
         """
         self.pressure = self._limited(stages, look.points)
-        pulls = {line.name: float(pull) for line, pull in zip(stages.model.lines, look.tensions, strict=True)}
+        pulls = {line.name: float(pull) for line, pull in zip(stages.lines, look.tensions, strict=True)}
         for name in self.pressure.keys() & set(free):
             kpa, before = self.pressure[name], self.hardest.get(name, np.inf)
             if pulls[name] > 0.0 and (kpa >= self.kpa / _KEPT or name in self.hardest):
@@ -89,7 +89,11 @@ class PressureLimit:
         if not self._elastics:
             return {}
         straps = {line.name for line in stages.model.lines if is_strap(stages, line)}
-        tensions = line_tensions(stages, points)
+        tensions = {
+            name: tension
+            for region, rows in zip(stages.regions, stages.region_rows, strict=True)
+            for name, tension in line_tensions(region, points[rows]).items()
+        }
         return {
             name: kpa
             for name, kpa in largest_pressures(stages, points).items()
@@ -98,5 +102,10 @@ class PressureLimit:
 
 
 def largest_pressures(stages: Stages, points: Points) -> dict[str, float]:
-    """Return the largest pressure [kPa] of each active line at ``points``, (n, 3) [mm], where it is known."""
-    return {name: worn.largest for name, worn in sorted(pressures(stages, points).items())}
+    """Return the largest pressure [kPa] of each active line of all regions, where it is known.
+
+    ``points`` (n, 3) [mm] are the control points of all regions.
+    """
+    regions = zip(stages.regions, stages.region_rows, strict=True)
+    found = [pressures(region, points[rows]) for region, rows in regions]
+    return {name: worn.largest for each in found for name, worn in sorted(each.items())}

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from core.analysis.inverse_design.quantities import Goal, profile_name, section_at, skin_of
+from core.analysis.inverse_design.profile_quantities import profile_name, section_at, skin_of
+from core.analysis.inverse_design.quantity import Goal
 from core.errors import UserError
 from core.files.regular_file import read_text
 from core.geometry.mesh import Floats, Indices, Points

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,8 @@ from scipy.optimize import minimize
 
 from core.analysis.inverse_design.objective import Objective, Slopes, goal_weights, total_tension
 from core.analysis.inverse_design.quadratic_model import next_trust_radius, updated_curvature
-from core.analysis.inverse_design.quantities import Goal, QuantityReaders, ReadMany
+from core.analysis.inverse_design.quantities import QuantityReaders
+from core.analysis.inverse_design.quantity import Goal, ReadMany
 from core.analysis.inverse_design.sensitivities import PERCENT, LinearizedSolution, LinearizedSolutions
 from core.document.design import Design
 from core.errors import UserError
@@ -25,9 +27,8 @@ from core.garment.tension import SLACK
 from core.geometry.mesh import Floats
 from core.mechanics.constraint_lines import RATIO_LIMITS
 from core.mechanics.exact_solution import NEWTON_LIMIT
-from core.mechanics.force_units import newtons_per_unit
 from core.messages import Message
-from core.pipeline.active_lines import free_lines
+from core.pipeline.active_lines import LineGroup, active_line_groups, all_free_lines
 from core.pipeline.build import Stages
 from core.pipeline.solve import NoEquilibriumError
 from core.progress import Progress, quiet
@@ -110,20 +111,20 @@ class Search:
         read: ReadMany | None = None,
     ) -> None:
         self.stages, self.progress = stages, progress
-        self._groups = free_lines(stages, bounds.kept)
+        read = QuantityReaders(stages).reader([goal.name for goal in goals]) if read is None else read
+        self._groups = _asked(stages, all_free_lines(stages, bounds.kept), read)
         if not goals or not self._groups:
             raise UserError(
                 Message("No unlocked line moves the body."),
                 Message("Activate an unlocked line, and set a target."),
             )
-        read = QuantityReaders(stages).reader([goal.name for goal in goals]) if read is None else read
         self._answers = LinearizedSolutions(stages, self._groups, read)
         self.nearer: Callable[[Candidate], object] = lambda found: None
         low = [
             max(RATIO_LIMITS[0], *(bounds.shortest.get(name, 0.0) for name in each)) for each in self._groups
         ]
         self._low, self._high = np.array(low) / PERCENT, np.maximum(low, bounds.longest) / PERCENT
-        values, lines = np.array([goal.value for goal in goals]), [line.name for line in stages.model.lines]
+        values, lines = np.array([goal.value for goal in goals]), [line.name for line in stages.lines]
         self._wanted = Objective(values, goal_weights(goals), self._low, self._high, lines)
         set_ = [stages.design.ratio(group[0]) / PERCENT for group in self._groups]
         self.start = np.clip(set_, self._low, self._high)
@@ -144,20 +145,19 @@ class Search:
         self._wanted.weights = goal_weights(goals)
 
     def set_tension_limits(self, hardest: Mapping[str, float]) -> None:
-        """Let named lines pull no harder than so, in the model's unit, from now on."""
+        """Let named lines pull no harder than so [N] from now on."""
         self._wanted.hardest = dict(hardest)
 
     def _bar_pushing(self) -> None:
         """Let no line push, as no band can; one that stays and pushes at the start may push no more."""
-        model = self.stages.model
-        self._wanted.newton = 1.0 / newtons_per_unit(model, self.stages.design.tissue_stiffness)
-        least = -_PUSH * self._wanted.newton
-        free = self.free
-        self._wanted.loosest = {model.lines[at].name: least for at in model.acting_lines}
-        if not free.issuperset(self._wanted.loosest) and (look := self._look(self.start)) is not None:
-            pulls = {model.lines[at].name: float(look.tensions[at]) for at in model.acting_lines}
-            loosest = {name: least if name in free else min(least, pull) for name, pull in pulls.items()}
-            self._wanted.loosest = loosest
+        groups = chain.from_iterable(map(active_line_groups, self.stages.regions))
+        acting = set(chain.from_iterable(groups))
+        names = [line.name for line in self.stages.lines if line.name in acting]
+        free, loosest = self.free, dict.fromkeys(names, -_PUSH)
+        if not free.issuperset(names) and (look := self._look(self.start)) is not None:
+            pulls = zip((line.name for line in self.stages.lines), look.tensions.tolist(), strict=True)
+            loosest |= {name: min(-_PUSH, pull) for name, pull in pulls if name in acting - free}
+        self._wanted.loosest = loosest
 
     def solve_at(self, lengths: Floats, limit: int = NEWTON_LIMIT) -> LinearizedSolution:
         """Return the exact answer at ``lengths``. Raises NoEquilibriumError, Cancelled."""
@@ -324,6 +324,14 @@ class Search:
         how |= {"constraints": constraints, "options": {"maxiter": _TRIES, "ftol": _GOOD}}
         found = minimize(figure, start, method="SLSQP", **how)
         return np.asarray(np.clip(found.x, self._low, self._high))
+
+
+def _asked(stages: Stages, groups: Sequence[LineGroup], read: ReadMany) -> tuple[LineGroup, ...]:
+    """Return the groups of lines in regions that what is read depends on: others keep their lengths."""
+    _, slopes = read(stages.rest_points)
+    regions = zip(stages.regions, stages.region_rows, strict=True)
+    asked = [region for region, rows in regions if slopes[:, rows].any()]
+    return tuple(group for group in groups if stages.region_of(group[0]) in asked)
 
 
 def _constraint(kind: str, figures: Callable[[Floats], Sequence[Floats]]) -> dict[str, Any]:

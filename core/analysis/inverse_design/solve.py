@@ -15,14 +15,14 @@ import numpy as np
 from core.analysis.inverse_design.conflicts import Conflict, conflicts_of
 from core.analysis.inverse_design.objective import NEAR, goal_weights
 from core.analysis.inverse_design.pressure_limit import PressureLimit, largest_pressures
-from core.analysis.inverse_design.quantities import Goal, QuantityReaders
+from core.analysis.inverse_design.quantities import QuantityReaders
+from core.analysis.inverse_design.quantity import Goal
 from core.analysis.inverse_design.search import LOOSEST, Bounds, Candidate, Search
 from core.analysis.inverse_design.sensitivities import exact_points
 from core.blas_threads import one_blas_thread
 from core.document.design import Design
 from core.errors import LineError
 from core.geometry.mesh import Floats, Points
-from core.mechanics.force_units import newtons_per_unit
 from core.pipeline.build import Stages, build
 from core.pipeline.solve import NoEquilibriumError
 from core.progress import Progress, quiet
@@ -49,7 +49,8 @@ class InverseResult:
     at.
     ``tension`` [N] is the sum over the lines, an estimate where they are made of no elastic; ``answers`` how
     many were worked out.
-    ``longest`` is the ratio that no line goes beyond [1], ``points`` (n, 3) [mm] are the exact answer.
+    ``longest`` is the ratio that no line goes beyond [1], ``points`` (n, 3) [mm] are the exact answer of all
+    regions.
     """
 
     design: Design
@@ -110,7 +111,6 @@ class InverseSolver:
             # As if the line did not move the body: beyond that its elastic is not known.
             shortest[name] = max(shortest.get(name, 0.0), 1.0 / (1.0 + elastic.max_elongation))
         self._bounds = replace(bounds, shortest=shortest)
-        self._newtons = newtons_per_unit(stages.model, design.tissue_stiffness)
         self._figures = QuantityReaders(stages)  # they hang on the body, not on its lines
         self._goals: Sequence[Goal] = ()
         self._progress: Progress = quiet
@@ -154,7 +154,7 @@ class InverseSolver:
             return self.values_at(names, points), largest_pressures(self._stages, points)
 
     def values_at(self, names: Collection[str], points: Points) -> dict[str, float]:
-        """Return what the figures ``names`` are where the control points are at ``points`` (n, 3) [mm]."""
+        """Return what the figures ``names`` are at control points of all regions, ``points`` (n, 3) [mm]."""
         values, _ = self._figures.reader(tuple(names))(points)
         return dict(zip(names, values.tolist(), strict=True))
 
@@ -250,7 +250,7 @@ class InverseSolver:
 
     def _is_within_limit(self, search: Search, found: Candidate, *, firm: bool = False) -> bool:
         """Compute what lines press with at what was found, limit their tensions, and tell if all is kept."""
-        stages = replace(search.stages, design=found.design)
+        stages = search.stages.at_lengths(found.design)
         kept = self._limit.is_satisfied(stages, found.solution, search.free, firm=firm)
         search.set_tension_limits(self._limit.hardest)
         return kept
@@ -275,8 +275,8 @@ class InverseSolver:
             agreed,
             dict(limit.pressure),
             limit.kpa,
-            tuple(sorted(design.active_lines() - set(limit.pressure))),
-            self._newtons * float(np.maximum(found.solution.tensions, 0.0).sum()),
+            tuple(sorted(design.worn_lines() - set(limit.pressure))),
+            float(np.maximum(found.solution.tensions, 0.0).sum()),
             sum(len(search) - before for search, before in self._used),
             self._bounds.longest,
             self._deviation(found),

@@ -6,7 +6,9 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 from math import hypot
 
-from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER, LIFT, OUT, Goal, reading
+from core.analysis.inverse_design.bust_quantities import FURTHER_OUT, HIGHER, LIFT, OUT
+from core.analysis.inverse_design.quantities import reading
+from core.analysis.inverse_design.quantity import Goal
 from core.analysis.inverse_design.solve import InverseResult, solve_targets
 from core.analysis.symmetry.compare import NO_BREAST, SideDifference, compare_sides
 from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, split_sides, splittable_lines

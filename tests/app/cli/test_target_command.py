@@ -13,7 +13,7 @@ from app.cli.commands.target import goals_of
 from app.cli.main import BAD_INPUT, main
 from app.cli.output import DONE, NOT_CONVERGED
 from app.presenters.assessment import headline
-from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.quantity import Goal
 from core.document.storage.project_file import open_project
 from core.errors import UserError
 

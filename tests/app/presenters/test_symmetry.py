@@ -16,7 +16,7 @@ from app.presenters.symmetry import (
     map_note,
     symmetry_view,
 )
-from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.quantity import Goal
 from core.analysis.inverse_design.solve import InverseResult
 from core.analysis.symmetry.compare import BeforeAfter, SideDifference, compare_sides
 from core.control_mesh.template import read_template

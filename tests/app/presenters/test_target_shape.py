@@ -23,7 +23,10 @@ from app.presenters.target_shape import (
     target_title,
     unlimited_text,
 )
-from core.analysis.inverse_design.quantities import GIRTH, NAMES, Goal, profile_name
+from core.analysis.inverse_design.bust_quantities import GIRTH
+from core.analysis.inverse_design.profile_quantities import profile_name
+from core.analysis.inverse_design.quantities import NAMES
+from core.analysis.inverse_design.quantity import Goal
 from core.analysis.inverse_design.solve import InverseResult
 from core.document.design import Design
 

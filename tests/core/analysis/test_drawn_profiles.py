@@ -15,7 +15,8 @@ from core.analysis.inverse_design.profile_curve import (
     profile_from_table,
     profile_points,
 )
-from core.analysis.inverse_design.quantities import profile_name, reading
+from core.analysis.inverse_design.profile_quantities import profile_name
+from core.analysis.inverse_design.quantities import reading
 from core.garment.presets import built_in, with_preset
 from core.pipeline.build import Stages, build
 from core.pipeline.solve import exact_solution

@@ -9,7 +9,9 @@ import pytest
 
 from app.presenters.samples import sample_design
 from core.analysis.inverse_design.objective import INSIDE, NEAR
-from core.analysis.inverse_design.quantities import Goal, profile_name, reading
+from core.analysis.inverse_design.profile_quantities import profile_name
+from core.analysis.inverse_design.quantities import reading
+from core.analysis.inverse_design.quantity import Goal
 from core.analysis.inverse_design.search import Bounds, Search
 from core.analysis.inverse_design.solve import InverseResult, InverseSolver, solve_targets
 from core.analysis.length_limits.limits import limits_of

@@ -10,7 +10,8 @@ import pytest
 
 from app.presenters.samples import sample_design
 from core.analysis.inverse_design.profile_curve import profile_goals, read_profile
-from core.analysis.inverse_design.quantities import reading, section_at
+from core.analysis.inverse_design.profile_quantities import section_at
+from core.analysis.inverse_design.quantities import reading
 from core.deformation.tffd import deform
 from core.errors import UserError
 from core.export.mesh import write_profile

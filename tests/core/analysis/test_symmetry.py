@@ -10,7 +10,8 @@ import pytest
 from shapes import mirrored as mirrored_control
 
 from app.presenters.samples import sample_design
-from core.analysis.inverse_design.quantities import FURTHER_OUT, HIGHER, reading
+from core.analysis.inverse_design.bust_quantities import FURTHER_OUT, HIGHER
+from core.analysis.inverse_design.quantities import reading
 from core.analysis.symmetry.compare import NO_BREAST, compare_sides
 from core.deformation.blend_region import blend_weights
 from core.deformation.incremental_normals import moving_faces

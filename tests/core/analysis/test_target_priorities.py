@@ -15,7 +15,8 @@ from app.cli.output import NOT_CONVERGED
 from app.presenters.samples import sample_design
 from core.analysis.inverse_design.line_selection import LineSelection, activated, optional_lines
 from core.analysis.inverse_design.objective import NEAR, goal_weights
-from core.analysis.inverse_design.quantities import PRIORITIES, Goal, tolerance
+from core.analysis.inverse_design.quantities import tolerance
+from core.analysis.inverse_design.quantity import PRIORITIES, Goal
 from core.analysis.inverse_design.solve import InverseSolver, solve_targets
 from core.garment.elastic_library import find_elastic
 from core.pipeline.build import Stages, build

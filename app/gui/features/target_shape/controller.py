@@ -19,14 +19,15 @@ from app.gui.features.target_shape.menu import TargetMenu
 from app.gui.features.target_shape.presenter import meets_targets, show_result, target_views
 from app.gui.features.target_shape.profile_tool import ProfileTool
 from app.gui.features.target_shape.surroundings import TargetOptions
-from app.gui.features.target_shape.targets import Targets, TargetUndo
+from app.gui.features.target_shape.targets import PRESSURE, Targets, TargetUndo, seen_figures
 from app.gui.features.target_shape.view_state import ViewState
 from app.gui.features.target_shape.worker import TargetAnswer, TargetQuery, TargetWorker
 from app.gui.widgets.basic import announce
 from app.i18n.catalog import tr
 from app.presenters.messages import render
-from app.presenters.target_shape import inactive_text, step_text
-from core.analysis.inverse_design.quantities import Goal
+from app.presenters.target_shape import inactive_text, is_signed, step_text
+from core.analysis.inverse_design.quantities import reading
+from core.analysis.inverse_design.quantity import Goal
 from core.document.design import Design
 from core.errors import UserError
 
@@ -125,8 +126,9 @@ class TargetShapeController(QObject):
         self._context.navigation.start_tool()
         self._context.navigation.show_step("lines")
         limit = math.inf if math.isinf(self.all_wishes.most_kpa) else limit
-        self.all_wishes, self.answer, self._apply_due = replace(Targets.of(goals), limit=limit), None, False
         self.ground.begin(prepare, text)
+        wishes = Targets.of(goals, seen_figures(self.ground.design or self._session.design))
+        self.all_wishes, self.answer, self._apply_due = replace(wishes, limit=limit), None, False
         self.back.remember()
         self._pages.setCurrentWidget(self.card)
         self.drawing.choose("bust")
@@ -134,7 +136,13 @@ class TargetShapeController(QObject):
         self.card.take_focus(next(iter(self.wishes), ""))
 
     def wish(self, key: str, value: float) -> None:
-        """Set the target of a quantity [mm], or the limit of pressure [kPa]."""
+        """Set the target of a quantity [mm], or the limit of pressure [kPa].
+
+        A girth below nothing is how much shorter it is to be than on the original body.
+        """
+        frame = self._session.frame
+        if value < 0.0 and frame is not None and key != PRESSURE and not is_signed(key):
+            value += reading(frame.stages, key)(frame.stages.rest_points).value
         self.all_wishes.set(key, value)
         self.steps.note()
         self.ask()
@@ -303,7 +311,7 @@ class TargetShapeController(QObject):
         if not self.is_open or frame is None or design is None:
             return
         missing = self.ground.missing
-        self.card.show_help(bool(missing), locked=not design.active_lines().isdisjoint(self.ground.moving))
+        self.card.show_help(bool(missing), locked=not design.worn_lines().isdisjoint(self.ground.moving))
         if missing:
             self.card.show_wishes([], missing)
             self.card.show_answer()

@@ -84,6 +84,8 @@ class TargetHandles(QObject):
             or not self._controller.is_open
             or not view.after
             or not self._controller.ground.asks
+            or not (design := self._controller.ground.design)
+            or not design.lines
         ):
             self.put_away()
             return

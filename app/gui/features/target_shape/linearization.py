@@ -7,6 +7,7 @@ from collections.abc import Callable
 from app.gui.session.session import Session
 from app.presenters.target_shape import missing_input_text
 from core.document.design import Design
+from core.document.lower_trunk import line_group
 
 
 class TargetDesign:
@@ -47,15 +48,17 @@ class TargetDesign:
 
     @property
     def inactive(self) -> tuple[str, ...]:
-        """Return the lines that are off and could move the body."""
+        """Return the lines of the bust that are off and could move it; below are too many to list."""
         design = self.design
         if design is None:
             return ()
-        off = (name for name in self.moving if name not in design.active_lines())
+        off = (
+            name for name in self.moving if line_group(name) == "bust" and name not in design.active_lines()
+        )
         return tuple(name for name in off if not design.line_settings(name).locked)
 
     @property
     def moving(self) -> list[str]:
         """Return the lines that lie on points which move."""
         frame = self._session.frame
-        return [] if frame is None else [line.name for line in frame.stages.model.lines if line.constrains]
+        return [] if frame is None else [line.name for line in frame.stages.lines if line.constrains]

@@ -12,13 +12,15 @@ from app.gui.widgets.file_dialogs import ask_table
 from app.gui.widgets.menu import Menu, pull_down
 from app.i18n.catalog import tr
 from app.presenters.target_shape import profile_title, target_title
-from core.analysis.inverse_design.quantities import EVEN, GIRTH
+from core.analysis.inverse_design.bust_quantities import EVEN, GIRTH
 
 if TYPE_CHECKING:
     from app.gui.context import AppContext
     from app.gui.features.target_shape.controller import TargetShapeController
 
 _BOTH = ("lift", "out", "apex lift", "apex out", GIRTH)
+_SIDED_BELOW = ("buttock lift", "buttock out", "fold lift")
+_BELOW = ("waist girth", "belly girth", "belly out", "hip girth", *_SIDED_BELOW)
 
 
 class TargetMenu(QObject):
@@ -38,9 +40,13 @@ class TargetMenu(QObject):
         """List what can be wished for besides what is."""
         self.menu.clear()
         self._offer(self.menu, _BOTH)
+        frame = self._context.session.frame
+        below = frame is not None and frame.stages.lower is not None
+        if below:
+            self._offer(self.menu.add_submenu(tr("Waist, hips and seat")), _BELOW)
+        sided = (*(name for name in _BOTH if name != GIRTH), *(_SIDED_BELOW if below else ()))
         for side, title in (("left", tr("Left side only")), ("right", tr("Right side only"))):
-            names = tuple(f"{name} {side}" for name in _BOTH if name != GIRTH)
-            self._offer(self.menu.add_submenu(title), names)
+            self._offer(self.menu.add_submenu(title), tuple(f"{name} {side}" for name in sided))
         self._offer(self.menu.add_submenu(tr("Left relative to right")), EVEN.names)
         self.menu.addSeparator()
         for side in ("left", "right"):

@@ -30,7 +30,7 @@ from app.presenters.target_shape import (
     target_title,
     unlimited_text,
 )
-from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.quantity import Goal
 from core.document.design import Design
 from core.garment.pressure import pressure_limits
 

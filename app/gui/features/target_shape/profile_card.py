@@ -54,7 +54,7 @@ class ProfileHandles(QObject):
                 self._make(section, profile)
             stages = frame.stages
             wished = section_to_space(stages, profile.section, profile.curve)
-            self._curves[section].show_curves(wished, profile_points(stages, profile, frame.control_points))
+            self._curves[section].show_curves(wished, profile_points(stages, profile, frame.all_points))
             spots = section_to_space(stages, profile.section, profile.handle_positions)
             for handle, spot in zip(self.handles[section], spots, strict=True):
                 handle.show_at(spot, spot)

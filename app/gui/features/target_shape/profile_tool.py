@@ -70,7 +70,7 @@ class ProfileTool(QObject):
             return
         reply = answer.reply if answer is not None else None
         try:
-            profile = profile_at(frame.stages, side, frame.control_points if reply is None else reply.points)
+            profile = profile_at(frame.stages, side, frame.all_points if reply is None else reply.points)
         except UserError as problem:
             self._context.notifications.error(problem)
         else:
@@ -108,7 +108,7 @@ class ProfileTool(QObject):
 
         for section, profile in list(self._controller.drawn.items()):
             if profile.is_unchanged:
-                fresh = profile_at(frame.stages, profile.section, frame.control_points)
+                fresh = profile_at(frame.stages, profile.section, frame.all_points)
                 self._controller.all_wishes.set_curve(section, (), fresh)
 
     def in_plane(self, plane: Plane) -> dict[str, Sequence[Floats]]:

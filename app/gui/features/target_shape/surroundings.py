@@ -50,8 +50,8 @@ class TargetOptions(QObject):
     def help(self) -> None:
         """Open presets or unlock lines when no line may change."""
         frame = self._context.session.frame
-        groups = active_line_groups(frame.stages) if frame is not None else ()
-        lines = [name for group in groups for name in group]
+        regions = frame.stages.regions if frame is not None else ()
+        lines = [name for region in regions for group in active_line_groups(region) for name in group]
         if not lines:
             self._controller.presets_requested.emit()
             return

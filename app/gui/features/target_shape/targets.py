@@ -14,7 +14,10 @@ from app.gui.session.session import Session
 from app.i18n.catalog import listed, tr
 from app.presenters.target_shape import target_title
 from core.analysis.inverse_design.profile_curve import ProfileCurve
-from core.analysis.inverse_design.quantities import Goal, section_of
+from core.analysis.inverse_design.profile_quantities import section_of
+from core.analysis.inverse_design.quantities import LOWER_NAMES
+from core.analysis.inverse_design.quantity import Goal
+from core.document.design import Design
 from core.garment.pressure import pressure_limits
 
 if TYPE_CHECKING:
@@ -22,7 +25,17 @@ if TYPE_CHECKING:
 
 
 SEEN = ("lift", "out")
-"""Figures that are always told: what is not asked for may move as well."""
+"""Figures of the bust that are always told: what is not asked for may move as well."""
+
+SEEN_BELOW = ("waist girth", "hip girth")
+"""The same of the lower trunk."""
+
+
+def seen_figures(design: Design) -> tuple[str, ...]:
+    """Return the figures that are always told of a design: those of the regions that have active lines."""
+    bust, *lower = (bool(region.lines) for region in design.regions)
+    return (*(SEEN if bust or not any(lower) else ()), *(SEEN_BELOW if any(lower) else ()))
+
 
 PRESSURE = "pressure"
 """The key of the wish that is a limit [kPa]."""
@@ -35,9 +48,9 @@ class Targets:
     """Figures by name [mm], profiles by section, what of them is ``drawn``, and a ``limit`` [kPa].
 
     ``priorities`` are those of figures and sections that are not "normal"; with ``optional`` lines that are
-    off may be switched on. A figure without a value is shown as it is, and not asked for, nor is a profile
-    without goals. Without a limit of its own the one is kept where the red light begins; an infinite one
-    is none.
+    off may be switched on. Figures that are ``seen`` are told whatever is asked for. A figure without a value
+    is shown as it is, and not asked for, nor is a profile without goals. Without a limit of its own the one
+    is kept where the red light begins; an infinite one is none.
     """
 
     figures: dict[str, float | None] = field(default_factory=dict)
@@ -46,11 +59,12 @@ class Targets:
     limit: float | None = None
     priorities: dict[str, str] = field(default_factory=dict)
     optional: bool = False
+    seen: tuple[str, ...] = SEEN
 
     @classmethod
-    def of(cls, goals: Sequence[Goal]) -> Targets:
-        """Return the wishes for ``goals``, with the figures beside that are always told."""
-        wishes = cls()
+    def of(cls, goals: Sequence[Goal], seen: tuple[str, ...] = SEEN) -> Targets:
+        """Return the wishes for ``goals``, with the figures beside that are always ``seen``."""
+        wishes = cls(seen=seen)
         for goal in goals:
             section = section_of(goal.name)
             if section:
@@ -60,7 +74,7 @@ class Targets:
             if goal.priority != "normal":
                 wishes.priorities[section or goal.name] = goal.priority
         if not wishes.curves:
-            for name in SEEN:
+            for name in seen:
                 wishes.figures.setdefault(name, None)
         return wishes
 
@@ -104,7 +118,7 @@ class Targets:
     @property
     def told(self) -> tuple[str, ...]:
         """Return the figures that are told of an answer."""
-        return tuple(dict.fromkeys((*self.figures, *SEEN)))
+        return tuple(dict.fromkeys((*self.figures, *self.seen)))
 
     @property
     def most_kpa(self) -> float:
@@ -122,11 +136,11 @@ class Targets:
         return None if self.asked else self.set_limit
 
     def goals(self, now: Mapping[str, float]) -> tuple[Goal, ...]:
-        """Return what is asked for; with a limit alone that the first figure stays as ``now`` [mm]."""
+        """Return what is asked for; with a limit alone that a figure of each region stays as ``now`` [mm]."""
         if self.only_limit is None:
             return self.asked
-        name = next(iter(self.figures), SEEN[0])
-        return (Goal(name, now[name]),) if name in now else ()
+        first = {name in LOWER_NAMES: name for name in reversed(tuple(self.figures) or self.seen)}
+        return tuple(Goal(name, now[name]) for _, name in sorted(first.items()) if name in now)
 
 
 @dataclass(frozen=True, eq=False)

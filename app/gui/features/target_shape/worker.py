@@ -12,7 +12,7 @@ from PySide6.QtCore import QObject, Signal
 
 from app.gui.session.jobs import Job, Jobs
 from app.i18n.catalog import tr
-from core.analysis.inverse_design.quantities import Goal
+from core.analysis.inverse_design.quantity import Goal
 from core.document.design import Design
 from core.pipeline.build import Stages, build
 from core.progress import Progress
