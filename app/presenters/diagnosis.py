@@ -192,8 +192,8 @@ def _run(found: Diagnosis) -> Iterator[str]:
         yield words.format(percent=number(100.0 * (found.onset - 1.0)))
     if found.gain_limit is not None:
         words = tr("Gain {gain}: {percent} % of the limit {most} for this shape")
-        share = number(100.0 * found.stages.gain / found.gain_limit, 0)
-        yield words.format(gain=number(found.stages.gain, 2), percent=share, most=number(found.gain_limit, 2))
+        share = number(100.0 * found.gain / found.gain_limit, 0)
+        yield words.format(gain=number(found.gain, 2), percent=share, most=number(found.gain_limit, 2))
 
 
 def _growth(growth: float) -> str:

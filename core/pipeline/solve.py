@@ -218,12 +218,13 @@ def solve(stages: Stages, turns: int | None = None, progress: Progress = quiet) 
     """
     start = time.perf_counter()
     with one_blas_thread():
-        solved = [_solved(region, turns, progress) for region in stages.regions]
+        solved = [solve_region(region, turns, progress) for region in stages.regions]
     lower = solved[1] if len(solved) > 1 else None
     return Solution(stages, solved[0], lower, time.perf_counter() - start)
 
 
-def _solved(stages: RegionStages, turns: int | None, progress: Progress) -> RegionSolution:
+def solve_region(stages: RegionStages, turns: int | None, progress: Progress = quiet) -> RegionSolution:
+    """Solve one region of a design; see ``solve``. Raises Cancelled."""
     rest = record(stages.model, initial_state(stages.model), 0.0, stages.watch)
     solve = _run_exact if stages.design.volume == "exact" else _run_turns
     records, state, verdict = solve(stages, rest, turns, progress)

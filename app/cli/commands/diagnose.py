@@ -66,7 +66,7 @@ def diagnosis_data(found: Diagnosis, out: str) -> dict[str, Any]:
         "amplitude_percent": 100.0 * verdict.amplitude if verdict.period else None,
         "growth_per_turn": verdict.growth if verdict.period else None,
         "growth_at_first": found.onset if found.onset and found.onset < float("inf") else None,
-        "gain": found.stages.gain,
+        "gain": found.gain,
         "gain_borne": found.gain_limit,
         **_forces(found.forces),
         **_treatment(found),
@@ -123,7 +123,9 @@ def _change(found: Diagnosis, change: Change) -> dict[str, Any]:
     return {
         "kind": change.kind,
         "words": change_text(found, change),
-        "lengths_percent": {line.name: 100.0 * line.ratio for line in change.design.lines},
+        "lengths_percent": {
+            line.name: 100.0 * line.ratio for region in change.design.regions for line in region.lines
+        },
         "gain": change.design.gain,
         "setting": {key: value} if key else None,
         "size_percent": change.size,

@@ -14,7 +14,7 @@ from core.garment.assessment import GOOD, LEVELS, Finding, assess
 from core.garment.curve_smoothing import USUAL_WIDTH
 from core.mechanics.constraint_lines import RATIO_LIMITS
 from core.pipeline.active_lines import LineGroup, free_lines
-from core.pipeline.build import Stages
+from core.pipeline.stages import RegionStages
 
 LENGTH_STEP = 0.001
 """Ratio of lengths that a person sets [1]."""
@@ -54,37 +54,34 @@ class ChangePath:
     most: int
 
 
-def single_paths(stages: Stages, complaint: str) -> Iterator[ChangePath]:
-    """Yield the ways to change one line, or the gain, which helps no lengths without a balance."""
-    turns = stages.design.volume == "conventional" and complaint != "unreachable"
-    if turns:
-        first = math.ceil(stages.gain / GAIN_STEP - 1e-6) - 1
-        yield ChangePath(
-            partial(_gain, stages, first), first - math.ceil(_least_gain(stages) / GAIN_STEP) + 1
-        )
-    yield from line_paths(stages)
+def single_paths(sick: TrialResult) -> Iterator[ChangePath]:
+    """Yield the ways to change one line of a design that was run, or the gain, which helps no lengths
+    without a balance.
+    """
+    design, gain = sick.stages.design, sick.region.gain
+    if design.volume == "conventional" and sick.problem != "unreachable":
+        first = math.ceil(gain / GAIN_STEP - 1e-6) - 1
+        most = first - math.ceil(_LEAST_SHARE * gain / GAIN_STEP) + 1
+        yield ChangePath(partial(_gain, design, gain, first), most)
+    yield from line_paths(design, free_lines(sick.region))
 
 
-def line_paths(stages: Stages) -> Iterator[ChangePath]:
-    """Yield the ways to make one line longer or shorter; at its rest length it would be off."""
-    for names in free_lines(stages):
-        ratio = stages.design.ratio(names[0])
+def line_paths(design: Design, groups: Sequence[LineGroup]) -> Iterator[ChangePath]:
+    """Yield the ways to make one of ``groups`` longer or shorter; at its rest length it would be off."""
+    for names in groups:
+        ratio = design.ratio(names[0])
         low, high = RATIO_LIMITS
         top, bottom = (1.0 - LENGTH_STEP, low) if ratio < 1.0 else (high, 1.0 + LENGTH_STEP)
         for sign, end in ((1, top), (-1, bottom)):
             grid = math.floor(sign * ratio / LENGTH_STEP + 1e-6)
             most = math.floor(sign * end / LENGTH_STEP + 1e-6) - grid
             if most > 0:  # a line that is worn at its rest length has one way only
-                yield ChangePath(partial(_length, stages.design, names, sign, grid), most)
+                yield ChangePath(partial(_length, design, names, sign, grid), most)
 
 
-def _least_gain(stages: Stages) -> float:
-    return _LEAST_SHARE * stages.gain
-
-
-def _gain(stages: Stages, first: int, steps: int) -> Change:
+def _gain(design: Design, before: float, first: int, steps: int) -> Change:
     gain = round((first - steps + 1) * GAIN_STEP, 6)
-    return Change("gain", replace(stages.design, gain=gain), 100.0 * (1.0 - gain / stages.gain))
+    return Change("gain", replace(design, gain=gain), 100.0 * (1.0 - gain / before))
 
 
 def _length(design: Design, names: tuple[str, ...], sign: int, grid: int, steps: int) -> Change:
@@ -94,18 +91,18 @@ def _length(design: Design, names: tuple[str, ...], sign: int, grid: int, steps:
     )
 
 
-def lower_gains(stages: Stages, bears: float | None) -> Iterator[Change]:
+def lower_gains(design: Design, region: RegionStages, bears: float | None) -> Iterator[Change]:
     """Yield lower gains, for other changes beside them: so the control that was chosen can stay.
 
     Somewhat below what the shape ``bears``, where that is known, and below what shapes mostly bear: with
     lines nearer to rest a shape may bear less.
     """
-    lowest = math.inf
-    for borne in (bears, _BORNE * stages.gain_limit):
+    lowest, before = math.inf, region.gain
+    for borne in (bears, _BORNE * region.gain_limit):
         gain = 0.0 if borne is None else round(math.floor(_BELOW * borne / GAIN_STEP) * GAIN_STEP, 6)
-        if _least_gain(stages) <= gain < min(stages.gain, lowest):
+        if _LEAST_SHARE * before <= gain < min(before, lowest):
             lowest = gain
-            yield _set(stages.design, "gain", gain)
+            yield _set(design, "gain", gain)
 
 
 def option_changes(design: Design, complaint: str) -> Iterator[Change]:
@@ -135,11 +132,11 @@ def with_option(setting: Change, ways: Iterator[ChangePath]) -> Iterator[ChangeP
         yield ChangePath(partial(both, way), way.most)
 
 
-def deactivations(stages: Stages) -> Iterator[Change]:
-    """Yield the ways to take one line off."""
-    for names in free_lines(stages):
-        size = 100.0 * abs(stages.design.ratio(names[0]) - 1.0)
-        yield Change("off", stages.design.with_linked(names[0], None), size, names)
+def deactivations(design: Design, groups: Sequence[LineGroup]) -> Iterator[Change]:
+    """Yield the ways to take one of ``groups`` off."""
+    for names in groups:
+        size = 100.0 * abs(design.ratio(names[0]) - 1.0)
+        yield Change("off", design.with_linked(names[0], None), size, names)
 
 
 def wider_bands(design: Design, names: LineGroup, width: float) -> Change:
@@ -150,11 +147,10 @@ def wider_bands(design: Design, names: LineGroup, width: float) -> Change:
     return Change("width", design, 100.0 * (width / min(widths) - 1.0), tuple(names))
 
 
-def common_paths(stages: Stages) -> Iterator[ChangePath]:
-    """Yield the way of all lines nearer to rest, a hundredth of how far they are a step, if there are two."""
-    groups = free_lines(stages)
+def common_paths(design: Design, groups: Sequence[LineGroup]) -> Iterator[ChangePath]:
+    """Yield the way of all ``groups`` nearer to rest, a hundredth of how far they are a step, if two."""
     if len(groups) > 1:
-        yield ChangePath(partial(_together, stages.design, groups), _MOST_TOGETHER)
+        yield ChangePath(partial(_together, design, groups), _MOST_TOGETHER)
 
 
 def _together(design: Design, groups: Sequence[LineGroup], steps: int) -> Change:

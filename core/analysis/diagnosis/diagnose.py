@@ -5,7 +5,7 @@ A change is named only after the design was run with it as the window runs it, a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 
@@ -28,11 +28,13 @@ from core.analysis.diagnosis.search import Search
 from core.analysis.diagnosis.stability import StabilityForecast, forecast
 from core.analysis.diagnosis.trial_run import TrialResult, run_trial, severity_rank
 from core.blas_threads import one_blas_thread
+from core.document.design import Design
 from core.garment.assessment import Finding
 from core.mechanics.constraint_lines import Line
 from core.mechanics.convergence import Convergence
-from core.pipeline.active_lines import free_lines
+from core.pipeline.active_lines import LineGroup, free_lines
 from core.pipeline.build import Stages
+from core.pipeline.stages import RegionStages
 from core.progress import Progress, quiet
 
 __all__ = ["Change", "Diagnosis", "Fix", "diagnose"]
@@ -90,11 +92,17 @@ class Diagnosis:
         if self.problem == "unreachable" or verdict.display_state == "settled":
             return self
         ran = replace(self.trial.run, verdict=verdict)
-        return replace(self, trial=replace(self.trial, run=ran, problem=verdict.display_state))
+        runs = tuple(ran if each is self.trial.run else each for each in self.trial.runs)
+        return replace(self, trial=replace(self.trial, runs=runs, problem=verdict.display_state))
 
     def line(self, name: str) -> Line:
         """Return a line of the design by name."""
-        return next(line for line in self.stages.model.lines if line.name == name)
+        return next(line for line in self.stages.lines if line.name == name)
+
+    @property
+    def gain(self) -> float:
+        """Return the conventional gain of the region with the problem (probe units [1])."""
+        return self.trial.region.gain
 
     def longer_mm(self, change: Change) -> float:
         """Return by how much the first line of a change is set longer, negative if shorter [mm]."""
@@ -118,15 +126,16 @@ def diagnose(stages: Stages, progress: Progress = quiet) -> Diagnosis:
     """
     with one_blas_thread():
         progress("diagnosing", 0.0)
-        found = Diagnosis(run_trial(stages, progress), analyse(stages, progress))
+        trial = run_trial(stages, progress)
+        found = Diagnosis(trial, analyse(trial.region, progress))
         if found.problem != "unreachable":
             found = replace(found, findings=fixable_findings(found.trial))
         if not found.problem:
             search = Search(found.trial, progress)
             return replace(found, fixes=pressure_changes(search, found.findings)) if found.findings else found
         if found.problem in ("vibrating", "diverging"):
-            seen = forecast(stages)
-            bears = gain_limit_of(stages, progress) if stages.design.volume == "conventional" else None
+            seen = forecast(trial.region)
+            bears = gain_limit_of(trial.region, progress) if stages.design.volume == "conventional" else None
             found = replace(found, gain_limit=bears, onset=None if seen is None else seen.growth)
         return _treated(found, Search(found.trial, progress))
 
@@ -141,9 +150,10 @@ def _treated(found: Diagnosis, search: Search) -> Diagnosis:
     stages = found.stages
     if not search.tried:
         list(search.run_changes(option_changes(stages.design, found.problem)))  # to know the nearest
-    worn = (line.name for line in stages.model.lines if line.constrains)
-    free = set(chain.from_iterable(free_lines(stages)))
-    locked = tuple(name for name in worn if name in stages.design.active_lines() and name not in free)
+    region = found.trial.region
+    worn = (line.name for line in region.model.lines if line.constrains)
+    free = set(chain.from_iterable(free_lines(region)))
+    locked = tuple(name for name in worn if name in region.design.active_lines() and name not in free)
     milder = [each for each in search.tried if severity_rank(each.remaining_problem) < found.trial.rank]
     nearest = min(
         milder, key=lambda each: (severity_rank(each.remaining_problem), each.change.size), default=None
@@ -155,34 +165,37 @@ def _ending(found: Diagnosis, search: Search) -> list[Fix]:
     """Return changes that end a complaint: another control if this one vibrates, and the smallest others."""
     stages, swings = found.stages, found.problem in ("vibrating", "diverging")
     tame = swings and stages.design.volume == "conventional"
-    gains = list(lower_gains(stages, found.gain_limit)) if tame else []
+    gains = list(lower_gains(stages.design, found.trial.region, found.gain_limit)) if tame else []
+    groups = free_lines(found.trial.region)
     choices = list(option_changes(stages.design, found.problem))
     adaptive = [each for each in choices if tame and each.setting == ("volume", "adaptive")]
     calmed = search.first_verified(iter(adaptive))
-    cure, others = search.smallest_fix(single_paths(stages, found.problem))
+    cure, others = search.smallest_fix(single_paths(found.trial))
     fixes = [each for each in (calmed, cure) if each is not None]
     fixes += [each for each in search.run_changes(others[:_OTHERS]) if each.ends]
     if fixes:
         return fixes
-    cure = search.smallest_fix(_chosen(stages, gains, line_paths))[0]
+    cure = search.smallest_fix(_chosen(gains, line_paths, groups))[0]
     cure = cure or search.first_verified(iter(choices))
-    cure = cure or search.smallest_fix(_chosen(stages, choices, line_paths))[0]
-    cure = cure or search.smallest_fix(common_paths(stages))[0]
-    cure = cure or search.smallest_fix(_chosen(stages, gains, common_paths))[0]
-    cure = cure or search.smallest_fix(_chosen(stages, choices, common_paths))[0]
-    cure = cure or search.first_verified(deactivations(stages))
+    cure = cure or search.smallest_fix(_chosen(choices, line_paths, groups))[0]
+    cure = cure or search.smallest_fix(common_paths(stages.design, groups))[0]
+    cure = cure or search.smallest_fix(_chosen(gains, common_paths, groups))[0]
+    cure = cure or search.smallest_fix(_chosen(choices, common_paths, groups))[0]
+    cure = cure or search.first_verified(deactivations(stages.design, groups))
     return [] if cure is None else [search.simplify(cure)]
 
 
 def _chosen(
-    stages: Stages, choices: list[Change], ways: Callable[[Stages], Iterator[ChangePath]]
+    choices: list[Change],
+    ways: Callable[[Design, Sequence[LineGroup]], Iterator[ChangePath]],
+    groups: Sequence[LineGroup],
 ) -> Iterator[ChangePath]:
     """Yield the ways to change lines with each of other choices of the model."""
     for choice in choices:
-        yield from with_option(choice, ways(replace(stages, design=choice.design)))
+        yield from with_option(choice, ways(choice.design, groups))
 
 
-def gain_limit_of(stages: Stages, progress: Progress = quiet) -> float | None:
+def gain_limit_of(stages: RegionStages, progress: Progress = quiet) -> float | None:
     """Return the conventional gain at which the shape that the lines make begins to vibrate, None if unknown.
 
     Where the turns of a gain come to rest is worked out anew for each that is tried.

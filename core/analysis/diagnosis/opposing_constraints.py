@@ -25,8 +25,8 @@ from core.mechanics.model import ConstrainedModel
 from core.mechanics.newton import Equilibrium, SlidingSurface
 from core.mechanics.potential import Evaluation, Potential
 from core.pipeline.active_lines import LineGroup, active_line_groups
-from core.pipeline.build import Stages
 from core.pipeline.model_stages import line_targets
+from core.pipeline.stages import RegionStages
 from core.progress import Progress, quiet
 
 OPPOSED = 100.0
@@ -94,8 +94,8 @@ class ConstraintForces:
         )
 
 
-def analyse(stages: Stages, progress: Progress = quiet) -> ConstraintForces:
-    """Return what fights in a design, where its run comes to rest or at the last balance on the way there."""
+def analyse(stages: RegionStages, progress: Progress = quiet) -> ConstraintForces:
+    """Return what fights in a region, where its run comes to rest or at the last balance on the way there."""
     targets = line_targets(stages.design, stages)
     balance, share = _last_balance(stages, targets, progress)
     potential = Potential(stages.model, _between(targets, share).ratios)
@@ -143,7 +143,9 @@ class _Skin:
         return float(np.degrees(np.arccos(np.clip(np.vdot(one, others) / sizes, -1.0, 1.0))))
 
 
-def _last_balance(stages: Stages, targets: LineTargets, progress: Progress) -> tuple[Equilibrium, float]:
+def _last_balance(
+    stages: RegionStages, targets: LineTargets, progress: Progress
+) -> tuple[Equilibrium, float]:
     """Return where a run rests, or the last balance on the way from rest, and its share of the way."""
     balance = equilibrium_for(stages, targets)
     if balance.is_converged:
@@ -165,7 +167,7 @@ def _between(targets: LineTargets, share: float) -> LineTargets:
 
 
 def _lines(
-    stages: Stages, potential: Potential, place: Evaluation, balance: Equilibrium
+    stages: RegionStages, potential: Potential, place: Evaluation, balance: Equilibrium
 ) -> Iterator[tuple[LineGroup, Points]]:
     """Yield the force of each worn line that acts, linked ones together, in units of the model."""
     model = potential.model
@@ -190,7 +192,7 @@ def _volume(skin: _Skin, place: Evaluation, pressures: Floats) -> ConstraintForc
     model = skin.model
     sides = pressures[:, None, None] * model.volume.zone_gradients(place.points)
     pull = skin.pull((), sides.sum(axis=0))
-    if model.volume.closed or model.options.volume_of == "both":
+    if model.volume.closed or model.volume.separate or model.options.volume_of == "both":
         return pull
     # A point in the middle is pushed by both: its force goes to each by what it adds.
     left, right = np.linalg.norm(sides, axis=2)

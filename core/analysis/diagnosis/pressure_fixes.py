@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import chain
 
@@ -20,9 +20,11 @@ from core.analysis.diagnosis.candidate_changes import (
     with_option,
 )
 from core.analysis.diagnosis.search import Search
+from core.document.design import Design
 from core.garment.assessment import Finding
 from core.garment.curve_smoothing import USUAL_WIDTH
 from core.garment.pressure import pressure_limits
+from core.pipeline.active_lines import LineGroup, all_free_lines
 from core.pipeline.build import Stages
 
 MOST = 3
@@ -63,7 +65,7 @@ def pressure_changes(search: Search, findings: tuple[Finding, ...]) -> tuple[Fix
         for cure in search.run_changes(known)
         if cure.severity < worst or (cure.severity == worst and len(cure.remains) < len(findings))
     ]
-    for way in _ways(stages, findings):
+    for way in _ways(stages.design, all_free_lines(stages), findings):
         cure = _mildest(search, [way], worst)
         fixes += [] if cure is None else [cure]
     return rank_fixes(fixes)
@@ -73,10 +75,10 @@ def complete_fix(search: Search, fix: Fix) -> list[Fix]:
     """Return what ends a complaint like ``fix`` and leaves less behind, if a few runs find it."""
     change, stages = fix.change, search.stages
     chosen = bool(change.setting[0])
-    base = replace(stages, design=replace(stages.design, **dict([change.setting]))) if chosen else stages
-    ways = _ways(base, fix.remains)
+    base = replace(stages.design, **dict([change.setting])) if chosen else stages.design
+    ways = _ways(base, all_free_lines(stages), fix.remains)
     if chosen:
-        ways = with_option(replace(change, design=base.design), ways)
+        ways = with_option(replace(change, design=base), ways)
     found = _mildest(search, list(ways), fix.severity)
     return [] if found is None else [search.simplify(found)]
 
@@ -90,23 +92,23 @@ def _mildest(search: Search, ways: list[ChangePath], worst: int) -> Fix | None:
     return None
 
 
-def _ways(stages: Stages, findings: tuple[Finding, ...]) -> Iterator[ChangePath]:
+def _ways(design: Design, groups: Sequence[LineGroup], findings: tuple[Finding, ...]) -> Iterator[ChangePath]:
     """Yield ways that may end findings: a tight line longer, a slack one shorter, all nearer to rest."""
     tight = {name for each in findings if each.topic == "pressure" or _is_far(each) for name in each.lines}
     slack = _slack(findings)
-    for way in line_paths(stages):
-        (name, *_), longer = way.at(1).lines, _is_longer(stages, way.at(1))
+    for way in line_paths(design, groups):
+        (name, *_), longer = way.at(1).lines, _is_longer(design, way.at(1))
         if (longer and name in tight) or (not longer and name in slack):
             yield way
     if any(each.topic in ("shape", "pressure") for each in findings):
-        yield from common_paths(stages)
+        yield from common_paths(design, groups)
 
 
 def _widths(stages: Stages, findings: tuple[Finding, ...]) -> Iterator[Change]:
     """Yield wider bands for lines of no elastic: as wide as the limits of pressure require."""
     design, limits = stages.design, pressure_limits()
     for each in findings:
-        if each.topic != "pressure" or each.lines[0] in design.active_elastics():
+        if each.topic != "pressure" or each.lines[0] in design.region_of(each.lines[0]).active_elastics():
             continue
         width = design.line_settings(each.lines[0]).width or USUAL_WIDTH
         for kpa in (limits.amber_kpa, limits.red_kpa):
@@ -115,14 +117,15 @@ def _widths(stages: Stages, findings: tuple[Finding, ...]) -> Iterator[Change]:
                 yield wider_bands(design, tuple(sorted(design.linked_pair(each.lines[0]))), needed)
 
 
-def _is_longer(stages: Stages, change: Change) -> bool:
-    return change.design.ratio(change.lines[0]) > stages.design.ratio(change.lines[0])
+def _is_longer(design: Design, change: Change) -> bool:
+    return change.design.ratio(change.lines[0]) > design.ratio(change.lines[0])
 
 
 def _offs(stages: Stages, findings: tuple[Finding, ...]) -> Iterator[Change]:
     """Yield the changes that take slack lines off."""
     slack = _slack(findings)
-    return (change for change in deactivations(stages) if slack & set(change.lines))
+    offs = deactivations(stages.design, all_free_lines(stages))
+    return (change for change in offs if slack & set(change.lines))
 
 
 def _slack(findings: tuple[Finding, ...]) -> set[str]:

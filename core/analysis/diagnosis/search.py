@@ -22,6 +22,7 @@ from core.mechanics.mesh_quality import STRAIN_RANGE, STRAINED_RANGE
 from core.mechanics.volume import KEEPS_VOLUME
 from core.pipeline.build import Stages, build
 from core.pipeline.model_stages import line_targets
+from core.pipeline.stages import RegionStages
 from core.progress import Progress
 
 _LOOKS = 80  # outlooks that a search on one kind of way may take
@@ -70,14 +71,14 @@ class Search:
         design = sick.stages.design
         steady = design.volume in (*KEEPS_VOLUME, "none") and design.line_hold == "spring"
         self._swings = not steady or design.line_force == "explicit" or sick.problem == "vibrating"
-        self._learn(sick.stages, sick.run)
+        self._learn(sick.region, sick.run)
 
     @property
     def stages(self) -> Stages:
         """Return the design that is looked at."""
         return self._sick.stages
 
-    def _learn(self, stages: Stages, ran: RunResult) -> None:
+    def _learn(self, stages: RegionStages, ran: RunResult) -> None:
         """Keep where a run came to: another place than the outlook's where there is more than one."""
         if ran.verdict.iterations and ran.verdict.motion != "diverging" and stages.design.volume != "exact":
             seen = forecast_about(stages, ran.middle)
@@ -85,18 +86,22 @@ class Search:
 
     def _build(self, design: Design) -> Stages:
         """Build a changed design; what was made for others of the same model is not made again."""
-        alike = design.model_options, design.active_lines()
+        alike = design.model_options, design.worn_lines()
         self._built[alike] = build(design, self._built.get(alike, self._sick.stages))
         return self._built[alike]
 
-    def _near(self, stages: Stages) -> StabilityForecast | None:
+    def _region(self, stages: Stages) -> RegionStages:
+        """Return the region that the problem is in."""
+        return stages.regions[self._sick.worst]
+
+    def _near(self, stages: RegionStages) -> StabilityForecast | None:
         """Return what to look from: of where runs stood and the last good outlook, the nearest."""
         model, targets = stages.model, line_targets(stages.design, stages)
         known = [*reversed(self._stood), *([self._good] if self._good else [])]
         return min(known, key=lambda each: length_difference(each, model, targets), default=None)
 
-    def _bears(self, stages: Stages) -> bool:
-        """Return whether the outlook of a changed design is good."""
+    def _bears(self, stages: RegionStages) -> bool:
+        """Return whether the outlook of the region with the problem is good in a changed design."""
         if _too_far(stages, STRAINED_RANGE if self._sick.problem == "strained" else STRAIN_RANGE):
             return False
         seen = forecast(stages, self._near(stages))
@@ -113,7 +118,7 @@ class Search:
         self.looks -= 1
         self._progress("diagnosing", 0.0)
         try:
-            return self._bears(self._build(change.design))
+            return self._bears(self._region(self._build(change.design)))
         except UserError:
             return False  # an elastic beyond its curve, for example
 
@@ -141,7 +146,7 @@ class Search:
         self._progress("diagnosing", 0.0)
         stages = self._build(change.design)
         after = run_trial(stages, self._progress, trial=True)
-        left, ran = after.problem, after.run
+        left, ran = after.problem, after.runs[self._sick.worst]
         if self._well(left):
             warm = continue_run(self._sick, stages, self._progress)
             told = (
@@ -152,7 +157,7 @@ class Search:
         cure = Fix(change, after, well, left, remains=fixable_findings(after) if well else ())
         self.tried.append(cure)
         if not cure.ends:
-            self._learn(stages, ran)
+            self._learn(self._region(stages), ran)
         return cure
 
     def run_changes(self, changes: Iterable[Change]) -> Iterator[Fix]:
@@ -235,10 +240,11 @@ class Search:
         lengths = self._once(replace(change, design=replace(after, **as_before), setting=("", None)))
         if lengths.ends and lengths.severity <= cure.severity:
             return lengths
-        alone = Change("setting", replace(after, lines=before.lines), setting=change.setting)
+        as_set = replace(after, lines=before.lines, lower=before.lower)
+        alone = Change("setting", as_set, setting=change.setting)
         if key == "gain":
             gain = alone.design.gain or 0.0
-            alone = Change("gain", alone.design, 100.0 * (1.0 - gain / self._sick.stages.gain))
+            alone = Change("gain", alone.design, 100.0 * (1.0 - gain / self._sick.region.gain))
         choice = self._once(alone)
         return (
             choice
@@ -287,7 +293,7 @@ class Search:
         return next(known, None) or self.run_change(change)
 
 
-def _too_far(stages: Stages, bounds: tuple[float, float]) -> bool:
+def _too_far(stages: RegionStages, bounds: tuple[float, float]) -> bool:
     """Return whether lines are held at lengths at which some of their edges must be outside ``bounds``."""
     held = stages.design.line_hold == "held"
     names = {line.name for line in stages.model.lines if line.constrains}

@@ -13,6 +13,7 @@ import numpy as np
 
 from core.geometry.mesh import Floats, Points
 from core.mechanics.exact_solution import solve_body_exact, solve_exact
+from core.mechanics.gain_limit import OscillationLimit
 from core.mechanics.iteration import LineTargets, Record, SolverState, iterate
 from core.mechanics.mesh_quality import MeshQuality
 from core.mechanics.model import ConstrainedModel
@@ -20,8 +21,8 @@ from core.mechanics.newton import Equilibrium, equilibrium_at
 from core.mechanics.potential import Potential
 from core.mechanics.solver_comparison import shape_of
 from core.mechanics.volume import KEEPS_VOLUME, Pressure
-from core.pipeline.build import Stages
 from core.pipeline.model_stages import line_targets
+from core.pipeline.stages import RegionStages
 
 FADES = 0.975
 """Growth of a swing per turn below which it is gone within the turns that a run is watched [1]; ours."""
@@ -35,6 +36,7 @@ _SPAN, _SHORT_SPAN = 30, 10
 _CLOSE = (0.9, 1.05)  # growths of a short span that tell nothing: its swing is not yet the one that stays
 _ROUNDS = 12
 _NEAR = 1e-7  # volume errors this far apart are the same [1]
+_NO_GAIN = 1e-6  # stands for none where zones are held separately
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +64,7 @@ class StabilityForecast:
         return (self.growth if _CLOSE[0] < growth < _CLOSE[1] else growth) < FADES
 
 
-def forecast(stages: Stages, near: StabilityForecast | None = None) -> StabilityForecast | None:
+def forecast(stages: RegionStages, near: StabilityForecast | None = None) -> StabilityForecast | None:
     """Return how the run of a design will end, None where there is nothing for it to rest at.
 
     From an outlook ``near`` by it is found quickly or held not to be there.
@@ -71,7 +73,7 @@ def forecast(stages: Stages, near: StabilityForecast | None = None) -> Stability
     return _seen(model, targets, equilibrium_for(stages, targets, _start(near, model, targets)))
 
 
-def forecast_about(stages: Stages, moved: Points) -> StabilityForecast | None:
+def forecast_about(stages: RegionStages, moved: Points) -> StabilityForecast | None:
     """Return where turns rest that stand about ``moved``, (f, 3) [mm], None if nothing is there.
 
     Where lines slide there may be more than one balance, and turns come to another than a walk from rest.
@@ -108,18 +110,27 @@ def length_difference(near: StabilityForecast, model: ConstrainedModel, targets:
     return float(np.abs(np.subtract(near.targets.ratios, targets.ratios)).max(initial=0.0))
 
 
-def equilibrium_for(stages: Stages, targets: LineTargets, near: Equilibrium | None = None) -> Equilibrium:
+def equilibrium_for(
+    stages: RegionStages, targets: LineTargets, near: Equilibrium | None = None
+) -> Equilibrium:
     """Return the balance that a design comes to rest at with other ``targets``; see ``solve_exact``."""
     model = stages.model
     if targets.control == "exact":
         if stages.design.dense_volume:
             return solve_body_exact(model, targets.ratios, stages.body_change, near=near)
         return solve_exact(model, targets.ratios, _most_steps(near), near=near, turns=False)
+    if model.volume.separate:
+        return _kept_apart(model, targets, near)
     return _kept(combined_volume_model(model), targets, near)
 
 
 def combined_volume_model(model: ConstrainedModel) -> ConstrainedModel:
-    """Return a model as turns measure it: both breasts together, whatever the exact answer holds."""
+    """Return a model as turns measure it: both breasts together, whatever the exact answer holds.
+
+    Zones that are held separately are so in turns as well.
+    """
+    if model.volume.separate:
+        return model
     both = model.tensegric.with_options(replace(model.options, volume_of="both"))
     return replace(model, tensegric=both)
 
@@ -156,6 +167,17 @@ def _kept(model: ConstrainedModel, targets: LineTargets, near: Equilibrium | Non
     return here
 
 
+def _kept_apart(model: ConstrainedModel, targets: LineTargets, near: Equilibrium | None) -> Equilibrium:
+    """Return the balance at the volumes that a control keeps in zones that are held separately."""
+    exact = solve_exact(model, targets.ratios, _most_steps(near), near=near, turns=False)
+    if targets.control in KEEPS_VOLUME or not exact.is_converged:
+        return exact
+    gain = targets.gain if targets.control == "conventional" else 0.0
+    limit = OscillationLimit(model)
+    found = limit.equilibrium(Potential(model, targets.ratios), exact, max(gain, _NO_GAIN))
+    return replace(exact, residual=np.inf) if found is None else replace(found, residual=0.0)
+
+
 def _excess(model: ConstrainedModel, near: Equilibrium) -> float:
     """Return what the volume has there beyond rest, in parts of it [1]."""
     return model.volume.volume(model.tensegric.expand(near.state.moved)) / model.volume.rest_volume - 1.0
@@ -172,12 +194,10 @@ def oscillation_growth(
 
     That is what it does between one ``span`` of turns and the next.
     """
-    outward = model.rest_gradient
+    outward = _pushed_out(model)
     push = outward * (PUSH / np.linalg.norm(outward, axis=1).max())
-    pressure = Pressure(float(balance.pressures[0]) / model.pressure_unit)
-    error = float(model.volume.volume(model.tensegric.expand(balance.state.moved)))
-    error = (model.volume.rest_volume - error) / model.volume.rest_volume
-    start = SolverState(balance.state.moved + push, replace(pressure, error=error), 0, balance.tensions)
+    pressure = _pressure_of(model, balance)
+    start = SolverState(balance.state.moved + push, pressure, 0, balance.tensions)
     records = [measured for _, measured in iterate(model, lambda: targets, start, turns=2 * span + 2)]
     course = _course(records)
     if len(course) < 2 * span + 2 or not np.isfinite(course).all():
@@ -187,9 +207,28 @@ def oscillation_growth(
     return float((late / early) ** (1.0 / span)) if late > 1e-12 else 0.0
 
 
+def _pushed_out(model: ConstrainedModel) -> Points:
+    """Return the way of a push, (f, 3): outward, or in and out by turns in zones that are held separately."""
+    if not model.volume.separate:
+        return model.rest_gradient
+    signs = np.where(np.arange(model.volume.zones) % 2, -1.0, 1.0)
+    return np.tensordot(signs, model.volume.zone_gradients(model.tensegric.rest), axes=1)
+
+
+def _pressure_of(model: ConstrainedModel, balance: Equilibrium) -> Pressure:
+    """Return the pressure of turns that stand at a balance, with the volume error there."""
+    points = model.tensegric.expand(balance.state.moved)
+    if model.volume.separate:
+        pressure = model.state_pressure(balance.pressures)
+        return replace(pressure, error=-model.zone_errors(points, pressure.value))
+    missing = model.volume.rest_volume - float(model.volume.volume(points))
+    return Pressure(float(balance.pressures[0]) / model.pressure_unit, missing / model.volume.rest_volume)
+
+
 def _course(records: list[Record]) -> Floats:
     """Return what swings: volume error and lengths of lines in parts of their size, one row per turn."""
-    course = np.array([(record.error, *record.lengths) for record in records])
+    course = np.array([(*(record.zones or (record.error,)), *record.lengths) for record in records])
     if len(course):
-        course[:, 1:] /= course[0, 1:]
+        lengths = slice(len(records[0].zones) or 1, None)
+        course[:, lengths] /= course[0, lengths]
     return course

@@ -14,7 +14,8 @@ from core.mechanics.iteration import SolverState, initial_state, step
 from core.mechanics.solver_comparison import COMPARED_CONTROLS, MOST_TURNS, ControlRun, carried, shape_of
 from core.pipeline.build import Stages
 from core.pipeline.model_stages import line_targets
-from core.pipeline.solve import exact_equilibrium, solve
+from core.pipeline.solve import exact_equilibrium, solve_region
+from core.pipeline.stages import RegionStages
 from core.progress import Progress, quiet
 
 PROBLEMS = ("strained", "settling", "overstrained", "folded", "vibrating", "diverging", "unreachable")
@@ -40,30 +41,42 @@ class RunResult:
 
 @dataclass(frozen=True, eq=False)
 class TrialResult:
-    """A design that was run; ``problem`` is one of PROBLEMS, or empty if it is well."""
+    """A design that was run; ``problem`` is one of PROBLEMS, or empty if it is well.
+
+    ``runs`` are those of its regions; ``worst`` numbers the one that the problem is in.
+    """
 
     stages: Stages
-    run: RunResult
+    runs: tuple[RunResult, ...]
     problem: str
+    worst: int = 0
     _beside: dict[str, RunResult] = field(default_factory=dict, repr=False)
 
     @property
+    def region(self) -> RegionStages:
+        """Return the region that the problem is in, the bust where there is none."""
+        return self.stages.regions[self.worst]
+
+    @property
+    def run(self) -> RunResult:
+        """Return the run of that region."""
+        return self.runs[self.worst]
+
+    @property
     def verdict(self) -> Convergence:
-        """Return how the run ended."""
+        """Return how that run ended."""
         return self.run.verdict
 
     @property
-    def control_points(self) -> Points:
-        """Return the control points at the end of the run, shape (n, 3) [mm]."""
-        return self.stages.model.tensegric.expand(self.run.state.moved)
+    def region_points(self) -> tuple[Points, ...]:
+        """Return the control points of each region at the end of its run, each (n, 3) [mm]."""
+        both = zip(self.stages.regions, self.runs, strict=True)
+        return tuple(region.model.tensegric.expand(run.state.moved) for region, run in both)
 
     @property
-    def region_points(self) -> tuple[Points, ...]:
-        """Return the control points of each region, (n, 3) [mm]; those of the lower trunk in balance."""
-        lower = self.stages.lower
-        if lower is None:
-            return (self.control_points,)
-        return self.control_points, lower.model.tensegric.expand(exact_equilibrium(lower).state.moved)
+    def control_points(self) -> Points:
+        """Return the control points of the bust at the end, shape (n, 3) [mm]."""
+        return self.region_points[0]
 
     @property
     def rank(self) -> int:
@@ -71,11 +84,11 @@ class TrialResult:
         return severity_rank(self.problem)
 
     def run_with_control(self, control: str, progress: Progress = quiet) -> RunResult:
-        """Return the run of another control of the same design; it is made once."""
+        """Return the run of another control of the region with the problem; it is made once."""
         if control == self.stages.design.volume:
             return self.run
         if control not in self._beside:
-            self._beside[control] = _turned(self.stages, control, progress)
+            self._beside[control] = _turned(self.region, control, progress)
         return self._beside[control]
 
 
@@ -85,12 +98,23 @@ def severity_rank(complaint: str) -> int:
 
 
 def run_trial(stages: Stages, progress: Progress = quiet, *, trial: bool = False) -> TrialResult:
-    """Run a design from rest and tell how it stands.
+    """Run all regions of a design from rest and tell how it stands.
 
     As in the window a design whose lengths are held, or that asks for the exact answer, must have one. A
     ``trial`` is given up once it is plain that it swings, or has no balance. ``progress`` hears each turn;
     raises Cancelled.
     """
+    told = [_run_region(region, progress, trial=trial) for region in stages.regions]
+    runs, problems = tuple(run for run, _ in told), [problem for _, problem in told]
+    worst = max(
+        range(len(told)),
+        key=lambda at: (severity_rank(problems[at]), bool(stages.regions[at].design.lines)),
+    )
+    return TrialResult(stages, runs, problems[worst], worst)
+
+
+def _run_region(stages: RegionStages, progress: Progress, *, trial: bool) -> tuple[RunResult, str]:
+    """Return how a region ran from rest, and its problem, one of PROBLEMS or empty."""
     held, exact = stages.design.line_hold == "held", stages.design.volume == "exact"
     ran = _solved(stages, progress) if exact else None
     nowhere = (
@@ -103,18 +127,19 @@ def run_trial(stages: Stages, progress: Progress = quiet, *, trial: bool = False
     told = ran.verdict.display_state
     if held and not exact and not nowhere:
         nowhere = told == "diverging" or not (trial or exact_equilibrium(stages).is_converged)
-    return TrialResult(stages, ran, "unreachable" if nowhere else "" if told == "settled" else told)
+    return ran, "unreachable" if nowhere else "" if told == "settled" else told
 
 
 def continue_run(before: TrialResult, stages: Stages, progress: Progress = quiet) -> RunResult | None:
     """Return how turns end that go on under a changed design from where a run stands, as in the window.
 
-    None where they do not: an exact answer starts from rest, and so does what follows a refusal, or a run
-    that diverged or did not converge. Another control goes on from where its own run stands, made beside the
-    one that is shown. Back from a fold turns come slowly: who has not come to rest is watched once more, as
-    the window does.
+    They are those of the region with the problem. None where they do not: an exact answer starts from rest,
+    and so does what follows a refusal, or a run that diverged or did not converge. Another control goes on
+    from where its own run stands, made beside the one that is shown. Back from a fold turns come slowly: who
+    has not come to rest is watched once more, as the window does.
     """
-    control, old, design = stages.design.volume, before.stages.model, before.stages.design
+    control, old, design = stages.design.volume, before.region.model, before.stages.design
+    region = stages.regions[before.worst]
     if before.problem == "unreachable" or control not in {*COMPARED_CONTROLS, design.volume}:
         return None
     if control == "exact":
@@ -122,23 +147,23 @@ def continue_run(before: TrialResult, stages: Stages, progress: Progress = quiet
     stood = before.run_with_control(control, progress)
     if stood.verdict.motion in ("diverging", "settling"):
         return None
-    state = stood.state if stages.model is old else carried(stood.state, old, stages.model)
-    return _turned(stages, control, progress, replace(state, iteration=0), trial=True, patient=True)
+    state = stood.state if region.model is old else carried(stood.state, old, region.model)
+    return _turned(region, control, progress, replace(state, iteration=0), trial=True, patient=True)
 
 
-def _nothing(stages: Stages) -> RunResult:
+def _nothing(stages: RegionStages) -> RunResult:
     """Return what stands where nothing was run: the body at rest."""
     state = initial_state(stages.model)
     return RunResult(state, Convergence("settling", 0, 0.0), state.moved)
 
 
-def _solved(stages: Stages, progress: Progress) -> RunResult:
-    solution = solve(stages, progress=progress)
+def _solved(stages: RegionStages, progress: Progress) -> RunResult:
+    solution = solve_region(stages, None, progress)
     return RunResult(solution.state, solution.verdict, solution.state.moved)
 
 
 def _turned(
-    stages: Stages,
+    stages: RegionStages,
     control: str,
     progress: Progress,
     start: SolverState | None = None,

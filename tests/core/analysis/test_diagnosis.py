@@ -235,10 +235,11 @@ def test_lower_gains_are_tried_before_the_control_is_taken_away() -> None:
     stages = made({"mid-bust": 0.9}, volume="conventional", gain=2.5)
     limit = 0.88 * stages.gain_limit
     low = math.floor(0.96 * limit / GAIN_STEP) * GAIN_STEP
-    gains = [change.design.gain for change in lower_gains(stages, 1.59)]
+    gains = [change.design.gain for change in lower_gains(stages.design, stages, 1.59)]
     assert gains == [1.52, pytest.approx(low)]
-    assert [change.design.gain for change in lower_gains(stages, None)] == [pytest.approx(low)]
-    assert list(lower_gains(made({"mid-bust": 0.9}, volume="conventional", gain=1.0), 1.59)) == []
+    assert [change.design.gain for change in lower_gains(stages.design, stages, None)] == [pytest.approx(low)]
+    low_gain = made({"mid-bust": 0.9}, volume="conventional", gain=1.0)
+    assert list(lower_gains(low_gain.design, low_gain, 1.59)) == []
     assert [change.setting for change in option_changes(stages.design, "vibrating")] == [
         ("volume", "adaptive"),
         ("volume", "exact"),

@@ -18,6 +18,7 @@ from core.analysis.diagnosis.trial_run import continue_run, run_trial
 from core.control_mesh.template import read_template
 from core.document.line_notation import ready_made_lines
 from core.mechanics.solver_comparison import SolverComparison
+from core.pipeline.active_lines import free_lines
 from core.pipeline.build import Stages, build
 from core.pipeline.converged import converged_frame
 from core.pipeline.model_stages import line_targets
@@ -129,7 +130,8 @@ def test_forces_are_told_as_sums_over_points() -> None:
 
 
 def test_a_line_at_its_rest_length_has_one_way_and_that_leads_away_from_it() -> None:
-    ways = list(line_paths(made("mannequin", {"mid-bust": 0.95, "full-bust": 1.0})))
+    stages = made("mannequin", {"mid-bust": 0.95, "full-bust": 1.0})
+    ways = list(line_paths(stages.design, free_lines(stages)))
     of_full = [way for way in ways if way.at(1).lines == ("full-bust",)]
     assert [round(way.at(1).design.ratio("full-bust"), 6) for way in of_full] == [1.001]
     assert all(way.most > 0 for way in ways)

@@ -20,7 +20,6 @@ from core.garment.assessment import BAD, assess
 from core.garment.elastic_library import find_elastic
 from core.garment.pressure import pressure_limits
 from core.garment.tension import line_tensions
-from core.mechanics.force_units import newtons_per_unit
 from core.mechanics.mesh_quality import STRAINED_RANGE
 from core.pipeline.build import Stages, build
 from core.pipeline.solve import solve
@@ -73,11 +72,7 @@ def test_of_all_lengths_that_reach_it_those_with_least_tension_are_taken(rest: S
     goals = goals_of(wearing(rest, 0.93, 0.97), "girth")
     start = wearing(rest, 0.92, 0.92)
     search, best = Search(start, goals, Bounds({})), solve_targets(start, goals)
-    newtons = newtons_per_unit(rest.model, rest.design.tissue_stiffness)
-    assert (
-        best.tension
-        < 0.99 * newtons * search.solve_at(search.iterate_from(search.start)).tensions.clip(0.0).sum()
-    )
+    assert best.tension < 0.99 * search.solve_at(search.iterate_from(search.start)).tensions.clip(0.0).sum()
     for mid in (0.95, 0.97, 1.0):
         alone = solve_targets(wearing(rest, mid, 1.0), goals, kept=["mid-bust"])
         assert not alone.reachable or best.tension < alone.tension + 0.05
