@@ -44,6 +44,9 @@ BRIDGE_UP = 30.0
 BRIDGE = 100.0
 """A trunk less deep there is two thighs that touch [mm, at scale 1]. Source: measured on bodies."""
 
+ALONG_BELLY = 12.0
+"""The front midline is smoothed by a Gaussian of this standard deviation [mm]. Source: measured with noise."""
+
 PUBIS = 80.0
 """The belly lies at least this far above the crotch [mm, at scale 1]. Ours."""
 
@@ -159,7 +162,7 @@ def waist(profile: tuple[Floats, Floats], hips: float, top: float, scale: float)
 def belly(sections: LowerSections, low: float, high: float, scale: float) -> Found:
     """Return the level of the belly between the crotch at ``low`` and the waist at ``high`` [mm]."""
     z = heights(low + PUBIS * scale, max(high, low + (PUBIS + 20.0) * scale), FINE)
-    out = -smoothed(front(sections.many(z.tolist()), sections.middle), FINE)
+    out = -smoothed(front(sections.many(z.tolist()), sections.middle), FINE, ALONG_BELLY)
     inner = np.flatnonzero((out[1:-1] > out[:-2]) & (out[1:-1] >= out[2:])) + 1
     if len(inner):
         best = int(inner[np.argmax(out[inner])])

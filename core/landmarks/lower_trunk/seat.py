@@ -38,6 +38,9 @@ BELOW_POINT = 20.0
 EVEN = 8.0
 """The mean curvature is smoothed over this height [mm]. Source: measured with noise."""
 
+BETWEEN_THIGHS = 5.0
+"""A leg nearer to the middle than this touches the other [mm]: it is pressed out of shape. Ours."""
+
 CREASE = 0.009
 """A less curved hollow is no crease [1/mm]. Source: measured on bodies."""
 
@@ -91,9 +94,19 @@ def gluteal_fold(sections: LowerSections, side: int, low: float, point: Landmark
     best = int(np.nanargmax(score))
     place = np.array([x, np.interp(z[best], curve[:, 2], curve[:, 1]), z[best]])
     sharp, edge = float(mean[best]), np.isnan(score[max(best - 2, 0) : best + 3]).any()
+    if _thighs_touch(sections.at(float(z[best])), sections.middle):
+        return Landmark(name, place, 0.35, Message("The thighs touch under the fold: approximate."), curve)
     if edge or sharp < CREASE:
         return Landmark(name, place, 0.35, Message("No crease under the buttock: approximate."), curve)
     return Landmark(name, place, 0.7, Message("Sharpest hollow under the buttock."), curve)
+
+
+def _thighs_touch(section: LowerSection, middle: float) -> bool:
+    """Return whether a leg comes so near to the middle that the skin between the thighs is not known."""
+    inner = [
+        (SIGNS[side] * (leg[:, 0] - middle)).min() for side, leg in enumerate(section.legs) if leg is not None
+    ]
+    return bool(inner) and min(inner) < BETWEEN_THIGHS
 
 
 def _hollow(z: Floats, depth: Floats) -> Floats:
