@@ -14,7 +14,8 @@ from core.garment.tension import LineTension, line_tensions, mean_elongation
 from core.geometry.mesh import Floats, Mesh, Points
 from core.measurements.definitions import Measure
 from core.measurements.subject import Subject, subject_of
-from core.measurements.table import of_subject, smoothed_moves
+from core.measurements.table import of_subject
+from core.measurements.tracked_points import smoothed_moves
 from core.measurements.uncertain_value import (
     AFTER,
     BEFORE,

@@ -23,8 +23,8 @@ from core.landmarks.torso.girths import UNDER, girth_at, girths
 from core.landmarks.types import Landmarks
 from core.measurements.definitions import DEFINITIONS, KEYS, Measure, definition_of
 from core.measurements.girths import enclosed, skin_ring, tape_ring
-from core.measurements.table import before_after, measure_rows, measures, smoothed_moves
-from core.measurements.tracked_points import moved_landmarks, track_points
+from core.measurements.table import before_after, measure_rows, measures
+from core.measurements.tracked_points import moved_landmarks, smoothed_moves, track_points
 from core.pipeline.build import build
 from core.pipeline.observables import Tapes
 from core.pipeline.solve import Solution, solve
