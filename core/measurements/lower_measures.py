@@ -7,7 +7,14 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from core.geometry.mesh import Mesh, Points
-from core.geometry.plane_sections import arc_length, cut, hull_corners, hull_perimeter, join_segments
+from core.geometry.plane_sections import (
+    arc_length,
+    cut,
+    downward,
+    hull_corners,
+    hull_perimeter,
+    join_segments,
+)
 from core.landmarks.lower_trunk.girths import MARKS, lower_girths
 from core.landmarks.lower_trunk.outline_profiles import back
 from core.landmarks.lower_trunk.seat import NOT_SHOWN
@@ -34,6 +41,9 @@ GIRTH_MARKS: Mapping[str, tuple[str, ...]] = {
 
 OUTLINED = ("waist", "hip")
 """Girths that are measured along the skin too."""
+
+REPLACED = tuple(f"{name}_girth{kind}" for name in OUTLINED for kind in ("", "_skin"))
+"""The measures of the trunk that are taken at the landmarks of the lower trunk where the design has it."""
 
 NEAR_CROTCH = 10.0
 """The midline of the skin passes the crotch no further away than this [mm]. Ours."""
@@ -110,20 +120,18 @@ def midline_curve(mesh: Mesh, crotch: Points, middle: Points) -> Points | None:
     """
     normal = np.array([middle[2] - crotch[2], 0.0, crotch[0] - middle[0]])
     normal /= np.linalg.norm(normal)
-    curves = join_segments(cut(mesh, crotch + SHIFT * normal, normal))
-    away = [np.linalg.norm(curve - crotch, axis=1) for curve, _ in curves]
-    if not away or min(each.min() for each in away) > NEAR_CROTCH:
+    away, least = np.inf, None
+    for curve, closed in join_segments(cut(mesh, crotch + SHIFT * normal, normal)):
+        apart = np.linalg.norm(curve - crotch, axis=1)
+        if apart.min() < away:
+            away, least = float(apart.min()), (curve, closed, int(apart.argmin()))
+    if least is None or away > NEAR_CROTCH:
         return None
-    best = int(np.argmin([each.min() for each in away]))
-    curve, closed = curves[best]
-    at = int(np.argmin(away[best]))
-    if closed:
-        curve, at = np.roll(curve[:-1], -at - len(curve) // 2, axis=0), len(curve) - 1 - len(curve) // 2
-    ways = [_up_to(way, float(middle[2])) for way in (curve[at:], curve[at::-1])]
-    if any(way is None for way in ways):
+    ways = [way for way in (_up_to(way, float(middle[2])) for way in downward(*least)) if way is not None]
+    if len(ways) < 2:
         return None
-    first, second = sorted((way for way in ways if way is not None), key=lambda way: float(way[-1, 1]))
-    return np.concatenate([first[::-1], second[1:]])
+    front, behind = sorted(ways, key=lambda way: float(way[-1, 1]))
+    return np.concatenate([front[::-1], behind[1:]])
 
 
 def _up_to(way: Points, level: float) -> Points | None:

@@ -102,15 +102,16 @@ def _followed(landmarks: LowerLandmarks) -> TrackedPoints:
 
 @lru_cache(maxsize=2)
 def _seat_faces(skin: Mesh, control: ControlMesh) -> tuple[Indices, ...]:
-    """Return the faces of the original skin that lie over the left and over the right seat zone."""
+    """Return the faces of the original skin over the movable triangles of the left and right seat zone."""
     assert control.zone is not None
     zones = [control.zone_names.index(f"seat-{side}") for side in SIDES]
-    seat = control.mesh.vertices[control.mesh.faces[np.isin(control.zone, zones)]].reshape(-1, 3)
+    zone = np.where((~control.fixed)[control.mesh.faces].any(axis=1), control.zone, -1)
+    seat = control.mesh.vertices[control.mesh.faces[np.isin(zone, zones)]].reshape(-1, 3)
     middles = skin.vertices[skin.faces].mean(axis=1)
     low, high = seat.min(axis=0) - AROUND_SEAT, seat.max(axis=0) + AROUND_SEAT
     near = np.flatnonzero(((middles > low) & (middles < high)).all(axis=1))
-    zone = control.zone[nearest_faces(control.mesh, middles[near])[0]]
-    return tuple(near[zone == each] for each in zones)
+    own = zone[nearest_faces(control.mesh, middles[near])[0]]
+    return tuple(near[own == each] for each in zones)
 
 
 def _seat_volumes(skin: Mesh, faces: tuple[Indices, ...], control: Mesh) -> Floats:
