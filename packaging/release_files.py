@@ -216,7 +216,7 @@ def figures_of(design: Design) -> Iterator[tuple[str, float | str]]:
     yield "largest move [mm]", float(np.abs(points - stages.control.mesh.vertices).max())
     for line, reached in zip(stages.model.lines, solution.last.lengths, strict=True):
         yield f"{line.name} reached [mm]", float(reached)
-    for row in measure_rows(*before_after(stages, points)):
+    for row in measure_rows(*before_after(stages, *solution.region_points)):
         for when in ("before", "after"):
             if row[when] is not None:
                 yield f"{row['key']} {when} [{row['unit']}]", float(row[when])

@@ -317,7 +317,7 @@ class ExportSource:
     @cached_property
     def measures(self) -> list[dict[str, Any]]:
         """Return the measures before and after, a row each."""
-        return measure_rows(*before_after(self.stages, self.control_points))
+        return measure_rows(*before_after(self.stages, *self.region_points(before=False)))
 
     @cached_property
     def occlusion(self) -> Floats:

@@ -69,12 +69,19 @@ def as_table(views: Sequence[MeasureView], doubt: str = "") -> list[list[str]]:
             view.label,
             view.reference or view.tip,
             view.unit,
-            *("" if each is None else f"{each:.1f}" for each in (view.before, view.after, view.change_at(1))),
+            *_plain_values(view),
             "; ".join(filter(None, ("" if view.caption == view.reference else view.caption, doubt))),
         ]
         for view in views
     ]
     return [heading, *rows]
+
+
+def _plain_values(view: MeasureView) -> Iterator[str]:
+    """Yield the values before and after and the change as a file has them, with one decimal at least."""
+    digits = max(digits_of(view.unit), 1)
+    for value in (view.before, view.after, view.change_at(digits)):
+        yield "" if value is None else f"{value:.{digits}f}"
 
 
 def _bust_rows(frame: Frame) -> Iterator[MeasureView]:
@@ -259,8 +266,8 @@ def length_uncertainty(off: float) -> str:
 
 
 def digits_of(unit: str) -> int:
-    """Return how many decimals are written in a unit."""
-    return 0 if unit == "ml" else 1
+    """Return how many decimals are written in a unit; a ratio has none."""
+    return {"ml": 0, "": 2}.get(unit, 1)
 
 
 def measure_title(row: Mapping[str, Any]) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 from app.i18n.catalog import colon, joined, language, listed, number, tr
 from app.i18n.lengths import shown_digits, shown_value
 from app.presenters.assessment import AssessmentView, assessment_view
-from app.presenters.measurements import length_uncertainty, measure_title, plus_minus
+from app.presenters.measurements import digits_of, length_uncertainty, measure_title, plus_minus
 from app.presenters.messages import line_title, render, render_all
 from app.presenters.pressure import rating_text
 from app.presenters.uncertainty import source_text
@@ -125,7 +125,7 @@ def foot_words(sheet: Report) -> str:
 
 
 def _measure_row(row: dict[str, Any], sheet: Report) -> MeasureRow:
-    digits = 0 if row["unit"] == "ml" else 1
+    digits = digits_of(row["unit"])
     figures = (
         value_text(row["before"], digits, row["unit"]),
         value_text(row["after"], digits, row["unit"]),

@@ -185,7 +185,7 @@ def make_report(
     if verdict.motion == "diverging":
         raise divergence_error()
     progress("measuring", 0.1)
-    before, after = before_after(stages, points)
+    before, after = before_after(stages, *shown.region_points)
     found, why = _sizes(before, heading)
     progress("pressing", 0.8)
     cuts, pressed = cut_list_of(shown), pressure_list_of(shown)

@@ -1,7 +1,7 @@
 """Definitions of all measurements: name, unit and method.
 
-The value of each key is yielded by ``girths.py`` or ``bust.py``; window, report and files follow. The guide
-shows a picture of each and is not built without it: draw a new one with
+The value of each key is yielded by ``girths.py``, ``bust.py`` or ``lower_measures.py``; window, report and
+files follow. The guide shows a picture of each and is not built without it: draw a new one with
 ``.venv/bin/python packaging/docs_pictures.py measures``, after ``packaging/measure_marks.py`` has its curves.
 """
 
@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from core.geometry.mesh import Points
+from core.landmarks.lower_trunk.girths import BELOW_FOLD
 from core.landmarks.types import SIDES
 from core.messages import EMPTY, Length, Message
 
@@ -22,7 +23,7 @@ class Definition:
 
     ``iso`` is what ISO 8559-1 calls it, empty where that has no such measure or ours is another one; ``text``
     says how it is taken, ``group`` where it stands in a list. One that is ``sided`` is there for the left and
-    for the right, with that added to its key.
+    for the right, with that added to its key. One of the ``lower`` trunk needs that region in the design.
     """
 
     key: str
@@ -32,6 +33,12 @@ class Definition:
     text: Message
     group: Message
     sided: bool = False
+    lower: bool = False
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Return the keys of its measures: its own, or one of each side."""
+        return tuple(f"{self.key}_{side}" for side in SIDES) if self.sided else (self.key,)
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +63,7 @@ class Measure:
 
 GIRTHS, CUPS, BUST = Message("Girths"), Message("Cups"), Message("Bust")
 AREAS, BOTH = Message("Sections and volumes"), Message("Symmetry")
+WAIST_HIPS, SEAT = Message("Waist and hips"), Message("Seat")
 
 TAPE = Message("Horizontal tape around the trunk, bridging hollows, without arms.")
 """How a tape lies, said of every girth."""
@@ -139,6 +147,28 @@ _TABLE = (
         GIRTHS,
     ),
     Definition(
+        "belly_girth",
+        Message("Belly girth"),
+        "mm",
+        "",
+        Message("Defined by Busk: at the landmark of the belly. {tape}", tape=TAPE),
+        GIRTHS,
+        lower=True,
+    ),
+    Definition(
+        "high_hip_girth",
+        Message("High hip girth"),
+        "mm",
+        "Top hip girth",
+        Message(
+            "At the height of the line High hip, 72 % of the way from the line Waist down to the line Hip. "
+            "{tape} The standard uses the level midway between waist and hip.",
+            tape=TAPE,
+        ),
+        GIRTHS,
+        lower=True,
+    ),
+    Definition(
         "hip_girth",
         Message("Hip girth"),
         "mm",
@@ -157,6 +187,31 @@ _TABLE = (
         "",
         Message("Defined by Busk. {text}", text=_SKIN),
         GIRTHS,
+    ),
+    Definition(
+        "buttock_girth",
+        Message("Buttock girth"),
+        "mm",
+        "Hip girth",
+        Message(
+            "At the mean height of the buttock points, where the seat is most prominent. {tape}", tape=TAPE
+        ),
+        GIRTHS,
+        lower=True,
+    ),
+    Definition(
+        "thigh_girth",
+        Message("Thigh girth"),
+        "mm",
+        "Thigh girth",
+        Message(
+            "Horizontal tape around the thigh, {below} below gluteal fold or crotch, whichever is lower. "
+            "The standard uses the widest level below the gluteal fold.",
+            below=Length(BELOW_FOLD),
+        ),
+        GIRTHS,
+        sided=True,
+        lower=True,
     ),
     Definition(
         "bust_point_distance",
@@ -301,15 +356,86 @@ _TABLE = (
         ),
         BOTH,
     ),
+    Definition(
+        "waist_hip_ratio",
+        Message("Waist-to-hip ratio"),
+        "",
+        "",
+        Message("Waist girth divided by hip girth."),
+        WAIST_HIPS,
+        lower=True,
+    ),
+    Definition(
+        "waist_to_hip",
+        Message("Waist to hip"),
+        "mm",
+        "",
+        Message(
+            "Defined by Busk: vertical distance from the level of the waist girth to that of the hip girth."
+        ),
+        WAIST_HIPS,
+        lower=True,
+    ),
+    Definition(
+        "crotch_length",
+        Message("Crotch length"),
+        "mm",
+        "Total crotch length",
+        Message(
+            "Along the skin of the midline, from the waist in front through the crotch to the waist behind. "
+            "The curve follows the cleft, which a tape may bridge."
+        ),
+        WAIST_HIPS,
+        lower=True,
+    ),
+    Definition(
+        "seat_protrusion",
+        Message("Seat protrusion"),
+        "mm",
+        "",
+        Message(
+            "Defined by Busk: mean backward distance of the buttock points from the centre of the back at "
+            "waist level."
+        ),
+        SEAT,
+        lower=True,
+    ),
+    Definition(
+        "gluteal_fold_height",
+        Message("Gluteal fold above crotch"),
+        "mm",
+        "",
+        Message(
+            "Defined by Busk: height of the gluteal fold above the crotch, negative if the fold is lower. "
+            "The crotch does not move, so the change is the lift of the fold."
+        ),
+        SEAT,
+        sided=True,
+        lower=True,
+    ),
+    Definition(
+        "seat_volume",
+        Message("Seat volume"),
+        "ml",
+        "",
+        Message(
+            "Defined by Busk: volume between the skin over the seat zone of the control mesh and the middle "
+            "of that mesh. The border of the zone is ours: compare before with after, or left with right."
+        ),
+        SEAT,
+        sided=True,
+        lower=True,
+    ),
 )
 
 DEFINITIONS: Mapping[str, Definition] = MappingProxyType({each.key: each for each in _TABLE})
 """What every measure is, by its key without a side, in the order in which they are shown."""
 
-KEYS = tuple(
-    key for each in _TABLE for key in ([f"{each.key}_{side}" for side in SIDES] if each.sided else [each.key])
-)
+KEYS = tuple(key for each in _TABLE for key in each.keys)
 """The keys of all measures, in the same order."""
+
+LOWER_KEYS = frozenset(key for each in _TABLE if each.lower for key in each.keys)
+"""The keys of the measures that need the lower trunk."""
 
 
 def definition_of(key: str) -> tuple[Definition, str]:

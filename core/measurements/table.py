@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from core.deformation.tffd import deform
 from core.document.custom_measures import CustomMeasurement
@@ -19,11 +18,13 @@ from core.landmarks.types import Landmarks
 from core.measurements.bust import NO_MARK, NO_ROOT, apexes, cup_measures, over_skin, straight
 from core.measurements.definitions import KEYS, Measure, definition_of, missing
 from core.measurements.girths import girth_measures, over_gaps, tape_ring
+from core.measurements.lower_measures import lower_measures
+from core.measurements.lower_trunk import lower_subjects
 from core.measurements.mirrored_surface import SkinGap, mirrored_breasts
 from core.measurements.subject import Subject, subject_of
+from core.measurements.tracked_points import smoothed_moves
 from core.messages import Message
 from core.pipeline.build import Stages
-from core.scan.body import Body
 
 OWN = "own:"
 """The keys of the designer's own measures are this and their name."""
@@ -71,22 +72,36 @@ def measures(mesh: Mesh, landmarks: Landmarks, own: Iterable[CustomMeasurement] 
     return of_subject(subject_of(mesh, landmarks), own)
 
 
-def before_after(stages: Stages, control_points: Points) -> tuple[Measures, Measures]:
-    """Measure the original body, and the body reshaped by ``control_points``, shape (n, 3) [mm].
+def before_after(stages: Stages, *region_points: Points) -> tuple[Measures, Measures]:
+    """Measure the original body, and the body reshaped by the control points of its regions.
 
-    The landmarks move with the skin and the levels follow them; the lift of the apex exists only after.
-    Raises ValueError unless there are as many control points as the control mesh has.
+    ``region_points`` are those of each region, the bust's first, each of shape (n, 3) [mm]; regions left out
+    keep their shape. The landmarks move with the skin and the levels of the bust follow them; those of the
+    lower trunk stay. The lift of the apex exists only after, waist, hips and seat only with the lower trunk.
+    Raises ValueError unless there are as many control points as the control meshes have.
     """
     mesh, landmarks, own = stages.body.smoothed, stages.landmarks, stages.design.own_measures
     rest, before = original_subject(mesh, landmarks), _at_rest(mesh, landmarks)
-    after = reshaped_subject(rest, stages, control_points)
+    after = reshaped_subject(rest, stages, *region_points)
     found = _with_own(before, rest, own), of_subject(after, own, rest)
     skin = mirrored_breasts(stages.body, stages.control, stages.patch)
     first, last = (
         _with_excess(each, of, skin.gap(of.mesh.vertices))
         for each, of in zip(found, (rest, after), strict=True)
     )
-    return first, last
+    if stages.lower is None:
+        return first, last
+    points = region_points[1] if len(region_points) > 1 else stages.lower.control.mesh.vertices
+    below = lower_subjects(stages.lower, points)
+    return _with_lower(first, lower_measures(below[0])), _with_lower(last, lower_measures(below[1]))
+
+
+def _with_lower(found: Measures, below: Iterable[Measure]) -> Measures:
+    """Return the measures with those of the lower trunk, whose waist and hip replace those of the bust."""
+    whole = {**found, **{each.key: each for each in below}}
+    return MappingProxyType(
+        {**_ordered(whole), **{key: each for key, each in found.items() if key not in KEYS}}
+    )
 
 
 def _with_excess(found: Measures, subject: Subject, gap: SkinGap | None) -> Measures:
@@ -121,16 +136,17 @@ def bust_girths(stages: Stages, control_points: Points) -> tuple[float, float] |
 
 
 def custom_before_after(
-    stages: Stages, control_points: Points, own: CustomMeasurement
+    stages: Stages, region_points: Sequence[Points], own: CustomMeasurement
 ) -> tuple[Measure, Measure]:
-    """Return one measure of the designer's own at rest, and reshaped by ``control_points`` (n, 3) [mm].
+    """Return one measure of the designer's own at rest, and reshaped by the control points of each region.
 
-    It need not belong to the design yet. Raises ValueError as ``before_after`` does.
+    ``region_points`` are those of ``before_after``. It need not belong to the design yet. Raises ValueError
+    as ``before_after`` does.
     """
     rest = original_subject(stages.body.smoothed, stages.landmarks)
     before, after = (
         next(measure_custom(subject, (own,)))
-        for subject in (rest, reshaped_subject(rest, stages, control_points))
+        for subject in (rest, reshaped_subject(rest, stages, *region_points))
     )
     return before, after
 
@@ -146,22 +162,12 @@ def _at_rest(mesh: Mesh, landmarks: Landmarks) -> Measures:
     return _ordered(_usual(original_subject(mesh, landmarks)))
 
 
-def reshaped_subject(rest: Subject, stages: Stages, control_points: Points) -> Subject:
-    """Return a subject as ``control_points``, shape (n, 3) [mm], reshape it."""
-    moves = deform(stages.binding, control_points) - stages.body.mesh.vertices
-    left, right = stages.body_change(control_points).tolist()
+def reshaped_subject(rest: Subject, stages: Stages, *region_points: Points) -> Subject:
+    """Return a subject as the control points of the regions, each (n, 3) [mm], bust first, reshape it."""
+    scan, regions = stages.body.mesh.vertices, zip(stages.regions, region_points, strict=False)
+    moves = sum((deform(each.binding, points) - scan for each, points in regions), np.zeros(()))
+    left, right = stages.body_change(region_points[0]).tolist()
     return rest.moved(rest.mesh.vertices + smoothed_moves(stages.body, moves), (left, right))
-
-
-def smoothed_moves(body: Body, moves: Points) -> Points:
-    """Return how the vertices of the calm skin move where those of the scan make ``moves``, (n, 3) [mm].
-
-    The calm skin has the vertices of the scan, or, of a giant scan, fewer: these go as the nearest do.
-    """
-    if len(body.smoothed.vertices) == len(moves):
-        return moves
-    nearest = cKDTree(body.mesh.vertices).query(body.smoothed.vertices)[1]
-    return np.asarray(moves[nearest])
 
 
 def measure_rows(before: Measures, after: Measures | None = None) -> list[dict[str, Any]]:

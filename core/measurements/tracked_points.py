@@ -7,10 +7,12 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from core.geometry.closest_point import barycentric, nearest_faces
 from core.geometry.mesh import Faces, Floats, Mesh, Points
 from core.landmarks.types import SIDES, Landmark, Landmarks
+from core.scan.body import Body
 
 SAME = 1e-6
 """Heights that differ by less are one [mm]."""
@@ -63,3 +65,14 @@ def _levels(
             low = float(heights(after, ("fold", "lowest"), sides).min())
             return float(heights(after, ("bust_point",), sides).mean()), low + shift
     return landmarks.bust_level, landmarks.underbust_level
+
+
+def smoothed_moves(body: Body, moves: Points) -> Points:
+    """Return how the vertices of the calm skin move where those of the scan make ``moves``, (n, 3) [mm].
+
+    The calm skin has the vertices of the scan, or, of a giant scan, fewer: these go as the nearest do.
+    """
+    if len(body.smoothed.vertices) == len(moves):
+        return moves
+    nearest = cKDTree(body.mesh.vertices).query(body.smoothed.vertices)[1]
+    return np.asarray(moves[nearest])

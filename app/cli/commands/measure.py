@@ -71,7 +71,7 @@ def _measured_scan(design: Design) -> Measured:
 def _measured(design: Design) -> Measured:
     solution = solve_valid(build(design))
     stages = solution.stages
-    both = before_after(stages, solution.control_points)
+    both = before_after(stages, *solution.region_points)
     warnings = [*collect_warnings(stages.body, stages.landmarks), *shape_warnings(solution)]
     verdict = tuple(assessment_lines(assess(solution), stages.design))
     views = measured_views(*both)

@@ -80,7 +80,7 @@ def run(options: Namespace) -> int:
     wanted = with_overrides(options.assume or [], default_uncertainty())
     solved = solve_design(design_of(options), options.line or [], options.elastic or [], bare=True)
     stages, points = solved.solution.stages, solved.solution.control_points
-    values = [*_of_measures(measure_rows(*before_after(stages, points)))]
+    values = [*_of_measures(measure_rows(*before_after(stages, *solved.solution.region_points)))]
     if stages.design.active_lines():
         values += _of_lines(output_values(stages, points))
     found = Uncertainties(estimate_uncertainty(stages, wanted), values, solved)

@@ -10,7 +10,7 @@ from core.geometry.mesh import Points
 from core.landmarks.types import SIDES
 from core.measurements.mirrored_surface import SkinGap, mirrored_breasts
 from core.measurements.subject import shows_breast
-from core.measurements.table import smoothed_moves
+from core.measurements.tracked_points import smoothed_moves
 from core.messages import Message
 from core.pipeline.build import Stages
 

@@ -13,8 +13,10 @@ from core.garment.pressure import band_pressure
 from core.garment.tension import LineTension, line_tensions, mean_elongation
 from core.geometry.mesh import Floats, Mesh, Points
 from core.measurements.definitions import Measure
+from core.measurements.lower_measures import REPLACED
 from core.measurements.subject import Subject, subject_of
-from core.measurements.table import of_subject, smoothed_moves
+from core.measurements.table import Measures, of_subject
+from core.measurements.tracked_points import smoothed_moves
 from core.measurements.uncertain_value import (
     AFTER,
     BEFORE,
@@ -67,7 +69,7 @@ def original_measurements(
     if skin:
         mesh = subject.mesh
         shown = subject.moved(mesh.vertices + skin * mesh.vertex_normals, (0.0, 0.0))
-    return OriginalMeasurements(subject, of_subject(shown, stages.design.own_measures))
+    return OriginalMeasurements(subject, _measured(stages, shown))
 
 
 def original_values(rest: OriginalMeasurements) -> Figures:
@@ -88,7 +90,7 @@ def measurement_values(
         vertices = vertices + skin * Mesh(vertices, rest.subject.mesh.faces).vertex_normals
     left, right = stages.body_change(points).tolist()
     worn = replace(rest.subject, down=steps.after).moved(vertices, (left, right))
-    after = of_subject(worn, stages.design.own_measures, rest.subject)
+    after = _measured(stages, worn, rest.subject)
     before, now = _values(BEFORE, rest.before), _values(AFTER, after)
     changes = {
         f"{CHANGE}:{key}": now[f"{AFTER}:{key}"] - before[f"{BEFORE}:{key}"]
@@ -149,6 +151,12 @@ def skin_normals(stages: Stages, points: Points) -> Points:
 def normal_distance(body: Body, one: Points, other: Points, normals: Points) -> Floats:
     """Return how far ``one`` lies beyond ``other``, both (n, 3) [mm], along ``normals``, shape (n,) [mm]."""
     return np.asarray(np.einsum("ij,ij->i", one - other, normals))
+
+
+def _measured(stages: Stages, subject: Subject, rest: Subject | None = None) -> Measures:
+    """Return the measures of the bust; those that the lower trunk replaces have no uncertainty."""
+    found = of_subject(subject, stages.design.own_measures, rest)
+    return found if stages.lower is None else {key: found[key] for key in found if key not in REPLACED}
 
 
 def _values(kind: str, measured: Mapping[str, Measure]) -> Figures:

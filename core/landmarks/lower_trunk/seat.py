@@ -44,6 +44,9 @@ BETWEEN_THIGHS = 5.0
 CREASE = 0.009
 """A less curved hollow is no crease [1/mm]. Source: measured on bodies."""
 
+NOT_SHOWN = Message("The scan does not show the gluteal fold: approximate.")
+"""The rule of a fold whose place is a guess."""
+
 
 def buttock_point(sections: LowerSections, side: int, low: float, scale: float) -> Landmark:
     """Return the most backward point of a side (0 left), from the crotch at ``low`` [mm] up."""
@@ -90,7 +93,7 @@ def gluteal_fold(sections: LowerSections, side: int, low: float, point: Landmark
     curve = np.stack([np.full(len(z), x), middle, z], axis=1)[np.isfinite(middle)]
     if not np.isfinite(score).any() or len(curve) == 0:
         place = np.array([x, float(point.position[1]), usual])
-        return Landmark(name, place, 0.1, Message("The scan does not show the gluteal fold: approximate."))
+        return Landmark(name, place, 0.1, NOT_SHOWN)
     best = int(np.nanargmax(score))
     place = np.array([x, np.interp(z[best], curve[:, 2], curve[:, 1]), z[best]])
     sharp, edge = float(mean[best]), np.isnan(score[max(best - 2, 0) : best + 3]).any()

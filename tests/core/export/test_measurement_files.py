@@ -88,7 +88,7 @@ def test_one_fold_alone_is_its_own_mean():
 
 def test_every_measure_that_has_a_name_there_is_one_of_busk():
     known = {name for key in KEYS for name in seamly_names({key: 1.0}) if not name.startswith("@")}
-    assert len(known) == 7
+    assert len(known) == 9
 
 
 def test_a_table_and_json_hold_everything_with_its_unit(tmp_path):

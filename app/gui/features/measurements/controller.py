@@ -106,7 +106,7 @@ class MeasurementsController(QObject):
             self._asked = frame
             self._job = context.jobs.run(
                 tr("Measuring body…"),
-                lambda progress: before_after(frame.stages, frame.control_points),
+                lambda progress: before_after(frame.stages, *frame.region_points),
                 self._show_measured,
                 self._fail,
                 left=self._leave_off,

@@ -171,7 +171,7 @@ class CustomMeasuresController(QObject):
         self._form.show_value("", "", "", self._suggested())  # the former one is of another measure
         self._job = self._context.jobs.run(
             tr("Measuring body…"),
-            lambda progress: custom_before_after(frame.stages, frame.control_points, wished),
+            lambda progress: custom_before_after(frame.stages, frame.region_points, wished),
             lambda found: self._show(cast(tuple[Measure, Measure], found)),
             self._fail,
             left=lambda: self._show(None, tr("Computation stopped. Change the measurement to restart it.")),

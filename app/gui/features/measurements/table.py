@@ -200,8 +200,8 @@ def _paint_bar(painter: QPainter, tokens: Tokens, cell: QRectF, share: float) ->
 
 
 def _full_bar(unit: str) -> float:
-    """Return the change that fills half a bar, in ``unit``."""
-    return {"ml": 100.0, "mm": 30.0}.get(unit, 10.0)
+    """Return the change that fills half a bar, in ``unit``, which a ratio has not."""
+    return {"ml": 100.0, "mm": 30.0, "": 0.1}.get(unit, 10.0)
 
 
 TOP, HEAD = 24, 30
