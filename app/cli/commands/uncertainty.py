@@ -83,7 +83,11 @@ def run(options: Namespace) -> int:
     values = [*_of_measures(measure_rows(*before_after(stages, *solved.solution.region_points)))]
     if stages.design.active_lines():
         values += _of_lines(output_values(stages, points))
-    found = Uncertainties(estimate_uncertainty(stages, wanted), values, solved)
+    spread = estimate_uncertainty(stages, wanted)
+    known = {value.key for value in values}
+    below = {key: value for key, value in spread.values.items() if _of_line(key) and key not in known}
+    values += _of_lines(below if stages.lower is not None else {})
+    found = Uncertainties(spread, values, solved)
     text = write_output(_FORMS, found, form_of(options), options.out)
     return finish(text, solved.converged, solved.warnings)
 
@@ -93,6 +97,10 @@ def _of_measures(rows: Sequence[Mapping[str, Any]]) -> Iterator[Value]:
         title = f"{row['title']}, {row['side']}" if row["side"] else str(row["title"])
         for kind, column in KINDS.items():
             yield Value(f"{kind}:{row['key']}", title, row["unit"], row[column])
+
+
+def _of_line(key: str) -> bool:
+    return key.partition(":")[0] in OF_LINES
 
 
 def _of_lines(outputs: Mapping[str, float]) -> Iterator[Value]:

@@ -15,6 +15,7 @@ import numpy as np
 
 from core.analysis.uncertainty.input_uncertainty import InputUncertainty, default_uncertainty
 from core.analysis.uncertainty.linear_propagation import Effect, Propagation, effects
+from core.analysis.uncertainty.lower_trunk import LowerPropagation, lower_effects
 from core.analysis.uncertainty.model_error import model_errors
 from core.analysis.uncertainty.parameters import (
     PLACING,
@@ -27,9 +28,11 @@ from core.analysis.uncertainty.perturbed_solutions import PerturbedSolutions
 from core.blas_threads import one_blas_thread
 from core.document.design import Design
 from core.errors import UserError
+from core.measurements.lower_measures import REPLACED
 from core.measurements.uncertain_value import (
     AFTER,
     BEFORE,
+    CHANGE,
     LANDMARKS,
     ROOT,
     SCAN,
@@ -45,6 +48,13 @@ from core.progress import Progress, quiet
 SLIDING = Message(
     "Sliding lines respond less smoothly than ± assumes: on two bodies, only nine of ten samples of the "
     "lift were within ±, not 95 %, and some samples were far outside."
+)
+
+_REPLACED = frozenset(f"{kind}:{key}" for kind in (BEFORE, AFTER, CHANGE) for key in REPLACED)
+"""Figures of the bust's own table that those of the lower trunk stand in for."""
+
+LOWER_TRUNK = Message(
+    "For waist, hips and seat ± does not include the error of the model itself: no reference was computed."
 )
 
 WAIST = Message(
@@ -64,17 +74,18 @@ class UncertaintyEstimator:
         self._found: list[Effect] = []
         self._failed = 0
         self._propagation: Propagation | None = None
+        self._below: LowerPropagation | None = None
 
     def estimate_partial(self, progress: Progress = quiet) -> OutputUncertainties:
         """Return the spread by all sources but the landmarks, which are slow."""
-        return self._by([knob for knob in self._knobs if knob.source != LANDMARKS], progress)
+        return self._by([knob for knob in self._knobs if knob.source != LANDMARKS], progress, marks=False)
 
     def estimate(self, progress: Progress = quiet) -> OutputUncertainties:
         """Return the spread by all sources, and the figures with the other skin contact."""
         if self._propagation is None:
             self.estimate_partial(progress)
         marks = [knob for knob in self._knobs if knob.source == LANDMARKS]
-        whole = self._by([*marks, *([PLACING] if marks else [])], progress)
+        whole = self._by([*marks, *([PLACING] if marks else [])], progress, marks=True)
         design = self.trials.base.design
         if self.trials.is_bare or design.tissue == "solid":  # there is but one contact
             return replace(whole, sources=SOURCES)
@@ -88,15 +99,41 @@ class UncertaintyEstimator:
         with one_blas_thread():
             return *uncertain_parameters(self.trials.base, self.sizes), *model_errors(self.trials, self.sizes)
 
-    def _by(self, turning: Sequence[UncertainParameter], progress: Progress) -> OutputUncertainties:
+    def _by(
+        self, turning: Sequence[UncertainParameter], progress: Progress, *, marks: bool
+    ) -> OutputUncertainties:
         with one_blas_thread():
             progress("propagating", 0.0)
             self._propagation = self._propagation or Propagation(self.trials)
             for at, effect in enumerate(effects(self._propagation, turning)):
-                self._failed += effect is None
-                self._found += [effect] if effect else []
+                self._keep(effect)
                 progress("propagating", (at + 1.0) / (len(turning) + 1.0))
-            return _spread(self._propagation, self._found, self.sizes, self._failed)
+            if self.trials.whole.lower is not None:
+                self._below = self._below or LowerPropagation(self.trials.whole, self.sizes)
+                for effect in lower_effects(self._below, landmarks=marks):
+                    self._found += [effect] if effect else []
+                    self._failed += effect is None
+                    progress("propagating", 1.0)
+            found = _spread(self._propagation, self._found, self.sizes, self._failed)
+            return found if self._below is None else _with_lower(found, self._below, self.trials.whole.design)
+
+    def _keep(self, effect: Effect | None) -> None:
+        """Keep what a knob of the bust does, but to measures that the lower trunk takes otherwise."""
+        self._failed += effect is None
+        if effect is not None:
+            taken = _REPLACED if self.trials.whole.lower is not None else frozenset()
+            own = {key: step for key, step in effect.values.items() if key not in taken}
+            self._found.append(replace(effect, values=own))
+
+
+def _with_lower(found: OutputUncertainties, below: LowerPropagation, design: Design) -> OutputUncertainties:
+    """Return what may be off with the values of the lower trunk."""
+    return replace(
+        found,
+        values=MappingProxyType({**found.values, **below.values}),
+        bare=design.is_bare,
+        cautions=(*(each for each in found.cautions if each is not WAIST), LOWER_TRUNK),
+    )
 
 
 def estimate_uncertainty(

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from core.analysis.uncertainty.line_response import LineResponse
 from core.analysis.uncertainty.outputs import (
     Figures,
     line_values,
@@ -21,17 +22,13 @@ from core.analysis.uncertainty.outputs import (
     original_values,
     skin_normals,
 )
-from core.analysis.uncertainty.parameters import PLACING, UncertainParameter, perturb, turned_cup
+from core.analysis.uncertainty.parameters import PLACING, UncertainParameter, perturb
 from core.analysis.uncertainty.perturbed_solutions import PerturbedSolutions
 from core.deformation.tffd import deform
 from core.errors import UserError
-from core.garment.tension import LineTension, line_tensions
-from core.geometry.mesh import Floats, Points
-from core.measurements.uncertain_value import ELASTIC, LANDMARKS, LINE, MODEL, SCAN, TAPE, TISSUE
-from core.mechanics.force_units import newtons_per_unit
-from core.mechanics.sensitivity import Rates
-from core.mechanics.stiffness_sensitivity import Changes, d_sag, stiffness_rates
-from core.pipeline.model_stages import line_targets
+from core.garment.tension import line_tensions
+from core.geometry.mesh import Floats
+from core.measurements.uncertain_value import LANDMARKS, MODEL, SCAN
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,19 +48,13 @@ class Propagation:
     def __init__(self, trials: PerturbedSolutions) -> None:
         self.trials, self.stages = trials, trials.base
         stages = trials.base
-        self.ratios = np.array(line_targets(stages.design, stages).ratios)
-        self._meant = {
-            line.name: float(ratio) for line, ratio in zip(stages.model.lines, self.ratios, strict=True)
-        }
+        equilibrium = trials.equilibrium
+        self.lines = LineResponse(
+            stages, equilibrium.solution, equilibrium.kept, lambda cup: stages.cup_layout(cup).parts()
+        )
         self.points = trials.points
-        self.answer, self._kept = trials.equilibrium.solution, trials.equilibrium.kept
         self.places = deform(stages.binding, self.points)
         self.normals = skin_normals(stages, self.points)
-        self.tensions = line_tensions(stages, self.points)
-        self._long = {line.name: line.rest_lengths for line in stages.model.lines}
-        for at in stages.model.acting_lines:
-            name = stages.model.lines[at].name
-            self._long[name] = stages.model.tapes_at_rest[stages.model.owner == at]
 
     def effect(self, knob: UncertainParameter) -> Effect:
         """Return what a knob does. Raises the UserError of a fit that fails to both sides."""
@@ -119,7 +110,7 @@ class Propagation:
         stages, trials, found, places = self.stages, self.trials, [], []
         for turn in (-1.0, 1.0):
             points = self.points + perturb(stages, {knob: turn}).shift
-            figures = line_values(stages, points, line_tensions(stages, points), self._meant)
+            figures = line_values(stages, points, line_tensions(stages, points), self.lines.meant)
             found.append(figures | measurement_values(stages, trials.steps, trials.original, points))
             places.append(deform(stages.binding, points))
         return Effect(
@@ -127,111 +118,21 @@ class Propagation:
         )
 
     def _of_lines(self, knob: UncertainParameter) -> Effect:
-        moved, pulls = self._answered(knob)
         found, places = [], []
-        for turn in (-1.0, 1.0):
-            points = self.points + turn * moved
-            tensions = {
-                name: _pulled(each, turn * pulls[name], self._long[name])
-                for name, each in self.tensions.items()
-            }
-            design = perturb(self.stages, {knob: turn}).design
-            stages = replace(self.stages, design=design)
-            figures = line_values(stages, points, tensions, self._meant)
-            if np.abs(moved).max() > _STILL:
-                figures |= measurement_values(stages, self.trials.steps, self.trials.original, points)
+        for side in self.lines.sides(knob):
+            figures = line_values(side.stages, side.points, side.tensions, self.lines.meant)
+            if np.abs(side.points - self.points).max() > _STILL:
+                rest, steps = self.trials.original, self.trials.steps
+                figures |= measurement_values(
+                    replace(self.stages, design=side.stages.design), steps, rest, side.points
+                )
             found.append(figures)
-            places.append(deform(self.stages.binding, points))
+            places.append(deform(self.stages.binding, side.points))
         return Effect(
             knob, _half(*found), normal_distance(self.stages.body, places[1], places[0], self.normals) / 2.0
         )
 
-    def _answered(self, knob: UncertainParameter) -> tuple[Points, dict[str, Floats]]:
-        """Return how control points move, (n, 3) [mm], and tensions change [N], by line, for one sd."""
-        model, design = self.stages.model, self.stages.design
-        elastics = design.active_elastics()
-        names = [line.name for line in model.lines]
-        stiffer, ratios = np.zeros((len(names), 1)), np.zeros((len(names), 1))
-        solid = design.tissue == "solid"
-        newtons = knob.sd if knob.source == TISSUE and not solid else 0.0
-        for at, name in enumerate(names):
-            elastic = elastics.get(name)
-            if knob.source == TISSUE:
-                # Elastics have newtons of their own on a net, whose unit changes; on a solid other lines do.
-                stiffer[at] = -knob.sd if solid != (elastic is not None) else 0.0
-            elif (knob.source == LINE and not elastic) or (
-                knob.source == ELASTIC and elastic and elastic.name == knob.name and not knob.cup
-            ):
-                stiffer[at] = knob.sd
-            elif knob.source == TAPE and name == knob.name and not knob.cup:
-                ratios[at] = knob.sd / model.lines[at].whole_length
-        made = {names.index(name): elastic for name, elastic in elastics.items()}
-        beside = self._beside(knob)
-        answers = stiffness_rates(
-            self.answer, Changes(stiffer, ratios), made, self.ratios, self._kept, beside.moved
-        )
-        moved = np.zeros_like(self.points)
-        moved[model.tensegric.free] = answers.moved[:, 0].reshape(-1, 3)
-        return moved, self._pulls(knob, answers.pulls[:, 0], newtons, ratios, beside)
 
-    def _beside(self, knob: UncertainParameter) -> Rates:
-        """Return what a knob does to other things than lines: to a solid, and to cups."""
-        if knob.source == TISSUE and self.stages.design.tissue == "solid":
-            return self._kept(d_sag(self.answer)).summed([[0]], knob.sd)
-        if knob.cup:
-            return self._kept(self.answer.by_forces(self._of_cups(knob)))
-        return Rates(
-            np.zeros((self.answer.place.gradient.size, 1)), np.zeros((len(self.answer.place.held), 1))
-        )
-
-    def _of_cups(self, knob: UncertainParameter) -> Floats:
-        """Return the forces on the free points that one sd of a setting of the cups adds, (3 f, 1)."""
-        moved, found = self.answer.place.moved, []
-        for turn in (-_SMALL, _SMALL):
-            parts = self.stages.cup_layout(turned_cup(self.stages.design.cup, knob, turn)).parts()
-            found.append(sum((part.gradient(moved) for part in parts), np.zeros_like(moved)))
-        return ((found[1] - found[0]) / (2.0 * _SMALL)).reshape(-1, 1)
-
-    def _pulls(
-        self, knob: UncertainParameter, pulls: Floats, newtons: float, ratios: Floats, beside: Rates
-    ) -> dict[str, Floats]:
-        stages, model = self.stages, self.stages.model
-        unit = newtons_per_unit(model, stages.design.tissue_stiffness)
-        held = stages.design.line_hold == "held"
-        found = {}
-        for at, line in enumerate(model.lines):
-            if line.name not in self.tensions:
-                continue
-            segments = self.tensions[line.name].segments
-            if held:
-                found[line.name] = newtons * segments + unit * self._held(at, ratios, beside)
-            elif (model.owner == at).any():
-                found[line.name] = newtons * segments + unit * pulls[model.owner == at]
-            else:
-                gained = self._on_ribs(knob, line.name, float(ratios[at, 0]))
-                found[line.name] = np.full(len(segments), gained)
-        return found
-
-    def _held(self, line: int, ratios: Floats, beside: Rates) -> float:
-        """Return what the tension of a held line gains, in the model's unit."""
-        every = np.arange(len(ratios))
-        rates = self._kept(self.answer.by_ratio(every))
-        rest = np.array([each.rest_length for each in self.stages.model.lines])
-        by_line = self.answer.tensions(rates, np.diag(rest))[1]
-        by_beside = self.answer.tensions(beside, np.zeros((len(rest), 1)))[1]
-        return float(by_line[line] @ ratios[:, 0] + by_beside[line, 0])
-
-    def _on_ribs(self, knob: UncertainParameter, name: str, longer: float) -> float:
-        """Return what the tension of an elastic that cannot move gains [N]."""
-        elastic, ratio = self.stages.design.active_elastics()[name], self.stages.design.ratio(name)
-        force = elastic.force(1.0 / ratio - 1.0)
-        if knob.source == ELASTIC and knob.name == elastic.name:
-            return knob.sd * force
-        ends = [elastic.force(1.0 / (ratio + turn * longer) - 1.0) for turn in (-1.0, 1.0)]
-        return (ends[1] - ends[0]) / 2.0
-
-
-_SMALL = 1e-3  # of a standard deviation, to either side, for what a setting of the cups adds
 _STILL = 1e-9  # a knob that moves no point further changes no measure [mm]
 
 
@@ -242,11 +143,6 @@ def effects(propagation: Propagation, knobs: Sequence[UncertainParameter]) -> It
             yield propagation.effect(knob)
         except UserError:
             yield None
-
-
-def _pulled(tension: LineTension, more: Floats, lengths: Floats) -> LineTension:
-    mean = tension.mean + float(np.average(more, weights=lengths))
-    return replace(tension, segments=tension.segments + more, mean=mean)
 
 
 def _half(low: Mapping[str, float], high: Mapping[str, float]) -> Figures:

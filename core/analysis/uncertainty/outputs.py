@@ -29,6 +29,7 @@ from core.measurements.uncertain_value import (
     TENSION,
 )
 from core.pipeline.build import Stages
+from core.pipeline.stages import RegionStages
 from core.scan.body import Body
 
 Figures = dict[str, float]
@@ -110,7 +111,7 @@ def bust_values(stages: Stages, points: Points) -> Figures:
 
 
 def line_values(
-    stages: Stages, points: Points, tensions: Mapping[str, LineTension], ratios: Mapping[str, float]
+    stages: RegionStages, points: Points, tensions: Mapping[str, LineTension], ratios: Mapping[str, float]
 ) -> Figures:
     """Return what is told of worn lines: lengths to cut [mm], tensions [N] and pressures [kPa].
 

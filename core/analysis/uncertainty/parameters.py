@@ -22,6 +22,7 @@ from core.measurements.uncertain_value import ELASTIC, LANDMARKS, LINE, SCAN, TA
 from core.mechanics.constraint_lines import RATIO_LIMITS, Line
 from core.mechanics.options import RANGES
 from core.pipeline.build import Stages
+from core.pipeline.stages import RegionStages
 
 UPRIGHT = np.array([0.0, 0.0, 1.0])
 
@@ -59,7 +60,7 @@ PLACING = UncertainParameter(LANDMARKS, 1.0)
 def uncertain_parameters(stages: Stages, assumed: InputUncertainty) -> tuple[UncertainParameter, ...]:
     """Return all knobs of a design that turn anything, the quick ones first."""
     found = [
-        *_of_lines(stages, assumed),
+        *line_parameters(stages, assumed),
         *_of_cups(stages, assumed),
         UncertainParameter(SCAN, assumed.skin_mm),
         *_of_landmarks(stages, assumed),
@@ -67,7 +68,8 @@ def uncertain_parameters(stages: Stages, assumed: InputUncertainty) -> tuple[Unc
     return tuple(knob for knob in found if knob.sd > 0.0)
 
 
-def _of_lines(stages: Stages, assumed: InputUncertainty) -> Iterator[UncertainParameter]:
+def line_parameters(stages: RegionStages, assumed: InputUncertainty) -> Iterator[UncertainParameter]:
+    """Yield the knobs of the lines and the tissue of a region."""
     design = stages.design
     elastics, worn = (
         design.active_elastics(),
@@ -148,7 +150,6 @@ def perturb(stages: Stages, turns: Mapping[UncertainParameter, float]) -> Pertur
     marks: dict[str, Points] = {}
     if any(knob.source == LANDMARKS for knob in turns):
         marks = {name: stages.landmarks.position(name) for name in NAMES if name in stages.landmarks.points}
-    lines = {line.name: line for line in stages.model.lines}
     for knob, turn in turns.items():
         off = turn * knob.sd
         if knob.source == SCAN:
@@ -158,13 +159,19 @@ def perturb(stages: Stages, turns: Mapping[UncertainParameter, float]) -> Pertur
         elif knob.source == LANDMARKS:
             if knob.direction is not None:
                 marks[knob.name] = marks[knob.name] + off * knob.direction
-        elif knob.cup:
-            design = replace(design, cup=turned_cup(design.cup, knob, turn))
         else:
-            design = _TURNS[knob.source](design, knob, off, lines)
+            design = turned_design(design, stages, knob, turn)
     for name, place in marks.items():
         design = design.with_placed(name, in_file(place, stages.body.pose.file_to_mm))
     return Perturbed(design, skin, shift)
+
+
+def turned_design(design: Design, stages: RegionStages, knob: UncertainParameter, turn: float) -> Design:
+    """Return the ``design`` of a region with a knob of lines, tissue or cups turned by so many deviations."""
+    if knob.cup:
+        return replace(design, cup=turned_cup(design.cup, knob, turn))
+    lines = {line.name: line for line in stages.model.lines}
+    return _TURNS[knob.source](design, knob, turn * knob.sd, lines)
 
 
 def turned_cup(cup: Cup | None, knob: UncertainParameter, turn: float) -> Cup:

@@ -109,13 +109,14 @@ class PerturbedSolution:
 
 
 class PerturbedSolutions:
-    """Tries variations of the design of ``base``. What hangs on landmarks alone is kept for another design.
+    """Tries variations of ``base``, the bust of a ``whole`` design.
 
+    What hangs on landmarks alone is kept for another design.
     ``former`` are the trials of one: of the same scan and landmarks they know what is needed here too.
     """
 
     def __init__(self, base: Stages, former: PerturbedSolutions | None = None) -> None:
-        self.base = base = of_bust_alone(base)
+        self.whole, self.base = base, (base := of_bust_alone(base))
         self._known: dict[tuple[PlacedMark, ...], tuple[Stages, OriginalMeasurements]] = {}
         if former is not None and _alike(base, former.base) and self.steps == former.steps:
             self._known = former._known

@@ -45,7 +45,7 @@ BRIDGE = 100.0
 """A trunk less deep there is two thighs that touch [mm, at scale 1]. Source: measured on bodies."""
 
 ALONG_BELLY = 12.0
-"""The front midline is smoothed by a Gaussian of this standard deviation [mm]. Source: measured with noise."""
+"""The front midline is smoothed by a Gaussian of this width [mm]. Source: measured with noise."""
 
 PUBIS = 80.0
 """The belly lies at least this far above the crotch [mm, at scale 1]. Ours."""
