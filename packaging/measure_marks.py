@@ -50,16 +50,21 @@ def marks_of(key: str, found: Measures, landmarks: Landmarks) -> Marks:
             curves=tuple(each for side in SIDES for each in found[f"breast_volume_{side}"].curves)
         ),
         "apex_lift": lambda: _heights(*curves[0][::-1]),
+        "waist_to_hip": lambda: _heights(*curves[0]),
+        "seat_protrusion": lambda: _depths(*curves[0]),
+        "gluteal_fold_height": lambda: _heights(*curves[0][::-1], behind=True),
+        "seat_volume": Marks,
     }
     return special.get(key, lambda: Marks(curves=curves))()
 
 
-def _heights(upper: Points, lower: Points) -> Marks:
-    """Seen from the side: two levels before the body, and the way up from one to the other."""
-    before = min(upper[1], lower[1]) - BESIDE
-    ends = np.array([[upper[0], before, lower[2]], [upper[0], before, upper[2]]])
+def _heights(upper: Points, lower: Points, *, behind: bool = False) -> Marks:
+    """Seen from the side: two levels before or behind the body, and the way from one to the other."""
+    away = -BESIDE if behind else BESIDE
+    beside = (max if behind else min)(upper[1], lower[1]) - away
+    ends = np.array([[upper[0], beside, lower[2]], [upper[0], beside, upper[2]]])
     guides = tuple(
-        np.array([place, end - (0.0, BESIDE / 3.0, 0.0)])
+        np.array([place, end - (0.0, away / 3.0, 0.0)])
         for place, end in zip((lower, upper), ends, strict=True)
     )
     return Marks(arrows=(ends,), guides=guides, dots=(upper[None],))

@@ -10,17 +10,17 @@ import numpy as np
 import pyvista as pv
 from measure_marks import Marks, marks_of
 from PIL import Image, ImageDraw
-from scipy.interpolate import PchipInterpolator
 
-from app.presenters.samples import sample_design
+from app.presenters.samples import WHOLE_TRUNK, dressed_sample, sample_design
 from app.rendering.ambient_occlusion import bake_occlusion
 from app.rendering.camera import View
 from app.rendering.curve_actors import COLOURS, Trace
 from app.rendering.scene import Scene
-from core.geometry.mesh import Mesh, Points
+from core.geometry.mesh import Indices, Mesh, Points
 from core.landmarks.detect import find_landmarks
 from core.landmarks.types import SIDES, Landmarks
-from core.measurements.definitions import DEFINITIONS
+from core.measurements.definitions import DEFINITIONS, Definition
+from core.measurements.lower_trunk import seat_faces
 from core.measurements.subject import Subject, subject_of
 from core.measurements.table import Measures, before_after, measures
 from core.pipeline.build import build
@@ -48,20 +48,25 @@ FILL = (0.55, 0.25)
 FROM_ABOVE = (30.0, 38.0)
 USUAL = (35.0, 14.0)
 SIDEWAYS = (90.0, 2.0)
+BEHIND = (150.0, 14.0)
 VIEWS = dict.fromkeys(("bust_height", "bust_protrusion", "apex_lift"), SIDEWAYS)
 VIEWS |= {"cup_depth": (25.0, 50.0), "asymmetry_forward": (0.0, 56.0), "bust_point_to_fold": (62.0, 0.0)}
 VIEWS |= dict.fromkeys(("bust_point_distance", "asymmetry_height", "asymmetry_volume"), (0.0, 5.0))
-VIEWS |= {"hip_girth": (150.0, 14.0), "hip_girth_skin": (150.0, 38.0)}
+VIEWS |= {
+    "hip_girth": BEHIND,
+    "hip_girth_skin": (150.0, 38.0),
+    "buttock_girth": BEHIND,
+    "seat_volume": BEHIND,
+}
+VIEWS |= {"crotch_length": (115.0, -8.0), "waist_hip_ratio": BEHIND}
+VIEWS |= dict.fromkeys(("waist_to_hip", "seat_protrusion", "gluteal_fold_height"), SIDEWAYS)
 """From where a measure is seen, azimuth and elevation [degrees]; all others from between front and left."""
-
-WAIST = 210.0
-"""Height of the sample's waist [mm]."""
 
 TRUNK = (-150.0, 150.0, -230.0, 90.0, 120.0, 470.0)
 """What is seen of the sample: x, y and z from and to [mm]."""
 
-LOWER_TRUNK = (-190.0, 190.0, -250.0, 110.0, -150.0, 260.0)
-"""What is seen where the hip is measured."""
+LOWER_TRUNK = (-200.0, 200.0, -260.0, 90.0, -190.0, 260.0)
+"""What is seen of the whole trunk where waist, hips and seat are measured."""
 
 BEFORE = (-150.0, 150.0, -290.0, 30.0, 150.0, 470.0)
 """What is seen from the side, with room before the body."""
@@ -74,11 +79,12 @@ SEEN = {"bust_height": BEFORE, "bust_protrusion": BEFORE, "apex_lift": BREAST}
 
 @dataclass(frozen=True, eq=False)
 class Shown:
-    """A body that measures are shown on, and what it measures."""
+    """A body that measures are shown on, and what it measures; ``seat`` are the faces of its left seat."""
 
     body: Body
     landmarks: Landmarks
     found: Measures
+    seat: Indices | None = None
 
     @property
     def subject(self) -> Subject:
@@ -93,11 +99,12 @@ def draw(folder: Path) -> list[Path]:
     usual = measured(stages.body)
     worn = replace(stages.body, mesh=solution.body)
     lifted = Shown(worn, usual.landmarks, before_after(stages, solution.control_points)[1])
-    with_hip, uneven = measured(drawn_on(stages.body)), measured(drawn_uneven(stages.body))
+    whole, uneven = whole_trunk(), measured(drawn_uneven(stages.body))
     folder.mkdir(parents=True, exist_ok=True)
     written = []
-    for key in DEFINITIONS:
-        on = {"hip": with_hip, "asymmetry": uneven, "apex": lifted}.get(key.partition("_")[0], usual)
+    for key, definition in DEFINITIONS.items():
+        on = {"asymmetry": uneven, "apex": lifted}.get(key.partition("_")[0], usual)
+        on = whole if on_whole_trunk(definition) else on
         written.append(folder / f"{key}.png")
         draw_one(key, on, marks_of(key, on.found, on.landmarks), written[-1])
     return written
@@ -107,6 +114,20 @@ def measured(body: Body) -> Shown:
     """Return a body with what it measures."""
     landmarks = find_landmarks(body)
     return Shown(body, landmarks, measures(body.smoothed, landmarks))
+
+
+def whole_trunk() -> Shown:
+    """Return the sample of a whole trunk with what it measures."""
+    stages = build(replace(dressed_sample(WHOLE_TRUNK), tissue="net", cup=None))
+    assert stages.lower is not None
+    found, _ = before_after(stages, stages.control.mesh.vertices)
+    seat = seat_faces(stages.body.smoothed, stages.lower.fitted)[0]
+    return Shown(stages.body, stages.landmarks, found, seat)
+
+
+def on_whole_trunk(definition: Definition) -> bool:
+    """Return whether a measure is shown on the whole trunk: the other sample ends above the hip."""
+    return definition.lower or definition.key.startswith("hip")
 
 
 def draw_one(key: str, on: Shown, marks: Marks, path: Path) -> None:
@@ -120,13 +141,13 @@ def draw_one(key: str, on: Shown, marks: Marks, path: Path) -> None:
     scene.set_occlusion(bake_occlusion(mesh))
     scene.set_visible("floor", False)
     plotter.set_background("white")  # no gradient: nothing but the body is seen on the page
-    for area, colour, opacity in areas(key, on.subject, marks):
+    for area, colour, opacity in areas(key, on, marks):
         actor = plotter.add_mesh(area, color=colour, opacity=opacity, lighting=False)
         actor.mapper.SetResolveCoincidentTopologyToPolygonOffset()
         actor.mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(0.0, -3000.0)
     Trace(plotter, "measure", THROUGH, RADIUS).show(*marks.curves)
     azimuth, elevation = VIEWS.get(key, FROM_ABOVE if level else USUAL)
-    seen = LOWER_TRUNK if key.startswith("hip") else SEEN.get(key, TRUNK)
+    seen = LOWER_TRUNK if on_whole_trunk(DEFINITIONS[key]) else SEEN.get(key, TRUNK)
     view = View(azimuth=azimuth, elevation=elevation, parallel=True)
     scene.set_camera(view.framing(seen, 1.0, margin=1.04))
     _save(plotter, marks, path)
@@ -139,33 +160,18 @@ def below(mesh: Mesh, height: float) -> Mesh:
     return Mesh(np.array(cut.points, dtype=float), np.array(cut.regular_faces))
 
 
-def areas(key: str, subject: Subject, marks: Marks) -> Iterator[tuple[pv.PolyData, str, float]]:
-    """Yield what is filled, its colour and how opaque it is: a section, or the skin of one breast or both."""
+def areas(key: str, on: Shown, marks: Marks) -> Iterator[tuple[pv.PolyData, str, float]]:
+    """Yield what is filled, its colour and how opaque it is: a section, or skin of breasts or of a seat."""
     if key.endswith("_skin") or key.startswith("section_area"):
         ring = marks.curves[0]
         section = pv.PolyData(ring, faces=[len(ring), *range(len(ring))]).triangulate()
         yield section, PALE if key.endswith("_skin") else BLUE, 1.0
     sides = {"breast_volume": SIDES[:1], "asymmetry_volume": SIDES}.get(key, ())
     for side, opacity in zip(sides, FILL, strict=False):
-        skin = pv.make_tri_mesh(subject.mesh.vertices, subject.breasts[side].faces)
+        skin = pv.make_tri_mesh(on.subject.mesh.vertices, on.subject.breasts[side].faces)
         yield skin, BLUE, opacity
-
-
-def drawn_on(body: Body) -> Body:
-    """Return the sample with a hip, which it ends above: what lies below its waist is drawn out and widened.
-
-    It is a drawing, to show where the hip is measured; the measuring is Busk's own.
-    """
-    x, y, z = body.mesh.vertices.T
-    down = np.clip((WAIST - z) / (WAIST - z.min()), 0.0, 1.0)
-    wide = PchipInterpolator((0.0, 0.15, 0.4, 0.65, 1.0), (1.0, 1.02, 1.14, 1.2, 1.02))(down)
-    behind = 38.0 * np.exp(-(((down - 0.65) / 0.22) ** 2)) * np.exp(-(((np.abs(x) - 62.0) / 42.0) ** 2))
-    middle = float(y[np.abs(z - WAIST) < 20.0].mean())
-    deep = (
-        middle + (y - middle) * (1.0 + 0.4 * (wide - 1.0)) + np.where(y > middle, behind, 0.0) * (down > 0.0)
-    )
-    skin = np.stack((x * wide, deep, z - 100.0 * down**2 * (3.0 - 2.0 * down)), axis=1)
-    return replace(body, mesh=Mesh(skin, body.mesh.faces))
+    if key == "seat_volume" and on.seat is not None:
+        yield pv.make_tri_mesh(on.body.mesh.vertices, on.body.mesh.faces[on.seat]), BLUE, FILL[0]
 
 
 def drawn_uneven(body: Body) -> Body:

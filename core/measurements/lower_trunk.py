@@ -52,7 +52,7 @@ def lower_subjects(stages: LowerStages, control_points: Points) -> tuple[LowerSu
     """Return the lower trunk as scanned, and as ``control_points``, shape (n, 3) [mm], reshape it."""
     found, control = stages.landmarks, stages.fitted
     sections, moved = found.sections, _moved(stages, control_points)
-    followed, seat = _followed(found), _seat_faces(sections.mesh, control)
+    followed, seat = _followed(found), seat_faces(sections.mesh, control)
     high_hip = float(control.mesh.vertices[list(control.paths[HIGH_HIP]), 2].mean())
     places = followed.moved(moved.mesh.vertices - sections.mesh.vertices)
     shapes = (sections, followed.places), (moved, places)
@@ -101,7 +101,7 @@ def _followed(landmarks: LowerLandmarks) -> TrackedPoints:
 
 
 @lru_cache(maxsize=2)
-def _seat_faces(skin: Mesh, control: ControlMesh) -> tuple[Indices, ...]:
+def seat_faces(skin: Mesh, control: ControlMesh) -> tuple[Indices, ...]:
     """Return the faces of the original skin over the movable triangles of the left and right seat zone."""
     assert control.zone is not None
     zones = [control.zone_names.index(f"seat-{side}") for side in SIDES]
