@@ -10,6 +10,7 @@ from window_tools import Script, drag, run_main, run_undrawn, settled
 from app.gui.main_window import MainWindow
 from app.presenters.samples import sample_path
 from core.garment.presets import find_preset
+from core.measurements.figure import figure_girths
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -40,8 +41,28 @@ def test_a_girdle_is_worn_dragged_and_taken_back() -> None:
         moved = lower.control_points - lower.stages.control.mesh.vertices
         assert np.abs(moved).max() > 3.0
         yield lambda: any("Waist" in label.text() for label in window.strip.findChildren(QLabel))
+        yield from a_waist_is_asked_for(window)
 
     run_main([str(sample_path("trunk"))], script)
+
+
+def a_waist_is_asked_for(window: MainWindow) -> Script:
+    """Ask for a waist 20 mm less than the original, see it, and take it."""
+    session, target = window.session, window.target_shape_controller
+    rest = figure_girths(session.frame)["waist"][0]
+    target.begin()
+    yield lambda: target.answer is not None and not target.work.at_work
+    assert list(target.wishes) == ["waist girth", "hip girth"]
+    assert target.card.hand.isHidden(), "no line reshapes the bust"
+    target.wish("waist girth", -20.0)
+    yield lambda: target.answer.reply is not None and not target.work.at_work
+    assert target.wishes["waist girth"] == pytest.approx(rest - 20.0, abs=0.3)
+    assert target.answer.reply.reachable
+    yield settled(window)
+    target.apply()
+    yield settled(window)
+    assert figure_girths(session.frame)["waist"][1] == pytest.approx(rest - 20.0, abs=0.5)
+    assert "Waist girth" in session.undo_stack.undoText()
 
 
 def test_a_scan_without_legs_keeps_its_bust_and_says_why() -> None:

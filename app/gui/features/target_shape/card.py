@@ -170,6 +170,11 @@ class TargetCard(QWidget):
         self._tone, self._can_apply = tone, can_apply
         self._follow_typing()
 
+    def show_hands(self, shown: bool) -> None:
+        """Show what handles on the bust are dragged at, unless no line reshapes the bust."""
+        self.hand.setVisible(shown)
+        self.link.setVisible(shown)
+
     def show_hand(self, kind: str) -> None:
         """Show what the handles drag; a profile is that of one side."""
         self._kind = kind

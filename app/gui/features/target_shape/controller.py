@@ -131,7 +131,10 @@ class TargetShapeController(QObject):
         self.all_wishes, self.answer, self._apply_due = replace(wishes, limit=limit), None, False
         self.back.remember()
         self._pages.setCurrentWidget(self.card)
-        self.drawing.choose("bust")
+        if (self.ground.design or self._session.design).lines:
+            self.drawing.choose("bust")
+        else:
+            self.drawing.turn_to("bust")
         self.steps.forget()
         self.card.take_focus(next(iter(self.wishes), ""))
 
@@ -316,6 +319,7 @@ class TargetShapeController(QObject):
             self.card.show_wishes([], missing)
             self.card.show_answer()
         else:
+            self.card.show_hands(bool(design.lines))
             self.card.show_optional(inactive_text(design, self.ground.inactive), self.all_wishes.optional)
             hint = self.drawing.hint()
             self.card.show_wishes(list(target_views(self.all_wishes, self.answer)), hint)
