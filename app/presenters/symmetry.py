@@ -50,7 +50,7 @@ def symmetry_view(
     text = _sentence(now, {}, tr("Bust points before: {position}.")) if doubt else _sentence(now, offs)
     return SymmetryView(
         joined((*map(render, edit_warnings(stages.body)), text)),
-        tuple(_view(rows[key], bool(doubt), offs.get(key)) for key in _titles()),
+        tuple(_view(rows[key], bool(doubt), offs.get(key)) for key in _titles() if key in rows),
         (*map(render, told.notes), *_rests_on()),
         hint,
         possible,
@@ -150,6 +150,12 @@ def _titles() -> dict[str, tuple[str, str]]:
             tr("Max. distance"),
             tr("Largest distance between one side and the mirror image of the other side."),
         ),
+        "seat_higher": (tr("Buttock height"), tr("Difference in height of the buttock points.")),
+        "seat_further_back": (
+            tr("Buttock protrusion"),
+            tr("Difference in backward position of the buttock points."),
+        ),
+        "seat_fold_higher": (tr("Gluteal fold height"), tr("Difference in height of the gluteal folds.")),
         "left_more": (
             tr("Left excess"),
             tr("Volume between the skin and its mirror image where the left side protrudes."),

@@ -420,7 +420,7 @@ _TABLE = (
         "",
         Message(
             "Defined by Busk: volume between the skin over the seat zone of the control mesh and the middle "
-            "of that mesh. The border of the zone is ours: compare before with after, or left with right."
+            "of that mesh. The border of the zone is ours: compare before with after."
         ),
         SEAT,
         sided=True,

@@ -37,6 +37,9 @@ TITLES = {
     "in_all": "total protrusion difference",
     "mean": "skin distance, mean",
     "largest": "skin distance, maximum",
+    "seat_higher": "left buttock point higher",
+    "seat_further_back": "left buttock point further back",
+    "seat_fold_higher": "left gluteal fold higher",
     "left_more": "left protrudes more",
     "right_more": "right protrudes more",
 }
@@ -98,7 +101,7 @@ def run(options: Namespace) -> int:
 def compare(stages: Stages, *, balance: bool) -> Symmetry:
     """Compare left and right of a solved design; ``balance`` computes lengths unless they are equal."""
     solution = solve_valid(stages)
-    compared = compare_sides(stages, solution.control_points)
+    compared = compare_sides(stages, *solution.region_points)
     warnings = [*edit_warnings(stages.body), *shape_warnings(solution)]
     found = Symmetry(stages, compared, is_converged(solution), warnings, assess(solution))
     if not balance or found.balanced:
@@ -107,7 +110,7 @@ def compare(stages: Stages, *, balance: bool) -> Symmetry:
     # Adaptive control keeps both volumes together and the exact solution each: they are not comparable.
     found = replace(found, compared=replace(compared, after=made.before), made=made)
     again = solve(build(found.design, stages))
-    after = compare_sides(again.stages, again.control_points).after if is_converged(again) else None
+    after = compare_sides(again.stages, *again.region_points).after if is_converged(again) else None
     return replace(found, as_set=after, assessment=assess(again))
 
 

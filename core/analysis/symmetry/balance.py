@@ -118,16 +118,17 @@ def _best(
     stages: Stages, names: tuple[str, ...], asked: Callable[[tuple[Goal, ...]], InverseResult]
 ) -> BalanceResult:
     """Return what brings the most among those that keep more and less; if any is even, among these."""
-    here = solve(stages).control_points
-    told, found = compare_sides(stages, here), []
+    solved = solve(stages)
+    here = solved.control_points
+    told, found = compare_sides(stages, *solved.region_points), []
     were, goals = _kept(stages, here), balance_goals(stages, here)
 
     def tried(count: int) -> bool:
         reply = asked(goals[:count])
         there = build(reply.design, stages)
-        points = solve(there).control_points
-        kept = {name: (were[name], value) for name, value in _kept(there, points).items()}
-        after = compare_sides(there, points).after
+        again = solve(there)
+        kept = {name: (were[name], value) for name, value in _kept(there, again.control_points).items()}
+        after = compare_sides(there, *again.region_points).after
         found.append(BalanceResult(reply, goals[:count], told.before, told.after, after, kept, names))
         return reply.reachable
 

@@ -1,13 +1,14 @@
-"""Differences of left and right, original and reshaped: bust points and skin of both breasts (ours)."""
+"""Differences of left and right, original and reshaped: bust points, breasts, seat (ours)."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 from math import hypot
 
 from core.deformation.tffd import deform
 from core.geometry.mesh import Points
 from core.landmarks.types import SIDES
+from core.measurements.lower_trunk import LowerSubject, lower_subjects
 from core.measurements.mirrored_surface import SkinGap, mirrored_breasts
 from core.measurements.subject import shows_breast
 from core.measurements.tracked_points import smoothed_moves
@@ -18,18 +19,32 @@ NO_BREAST = Message("One side has no breast protrusion: its bust point is mirror
 
 
 @dataclass(frozen=True)
+class SeatDifference:
+    """How left and right of the seat differ, positive where it is the left that is more.
+
+    The buttock point ``higher`` and ``further_back``, the gluteal fold ``fold_higher`` [mm].
+    """
+
+    higher: float
+    further_back: float
+    fold_higher: float
+
+
+@dataclass(frozen=True)
 class SideDifference:
     """How left and right differ in one shape of a body.
 
     ``higher`` and ``further_out`` are how much higher and further to the front the left bust point is than
     the right one, ``further_lateral`` how much further from the mirror [mm]; ``skin`` is how that of one
-    breast lies beside the other one's, None where it cannot be told.
+    breast lies beside the other one's, None where it cannot be told. ``seat`` is that of the lower trunk,
+    where the design has it.
     """
 
     higher: float
     further_out: float
     further_lateral: float
     skin: SkinGap | None
+    seat: SeatDifference | None = None
 
     @property
     def largest_difference(self) -> float:
@@ -51,12 +66,17 @@ class BeforeAfter:
     notes: tuple[Message, ...]
 
 
-def compare_sides(stages: Stages, control_points: Points) -> BeforeAfter:
-    """Return how left and right differ at rest, and reshaped by ``control_points``, shape (n, 3) [mm].
+def compare_sides(stages: Stages, *region_points: Points) -> BeforeAfter:
+    """Return how left and right differ at rest, and reshaped by the control points of the regions.
 
-    Raises ValueError unless there are as many control points as the control mesh has.
+    ``region_points`` are those of each, the bust's first, shape (n, 3) [mm]; regions left out keep their
+    shape. Raises ValueError unless there are as many control points as a control mesh has.
     """
-    before, after = (_of(stages, points) for points in (stages.control.mesh.vertices, control_points))
+    before, after = (_of(stages, points) for points in (stages.control.mesh.vertices, region_points[0]))
+    if stages.lower is not None:
+        points = region_points[1] if len(region_points) > 1 else stages.lower.control.mesh.vertices
+        seats = map(_seat, lower_subjects(stages.lower, points))
+        before, after = (replace(each, seat=seat) for each, seat in zip((before, after), seats, strict=True))
     shown = all(shows_breast(stages.landmarks, side) for side in SIDES)
     return BeforeAfter(before, after, () if shown else (NO_BREAST,))
 
@@ -75,6 +95,16 @@ def _of(stages: Stages, control_points: Points) -> SideDifference:
     )
 
 
+def _seat(subject: LowerSubject) -> SeatDifference:
+    left, right = (subject.places[f"buttock_{side}"] for side in SIDES)
+    folds = [subject.places[f"gluteal_fold_{side}"][2] for side in SIDES]
+    return SeatDifference(
+        float(left[2] - right[2]),
+        float(left[1] - right[1]),
+        float(folds[0] - folds[1]),
+    )
+
+
 @dataclass(frozen=True)
 class SymmetryRow:
     """One figure ``before`` and ``after`` in ``unit``, None where it is not known.
@@ -89,16 +119,20 @@ class SymmetryRow:
     sided: bool = True
 
 
+_VOLUMES = ("in_all", "left_more", "right_more")
+
+
 def symmetry_rows(before: SideDifference, after: SideDifference) -> list[SymmetryRow]:
     """Return how left and right differ as a table, two shapes side by side."""
     first, last = _values(before), _values(after)
-    units = {key: "ml" if key in ("in_all", "left_more", "right_more") else "mm" for key in first}
+    units = {key: "ml" if key in _VOLUMES else "mm" for key in first}
     sided = {key: key not in ("mean", "left_more", "right_more") for key in first}
     return [SymmetryRow(key, units[key], first[key], last[key], sided[key]) for key in first]
 
 
 def _values(told: SideDifference) -> dict[str, float | None]:
-    skin = told.skin
+    skin, seat = told.skin, told.seat
+    below = {} if seat is None else {f"seat_{name}": value for name, value in asdict(seat).items()}
     return {
         "higher": told.higher,
         "further_out": told.further_out,
@@ -108,4 +142,5 @@ def _values(told: SideDifference) -> dict[str, float | None]:
         "largest": (skin.largest if skin.side == "left" else -skin.largest) if skin else None,
         "left_more": skin.left_more if skin else None,
         "right_more": skin.right_more if skin else None,
+        **below,
     }

@@ -8,11 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from shapes import mirrored as mirrored_control
+from whole_trunk import wearing as whole_trunk
 
 from app.presenters.samples import sample_design
 from core.analysis.inverse_design.bust_quantities import FURTHER_OUT, HIGHER
 from core.analysis.inverse_design.quantities import reading
-from core.analysis.symmetry.compare import NO_BREAST, compare_sides
+from core.analysis.symmetry.compare import NO_BREAST, compare_sides, symmetry_rows
 from core.deformation.blend_region import blend_weights
 from core.deformation.incremental_normals import moving_faces
 from core.deformation.tffd import bind
@@ -182,3 +183,16 @@ def test_what_is_not_known_is_said(built: Callable[[str], Stages]) -> None:
     )
     told = compare_sides(replace(stages, landmarks=one), stages.control.mesh.vertices)
     assert told.notes == (NO_BREAST,)
+
+
+def test_a_sling_on_one_side_lifts_the_seat_of_that_side() -> None:
+    stages = whole_trunk({"sling-left": 0.95, "buttock-lift-left": 0.96})
+    told = compare_sides(stages, *solve(stages).region_points)
+    assert told.before.seat is not None
+    assert told.after.seat is not None
+    assert abs(told.before.seat.fold_higher) < 0.5
+    assert told.after.seat.fold_higher > 2.0
+    assert told.after.seat.higher > 0.5
+    rows = {row.key: row for row in symmetry_rows(told.before, told.after)}
+    assert rows["seat_fold_higher"].after == told.after.seat.fold_higher
+    assert told.after.higher == told.before.higher, "the bust stays"

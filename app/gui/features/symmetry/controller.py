@@ -61,7 +61,7 @@ class SymmetryController(QObject):
             context.session,
             context.jobs,
             title,
-            lambda frame, _: compare_sides(frame.stages, frame.control_points),
+            lambda frame, _: compare_sides(frame.stages, *frame.region_points),
             failed=context.notifications.error,
             stopped=lambda: context.notifications.stopped(title),
         )
