@@ -17,7 +17,7 @@ from app.presenters.uncertainty import source_text
 from core.document.lines import partner_of
 from core.export.report_data import Report
 from core.garment.pressure import pressure_limits
-from core.measurements.definitions import definition_of
+from core.measurements.definitions import LOWER_KEYS, definition_of
 from core.measurements.sizes import built_in
 from core.measurements.table import OWN
 from core.measurements.uncertain_value import AFTER, BEFORE, CHANGE
@@ -31,6 +31,9 @@ REASONS = 4
 
 KEY_MEASURES = ("bust_girth", "underbust_girth", "bust_point_distance", "bust_point_to_fold", "cup_depth")
 """What a bra is made to, first of all."""
+
+LOWER_KEY_MEASURES = ("waist_girth", "hip_girth")
+"""What a girdle is made to, with the lower trunk in the design."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +89,9 @@ def other_sizes(sheet: Report) -> str:
 
 def key_measures(sheet: Report) -> tuple[dict[str, Any], ...]:
     """Return the rows of the few measures that a garment is made to."""
-    keys = {f"{key}{side}" for key in KEY_MEASURES for side in ("", "_left", "_right")}
+    has_lower = any(row["key"] in LOWER_KEYS for row in sheet.measures)
+    made_to = (*KEY_MEASURES, *(LOWER_KEY_MEASURES if has_lower else ()))
+    keys = {f"{key}{side}" for key in made_to for side in ("", "_left", "_right")}
     return tuple(row for row in sheet.measures if row["key"] in keys and is_known(row))
 
 
