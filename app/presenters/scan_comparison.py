@@ -15,6 +15,8 @@ from core.analysis.calibration.parameters import (
     FIRM_CHEST,
     LENGTH,
     LINE_STIFFNESS,
+    LOWER_FIRMNESS,
+    LOWER_TISSUE,
     PRESTRESS,
     SAG,
     STIFFNESS,
@@ -157,19 +159,21 @@ def parameter_title(name: str, design: Design) -> str:
         FIRM_CHEST: tr("Rib-cage support"),
         PRESTRESS: tr("Spring prestress"),
         TISSUE: tr("Tissue stiffness"),
+        LOWER_TISSUE: tr("Tissue stiffness, waist and hips"),
+        LOWER_FIRMNESS: tr("Firmness of the tissue, waist and hips"),
         SAG: tr("Sag"),
     }.get(name, name)
 
 
 def formatted_value(of: FittedParameter, value: float) -> str:
     """Return one value of a number, with its unit where it has one."""
-    if of.name == TISSUE:
+    if of.name in (TISSUE, LOWER_TISSUE):
         return f"{number(value, 0)} N/m"
     if of.name == SAG:
         return f"{number(value, 1)} mm"
     if of.name.startswith(LENGTH) or of.name == PRESTRESS:
         return f"{number(100.0 * value, 1)} %"
-    return number(value, 3 if of.name == FIRM_CHEST else 1)
+    return number(value, 3 if of.name in (FIRM_CHEST, LOWER_FIRMNESS) else 1)
 
 
 def improvement_text(found: CalibrationResult, design: Design) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from core.analysis.calibration.calibrate import CalibrationResult, calibrate, require_active_line
 from core.analysis.calibration.fit import solve_from
 from core.analysis.calibration.registration import Alignment, align
@@ -49,5 +51,8 @@ def read_fitting_scan(stages: Stages, source: ScanSource, progress: Progress = q
 
 
 def predicted_points(stages: Stages) -> Points:
-    """Return the control points that a design predicts, its exact answer, (n, 3) [mm]. Raises LineError."""
-    return solve_from(stages).place.points
+    """Return the control points of all regions that a design predicts, its exact answers, (n, 3) [mm].
+
+    Raises LineError.
+    """
+    return np.concatenate([solve_from(region).place.points for region in stages.regions])

@@ -75,11 +75,12 @@ def confounded_with(equations: NormalEquations, numbers: tuple[Parameter, ...], 
 class CalibrationResult:
     """What was found: ``design`` with its numbers and record, compared ``before`` and ``after``.
 
-    ``points`` (n, 3) [mm] are the control points that it predicts; ``met`` points of the worn scan were on
-    the moving skin. ``confounded`` tells for numbers that stayed what they cannot be told from. ``singular``
-    are the singular values of the slopes in units of what is known before: below 1 that tells more of a
-    combination of numbers than the scans. ``solves`` exact answers were needed. ``at_end`` names numbers that
-    went as far as they may: what the scan shows is not what these lines do. ``noise`` [mm] is the scan's.
+    ``points`` (n, 3) [mm] are the control points of all regions that it predicts; ``met`` points of the worn
+    scan were on the moving skin. ``confounded`` tells for numbers that stayed what they cannot be told from.
+    ``singular`` are the singular values of the slopes in units of what is known before: below 1 that tells
+    more of a combination of numbers than the scans. ``solves`` exact answers were needed. ``at_end`` names
+    numbers that went as far as they may: what the scan shows is not what these lines do. ``noise`` [mm] is
+    the scan's.
     """
 
     design: Design
@@ -123,7 +124,7 @@ class CalibrationResult:
 
 def require_active_line(stages: Stages) -> None:
     """Raise UserError if no line that moves the body is worn."""
-    if not len(stages.model.acting_lines):
+    if not any(len(region.model.acting_lines) for region in stages.regions):
         raise UserError(
             Message("No active line moves the body."), Message("Activate the lines of the garment first.")
         )

@@ -31,6 +31,7 @@ from core.mechanics.sensitivity import Sensitivities
 from core.messages import Message
 from core.pipeline.build import Stages, build
 from core.pipeline.solve import NoEquilibriumError, exact_solution
+from core.pipeline.stages import RegionStages
 from core.progress import Progress
 
 BESIDE = 7
@@ -46,14 +47,14 @@ _FARTHEST = np.log(4.0)  # no stiffness changes more than this in one step
 
 @dataclass(frozen=True, eq=False)
 class FitState:
-    """An exact answer of a design: its ``gaps`` (n,) [mm] to the points, none where a point stands elsewhere.
+    """The exact ``answers`` of the regions of a design: ``gaps`` (n,) [mm] to the points, none elsewhere.
 
     ``beside`` (7,) are the unknowns beside the numbers, which the gaps hold already; ``slopes`` (n, p + 7).
     ``rest`` (n, 3) [mm] is where the skin under the points was at rest.
     """
 
     stages: Stages
-    answer: Sensitivities
+    answers: tuple[Sensitivities, ...]
     rest: Points
     beside: Floats
     gaps: Floats
@@ -61,8 +62,8 @@ class FitState:
 
     @property
     def points(self) -> Points:
-        """Return the control points of the answer, (n, 3) [mm]."""
-        return self.answer.place.points
+        """Return the control points of all regions, (n, 3) [mm]."""
+        return np.concatenate([answer.place.points for answer in self.answers])
 
 
 class Fit:
@@ -78,7 +79,8 @@ class Fit:
     ) -> None:
         self.start, self.numbers, self.solves = stages, numbers, 0
         self.thickness, self._progress, self._laid = thickness, progress, worn.alignment
-        low, high = stages.moving.rest.min(axis=0) - REACH, stages.moving.rest.max(axis=0) + REACH
+        moving = stages.skin.faces.rest
+        low, high = moving.min(axis=0) - REACH, moving.max(axis=0) + REACH
         every = worn.skin.mesh.vertices
         near = np.flatnonzero(((every > low) & (every < high)).all(axis=1))
         near = near[:: -(-len(near) // MOST_POINTS) or 1]  # each, or each second, third ...
@@ -101,13 +103,15 @@ class Fit:
         self._progress("calibrating", min(self.solves / _STEPS, 0.95))
         self.solves += 1
         stages = build(design, near.stages if near else self.start)
-        answer = solve_from(stages, near.answer.balance if near else None)
-        places, normals = stages.shape(answer.place.points)
-        feet = Surface(places, normals, stages.moving.corners).project(
-            self._points, self._facing, self._noise
-        )
+        known = [answer.balance for answer in near.answers] if near else [None] * len(stages.regions)
+        answers = tuple(map(solve_from, stages.regions, known))
+        skin = stages.skin
+        places, normals = skin.shape([answer.place.points for answer in answers])
+        feet = Surface(places, normals, skin.faces.corners).project(self._points, self._facing, self._noise)
         moved = np.zeros((len(places), len(self.numbers)))
-        moved[: stages.moving.count] = residual_jacobian(stages, answer, self.numbers, normals)
+        for region, answer, rows in zip(stages.regions, answers, skin.rows, strict=True):
+            own = rows[: region.moving.count]
+            moved[own] += residual_jacobian(region, answer, self.numbers, normals[own])
         turned = np.cross(self._points[feet.rows] - self._laid.middle, feet.normals)
         common = np.ones((len(feet.rows), 1))
         slopes = np.zeros((len(self._points), len(self.numbers) + BESIDE))
@@ -116,8 +120,8 @@ class Fit:
         gaps = np.full(len(self._points), np.nan)
         gaps[feet.rows] = feet.gaps + self.thickness + slopes[feet.rows, len(self.numbers) :] @ beside
         rest = np.zeros_like(self._points)
-        rest[feet.rows] = feet.interpolate(stages.moving.rest)
-        return FitState(stages, answer, rest, beside, gaps, slopes)
+        rest[feet.rows] = feet.interpolate(skin.faces.rest)
+        return FitState(stages, answers, rest, beside, gaps, slopes)
 
     def normal_equations(self, look: FitState, spread: float | None = None) -> NormalEquations:
         """Return the normal equations of a look; with covariances if no ``spread`` [mm] is told."""
@@ -180,9 +184,10 @@ class Fit:
 
 
 def residual_jacobian(
-    stages: Stages, answer: Sensitivities, numbers: tuple[Parameter, ...], normals: Points
+    stages: RegionStages, answer: Sensitivities, numbers: tuple[Parameter, ...], normals: Points
 ) -> Floats:
-    """Return how fast the moving vertices rise along ``normals`` (r, 3) with ``numbers``, (k, p) [mm].
+    """Return how fast the moving vertices of a region rise along ``normals`` (k, 3) with ``numbers``, (k, p)
+    [mm].
 
     Raises LineError where they do without bound.
     """
@@ -202,7 +207,7 @@ def residual_jacobian(
         follow = binding.operator.apply(
             binding.changes.directional_derivative(points, way), np.zeros((count, 3))
         )
-        slopes[:, column] = np.einsum("ij,ij->i", follow, normals[:count])
+        slopes[:, column] = np.einsum("ij,ij->i", follow, normals)
     return slopes
 
 
@@ -214,7 +219,7 @@ def with_parameter_step(design: Design, numbers: tuple[Parameter, ...], step: Fl
     return design
 
 
-def solve_from(stages: Stages, near: Equilibrium | None = None) -> Sensitivities:
+def solve_from(stages: RegionStages, near: Equilibrium | None = None) -> Sensitivities:
     """Return the exact answer of a design; if not from ``near`` by then from rest. Raises
     NoEquilibriumError.
     """

@@ -76,7 +76,7 @@ def sample_surface_with_normals(mesh: Mesh, faces: Faces) -> tuple[Points, Point
 
 def _moves(stages: Stages) -> Flags:
     moves = np.zeros(len(stages.body.mesh.vertices), dtype=bool)
-    moves[stages.moving.vertices[: stages.moving.count]] = True
+    moves[stages.skin.vertices[: stages.skin.faces.count]] = True
     return moves
 
 

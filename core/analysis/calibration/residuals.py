@@ -94,7 +94,7 @@ def aligned_fitting_scan(name: str, body: Body, alignment: Alignment) -> Fitting
 
 def require_not_mirrored(stages: Stages, worn: FittingScan) -> None:
     """Raise ScanError for a scan that fits far better left for right: still skin may be too even to tell."""
-    points, mesh = stages.control.mesh.vertices, worn.skin.mesh
+    points, mesh = stages.rest_points, worn.skin.mesh
     other = Mesh(mirror(mesh.vertices, stages.moving.middle), mesh.faces[:, ::-1])
     skins = worn.skin, ScanSurface(other, worn.skin.noise)
     off, mirrored = (summarize(residuals_at(stages, points, skin, 0.0)).rms for skin in skins)
@@ -108,16 +108,18 @@ def require_not_mirrored(stages: Stages, worn: FittingScan) -> None:
 
 
 def residuals_at(stages: Stages, points: Points, skin: ScanSurface, thickness: float) -> Floats:
-    """Return predicted less real of the moving vertices for control ``points`` (n, 3) [mm], shape (k,) [mm].
+    """Return predicted less real of the moving vertices of ``stages.skin``, shape (k,) [mm].
 
-    The real skin is taken to lie ``thickness`` [mm] under the scanned one. Where the scan is finer than the
-    predicted skin it is the mean of the points round a vertex, else where its normal meets the scan.
+    ``points`` (n, 3) [mm] are the control points of all regions. The real skin is taken to lie ``thickness``
+    [mm] under the scanned one. Where the scan is finer than the predicted skin it is the mean of the points
+    round a vertex, else where its normal meets the scan.
     """
-    count = stages.moving.count
-    places, normals = stages.shape(points)
-    curved = curvature(places, normals, stages.moving.corners)[:count]
+    skin_faces = stages.skin.faces
+    count, corners = skin_faces.count, skin_faces.corners
+    places, normals = stages.skin.shape([points[rows] for rows in stages.region_rows])
+    curved = curvature(places, normals, corners)[:count]
     met = skin.gaps(places[:count], normals[:count], curved)
-    ground = Surface(places, normals, stages.moving.corners)
+    ground = Surface(places, normals, corners)
     feet = ground.project(skin.mesh.vertices, skin.vertex_directions, skin.noise)
     many = np.bincount(feet.corners.ravel(), feet.parts.ravel(), len(places))[:count]
     sums = np.bincount(feet.corners.ravel(), (feet.parts * feet.gaps[:, None]).ravel(), len(places))[:count]
@@ -126,10 +128,10 @@ def residuals_at(stages: Stages, points: Points, skin: ScanSurface, thickness: f
 
 
 def compare(stages: Stages, points: Points, worn: FittingScan, thickness: float = 0.0) -> Residuals:
-    """Compare what control ``points`` (n, 3) [mm] predict with a worn scan."""
+    """Compare what control ``points`` of all regions, (n, 3) [mm], predict with a worn scan."""
     values = residuals_at(stages, points, worn.skin, thickness)
-    left = stages.moving.rest[: len(values), 0] > stages.moving.middle
-    marks = dict(zip(SIDES, stages.watch.bust_points(points), strict=True))
+    left = stages.skin.faces.rest[: len(values), 0] > stages.moving.middle
+    marks = dict(zip(SIDES, stages.watch.bust_points(points[stages.region_rows[0]]), strict=True))
     inward = np.array([0.0, thickness, 0.0])
     shown = [side for side in worn.bust_points if worn.sure[side] >= CERTAIN]
     return Residuals(

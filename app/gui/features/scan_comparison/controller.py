@@ -164,8 +164,8 @@ class ScanComparisonController(QObject):
     # -- what is known
 
     def values(self, frame: Frame) -> Floats:
-        """Return predicted less real at ``moving.vertices`` of a frame, (r,) [mm]; no numbers if unknown."""
-        return words.map_values(self._known(frame), len(frame.stages.moving.vertices))
+        """Return predicted less real at ``skin.vertices`` of a frame, (r,) [mm]; no numbers if unknown."""
+        return words.map_values(self._known(frame), len(frame.stages.skin.vertices))
 
     def note(self, frame: Frame) -> str:
         """Return what the legend of the map says first, or nothing."""
@@ -192,7 +192,7 @@ class ScanComparisonController(QObject):
         thickness = self._thickness
         job = self._context.jobs.run(
             tr("Comparing with fitting scan…"),
-            lambda progress: compare(frame.stages, frame.control_points, worn, thickness),
+            lambda progress: compare(frame.stages, frame.all_points, worn, thickness),
             lambda found: self._take_difference(frame, cast(Residuals, found)),
             self._context.notifications.error,
         )
@@ -281,4 +281,4 @@ class ScanComparisonController(QObject):
 def _is_as(frame: Frame, other: Frame) -> bool:
     """Return whether two frames show the same shape: another may have come of turns beside it alone."""
     same = frame.stages is other.stages
-    return same and bool((frame.control_points == other.control_points).all())
+    return same and bool((frame.all_points == other.all_points).all())
