@@ -55,9 +55,10 @@ def _girdles(measured: Measures) -> Iterator[str]:
     """Yield the girdle size in each table of the user's own, and why a table cannot be read."""
     tables, problems = girdle_tables()
     waist, hip = (measured[key].value for key in GIRTHS_OF_GIRDLES)
-    for table in tables if waist is not None and hip is not None else ():
-        found = " / ".join(table.sizes(waist, hip)) or tr("no size fits waist and hip")
-        yield tr("Girdle, {table}: {size}").format(table=table.title, size=found)
+    if waist is not None and hip is not None:
+        for table in tables:
+            found = " / ".join(table.sizes(waist, hip)) or tr("no size fits waist and hip")
+            yield tr("Girdle, {table}: {size}").format(table=table.title, size=found)
     yield from (render(problem.message) for problem in problems)
 
 
