@@ -9,6 +9,7 @@ from html import escape
 from app.i18n.catalog import colon, joined, language, listed, tr
 from app.i18n.lengths import length
 from app.presenters.messages import render
+from core.measurements.girdle_sizes import GIRTHS_OF_GIRDLES, girdle_tables
 from core.measurements.sizes import GIRTHS_OF_SIZES, Neighbour, SizeAnswer, letter_sizes, neighbours_of, sizes
 from core.measurements.table import Measures
 from core.measurements.uncertain_value import BEFORE, OutputUncertainties
@@ -22,9 +23,9 @@ def size_views(
     if underbust.value is None or bust.value is None:
         return [], render(underbust.note or bust.note)
     answers = sizes(underbust.value, bust.value, allowance_mm)
-    letters = {"jp": tuple(_letters(measured))}
+    letters, girdles = {"jp": tuple(_letters(measured))}, tuple(_girdles(measured))
     return [
-        _view(key, answer, letters.get(key, ()), within_text(answer, spread))
+        _view(key, answer, letters.get(key, ()), within_text(answer, spread), girdles)
         for key, answer in answers.items()
     ], ""
 
@@ -50,7 +51,20 @@ def _letters(measured: Measures) -> Iterator[str]:
             yield f"{table.title.told(language())}{colon()}{' / '.join(found)}"
 
 
-def _view(key: str, answer: SizeAnswer, letters: tuple[str, ...], within: str) -> SizeView:
+def _girdles(measured: Measures) -> Iterator[str]:
+    """Yield the girdle size in each table of the user's own, and why a table cannot be read."""
+    tables, problems = girdle_tables()
+    waist, hip = (measured[key].value for key in GIRTHS_OF_GIRDLES)
+    if waist is not None and hip is not None:
+        for table in tables:
+            found = " / ".join(table.sizes(waist, hip)) or tr("no size fits waist and hip")
+            yield tr("Girdle, {table}: {size}").format(table=table.title, size=found)
+    yield from (render(problem.message) for problem in problems)
+
+
+def _view(
+    key: str, answer: SizeAnswer, letters: tuple[str, ...], within: str, girdles: tuple[str, ...]
+) -> SizeView:
     texts = (*answer.doubts, *(letter_sizes().doubts if letters else ()))
     doubts, caution = _unlike([each.told(language()) for each in texts]), answer.table.caution
     return SizeView(
@@ -58,7 +72,7 @@ def _view(key: str, answer: SizeAnswer, letters: tuple[str, ...], within: str) -
         key.upper() if len(key) == 2 else answer.table.system,
         answer.label or "\N{EN DASH}",
         joined(render(each) for each in answer.rule),
-        (*_near(answer), *letters),
+        (*_near(answer), *letters, *girdles),
         answer.table.title.told(language()),
         doubts,
         caution.told(language()) if caution else "",
