@@ -10,6 +10,7 @@ from window_tools import Script, drag, run_main, run_undrawn, settled
 from app.gui.main_window import MainWindow
 from app.presenters.samples import sample_path
 from core.garment.presets import find_preset
+from tests.end_to_end.test_model_options import choose
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -42,6 +43,37 @@ def test_a_girdle_is_worn_dragged_and_taken_back() -> None:
         yield lambda: any("Waist" in label.text() for label in window.strip.findChildren(QLabel))
 
     run_main([str(sample_path("trunk"))], script)
+
+
+def test_its_settings_are_model_options_while_it_is_worn() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        panel, session, steps = window.model, window.session, window.session.undo_stack
+        window.actions_.model.trigger()
+        row, head = panel._rows["waist_kept"], panel._heads["Waist, hips and seat"]
+        assert not row.isVisible()
+        assert not head.isVisible()
+        window.presets_controller.wear(find_preset("girdle"))
+        yield settled(window)
+        window.actions_.model.trigger()
+        assert row.isVisible()
+        assert head.isVisible()
+        reached = session.frame.lower.lengths["waist"]
+        choose(window, "waist_kept", "100")
+        yield settled(window)
+        assert session.design.lower.waist_kept == 1.0
+        assert session.frame.lower.lengths["waist"] > reached + 1.0, "kept volume resists the band"
+        assert steps.undoText() == "Volume kept at waist: 100 %"
+        assert "Volume kept at waist 100 %" in window.door.accessibleDescription()
+        panel._reset.click()
+        assert session.design.lower.waist_kept == 0.5
+        assert session.design.lower.lines, "a reset of options leaves the lines"
+        steps.undo()
+        steps.undo()
+        yield settled(window)
+        assert session.frame.lower.lengths["waist"] == pytest.approx(reached, abs=0.1)
+
+    run_undrawn([str(sample_path("trunk"))], script)
 
 
 def test_a_scan_without_legs_keeps_its_bust_and_says_why() -> None:
