@@ -53,6 +53,11 @@ class TrialResult:
         return self.run.verdict
 
     @property
+    def bust_verdict(self) -> Convergence:
+        """Return the same: the bust alone is run."""
+        return self.run.verdict
+
+    @property
     def control_points(self) -> Points:
         """Return the control points at the end of the run, shape (n, 3) [mm]."""
         return self.stages.model.tensegric.expand(self.run.state.moved)
