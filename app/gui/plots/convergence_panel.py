@@ -119,7 +119,8 @@ class ConvergencePanel(QWidget):
             plot.quantity_chosen.connect(self.quantity_chosen)
             plot.menu_requested.connect(self._show_menu)
         self._entries: list[Entry] = []
-        self._legends = Legend(), Legend()  # beside the title of the first plot, or below both
+        # Beside the title of the first plot, below both, or beside the choice of the region.
+        self._legends = Legend(), Legend(), Legend()
         self._zone_legend = Legend()
         self.error_plot.head.addWidget(self._legends[0])
         for plot in self.all_plots:
@@ -149,7 +150,7 @@ class ConvergencePanel(QWidget):
         ``lower`` are those of the lower trunk, which can be chosen if there is one.
         """
         self._run, self._lower = (tracks, main, exact), lower
-        if (lower is not None) == self.region.isHidden():
+        if (lower is not None) == self._top.isHidden():
             self._place_region()
         self._draw(refit=not self._settling)
         self._show_emptiness(exact is None and not any(len(track.turns) for track in tracks.values()))
@@ -219,22 +220,21 @@ class ConvergencePanel(QWidget):
         self._draw_anew()
 
     def _place_region(self) -> None:
-        """Show the plots of the chosen region, with the choice, if there is any, at the right end."""
-        offered, (left, right) = self._lower is not None, self.plots
-        right.head.addWidget(self.region)
-        self.region.setVisible(offered)
-        for plot in (left, right):
-            plot.set_head_height(self.region.sizeHint().height() if offered else 0)
+        """Show the plots of the chosen region, below the choice if there is any."""
+        self._top.setVisible(self._lower is not None)
         for plot in (self.height_plot, self.zone_plot):
-            plot.setVisible(plot is right and self._nothing.isHidden())
+            plot.setVisible(plot in self.plots and self._nothing.isHidden())
         self._zone_legend.setVisible(self.shows_lower)
 
     def _share_legend(self) -> None:
-        """Name the runs in one place: beside the first plot's title, or below both if that is narrow."""
-        beside = legend_width(self._entries) <= self.error_plot.width() - self.error_plot.title.width() - 8
-        for legend, here in zip(self._legends, (beside, not beside), strict=True):
-            legend.show_entries(self._entries if here else [])
-            legend.setVisible(here)
+        """Name the runs in one place: beside the choice of the region, where there is none beside the first
+        plot's title, or below both plots if that is narrow.
+        """
+        room = self.error_plot.width() - self.error_plot.title.width() - 8
+        place = 2 if self._lower is not None else 0 if legend_width(self._entries) <= room else 1
+        for each, legend in enumerate(self._legends):
+            legend.show_entries(self._entries if each == place else [])
+            legend.setVisible(each == place)
 
     def set_verdict(self, verdict: VerdictView) -> None:
         """Show how the run stands; call it before ``set_run``, which takes its colour from it."""
@@ -282,19 +282,21 @@ class ConvergencePanel(QWidget):
         row.addLayout(self._verdict())
         self._nothing = sentence(tr("Plots appear while you drag a line."))
         self._nothing.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self._top = QWidget()
+        top = QHBoxLayout(self._top)
+        top.setContentsMargins(0, 0, 0, 2)
+        top.addWidget(self.region)
+        top.addStretch(1)
+        top.addWidget(self._legends[2])
         plots = QGridLayout()
         plots.setHorizontalSpacing(18)
         plots.setVerticalSpacing(0)
         for column, plot in ((0, self.error_plot), (1, self.height_plot), (1, self.zone_plot)):
-            plots.addWidget(plot, 0, column)
+            plots.addWidget(plot, 1, column)
             plots.setColumnStretch(column, 1)
-        legends = QHBoxLayout()
-        legends.addStretch(1)
-        legends.addWidget(self._legends[1])
-        legends.addStretch(1)
-        legends.addWidget(self._zone_legend)
-        legends.addStretch(1)
-        plots.addLayout(legends, 1, 0, 1, 2)
+        plots.addWidget(self._top, 0, 0, 1, 2)
+        plots.addWidget(self._legends[1], 2, 0, 1, 2, Qt.AlignmentFlag.AlignHCenter)
+        plots.addWidget(self._zone_legend, 2, 0, 1, 2, Qt.AlignmentFlag.AlignRight)
         row.addLayout(plots, 2)
         row.addWidget(self._nothing, 1)
         row.addLayout(self._tools())
@@ -373,3 +375,4 @@ class ConvergencePanel(QWidget):
         self._nothing.setVisible(empty)
         for each in (self.chip, self._small_chip, *self.plots):
             each.setVisible(not empty)
+        self._top.setVisible(not empty and self._lower is not None)

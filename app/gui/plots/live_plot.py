@@ -46,8 +46,6 @@ class LivePlot(QWidget):
         self.title.chosen.connect(self.set_quantity)
         self.title.chosen.connect(self.quantity_chosen)
         self.head.addWidget(self.title)
-        self._strut = QWidget()
-        self.head.addWidget(self._strut)
         self.head.addStretch(1)
         column.addLayout(self.head)
         self.canvas = PlotCanvas()
@@ -59,10 +57,6 @@ class LivePlot(QWidget):
             heard.connect(told)
         column.addWidget(self.canvas, 1)
         self.set_quantity(self.quantity.name)
-
-    def set_head_height(self, height: int) -> None:
-        """Keep the head at least so high [px], as that of the plot beside it."""
-        self._strut.setFixedSize(0, height)
 
     def set_quantity(self, name: str) -> None:
         """Plot another quantity from now on; an unknown one changes nothing."""

@@ -95,7 +95,8 @@ class ModelPanel(QWidget):
             for setting in settings:
                 self._rows[setting.key] = self._row(setting)
                 column.addWidget(self._rows[setting.key])
-        column.addWidget(self._limit)
+                if setting.key == "gain":
+                    column.addWidget(self._limit)
         column.addStretch(1)
         return area
 
