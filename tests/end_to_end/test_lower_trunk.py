@@ -76,6 +76,40 @@ def test_its_settings_are_model_options_while_it_is_worn() -> None:
     run_undrawn([str(sample_path("trunk"))], script)
 
 
+def test_its_zones_are_plotted_where_it_is_chosen() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        strip = window.strip
+        assert not strip.region.isVisible(), "there is one region"
+        window.presets_controller.wear(find_preset("girdle"))
+        yield settled(window)
+        assert strip.height_plot.isVisible()
+        strip.region.button("lower").click()
+        assert strip.zone_plot.isVisible()
+        assert not strip.height_plot.isVisible()
+        drag(window, "waist", -10)
+        yield settled(window)
+        yield lambda: strip.zone_plot.canvas.plotted.turns()[1] > 20.0
+        names = [curve.name for curve in strip.zone_plot.canvas.plotted.curves]
+        assert names == ["Waist", "Belly", "Lower front", "Left seat", "Right seat"]
+        assert [name for name, _, _ in strip.legend][-5:] == names
+        assert "Taken up inside: Waist" in window.status._taken_up.text()
+        for width in (window.minimumWidth(), 1700):
+            window.resize(width, window.height())
+            yield settled(window)
+            for legend in (strip._zone_legend, strip._legends[2]):
+                right = legend.mapTo(strip, legend.rect().topRight()).x()
+                assert right < strip.tools.geometry().left(), "the legend has room"
+        window.session.undo_stack.undo()
+        window.session.undo_stack.undo()
+        yield settled(window)
+        assert strip.height_plot.isVisible()
+        assert not strip.zone_plot.isVisible()
+        assert not window.status._taken_up.isVisible()
+
+    run_undrawn([str(sample_path("trunk"))], script)
+
+
 def test_a_scan_without_legs_keeps_its_bust_and_says_why() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)

@@ -285,6 +285,7 @@ class ConvergencePanel(QWidget):
         self._top = QWidget()
         top = QHBoxLayout(self._top)
         top.setContentsMargins(0, 0, 0, 2)
+        top.setSpacing(2)
         top.addWidget(self.region)
         top.addStretch(1)
         top.addWidget(self._legends[2])

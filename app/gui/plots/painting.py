@@ -254,7 +254,7 @@ def zone_entries(zones: Iterable[str]) -> list[Entry]:
 def legend_width(entries: list[Entry]) -> int:
     """Return the room that a legend takes [px]."""
     wide = QFontMetrics(font("caption"))
-    return sum(wide.horizontalAdvance(title) + 34 for title, _, _ in entries)
+    return max(sum(wide.horizontalAdvance(title) + 34 for title, _, _ in entries) - 9, 0)
 
 
 def paint_legend(painter: QPainter, entries: list[Entry], at: QPointF, tokens: Tokens) -> None:
