@@ -36,7 +36,7 @@ def design_of(options: argparse.Namespace) -> Design:
     scan = design.scan.set_up(**axes)
     design = replace(design, scan=replace(scan, edits=_edits_of(scan.edits, options)))
     settings = settings_of(getattr(options, "settings", None) or [])
-    design = replace(design.with_template(settings.pop("template", design.template)), **settings)
+    design = design.with_template(settings.pop("template", design.template)).with_settings(settings)
     for text in getattr(options, "path", None) or []:
         design = design.with_custom_line(parse_line(text, read_template(design.template)))
     if getattr(options, "preset", None):
@@ -67,7 +67,7 @@ def _edits_of(edits: ScanEdits, options: argparse.Namespace) -> ScanEdits:
 
 
 def settings_of(pairs: Sequence[str]) -> dict[str, Any]:
-    """Return the fields of a design that ``KEY=VALUE`` pairs set; hyphens and underscores are the same.
+    """Return the settings of a design that ``KEY=VALUE`` pairs set; hyphens and underscores are the same.
 
     Raises UserError with the valid keys or words; ranges are checked by the design.
     """

@@ -11,6 +11,7 @@ from app.presenters.scan import PACKED
 from core.document.cup import COVERAGES, CUP_RANGES, KINDS
 from core.document.design import TEMPLATES, WEIGHTS
 from core.document.line_notation import HELP as LINE_HELP
+from core.document.lower_trunk import LOWER_SETTINGS
 from core.landmarks.manual import HELP as LANDMARK_HELP
 from core.mechanics.options import CHOICES, RANGES
 from core.mechanics.volume import CONTROLS
@@ -20,7 +21,7 @@ from core.scan.source import SIDES
 WORDS = {**CHOICES, "weights": WEIGHTS, "template": TEMPLATES}
 """Settings that are a word, and the words that each allows."""
 
-NUMBERS = (*RANGES, "gain", "line_height", "tissue_stiffness")
+NUMBERS = (*RANGES, "gain", "line_height", "tissue_stiffness", *LOWER_SETTINGS)
 """Settings that are a number."""
 
 SWITCHES = ("scaled_normals", "dense_volume")

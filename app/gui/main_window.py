@@ -88,6 +88,7 @@ from app.gui.widgets.notification_bar import NotificationBar
 from app.gui.widgets.value_edit import forget_refused
 from app.i18n.catalog import tr
 from app.presenters.status import facts
+from app.presenters.zones import taken_up_texts
 from core.document.design import Design
 from core.geometry.mesh import Floats
 from core.geometry.planar_curves import Plane
@@ -479,6 +480,7 @@ class MainWindow(QMainWindow):
 
     def _show_status(self, frame: Frame) -> None:
         self.status.set_volume(*controlled_volume(frame))
+        self.status.set_taken_up(*taken_up_texts(frame))
         self.status.set_facts(facts(frame, self.session.failure is None))
 
     def _close_panel(self) -> bool:

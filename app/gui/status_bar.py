@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from app.gui.theme.stylesheet import label, tokens_of
 from app.gui.widgets.basic import ToolButton
+from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr
 
 
@@ -31,7 +32,9 @@ class StatusBar(QWidget):
         self._facts = label("", "caption")
         self._volume = label("", "caption", tabular=True)
         row.addWidget(self._facts)
+        self._taken_up = label("", "caption", tabular=True)
         row.addWidget(self._volume)
+        row.addWidget(self._taken_up)
         row.addStretch(1)
         self._job = QWidget()
         job = QHBoxLayout(self._job)
@@ -59,6 +62,12 @@ class StatusBar(QWidget):
         text = tr("Volume {percent} % ({millilitres} ml)")
         percent, millilitres = number(error_percent, 2, signed=True), number(error_ml, 1, signed=True)
         self._volume.setText(text.format(percent=percent, millilitres=millilitres))
+
+    def set_taken_up(self, text: str, tip: str) -> None:
+        """Show how much volume is taken up inside, ready to read, with what that means."""
+        self._taken_up.setText(text)
+        self._taken_up.setVisible(bool(text))
+        set_tip(self._taken_up, tip)
 
     def set_job(self, text: str, fraction: float | None = None) -> None:
         """Show the running job and how much is done [0..1], None when unknown; an empty text ends it."""

@@ -1,4 +1,4 @@
-"""The tour through the window: from the lifted bust over steps, cups or lines, and verdict to the report."""
+"""The tour through the window: the lifted bust, the steps, cups or lines, verdict, report, and a girdle."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import reduce
 from typing import TYPE_CHECKING
 
+import numpy as np
 from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QTimer
 from PySide6.QtWidgets import QWidget
 
@@ -15,6 +16,7 @@ from app.gui.widgets.coach_mark import CoachMark
 from app.gui.widgets.focus_chain import bring_in
 from app.i18n.catalog import tr
 from app.presenters.bust_shift import bust_shift, up_text
+from app.presenters.samples import WHOLE_TRUNK, opened_sample
 
 if TYPE_CHECKING:
     from app.gui.main_window import MainWindow
@@ -27,7 +29,7 @@ _SETTLED = 250
 class TourStop:
     """A stop of the tour: ``place`` is what its sentence is about, ``report`` whether it opens the report.
 
-    ``part`` is what has to be scrolled to first, if anything.
+    ``part`` is what has to be scrolled to first, if anything; ``sample`` the sample that it opens.
     """
 
     title: str
@@ -35,6 +37,7 @@ class TourStop:
     place: Callable[[], QRect]
     report: bool = False
     part: QWidget | None = None
+    sample: str = ""
 
 
 class Tour(QObject):
@@ -101,6 +104,9 @@ class Tour(QObject):
         self._window.strip.set_folded(False)
         if stop.report:
             self._window.report_controller.open()
+        elif stop.sample:
+            self._window.report_controller.close()
+            self._open_sample(stop.sample)
         if stop.part is not None:
             bring_in(stop.part)
         self.mark.show_step(self._place, len(stops), stop.title, stop.words)
@@ -108,6 +114,20 @@ class Tour(QObject):
         self.mark.setFocus(Qt.FocusReason.OtherFocusReason)
         # What was folded away a moment ago has its place only then.
         QTimer.singleShot(0, self, self._point)
+
+    def _open_sample(self, name: str) -> None:
+        """Open a sample, unless it is open or the user keeps the present document, and show all of it."""
+        window = self._window
+        if opened_sample(window.session.design) != name:
+            window.session.opened.connect(self._show_girdle, Qt.ConnectionType.SingleShotConnection)
+            window.project_controller.open_sample(name)
+
+    def _show_girdle(self) -> None:
+        window = self._window
+        if self._place >= 0 and (waist := window.lines.rows.get("waist")) is not None:
+            window.view.viewport.frame_all()
+            bring_in(waist)
+            self._point()
 
     def _watched(self) -> tuple[QWidget, ...]:
         return self._window, self._window.notices, self._window.report_controller.page
@@ -125,7 +145,8 @@ class Tour(QObject):
             self.mark.point_at(self._stops()[self._place].place(), room, self._clear())
 
     def _stops(self) -> tuple[TourStop, ...]:
-        return (*self._stops_beside_the_body(), *self._stops_of_the_result())
+        girdle = [self._stop_at_a_girdle()] if opened_sample(self._window.session.design) else []
+        return (*self._stops_beside_the_body(), *self._stops_of_the_result(), *girdle)
 
     def _stops_beside_the_body(self) -> tuple[TourStop, ...]:
         window = self._window
@@ -196,6 +217,18 @@ class Tour(QObject):
             ),
         )
 
+    def _stop_at_a_girdle(self) -> TourStop:
+        lines = self._window.lines
+        return TourStop(
+            tr("Waist, hips and seat"),
+            tr(
+                "The sample Whole trunk is in a bra and a girdle. Drag the handle of Waist: its length is "
+                "that of the whole band. Your own scan needs to reach to mid-thigh."
+            ),
+            lambda: self._place_of(lines.rows.get("waist", lines)),
+            sample=WHOLE_TRUNK,
+        )
+
     # -- places on the window
 
     def _clear(self) -> Sequence[QRect]:
@@ -207,17 +240,18 @@ class Tour(QObject):
             return [*notices, self._place_of(page.paper), *map(self._place_of, page.does.values())]
         parts = window.rail, window.inspector, window.view.tools, window.view.compare
         beside = [self._place_of(each) for each in parts if each.isVisible()]
-        return [*notices, *beside, self._bust_place(), self._verdict_place()]
+        return [*notices, *beside, self._body_place(), self._verdict_place()]
 
     def _place_of(self, *parts: QWidget) -> QRect:
         places = [QRect(part.mapTo(self._window, QPoint(0, 0)), part.size()) for part in parts]
         return reduce(QRect.united, places)
 
-    def _bust_place(self) -> QRect:
+    def _body_place(self) -> QRect:
         """Return where the part of the body that lines shape is seen."""
         frame, viewport = self._window.session.frame, self._window.view.viewport
         assert frame is not None, "a tour is of a body"
-        spots = viewport.scene.view.to_picture(frame.control_points, viewport.width(), viewport.height())
+        points = np.concatenate(frame.region_points)
+        spots = viewport.scene.view.to_picture(points, viewport.width(), viewport.height())
         low, high = (QPoint(*map(int, each)) for each in (spots[:, :2].min(axis=0), spots[:, :2].max(axis=0)))
         return (
             QRect(low, high)

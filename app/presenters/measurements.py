@@ -9,6 +9,7 @@ from typing import Any
 from app.i18n.catalog import colon, number, tr
 from app.i18n.lengths import decimal_length, length, length_number, shown_digits, shown_unit, shown_value
 from app.presenters.messages import line_title, render
+from app.presenters.zones import giving_zones, taken_up_tip, zone_title
 from core.document.custom_measures import LONGEST_NAME, CustomMeasurement
 from core.errors import UserError
 from core.landmarks.types import CERTAIN
@@ -117,6 +118,9 @@ def _volume_rows(frame: Frame) -> Iterator[MeasureView]:
     part = tr("inside the reshaped region, closed at the back")
     yield MeasureView(tr("Volume of the model"), "ml", volume, volume + frame.error_ml, part)
     yield MeasureView(tr("Volume under skin"), "ml", volume, volume + skin, part)
+    for zone in giving_zones(frame):
+        title = tr("Taken up inside, {zone}").format(zone=zone_title(zone.name).lower())
+        yield MeasureView(title, "ml", 0.0, zone.taken_up_ml, tr("assumed, not measured"), tip=taken_up_tip())
 
 
 def _line_rows(frame: Frame) -> Iterator[MeasureView]:

@@ -9,7 +9,8 @@ from typing import Any
 
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length_unit, shown_digits, shown_value
-from core.document.design import ScanSource, new_design
+from core.document.design import Design, ScanSource, new_design
+from core.document.lower_trunk import LOWER_RANGES, LOWER_SETTINGS
 from core.mechanics.options import RANGES
 
 SOFT_LINE = 0.2
@@ -77,21 +78,34 @@ def groups() -> tuple[Group, ...]:
         (tr("Tissue"), (_tissue(), _sag(), _density(), _posture())),
         (tr("Body"), (_chest(), _law(), _prestress(), _weights(), _normals())),
         (tr("Volume"), (_control(), _volume_of(), _dense(), _gain())),
+        (
+            tr("Waist, hips and seat"),
+            (_belly_height(), _waist_kept(), _lower_firmness(), _lower_stiffness()),
+        ),
     )
 
 
 def defaults() -> dict[str, Any]:
     """Return what every setting of the model is in a new design."""
-    keys = {setting.key for _, settings in groups() for setting in settings}
     usual = new_design(ScanSource(""))
-    return {key: getattr(usual, key) for key in keys}
+    return {setting.key: usual.setting(setting.key) for _, settings in groups() for setting in settings}
+
+
+def present_values(design: Design) -> dict[str, Any]:
+    """Return every setting that a design has: those of the lower trunk only if it wears that."""
+    keys = [key for key in defaults() if design.lower is not None or key not in LOWER_SETTINGS]
+    return {key: design.setting(key) for key in keys}
 
 
 def without_effect(present: Mapping[str, Any]) -> frozenset[str]:
-    """Return the settings that change nothing beside the others: those of the other tissue, prestress."""
-    if present["tissue"] == "solid":
+    """Return the settings that change nothing beside the others: those of the other tissue, prestress.
+
+    The lower trunk is on a net whatever the bust is on.
+    """
+    solid, below = present["tissue"] == "solid", LOWER_SETTINGS.keys() <= present.keys()
+    if solid and not below:
         return frozenset({"firm_chest", "member_law", "prestress", "line_contact"})
-    idle = {"sag", "density", "posture"}
+    idle = {"firm_chest"} if solid else {"sag", "density", "posture"}
     return frozenset(idle if present["member_law"] == "prestressed" else {*idle, "prestress"})
 
 
@@ -107,18 +121,20 @@ def consequences(key: str, value: Any, present: Mapping[str, Any]) -> dict[str, 
 
 
 def summary(present: Mapping[str, Any]) -> str:
-    """Return in a line what is chosen: tissue and lines always, else what is not as in a new design."""
+    """Return in a line what is chosen: tissue and lines always, else what is not as in a new design.
+
+    Of the numbers only those of the lower trunk are told, with their titles.
+    """
     usual, idle = defaults(), without_effect(present)
-    texts = [
-        setting.words(present[setting.key])
-        for _, settings in groups()
-        for setting in settings
-        if setting.key not in idle
-        and (
-            setting.key in ("line_contact", "line_hold", "tissue")
-            or (isinstance(setting, Choice) and present[setting.key] != usual[setting.key])
-        )
-    ]
+    texts = []
+    for setting in (each for _, settings in groups() for each in settings if each.key in present):
+        changed, words = present[setting.key] != usual[setting.key], setting.words(present[setting.key])
+        if setting.key in LOWER_SETTINGS:
+            texts += [f"{setting.title} {words}"] if changed else []
+        elif setting.key in ("line_contact", "line_hold", "tissue") or (
+            isinstance(setting, Choice) and changed
+        ):
+            texts += [words] if setting.key not in idle else []
     return " · ".join(texts)
 
 
@@ -322,3 +338,33 @@ def _gain() -> Amount:
         "of the gain at which oscillation starts."
     )
     return Amount("gain", tr("Conventional gain"), tip, "", 1.0, 2, (0.0, 10.0))
+
+
+def _belly_height() -> Amount:
+    tip = tr("Set the position of the belly line between waist (0 %) and hip (100 %), from 35 to 55 %.")
+    limits = LOWER_RANGES["belly_height"]
+    return Amount("belly_line_height", tr("Belly line height"), tip, "%", 100.0, 0, limits)
+
+
+def _waist_kept() -> Amount:
+    tip = tr(
+        "Set how much of the volume that lines displace at the waist stays under the skin there. The rest "
+        "is assumed to move inward under the ribs. The default is an assumption."
+    )
+    return Amount("waist_kept", tr("Volume kept at waist"), tip, "%", 100.0, 0, LOWER_RANGES["waist_kept"])
+
+
+def _lower_firmness() -> Amount:
+    tip = tr(
+        "Set how firmly thin tissue holds the skin of waist, hips and seat near its original position, "
+        "0 (not at all) to 1."
+    )
+    return Amount("lower_firmness", tr("Firmness"), tip, "", 1.0, 2, LOWER_RANGES["firmness"])
+
+
+def _lower_stiffness() -> Amount:
+    tip = tr(
+        "Set the tissue stiffness of waist, hips and seat, 10 to 5000 N/m. All forces and pressures there "
+        "are proportional to it; the shape does not change, except with elastics."
+    )
+    return Amount("lower_stiffness", tr("Tissue stiffness"), tip, "N/m", 1.0, 0, LOWER_RANGES["stiffness"])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
 
@@ -14,7 +14,9 @@ from app.i18n.catalog import tr
 from app.i18n.lengths import length_unit, shown_value
 from app.presenters.bust_shift import mean_lifts, shift_between
 from app.presenters.messages import line_title
+from app.presenters.zones import zone_title
 from core.mechanics.iteration import Observables, Record
+from core.pipeline.frame import RegionFrame
 from core.pipeline.live_solver import Frame
 
 PLOTTED_TURNS = 600
@@ -41,6 +43,32 @@ def tracks(frame: Frame) -> dict[str, Track]:
             turns, 100.0 * error, error_ml, mean_lifts(rest, left, right), apex - rest.apex_z
         )
     return result
+
+
+def lower_run(frame: Frame) -> LowerRun | None:
+    """Return the runs of the lower trunk of a frame as curves, if there is that region."""
+    if frame.lower is None:
+        return None
+    shown, control = frame.lower, frame.stages.design.volume
+    rest_ml = shown.stages.model.volume.rest_volume / 1000.0
+    recent = {name: records[-PLOTTED_TURNS:] for name, records in shown.tracks.items()}
+    made = {
+        name: np.array([row.iteration for row in rows], dtype=np.float64) for name, rows in recent.items()
+    }
+    whole = {
+        name: _error_track(made[name], np.array([row.error for row in rows]), rest_ml)
+        for name, rows in recent.items()
+    }
+    zones = np.array([row.zones for row in recent.get(control, ())]).T
+    parts = {
+        name: _error_track(made[control], error, rest_ml)
+        for name, error in zip(shown.stages.control.zone_names, zones, strict=False)
+    }
+    return LowerRun(whole, parts)
+
+
+def _error_track(turns: Numbers, error: Numbers, rest_ml: float) -> ErrorTrack:
+    return ErrorTrack(turns, 100.0 * error, rest_ml * error)
 
 
 def exact_answer(frame: Frame) -> Exact:
@@ -70,6 +98,32 @@ def table_of(frame: Frame) -> tuple[list[str], list[Sequence[object]]]:
     return heading, rows
 
 
+def lower_table_of(shown: RegionFrame) -> tuple[list[str], list[Sequence[object]]]:
+    """Return the heading and the rows of all turns of all runs of the lower trunk."""
+    zones = [tr("{zone}, volume error [ml]").format(zone=zone_title(zone.name)) for zone in shown.zones]
+    names = [line_title(line.name) for line in shown.stages.model.lines]
+    heading = [
+        tr("run"),
+        tr("iteration"),
+        tr("volume error [%]"),
+        tr("volume error [ml]"),
+        *zones,
+        tr("largest move [mm]"),
+        *(tr("{line} [mm]").format(line=name) for name in names),
+    ]
+    rest_ml = shown.stages.model.volume.rest_volume / 1000.0
+    rows: list[Sequence[object]] = [
+        (
+            *(control, row.iteration, 100.0 * row.error, row.error_ml),
+            *(rest_ml * error for error in row.zones),
+            *(row.step, *row.lengths),
+        )
+        for control, records in shown.tracks.items()
+        for row in records
+    ]
+    return heading, rows
+
+
 def _record_figures(row: Record, marks: Observables, rest: Observables) -> tuple[float, float, float, float]:
     return 100.0 * row.error, row.error_ml, *_heights(marks, rest)
 
@@ -84,12 +138,29 @@ TOLERANCE_PERCENT = 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class Track:
-    """A run over its ``turns``: volume error [%] and [ml], heights of bust point and apex [mm]; all (n,)."""
+class ErrorTrack:
+    """A run over its ``turns``: volume error [%] and [ml]; all (n,)."""
 
     turns: Numbers
     error_percent: Numbers
     error_ml: Numbers
+
+
+@dataclass(frozen=True, eq=False)
+class LowerRun:
+    """Runs of the lower trunk: ``tracks`` by control, and ``zones`` of the one on the body.
+
+    With the exact solution on the body there are no ``zones``.
+    """
+
+    tracks: Mapping[str, ErrorTrack]
+    zones: Mapping[str, ErrorTrack]
+
+
+@dataclass(frozen=True, eq=False)
+class Track(ErrorTrack):
+    """A run over its ``turns``, with the heights of bust point and apex [mm]; all (n,)."""
+
     bust_mm: Numbers
     apex_mm: Numbers
 
@@ -110,6 +181,12 @@ def error_quantities() -> tuple[Quantity, ...]:
     return Quantity("error_percent", title, "%", 0.4), Quantity("error_ml", title, "ml", 2.0)
 
 
+def zone_quantities() -> tuple[Quantity, ...]:
+    """Return how the volume errors of zones can be plotted: in % of the whole lower trunk."""
+    title = tr("Volume error by zone")
+    return Quantity("error_percent", title, "%", 0.4), Quantity("error_ml", title, "ml", 2.0)
+
+
 def height_quantities() -> tuple[Quantity, ...]:
     """Return which height can be plotted: it is counted from that of the body at rest."""
     return (
@@ -118,7 +195,7 @@ def height_quantities() -> tuple[Quantity, ...]:
     )
 
 
-def tolerance_of(quantity: str, track: Track | None) -> float:
+def tolerance_of(quantity: str, track: ErrorTrack | None) -> float:
     """Return the volume error that counts as kept, in the unit of a quantity; 0 for a height."""
     if quantity == "error_percent":
         return TOLERANCE_PERCENT
@@ -149,7 +226,10 @@ _FLIP_WINDOW = 24
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """A run: ``turns`` (n,), ``values`` (n,); its role is main, warning (main, but vibrating) or ghost."""
+    """A run: ``turns`` (n,), ``values`` (n,).
+
+    Its role is main, warning (main, but vibrating), ghost, or the zone of the lower trunk that it is of.
+    """
 
     turns: Numbers
     values: Numbers

@@ -35,6 +35,12 @@ def sample_path(name: str) -> Path:
     return Path(str(resources.files("resources") / "samples" / f"{name}.ply"))
 
 
+def opened_sample(design: Design | None) -> str:
+    """Return the name of the sample body that a design is on, empty for another one."""
+    paths = {str(sample_path(name)): name for name in SAMPLES}
+    return "" if design is None else paths.get(design.scan.path, "")
+
+
 def sample_design(name: str = "mannequin") -> Design:
     """Return a design on a sample body that is already worth looking at."""
     # How the samples stand is known: not to search for it shows the first body sooner.

@@ -138,6 +138,8 @@ def oscillation_mm(frame: Frame) -> tuple[float, float]:
 
 def explanation(frame: Frame) -> str:
     """Return what it means that a run swings or runs away, or that a shape is no body; else nothing."""
+    if _swings_below(frame):
+        return tr("The solver does not converge: waist and hips oscillate.")
     return {
         "vibrating": tr("The solver does not converge: the bust point oscillates by ±{swing}."),
         "diverging": tr("The solver diverged. The last valid shape is shown."),
@@ -146,6 +148,11 @@ def explanation(frame: Frame) -> str:
             "Skin is compressed or stretched by over 30 %: do not use this shape for production."
         ),
     }.get(frame.verdict.state, "").format(swing=length(oscillation_mm(frame)[1]))
+
+
+def _swings_below(frame: Frame) -> bool:
+    """Return whether the lower trunk alone swings."""
+    return frame.verdict.motion == "vibrating" and frame.bust_verdict.motion != "vibrating"
 
 
 def _effort(frame: Frame) -> str:
@@ -205,6 +212,8 @@ def _swing_figures(frame: Frame) -> list[tuple[str, str]]:
         tr("increasing") if growth > _STEADY else tr("decreasing") if growth < -_STEADY else tr("constant")
     )
     percent = f"{number(100.0 * verdict.error, 2)} ± {number(100.0 * verdict.amplitude, 2)} %"
+    if _swings_below(frame):
+        return [(tr("Waist and hips"), percent), (tr("Amplitude"), grows)]
     return [
         (tr("Volume error"), percent),
         (tr("Bust point"), f"{length_number(middle, signed=True)} ± {length(swing)}"),

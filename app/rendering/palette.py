@@ -40,6 +40,9 @@ class Tokens:
     groove: str
     ghost_curve: str
     exact_curve: str
+    waist_curve: str  # zones of the lower trunk
+    belly_curve: str
+    seat_curve: str
     less: str
     more: str
     floating: str
@@ -80,6 +83,9 @@ LIGHT = Tokens(
     groove="#DAD6D1",
     ghost_curve="#A39D95",
     exact_curve="#57534E",
+    waist_curve="#5A3F94",
+    belly_curve="#0A7A8C",
+    seat_curve="#D1405A",
     less="#2C6FB3",
     more="#C9731B",
     floating="#FBFAF8",
@@ -120,6 +126,9 @@ DARK = Tokens(
     groove="#3A3C42",
     ghost_curve="#6E6F72",
     exact_curve="#B3B1AE",
+    waist_curve="#B79BF0",
+    belly_curve="#4FC3D9",
+    seat_curve="#FF8FA3",
     less="#6FA8E6",
     more="#E8A05A",
     floating="#1D1E22",

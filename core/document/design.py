@@ -23,7 +23,7 @@ from core.document.document_limits import (
 )
 from core.document.elastic import TISSUE_LIMITS, TISSUE_STIFFNESS, Elastic, check_elastics
 from core.document.lines import ActiveLine, CustomLine, LineSettings, partner_of
-from core.document.lower_trunk import LowerTrunk, lower_line_names
+from core.document.lower_trunk import LOWER_SETTINGS, LowerTrunk, lower_line_names
 from core.document.printable_name import repeated
 from core.errors import LandmarkError, LineError, UserError
 from core.landmarks.manual import PlacedMark
@@ -179,6 +179,20 @@ class Design:
     def model_options(self) -> ModelOptions:
         """Return the choices of the model among the settings."""
         return ModelOptions(**{field.name: getattr(self, field.name) for field in fields(ModelOptions)})
+
+    def setting(self, name: str) -> Any:
+        """Return a setting, a field or one of ``LOWER_SETTINGS``: its default without a lower trunk."""
+        if name in LOWER_SETTINGS:
+            return getattr(self.lower or LowerTrunk(), LOWER_SETTINGS[name])
+        return getattr(self, name)
+
+    def with_settings(self, changes: Mapping[str, Any]) -> Design:
+        """Return the design with settings changed; one of ``LOWER_SETTINGS`` adds the lower trunk."""
+        below = {LOWER_SETTINGS[name]: value for name, value in changes.items() if name in LOWER_SETTINGS}
+        fields = {name: value for name, value in changes.items() if name not in LOWER_SETTINGS}
+        if below:
+            fields["lower"] = replace(self.lower or LowerTrunk(), **below)
+        return replace(self, **fields)
 
     def ratio(self, name: str) -> float:
         """Return the ratio of a line, 1 if it is not worn."""

@@ -23,6 +23,16 @@ LOWER_RANGES: Mapping[str, tuple[float, float]] = MappingProxyType(
 )
 """The least and the largest number that each setting of the lower trunk allows."""
 
+LOWER_SETTINGS: Mapping[str, str] = MappingProxyType(
+    {
+        "belly_line_height": "belly_height",
+        "lower_firmness": "firmness",
+        "waist_kept": "waist_kept",
+        "lower_stiffness": "stiffness",
+    }
+)
+"""Names of these settings among those of a whole design, each with its field of ``LowerTrunk``."""
+
 WAIST_STIFFNESS = 130.0
 """What the tissue at the waist resists a stretch with [N/m].
 

@@ -28,6 +28,7 @@ from core.pipeline.lower_region import LowerStages
 from core.pipeline.solve import RegionSolution, Solution
 from core.pipeline.stages import RegionStages
 from core.pipeline.warnings import immovable_lines, shape_warnings, warnings
+from core.pipeline.zone_volumes import zone_volumes
 
 _LIBRARIES = ("numpy", "scipy", "trimesh")
 _SETTINGS = ("template", "line_height", "weights", "scaled_normals", "dense_volume", "tissue_stiffness")
@@ -167,18 +168,14 @@ def _region_report(solution: RegionSolution) -> dict[str, Any]:
 
 def _zones_report(solution: RegionSolution) -> dict[str, Any]:
     """Return what each zone of a region gained, and what it took up inside [ml]."""
-    model, state = solution.stages.model, solution.state
-    gained = model.volume.zone_volumes(solution.control_points) - model.rest_zones
-    off = model.zone_errors(solution.control_points, state.pressure.value) * model.volume.rest_volume
-    figures = zip(solution.stages.control.zone_names, model.volume.kept, gained, off, strict=True)
     return {
-        name: {
-            "kept_percent": 100.0 * float(kept),
-            "change_ml": float(change) / 1000.0,
-            "taken_up_inside_ml": float(error - change) / 1000.0,
-            "error_ml": float(error) / 1000.0,
+        zone.name: {
+            "kept_percent": 100.0 * zone.kept,
+            "change_ml": zone.change_ml,
+            "taken_up_inside_ml": zone.taken_up_ml,
+            "error_ml": zone.error_ml,
         }
-        for name, kept, change, error in figures
+        for zone in zone_volumes(solution.stages, solution.state)
     }
 
 

@@ -125,7 +125,12 @@ def _run(shown: ShownState, running: bool) -> Iterator[Finding]:
             Message("Make the lines longer or softer."),
         )
     elif verdict.motion == "vibrating":
-        message = Message("The solver does not converge: it oscillates.")
+        below = shown.bust_verdict.motion != "vibrating"
+        message = (
+            Message("The solver does not converge: waist and hips oscillate.")
+            if below
+            else Message("The solver does not converge: it oscillates.")
+        )
         yield Finding("convergence", BAD, message, Message("Use “Diagnose design” to find fixes."))
     elif verdict.motion == "settling" and not running:
         yield Finding(

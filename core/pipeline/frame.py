@@ -15,6 +15,7 @@ from core.mechanics.solver_comparison import SolverComparison
 from core.pipeline.build import Stages
 from core.pipeline.region_solvers import RegionSolvers
 from core.pipeline.stages import RegionStages
+from core.pipeline.zone_volumes import ZoneVolume, zone_volumes
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +23,8 @@ class RegionFrame:
     """What is shown of one region.
 
     ``control_points`` (n, 3) [mm]; ``lengths`` [mm] of the lines' front parts, of closed lines all round;
-    ``tracks`` the records of each run so far, and ``changed_at`` the turn at which the design last changed.
+    ``tracks`` the records of each run so far, and ``changed_at`` the turn at which the design last changed;
+    ``zones`` the volumes of zones that are held separately.
     """
 
     stages: RegionStages
@@ -32,6 +34,7 @@ class RegionFrame:
     verdict: Convergence
     error_ml: float
     changed_at: int
+    zones: tuple[ZoneVolume, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +42,8 @@ class Frame:
     """What is shown: the moved part of the body and everything that is read off it.
 
     ``points`` and ``normals`` (r, 3) belong to the body's vertices ``stages.skin.vertices``;
-    ``verdict`` and ``is_running``, whether turns are still being made, are those of all regions.
+    ``verdict`` and ``is_running``, whether turns are still being made, are those of all regions, and
+    ``bust_verdict`` that of the bust.
     ``control_points``, ``lengths``, ``tracks``, ``error_ml`` and ``changed_at`` are those of the bust, see
     ``RegionFrame``, as are ``marks``, and ``exact_marks`` that the exact answer ends at. ``seconds`` were
     spent since the design last changed. ``lower`` is shown of the lower trunk, if there is that region.
@@ -54,6 +58,7 @@ class Frame:
     tracks: Mapping[str, tuple[Record, ...]]
     exact_marks: Observables
     verdict: Convergence
+    bust_verdict: Convergence
     error_ml: float
     marks: Observables
     is_running: bool
@@ -109,6 +114,7 @@ def make_frame(revision: int, stages: Stages, solvers: RegionSolvers, seconds: f
         bust.tracks,
         stages.watch(exact),
         combined([each.verdict for each in shown]),
+        bust.verdict,
         bust.error_ml,
         stages.watch(bust.control_points),
         not solvers.is_finished,
@@ -130,4 +136,5 @@ def _region(stages: RegionStages, comparison: SolverComparison) -> RegionFrame:
         comparison.verdict,
         change / 1000.0,
         run.changed_at,
+        zone_volumes(stages, comparison.shown),
     )

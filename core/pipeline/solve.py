@@ -204,6 +204,11 @@ class Solution:
         """Return the verdict on all regions: the worst motion and condition."""
         return combined([each.verdict for each in self.regions])
 
+    @property
+    def bust_verdict(self) -> Convergence:
+        """Return the verdict on the bust."""
+        return self.bust.verdict
+
     @cached_property
     def body(self) -> Mesh:
         """Return the reshaped body."""

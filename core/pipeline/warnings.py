@@ -27,18 +27,22 @@ class ShownState(Protocol):
 
     @property
     def verdict(self) -> Convergence:
-        """Return how the run stands."""
+        """Return how the runs of all regions stand."""
+
+    @property
+    def bust_verdict(self) -> Convergence:
+        """Return how the run of the bust stands."""
 
 
 def controlled_volume(shown: ShownState) -> tuple[float, float]:
-    """Return how far the volume that is kept is from the one at rest, of that of the control mesh [%, ml].
+    """Return how far the kept volume of the bust is from that at rest, of that of its control mesh [%, ml].
 
     It is the body's own where the exact answer keeps that, else that of the control mesh; while it swings,
     the mean of its swing.
     """
     stages, rest = shown.stages, shown.stages.model.volume.rest_volume
-    if shown.verdict.state == "vibrating":
-        change = shown.verdict.error * rest
+    if shown.bust_verdict.state == "vibrating":
+        change = shown.bust_verdict.error * rest
     elif stages.design.dense_volume and stages.design.volume == "exact":
         change = float(stages.body_change(shown.control_points).sum())
     else:

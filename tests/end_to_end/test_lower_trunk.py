@@ -11,6 +11,7 @@ from app.gui.main_window import MainWindow
 from app.presenters.samples import sample_path
 from core.garment.presets import find_preset
 from core.measurements.figure import figure_girths
+from tests.end_to_end.test_model_options import choose
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -63,6 +64,71 @@ def a_waist_is_asked_for(window: MainWindow) -> Script:
     yield settled(window)
     assert figure_girths(session.frame)["waist"][1] == pytest.approx(rest - 20.0, abs=0.5)
     assert "Waist girth" in session.undo_stack.undoText()
+
+
+def test_its_settings_are_model_options_while_it_is_worn() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        panel, session, steps = window.model, window.session, window.session.undo_stack
+        window.actions_.model.trigger()
+        row, head = panel._rows["waist_kept"], panel._heads["Waist, hips and seat"]
+        assert not row.isVisible()
+        assert not head.isVisible()
+        window.presets_controller.wear(find_preset("girdle"))
+        yield settled(window)
+        window.actions_.model.trigger()
+        assert row.isVisible()
+        assert head.isVisible()
+        reached = session.frame.lower.lengths["waist"]
+        choose(window, "waist_kept", "100")
+        yield settled(window)
+        assert session.design.lower.waist_kept == 1.0
+        assert session.frame.lower.lengths["waist"] > reached + 1.0, "kept volume resists the band"
+        assert steps.undoText() == "Volume kept at waist: 100 %"
+        assert "Volume kept at waist 100 %" in window.door.accessibleDescription()
+        panel._reset.click()
+        assert session.design.lower.waist_kept == 0.5
+        assert session.design.lower.lines, "a reset of options leaves the lines"
+        steps.undo()
+        steps.undo()
+        yield settled(window)
+        assert session.frame.lower.lengths["waist"] == pytest.approx(reached, abs=0.1)
+
+    run_undrawn([str(sample_path("trunk"))], script)
+
+
+def test_its_zones_are_plotted_where_it_is_chosen() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        strip = window.strip
+        assert not strip.region.isVisible(), "there is one region"
+        window.presets_controller.wear(find_preset("girdle"))
+        yield settled(window)
+        assert strip.height_plot.isVisible()
+        strip.region.button("lower").click()
+        assert strip.zone_plot.isVisible()
+        assert not strip.height_plot.isVisible()
+        drag(window, "waist", -10)
+        yield settled(window)
+        yield lambda: strip.zone_plot.canvas.plotted.turns()[1] > 20.0
+        names = [curve.name for curve in strip.zone_plot.canvas.plotted.curves]
+        assert names == ["Waist", "Belly", "Lower front", "Left seat", "Right seat"]
+        assert [name for name, _, _ in strip.legend][-5:] == names
+        assert "Taken up inside: Waist" in window.status._taken_up.text()
+        for width in (window.minimumWidth(), 1700):
+            window.resize(width, window.height())
+            yield settled(window)
+            for legend in (strip._zone_legend, strip._legends[2]):
+                right = legend.mapTo(strip, legend.rect().topRight()).x()
+                assert right < strip.tools.geometry().left(), "the legend has room"
+        window.session.undo_stack.undo()
+        window.session.undo_stack.undo()
+        yield settled(window)
+        assert strip.height_plot.isVisible()
+        assert not strip.zone_plot.isVisible()
+        assert not window.status._taken_up.isVisible()
+
+    run_undrawn([str(sample_path("trunk"))], script)
 
 
 def test_a_scan_without_legs_keeps_its_bust_and_says_why() -> None:

@@ -15,6 +15,7 @@ from app.gui.widgets.option_field import AmountField, MenuField, SegmentField
 from app.presenters.model_options import consequences, defaults, groups, summary
 from core.document.design import Design, ScanSource
 from core.document.lines import CustomLine
+from core.document.lower_trunk import LOWER_SETTINGS
 from core.pipeline.live_solver import Frame
 from core.pipeline.warnings import controlled_volume
 
@@ -154,16 +155,17 @@ def test_every_setting_is_one_step_and_the_reset_brings_back_all() -> None:
         yield settled(window)
         assert frame_of(window).stages.gain == 1.2
         assert window.model.fields["gain"].edit.text() == "1.20"
-        chosen = {key: getattr(window.session.design, key) for key in defaults()}
+        chosen = window.session.design
         window.model._reset.click()
         yield settled(window)
         steps.undo()
-        assert {key: getattr(window.session.design, key) for key in defaults()} == chosen, "all come back"
+        assert window.session.design == chosen, "all come back"
         steps.redo()
         yield settled(window)
         assert steps.undoText() == "Model options reset to defaults"
         assert not window.model._reset.isEnabled()
-        assert all(getattr(window.session.design, key) == value for key, value in defaults().items())
+        assert all(window.session.design.setting(key) == value for key, value in defaults().items())
+        assert window.session.design.lower is None
 
     run_bodiless([], script)
 
@@ -218,8 +220,8 @@ def test_every_choice_has_its_words_and_the_door_says_what_is_not_usual() -> Non
     # Measures and elastics have parts of their own, and are no choice of the model.
     elsewhere |= {"own_measures", "elastics", "tissue_stiffness", "customer", "worn_tight_mm", "calibration"}
     elsewhere |= {"cup", "lower"}
-    assert {setting.key for setting in settings} == set(values) - elsewhere
-    assert all(setting.tip.endswith(".") and setting.words(values[setting.key]) for setting in settings)
+    assert {setting.key for setting in settings} == (set(values) - elsewhere) | LOWER_SETTINGS.keys()
+    assert all(each.tip.endswith(".") and each.words(defaults()[each.key]) for each in settings)
     assert summary(values) == "Bonded · Elastic length · Net (paper)"
     assert summary(values | {"firm_chest": 0.3}) == "Bonded · Elastic length · Net (paper) · Rib-cage support"
 

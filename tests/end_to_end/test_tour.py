@@ -16,7 +16,7 @@ from app.gui.features.report.controller import ReportController
 from app.gui.main_window import MainWindow
 from app.gui.widgets.coach_mark import CoachMark
 from app.presenters.bust_shift import bust_shift, shift_between, up_text
-from app.presenters.samples import FIRST_SAMPLE, SAMPLES, dressed_sample
+from app.presenters.samples import FIRST_SAMPLE, SAMPLES, WHOLE_TRUNK, dressed_sample
 from core.garment.assessment import BAD, GOOD, assess
 from core.pipeline.build import build
 from core.pipeline.solve import solve
@@ -47,7 +47,7 @@ def test_the_tour_leads_from_the_lifted_bust_to_the_sheet() -> None:
         yield lambda: window.strip.chip.state() != "pending"
         assert window.strip.chip.state() != BAD
         assert window.view.compare.actions_by_name["ghost"].isChecked()
-        steps = (before_and_after, four_steps, a_cup, the_verdict, the_sheet)
+        steps = (before_and_after, four_steps, a_cup, the_verdict, the_sheet, a_girdle)
         for place, step in enumerate(steps):
             assert tour.place == place
             yield from covers_nothing_that_must_be_seen(window)
@@ -56,7 +56,9 @@ def test_the_tour_leads_from_the_lifted_bust_to_the_sheet() -> None:
         assert tour.place == -1
         assert not tour.mark.isVisible()
         assert lift(window) > SEEN
-        assert window.report_controller.is_open, "the sheet is there when the tour is over"
+        assert window.session.design == dressed_sample(WHOLE_TRUNK), (
+            "the girdle is there when the tour is over"
+        )
         the_samples_open_as_at_first(window)
         yield settled(window)
 
@@ -130,6 +132,17 @@ def the_sheet(window: MainWindow) -> Script:
     assert desk.handout is not None
     row, *_ = desk.handout.report.cuts.rows
     assert row.cut_mm, "what to cut is on it"
+
+
+def a_girdle(window: MainWindow) -> Script:
+    """The sample with legs opens in bra and girdle; its waist can be dragged."""
+    assert not window.report_controller.is_open
+    ring = window.start_controller.tour.mark.ring
+    yield lambda: window.session.frame.lower is not None
+    yield settled(window)
+    assert "girdle" in window.start_controller.tour.mark.accessibleName()
+    yield lambda: ring.geometry().contains(place_of(window, window.lines.rows["waist"]))
+    assert window.lines.rows["waist"].slider.ratio() < 1.0
 
 
 def covers_nothing_that_must_be_seen(window: MainWindow) -> Script:

@@ -14,7 +14,7 @@ from window_tools import Script
 from window_walk import Step
 
 from app.gui.widgets.option_field import AmountField, MenuField, SegmentField
-from app.presenters.model_options import Amount, Choice, consequences, defaults, groups
+from app.presenters.model_options import Amount, Choice, consequences, defaults, groups, present_values
 from core.document.design import TEMPLATES, Design
 from core.document.storage.project_file import with_scan
 from core.garment.presets import built_in, with_preset
@@ -28,6 +28,10 @@ AMOUNTS = {
     "gain": ("", "0.02"),
     "sag": ("15", "30"),
     "density": ("0.9", "1"),
+    "belly_line_height": ("40", "50"),
+    "waist_kept": ("0", "80"),
+    "lower_firmness": ("0", "0.3"),
+    "lower_stiffness": ("100", "200"),
 }
 PINS = ("bust_point_left", "bust_point_right", "under_bust", "fold_left", "navel")
 LOOKS = (
@@ -135,13 +139,14 @@ class Walker(LinesWalk):
         """Choose a setting of the model, or bring all back."""
         if self.chance.random() < 0.15:
             self.window.model._reset.click()
-            self.decide(lambda design: replace(design, **defaults()))
+            usual = {key: value for key, value in defaults().items() if key in present_values(self.design)}
+            self.decide(lambda design: design.with_settings(usual))
             return
-        setting = self.chance.choice(SETTINGS)
+        setting = self.chance.choice([each for each in SETTINGS if each.key in present_values(self.design)])
         value = self._setting(setting)
         self.say(f"{setting.key} {value}")
-        if value != getattr(self.design, setting.key):
-            self.decide(lambda d: replace(d, **consequences(setting.key, value, vars(d))))
+        if value != self.design.setting(setting.key):
+            self.decide(lambda d: d.with_settings(consequences(setting.key, value, present_values(d))))
 
     def _setting(self, setting: Amount | Choice) -> object:
         field = self.window.model.fields[setting.key]

@@ -23,6 +23,7 @@ from core.analysis.model_check.compare import (
 )
 from core.analysis.model_check.reference_case import case_file, included_cases, read_case
 from core.document.design import Design, ScanSource
+from core.document.lower_trunk import LOWER_SETTINGS
 from core.errors import UserError
 from core.messages import Message, plain
 
@@ -66,6 +67,12 @@ def _design_of(pairs: Sequence[str]) -> Design:
         if key in settings:
             raise UserError(
                 Message("The setting {key} cannot be changed: each case contains its control mesh.", key=key),
+                Message("Remove {key} from the settings.", key=key),
+            )
+    for key in LOWER_SETTINGS:
+        if key in settings:
+            raise UserError(
+                Message("The setting {key} cannot be changed: the cases contain the bust alone.", key=key),
                 Message("Remove {key} from the settings.", key=key),
             )
     return replace(Design(ScanSource(""), tissue="solid"), **settings)

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QSizePolicy, QVB
 
 from app.gui.plots.canvas import Turns
 from app.gui.plots.live_plot import LivePlot
-from app.gui.plots.painting import Entry, Legend, legend_entries, legend_width
+from app.gui.plots.painting import Entry, Legend, legend_entries, legend_width, zone_entries
 from app.gui.plots.status_chip import StatusChip, StatusLine
 from app.gui.theme.stylesheet import label
 from app.gui.widgets.basic import Segment, ToolButton, sentence
@@ -22,7 +22,19 @@ from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 from app.i18n.lengths import shown_value
 from app.presenters.model_options import control_texts
-from app.presenters.plots import Curve, Event, Exact, Track, error_quantities, height_quantities, tolerance_of
+from app.presenters.plots import (
+    Curve,
+    ErrorTrack,
+    Event,
+    Exact,
+    LowerRun,
+    Track,
+    error_quantities,
+    height_quantities,
+    tolerance_of,
+    zone_quantities,
+)
+from app.presenters.zones import zone_title
 
 
 def control_segment() -> Segment:
@@ -31,6 +43,15 @@ def control_segment() -> Segment:
     result = Segment(tuple((control, text.button) for control, text in offered.items()), small=True)
     for control, text in offered.items():
         set_tip(result.button(control), text.tip)
+    return result
+
+
+def region_segment() -> Segment:
+    """Return the segment of the regions whose runs can be plotted."""
+    result = Segment((("bust", tr("Bust")), ("lower", tr("Waist and hips"))), small=True)
+    set_tip(result.button("bust"), tr("Plot volume error and height of the bust"))
+    set_tip(result.button("lower"), tr("Plot the volume errors of waist, hips and seat, also by zone"))
+    result.set_choice("bust")
     return result
 
 
@@ -63,6 +84,7 @@ class VerdictView(Protocol):
 class ConvergencePanel(QWidget):
     """Verdict and method on the left, volume error and a height over the turns live beside it.
 
+    With a lower trunk its volume error, in all and by zone, can be plotted instead of those of the bust.
     ``export_requested`` carries csv, png or svg; ``quantity_chosen`` the name of what a plot shows now;
     ``why_requested`` wants to know more of a verdict that is no good.
     """
@@ -81,20 +103,27 @@ class ConvergencePanel(QWidget):
         for chip in (self.chip, self._small_chip):
             chip.clicked.connect(self.why_requested)
         self.error_plot, self.height_plot = LivePlot(error_quantities()), LivePlot(height_quantities())
+        self.zone_plot = LivePlot(zone_quantities())
+        self.region = region_segment()
+        self.region.chosen.connect(self._choose_region)
         self._run: tuple[Mapping[str, Track], str, Exact | None] = ({}, "adaptive", None)
-        self._events: tuple[Event, ...] = ()
-        for plot, name in zip(self.plots, ("error", "height"), strict=True):
+        self._lower: LowerRun | None = None
+        self._of_lower = False
+        self._events: tuple[tuple[Event, ...], tuple[Event, ...]] = ((), ())
+        for plot, name in zip(self.all_plots, ("error", "height", "zones"), strict=True):
             plot.setObjectName(name)
-            for other in self.plots:
+            for other in self.all_plots:
                 plot.pointed.connect(other.point_at)
                 plot.zoomed.connect(other.show_turns)
             plot.quantity_chosen.connect(self._draw_anew)
             plot.quantity_chosen.connect(self.quantity_chosen)
             plot.menu_requested.connect(self._show_menu)
         self._entries: list[Entry] = []
-        self._legends = Legend(), Legend()  # beside the title of the first plot, or below both
+        # Beside the title of the first plot, below both, or beside the choice of the region.
+        self._legends = Legend(), Legend(), Legend()
+        self._zone_legend = Legend()
         self.error_plot.head.addWidget(self._legends[0])
-        for plot in self.plots:
+        for plot in self.all_plots:
             plot.setMinimumWidth(120)  # a legend gives way, the plot does not
             plot.installEventFilter(self)
         self._body, self._line, self._turns = QWidget(), QWidget(), label("", "secondary", tabular=True)
@@ -107,70 +136,105 @@ class ConvergencePanel(QWidget):
         outer.addWidget(self._body)
         outer.addWidget(self._line)
         self.set_folded(False)
+        self._place_region()
         self._show_emptiness(True)
 
     def sizeHint(self) -> QSize:
         return QSize(800, _FOLDED if self.is_folded() else _HIGH)
 
-    def set_run(self, tracks: Mapping[str, Track], main: str, exact: Exact | None) -> None:
-        """Draw the runs by control; ``main`` is the one on the body, and may be ``"exact"``."""
-        self._run = tracks, main, exact
+    def set_run(
+        self, tracks: Mapping[str, Track], main: str, exact: Exact | None, lower: LowerRun | None = None
+    ) -> None:
+        """Draw the runs by control; ``main`` is the one on the body, and may be ``"exact"``.
+
+        ``lower`` are those of the lower trunk, which can be chosen if there is one.
+        """
+        self._run, self._lower = (tracks, main, exact), lower
+        if (lower is not None) == self._top.isHidden():
+            self._place_region()
         self._draw(refit=not self._settling)
         self._show_emptiness(exact is None and not any(len(track.turns) for track in tracks.values()))
 
-    def set_events(self, events: Sequence[Event]) -> None:
-        """Mark from now on where something was changed."""
-        self._events = tuple(events)
+    def set_events(self, events: Sequence[Event], of_lower: Sequence[Event] = ()) -> None:
+        """Mark from now on where something was changed, in the runs of the bust and of the lower trunk."""
+        self._events = tuple(events), tuple(of_lower)
         self._draw(refit=not self._settling)
 
     def show_turns(self, turns: Turns | None) -> None:
-        """Show these turns in both plots, or all."""
-        for plot in self.plots:
+        """Show these turns in all plots, or all turns."""
+        for plot in self.all_plots:
             plot.show_turns(turns)
 
     @property
+    def shows_lower(self) -> bool:
+        """Return whether the runs of the lower trunk are plotted."""
+        return self._of_lower and self._lower is not None
+
+    @property
     def plots(self) -> tuple[LivePlot, LivePlot]:
-        """Return the volume error and height."""
-        return self.error_plot, self.height_plot
+        """Return the plots in use: the volume error, and the height or the volume errors of zones."""
+        return self.error_plot, self.zone_plot if self.shows_lower else self.height_plot
+
+    @property
+    def all_plots(self) -> tuple[LivePlot, ...]:
+        """Return all plots, in use or not."""
+        return self.error_plot, self.height_plot, self.zone_plot
 
     @property
     def legend(self) -> list[Entry]:
         """Return the names of the curves as they are drawn."""
-        return self._entries
+        return [*self._entries, *self._zone_legend.entries]
 
     def _draw_anew(self) -> None:
         self._draw(refit=True)
 
     def _draw(self, refit: bool) -> None:
         tracks, main, exact = self._run
+        shown: Mapping[str, ErrorTrack] = tracks
+        zones: Mapping[str, ErrorTrack] = {}
+        if self._of_lower and self._lower is not None:
+            shown, zones = self._lower.tracks, self._lower.zones
         strong = "warning" if self._state in ("vibrating", "diverging") else "main"
-        roles = {name: strong if name == main else "ghost" for name in tracks}
-        is_main, some = main == "exact", tracks.get(main) or next(iter(tracks.values()), None)
-        texts = control_texts()
-        for plot in self.plots:
+        roles = {name: strong if name == main else "ghost" for name in shown}
+        some, texts = shown.get(main) or next(iter(shown.values()), None), control_texts()
+        runs = [(track, roles[name], texts[name].curve) for name, track in shown.items()]
+        parts = [(track, name, zone_title(name)) for name, track in zones.items()]
+        for plot, drawn in zip(self.plots, (runs, parts if self.shows_lower else runs), strict=True):
             quantity = plot.quantity.name
             scale = shown_value(1.0, "mm" if quantity.endswith("_mm") else "")
-            curves = [
-                Curve(track.turns, scale * getattr(track, quantity), roles[name], texts[name].curve)
-                for name, track in tracks.items()
-            ]
             plot.set_curves(
-                curves,
+                [Curve(track.turns, scale * getattr(track, quantity), *names) for track, *names in drawn],
                 None if exact is None else scale * getattr(exact, quantity),
-                exact_is_main=is_main,
+                exact_is_main=main == "exact",
                 tolerance=tolerance_of(quantity, some),
-                events=self._events,
+                events=self._events[self.shows_lower],
                 refit=refit,
             )
-        self._entries = legend_entries(roles, exact is not None, is_main)
+        self._entries = legend_entries(roles, exact is not None, main == "exact")
+        self._zone_legend.show_entries(zone_entries(zones))
         self._share_legend()
 
+    def _choose_region(self, region: str) -> None:
+        self._of_lower = region == "lower"
+        self._place_region()
+        self._draw_anew()
+
+    def _place_region(self) -> None:
+        """Show the plots of the chosen region, below the choice if there is any."""
+        self._top.setVisible(self._lower is not None)
+        for plot in (self.height_plot, self.zone_plot):
+            plot.setVisible(plot in self.plots and self._nothing.isHidden())
+        self._zone_legend.setVisible(self.shows_lower)
+
     def _share_legend(self) -> None:
-        """Name all curves in one place: beside the first plot's title, or below both if that is narrow."""
-        beside = legend_width(self._entries) <= self.error_plot.width() - self.error_plot.title.width() - 8
-        for legend, here in zip(self._legends, (beside, not beside), strict=True):
-            legend.show_entries(self._entries if here else [])
-            legend.setVisible(here)
+        """Name the runs in one place: beside the choice of the region, where there is none beside the first
+        plot's title, or below both plots if that is narrow.
+        """
+        room = self.error_plot.width() - self.error_plot.title.width() - 8
+        place = 2 if self._lower is not None else 0 if legend_width(self._entries) <= room else 1
+        for each, legend in enumerate(self._legends):
+            legend.show_entries(self._entries if each == place else [])
+            legend.setVisible(each == place)
 
     def set_verdict(self, verdict: VerdictView) -> None:
         """Show how the run stands; call it before ``set_run``, which takes its colour from it."""
@@ -218,13 +282,22 @@ class ConvergencePanel(QWidget):
         row.addLayout(self._verdict())
         self._nothing = sentence(tr("Plots appear while you drag a line."))
         self._nothing.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self._top = QWidget()
+        top = QHBoxLayout(self._top)
+        top.setContentsMargins(0, 0, 0, 2)
+        top.setSpacing(2)
+        top.addWidget(self.region)
+        top.addStretch(1)
+        top.addWidget(self._legends[2])
         plots = QGridLayout()
         plots.setHorizontalSpacing(18)
         plots.setVerticalSpacing(0)
-        for column, plot in enumerate(self.plots):
-            plots.addWidget(plot, 0, column)
+        for column, plot in ((0, self.error_plot), (1, self.height_plot), (1, self.zone_plot)):
+            plots.addWidget(plot, 1, column)
             plots.setColumnStretch(column, 1)
-        plots.addWidget(self._legends[1], 1, 0, 1, 2, Qt.AlignmentFlag.AlignHCenter)
+        plots.addWidget(self._top, 0, 0, 1, 2)
+        plots.addWidget(self._legends[1], 2, 0, 1, 2, Qt.AlignmentFlag.AlignHCenter)
+        plots.addWidget(self._zone_legend, 2, 0, 1, 2, Qt.AlignmentFlag.AlignRight)
         row.addLayout(plots, 2)
         row.addWidget(self._nothing, 1)
         row.addLayout(self._tools())
@@ -303,3 +376,4 @@ class ConvergencePanel(QWidget):
         self._nothing.setVisible(empty)
         for each in (self.chip, self._small_chip, *self.plots):
             each.setVisible(not empty)
+        self._top.setVisible(not empty and self._lower is not None)

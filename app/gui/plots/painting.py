@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +16,7 @@ from app.gui.theme.stylesheet import font, tokens_of
 from app.i18n.catalog import number, tr
 from app.presenters.model_options import control_texts
 from app.presenters.plots import Curve, Numbers, Plotted, digits_of, envelope, flips_every_turn, round_ticks
+from app.presenters.zones import zone_title
 from app.rendering.palette import Tokens
 from core.geometry.mesh import Floats
 
@@ -106,8 +107,15 @@ DENSE = 6.0
 EVENT_HEIGHT = 6.0
 """Height of the tick of an event on the axis [px]."""
 
-ROLE_COLORS = {"main": "accent", "warning": "warn_mark", "ghost": "ghost_curve"}
+ROLE_COLORS = {
+    **{"main": "accent", "warning": "warn_mark", "ghost": "ghost_curve"},
+    **{"waist": "waist_curve", "belly": "belly_curve", "front": "belly_curve"},
+    **{"seat-left": "seat_curve", "seat-right": "seat_curve"},
+}
 """Colour tokens of the roles of curves."""
+
+DASHED_ROLES = ("front", "seat-right")
+"""Roles that share the colour of another one, and are dashed."""
 
 
 def plot_area(room: QRectF) -> QRectF:
@@ -190,6 +198,8 @@ def _paint_curve(painter: QPainter, curve: Curve, scale: Scale, tokens: Tokens) 
         painter.drawPath(paths[0])
         strong.setWidthF(1.0 if ghost else 1.6)
         paths = [lower, upper]
+    if curve.role in DASHED_ROLES:
+        strong.setDashPattern([4, 3])
     painter.setPen(strong)
     for path in paths:
         painter.drawPath(path)
@@ -236,10 +246,15 @@ def legend_entries(roles: Mapping[str, str], exact: bool, exact_is_main: bool) -
     return [*entries, answer] if exact else entries
 
 
+def zone_entries(zones: Iterable[str]) -> list[Entry]:
+    """Return the names of the curves of these zones."""
+    return [(zone_title(zone), ROLE_COLORS[zone], zone in DASHED_ROLES) for zone in zones]
+
+
 def legend_width(entries: list[Entry]) -> int:
     """Return the room that a legend takes [px]."""
     wide = QFontMetrics(font("caption"))
-    return sum(wide.horizontalAdvance(title) + 34 for title, _, _ in entries)
+    return max(sum(wide.horizontalAdvance(title) + 34 for title, _, _ in entries) - 9, 0)
 
 
 def paint_legend(painter: QPainter, entries: list[Entry], at: QPointF, tokens: Tokens) -> None:

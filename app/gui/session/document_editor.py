@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
 from functools import reduce
 from typing import Any
 
@@ -173,10 +172,10 @@ class DocumentEditor(QObject):
         )
 
     def change(self, changes: Mapping[str, Any], text: str) -> None:
-        """Change fields of the design as one undo step."""
+        """Change settings of the design as one undo step."""
         turned = all(isinstance(value, float) for value in changes.values())
         what = f"values of {sorted(changes)}" if turned else ""
-        self.edit(lambda design: replace(design, **changes), text, what)
+        self.edit(lambda design: design.with_settings(changes), text, what)
 
     def add_own_lines(self, lines: Sequence[CustomLine], text: str) -> None:
         """Add lines of the designer's own."""

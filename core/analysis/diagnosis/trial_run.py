@@ -74,6 +74,11 @@ class TrialResult:
         return tuple(region.model.tensegric.expand(run.state.moved) for region, run in both)
 
     @property
+    def bust_verdict(self) -> Convergence:
+        """Return how the run of the bust ended."""
+        return self.runs[0].verdict
+
+    @property
     def control_points(self) -> Points:
         """Return the control points of the bust at the end, shape (n, 3) [mm]."""
         return self.region_points[0]

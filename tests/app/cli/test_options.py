@@ -11,6 +11,7 @@ from app.cli.options import NUMBERS, SWITCHES, WORDS
 from app.presenters.model_options import defaults
 from core.document.cup import CUP_RANGES, Cup
 from core.document.design import Design, ScanSource
+from core.document.lower_trunk import LOWER_RANGES, LOWER_SETTINGS, LowerTrunk
 from core.errors import UserError
 from core.mechanics.options import ModelOptions
 
@@ -31,17 +32,24 @@ from core.mechanics.options import ModelOptions
         (["template=120", "line-height=0.6"], {"template": "120", "line_height": 0.6}),
         (["gain=1.2", "gain=auto"], {"gain": None}),
         (["tissue-stiffness=300"], {"tissue_stiffness": 300.0}),
+        (
+            ["belly-row-height=0.4", "lower_firmness=0,2", "waist_kept=1", "lower-stiffness=200"],
+            {"lower": LowerTrunk(belly_height=0.4, firmness=0.2, waist_kept=1.0, stiffness=200.0)},
+        ),
     ],
 )
 def test_settings_are_read_with_hyphens_and_underscores(pairs: list[str], fields: dict[str, object]) -> None:
     design = Design(ScanSource("a.ply"))
-    assert replace(design, **settings_of(pairs)) == replace(design, **fields)
+    assert design.with_settings(settings_of(pairs)) == replace(design, **fields)
 
 
 def test_every_choice_of_the_design_can_be_set() -> None:
     not_settings = {"scan", "placed", "lines", "own_lines", "own_measures", "traits", "volume", "unknown"}
     not_settings |= {"elastics", "customer", "worn_tight_mm", "calibration", "cup", "lower"}
-    assert {*WORDS, *NUMBERS, *SWITCHES} == {field.name for field in fields(Design)} - not_settings
+    of_lower_trunk = {field.name for field in fields(LowerTrunk)} - {"lines", "traits"}
+    assert set(LOWER_SETTINGS.values()) == set(LOWER_RANGES) == of_lower_trunk
+    named = {*WORDS, *NUMBERS, *SWITCHES} - LOWER_SETTINGS.keys()
+    assert named == {field.name for field in fields(Design)} - not_settings
 
 
 def test_every_model_option_is_in_the_design_and_in_the_window() -> None:

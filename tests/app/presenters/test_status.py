@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from whole_trunk import trunk_stages, wearing
+
 from app.presenters.assessment import assessment_view
-from app.presenters.status import ConvergenceView, convergence_view
+from app.presenters.status import ConvergenceView, convergence_view, explanation
 from core.garment.assessment import assess_with
 from core.garment.cut_list import cut_list
 from core.garment.pressure_list import pressure_list
@@ -15,6 +17,7 @@ from core.measurements.table import before_after
 from core.pipeline.build import Stages, build
 from core.pipeline.live_solver import Frame, make_frame
 from core.pipeline.region_solvers import RegionSolvers
+from core.pipeline.warnings import controlled_volume
 
 
 def verdict_of(frame: Frame) -> ConvergenceView:
@@ -79,3 +82,20 @@ def test_what_a_designer_asks_first_stands_first(built: Callable[[str], Stages])
     assert before != after
     assert shown[2][1] == f"{max(row.max_kpa for row in pressed.rows if row.max_kpa):.1f} kPa"
     assert [name for name, _ in convergence_view(frame, overall).numbers][-1] == "Volume error"
+
+
+def test_an_oscillation_of_waist_and_hips_is_told_as_theirs() -> None:
+    lower = trunk_stages().lower
+    assert lower is not None
+    stages = wearing({"waist": 0.9}, volume="conventional", gain=1.5 * lower.gain_limit)
+    solvers = RegionSolvers(stages)
+    while not solvers.is_finished:
+        solvers.advance()
+    frame = make_frame(1, stages, solvers)
+    assert frame.bust_verdict.motion == "settled"
+    verdict = verdict_of(frame)
+    assert verdict.state == "vibrating"
+    assert "waist and hips" in verdict.hint
+    assert "waist and hips" in explanation(frame)
+    assert [name for name, _ in verdict.numbers] == ["Waist and hips", "Amplitude"]
+    assert controlled_volume(frame) == (0.0, 0.0), "the bust keeps its volume"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject
 
 from app.gui.features.model.panel import ModelPanel, ModelRow
+from app.presenters.model_options import present_values
 from core.document.design import Design
 from core.pipeline.live_solver import Frame
 
@@ -56,5 +57,6 @@ class ModelController(QObject):
         do = self._context.actions
         do.controls[design.volume].setChecked(True)
         do.templates[design.template].setChecked(True)
-        self._panel.set_values(vars(design))
-        self._door.set_values(vars(design))
+        present = present_values(design)
+        self._panel.set_values(present)
+        self._door.set_values(present)

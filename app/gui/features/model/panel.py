@@ -18,7 +18,7 @@ from app.presenters.model_options import Setting, consequences, defaults, groups
 
 
 class ModelPanel(QWidget):
-    """All settings of the model. ``changed`` tells fields of the design with the name of the step."""
+    """All settings of the model. ``changed`` tells settings of the design with the name of the step."""
 
     changed = Signal(object, str)
     closed = Signal()
@@ -27,10 +27,11 @@ class ModelPanel(QWidget):
         super().__init__()
         self.fields: dict[str, Field] = {}
         self._rows: dict[str, QWidget] = {}
+        self._heads: dict[str, QWidget] = {}
         self._present: dict[str, Any] = defaults()
         self._reset = button(tr("Reset to defaults"), "quiet")
         self._reset.clicked.connect(
-            lambda: self.changed.emit(defaults(), tr("Model options reset to defaults"))
+            lambda: self.changed.emit(self._defaults(), tr("Model options reset to defaults"))
         )
         self._limit = sentence("", "caption")
         column = QVBoxLayout(self)
@@ -42,14 +43,16 @@ class ModelPanel(QWidget):
         self.set_values(self._present)
 
     def set_values(self, present: Mapping[str, Any]) -> None:
-        """Show these values of the fields of the design; nothing is emitted."""
-        self._present = {key: present[key] for key in defaults()}
-        for key, field in self.fields.items():
-            field.show_value(self._present[key])
-        idle = without_effect(self._present)
+        """Show these settings of the design, and no others; nothing is emitted."""
+        self._present = dict(present)
+        for key, value in self._present.items():
+            self.fields[key].show_value(value)
+        shown = self._present.keys() - without_effect(self._present)
         for key, row in self._rows.items():
-            row.setVisible(key not in idle)
-        self._reset.setEnabled(self._present != defaults())
+            row.setVisible(key in shown)
+        for title, settings in groups():
+            self._heads[title].setVisible(any(setting.key in shown for setting in settings))
+        self._reset.setEnabled(self._present != self._defaults())
 
     def set_gain(self, gain: float, limit: float) -> None:
         """Show the conventional gain in force and the limit from which on it vibrates at rest."""
@@ -64,6 +67,10 @@ class ModelPanel(QWidget):
         )
         self._limit.setText(text.format(limit=number(limit, 2)))
         set_tag(self._limit, "tone", "warn" if above else "")
+
+    def _defaults(self) -> dict[str, Any]:
+        """Return the defaults of the settings that the design has."""
+        return {key: value for key, value in defaults().items() if key in self._present}
 
     def _foot(self) -> QWidget:
         foot = QWidget()
@@ -83,15 +90,13 @@ class ModelPanel(QWidget):
         area = ScrollColumn(tr("Model options"), (18, 2, 18, 16), 9)
         column = area.column
         for place, (title, settings) in enumerate(groups()):
-            if place:
-                column.addSpacing(5)
-                column.addWidget(hairline())
-                column.addSpacing(5)
-            column.addWidget(label(title, "name"))
+            self._heads[title] = _head(title, parted=place > 0)
+            column.addWidget(self._heads[title])
             for setting in settings:
                 self._rows[setting.key] = self._row(setting)
                 column.addWidget(self._rows[setting.key])
-        column.addWidget(self._limit)
+                if setting.key == "gain":
+                    column.addWidget(self._limit)
         column.addStretch(1)
         return area
 
@@ -115,6 +120,18 @@ class ModelPanel(QWidget):
         if value != self._present[setting.key]:
             changes = consequences(setting.key, value, self._present)
             self.changed.emit(changes, f"{setting.title}{colon()}{setting.words(value)}")
+
+
+def _head(title: str, *, parted: bool) -> QWidget:
+    """Return the heading of a group, below a line where it is ``parted`` from another one."""
+    head = QWidget()
+    column = QVBoxLayout(head)
+    column.setContentsMargins(0, 5 if parted else 0, 0, 0)
+    column.setSpacing(14)
+    if parted:
+        column.addWidget(hairline())
+    column.addWidget(label(title, "name"))
+    return head
 
 
 class ModelRow(NavigationRow):
