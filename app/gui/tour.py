@@ -116,13 +116,17 @@ class Tour(QObject):
         QTimer.singleShot(0, self, self._point)
 
     def _open_sample(self, name: str) -> None:
-        """Open a sample, unless it is open or the user keeps the present document, and show all of it."""
+        """Open a sample, unless it is open or the user keeps the present document."""
         window = self._window
         if opened_sample(window.session.design) != name:
-            window.session.opened.connect(self._show_girdle, Qt.ConnectionType.SingleShotConnection)
+            window.session.opened.connect(self._wait_for_rows, Qt.ConnectionType.SingleShotConnection)
             window.project_controller.open_sample(name)
 
+    def _wait_for_rows(self) -> None:
+        QTimer.singleShot(_SETTLED, self, self._show_girdle)
+
     def _show_girdle(self) -> None:
+        """Show all of the opened body, and the row of its waist."""
         window = self._window
         if self._place >= 0 and (waist := window.lines.rows.get("waist")) is not None:
             window.view.viewport.frame_all()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from shutil import copy
 
 import numpy as np
 import pytest
@@ -16,8 +17,9 @@ from app.gui.features.report.controller import ReportController
 from app.gui.main_window import MainWindow
 from app.gui.widgets.coach_mark import CoachMark
 from app.presenters.bust_shift import bust_shift, shift_between, up_text
-from app.presenters.samples import FIRST_SAMPLE, SAMPLES, WHOLE_TRUNK, dressed_sample
+from app.presenters.samples import FIRST_SAMPLE, SAMPLES, WHOLE_TRUNK, dressed_sample, sample_design
 from core.garment.assessment import BAD, GOOD, assess
+from core.garment.presets import find_preset, with_preset
 from core.pipeline.build import build
 from core.pipeline.solve import solve
 from tests.end_to_end.test_cups import pulled
@@ -47,18 +49,16 @@ def test_the_tour_leads_from_the_lifted_bust_to_the_sheet() -> None:
         yield lambda: window.strip.chip.state() != "pending"
         assert window.strip.chip.state() != BAD
         assert window.view.compare.actions_by_name["ghost"].isChecked()
-        steps = (before_and_after, four_steps, a_cup, the_verdict, the_sheet, a_girdle)
+        steps = (before_and_after, four_steps, a_cup, the_verdict, the_sheet)
         for place, step in enumerate(steps):
             assert tour.place == place
             yield from covers_nothing_that_must_be_seen(window)
             yield from step(window)
-            QTest.keyClick(tour.mark, Qt.Key.Key_Return)
+            QTest.keyClick(tour.mark, Qt.Key.Key_Return if step is not the_sheet else Qt.Key.Key_Escape)
         assert tour.place == -1
         assert not tour.mark.isVisible()
         assert lift(window) > SEEN
-        assert window.session.design == dressed_sample(WHOLE_TRUNK), (
-            "the girdle is there when the tour is over"
-        )
+        assert window.report_controller.is_open, "the sheet is there when the tour is over"
         the_samples_open_as_at_first(window)
         yield settled(window)
 
@@ -76,6 +76,30 @@ def test_the_tour_goes_on_at_the_report_that_is_opened_meanwhile() -> None:
         yield from covers_nothing_that_must_be_seen(window)
         tour.end()
         yield settled(window)
+
+    run_main([], script)
+
+
+def test_the_tour_ends_with_a_girdle(monkeypatch: pytest.MonkeyPatch) -> None:
+    girdle = with_preset(sample_design(WHOLE_TRUNK), find_preset("girdle"))
+    monkeypatch.setattr("app.gui.features.project.controller.dressed_sample", lambda name: girdle)
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        window.start_controller.take_tour()
+        tour = window.start_controller.tour
+        for _ in range(5):
+            QTest.keyClick(tour.mark, Qt.Key.Key_Return)
+        assert tour.place == 5
+        assert not window.report_controller.is_open
+        yield lambda: window.session.design is girdle
+        yield lambda: tour.mark.ring.geometry().contains(place_of(window, window.lines.rows["waist"]))
+        yield settled(window)
+        assert "girdle" in tour.mark.accessibleName()
+        assert window.session.frame.lower is not None
+        assert window.lines.rows["waist"].slider.ratio() < 1.0
+        QTest.keyClick(tour.mark, Qt.Key.Key_Return)
+        assert tour.place == -1
 
     run_main([], script)
 
@@ -134,17 +158,6 @@ def the_sheet(window: MainWindow) -> Script:
     assert row.cut_mm, "what to cut is on it"
 
 
-def a_girdle(window: MainWindow) -> Script:
-    """The sample with legs opens in bra and girdle; its waist can be dragged."""
-    assert not window.report_controller.is_open
-    ring = window.start_controller.tour.mark.ring
-    yield lambda: window.session.frame.lower is not None
-    yield settled(window)
-    assert "girdle" in window.start_controller.tour.mark.accessibleName()
-    yield lambda: ring.geometry().contains(place_of(window, window.lines.rows["waist"]))
-    assert window.lines.rows["waist"].slider.ratio() < 1.0
-
-
 def covers_nothing_that_must_be_seen(window: MainWindow) -> Script:
     """The card is off the bust, the rail, the menus and its own subject; it makes way for a notice."""
     mark = window.start_controller.tour.mark
@@ -190,15 +203,18 @@ def test_a_later_step_of_fewer_words_is_lower(mark: CoachMark) -> None:
     assert heights[0] == heights[2] < heights[1]
 
 
-def test_the_tour_of_a_scan_without_lines_tells_that_nothing_moved(person: Path) -> None:
+def test_the_tour_of_a_scan_without_lines_tells_that_nothing_moved(person: Path, tmp_path: Path) -> None:
+    scan = copy(person, tmp_path / "scan.ply")
+
     def script(window: MainWindow) -> Script:
         yield settled(window)
         window.start_controller.take_tour()
+        assert len(window.start_controller.tour._stops()) == 5, "a scan of one's own stays open"
         assert "0.0 mm" in window.start_controller.tour.mark.accessibleName()
         assert not window.view.compare.actions_by_name["ghost"].isChecked(), "that is for the samples"
         window.start_controller.tour.end()
 
-    run_main([str(person)], script)
+    run_main([str(scan)], script)
 
 
 def the_samples_open_as_at_first(window: MainWindow) -> None:
