@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import reduce
 from typing import TYPE_CHECKING
 
-import numpy as np
 from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QTimer
 from PySide6.QtWidgets import QWidget
 
@@ -254,7 +253,7 @@ class Tour(QObject):
         """Return where the part of the body that lines shape is seen."""
         frame, viewport = self._window.session.frame, self._window.view.viewport
         assert frame is not None, "a tour is of a body"
-        points = np.concatenate(frame.region_points)
+        points = frame.all_points
         spots = viewport.scene.view.to_picture(points, viewport.width(), viewport.height())
         low, high = (QPoint(*map(int, each)) for each in (spots[:, :2].min(axis=0), spots[:, :2].max(axis=0)))
         return (

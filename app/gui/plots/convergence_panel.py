@@ -110,14 +110,7 @@ class ConvergencePanel(QWidget):
         self._lower: LowerRun | None = None
         self._of_lower = False
         self._events: tuple[tuple[Event, ...], tuple[Event, ...]] = ((), ())
-        for plot, name in zip(self.all_plots, ("error", "height", "zones"), strict=True):
-            plot.setObjectName(name)
-            for other in self.all_plots:
-                plot.pointed.connect(other.point_at)
-                plot.zoomed.connect(other.show_turns)
-            plot.quantity_chosen.connect(self._draw_anew)
-            plot.quantity_chosen.connect(self.quantity_chosen)
-            plot.menu_requested.connect(self._show_menu)
+        self._connect_plots()
         self._entries: list[Entry] = []
         # Beside the title of the first plot, below both, or beside the choice of the region.
         self._legends = Legend(), Legend(), Legend()
@@ -138,6 +131,17 @@ class ConvergencePanel(QWidget):
         self.set_folded(False)
         self._place_region()
         self._show_emptiness(True)
+
+    def _connect_plots(self) -> None:
+        """Let all plots point at the same iterations, and tell what is chosen in one."""
+        for plot, name in zip(self.all_plots, ("error", "height", "zones"), strict=True):
+            plot.setObjectName(name)
+            for other in self.all_plots:
+                plot.pointed.connect(other.point_at)
+                plot.zoomed.connect(other.show_turns)
+            plot.quantity_chosen.connect(self._draw_anew)
+            plot.quantity_chosen.connect(self.quantity_chosen)
+            plot.menu_requested.connect(self._show_menu)
 
     def sizeHint(self) -> QSize:
         return QSize(800, _FOLDED if self.is_folded() else _HIGH)
