@@ -218,6 +218,11 @@ class ConvergencePanel(QWidget):
         self._zone_legend.show_entries(zone_entries(zones))
         self._share_legend()
 
+    def show_region(self, region: str) -> None:
+        """Plot the runs of a region, "bust" or "lower", once there are any."""
+        self.region.set_choice(region)
+        self._choose_region(region)
+
     def _choose_region(self, region: str) -> None:
         self._of_lower = region == "lower"
         self._place_region()

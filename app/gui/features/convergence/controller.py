@@ -35,6 +35,7 @@ class ConvergenceController(QObject):
         super().__init__(context.session)
         self._context, self._panel = context, panel
         self._marked: Design | None = None
+        self._below = False  # whether lines of the lower trunk alone are worn
         self._first: dict[str, object] = {}
         self._events: dict[str, list[Event]] = {"bust": [], "lower": []}
         text = tr("Step through the iterations slowly")
@@ -55,7 +56,11 @@ class ConvergenceController(QObject):
 
     def show_frame(self, frame: Frame) -> None:
         """Plot the run of a frame."""
-        lower = lower_run(frame)
+        lower, design = lower_run(frame), frame.stages.design
+        below = not design.lines and design.lower is not None and bool(design.lower.lines)
+        if below != self._below:  # what is worn comes first; a choice made by hand stays until that changes
+            self._below = below
+            self._panel.show_region("lower" if below else "bust")
         self._panel.set_run(tracks(frame), frame.stages.design.volume, exact_answer(frame), lower)
 
     def set_slow(self, slow: bool) -> None:
