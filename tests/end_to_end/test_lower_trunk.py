@@ -104,10 +104,12 @@ def test_its_zones_are_plotted_where_it_is_chosen() -> None:
         assert not strip.region.isVisible(), "there is one region"
         window.presets_controller.wear(find_preset("girdle"))
         yield settled(window)
+        assert strip.zone_plot.isVisible(), "no line of the bust is worn"
+        assert not strip.height_plot.isVisible()
+        strip.region.button("bust").click()
         assert strip.height_plot.isVisible()
         strip.region.button("lower").click()
         assert strip.zone_plot.isVisible()
-        assert not strip.height_plot.isVisible()
         drag(window, "waist", -10)
         yield settled(window)
         yield lambda: strip.zone_plot.canvas.plotted.turns()[1] > 20.0
