@@ -10,6 +10,7 @@ import numpy as np
 
 from app.presenters.samples import sample_design
 from app.rendering.ambient_occlusion import bake_occlusion
+from app.research.lower_cases import LowerStudy
 from core.document.lines import ActiveLine
 from core.geometry.mesh import Floats, Points
 from core.mechanics.exact_solution import newton, solve_exact
@@ -41,9 +42,10 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """Keeps what has been built and solved, by what was asked."""
+    """Keeps what has been built and solved, by what was asked; ``lower`` that of the lower trunk."""
 
     memo: dict[tuple[Any, ...], Any] = field(default_factory=dict)
+    lower: LowerStudy = field(default_factory=LowerStudy)
 
     def _once(self, key: tuple[Any, ...], make: Callable[[], T]) -> T:
         if key not in self.memo:

@@ -45,7 +45,8 @@ def claims(study: Study) -> list[Claim]:
     return [claim(study) for claim in STATEMENTS]
 
 
-def _verdict(*holds: bool) -> str:
+def agreement(*holds: bool) -> str:
+    """Return the verdict on a statement of which each part ``holds`` or not."""
     return AGREES if all(holds) else PARTLY if any(holds) else DIFFERS
 
 
@@ -60,7 +61,7 @@ def _meshes(study: Study) -> Claim:
         "2, 4",
         "scans of about 62,000 and 65,000 polygons, control meshes of 120 and 168",
         _each(lambda body: f"{sizes[body]:,} polygons under a control mesh of {number[body]}"),
-        _verdict(number == {"mannequin": 120, "person": 168}),
+        agreement(number == {"mannequin": 120, "person": 168}),
     )
 
 
@@ -71,7 +72,7 @@ def _balance(study: Study) -> Claim:
         "3",
         "without external forces the model is in equilibrium and keeps its shape",
         _each(lambda body: f"a control point moves at most {drift[body]:.0e} mm per iteration"),
-        _verdict(max(drift.values()) < 1e-9),
+        agreement(max(drift.values()) < 1e-9),
     )
 
 
@@ -87,7 +88,7 @@ def _sphere(_: Study) -> Claim:
         "a shorter line narrows a sphere, a longer one widens it",
         f"a horizontal line at 80 %: {short[0]:.0f} mm wide and {short[2]:.0f} mm high; at 115 %: "
         f"{long[0]:.0f} and {long[2]:.0f} mm; at rest 200 and 200 mm",
-        _verdict(bool(short[0] < 200.0 < short[2]), bool(long[2] < 200.0 < long[0])),
+        agreement(bool(short[0] < 200.0 < short[2]), bool(long[2] < 200.0 < long[0])),
     )
 
 
@@ -105,7 +106,7 @@ def _both_meshes(study: Study) -> Claim:
         "4",
         "the volume of the body changes almost as that of the control mesh",
         "line 3 % shorter, change of the control mesh and of the body, " + "; ".join(found),
-        _verdict(all(near)),
+        agreement(all(near)),
     )
 
 
@@ -127,7 +128,7 @@ def _three_percent(study: Study) -> Claim:
         "4, Figs. 3, 4",
         "line about 3 % shorter, volume error below 0.1 %",
         f"line at {lengths}; " + "; ".join(f"{body}: {words}" for body, words in texts.items()),
-        _verdict(*(error[body, "adaptive"] < 0.1 for body in BODIES.values())),
+        agreement(*(error[body, "adaptive"] < 0.1 for body in BODIES.values())),
     )
 
 
@@ -145,7 +146,7 @@ def _upward(study: Study) -> Claim:
         _each(lambda body: f"apex {ways[body][1]:+.1f} mm, bust points {ways[body][0]:+.2f} mm")
         + "; with a sliding line, "
         + _each(lambda body: f"apex {slid[body][1]:+.1f} mm, bust points {slid[body][0]:+.2f} mm"),
-        _verdict(*(m[1] > 0.5 for m in ways.values()), *(m[0] > 0.5 for m in ways.values())),
+        agreement(*(m[1] > 0.5 for m in ways.values()), *(m[0] > 0.5 for m in ways.values())),
     )
 
 
@@ -159,7 +160,7 @@ def _suppressed(study: Study) -> Claim:
         "4, Fig. 4b",
         "without the volume constraint the line suppresses the bust",
         _each(lambda body: f"apex {free[body]:+.1f} mm forward, with it {held[body]:+.1f} mm"),
-        _verdict(*(free[body] < held[body] - 0.1 for body in BODIES.values())),
+        agreement(*(free[body] < held[body] - 0.1 for body in BODIES.values())),
     )
 
 
@@ -177,18 +178,19 @@ def _vibrates(study: Study) -> Claim:
         calm = [ratio for ratio in LENGTHS if ratio not in bad]
         stages = study.stages(body)
         shortest = 100 * reached_length(stages, min(calm, default=1.0))
-        words = f"vibrates at {_percents(bad)}, not at {_percents(calm)} (which reaches {shortest:.0f} %)"
+        words = f"vibrates at {percents(bad)}, not at {percents(calm)} (which reaches {shortest:.0f} %)"
         texts.append(f"{body}, gain {stages.gain:.2f}: {words}")
         holds.append(bool(bad) and MODEST in calm)
     return Claim(
         "5",
         "it vibrates or diverges when the line is too short, not when it is a little shorter",
         "with the default gain, " + "; ".join(texts),
-        _verdict(*holds),
+        agreement(*holds),
     )
 
 
-def _percents(ratios: Sequence[float]) -> str:
+def percents(ratios: Sequence[float]) -> str:
+    """Return length ratios [1] as a list of percentages."""
     return ", ".join(f"{100 * ratio:.0f}" for ratio in ratios) + " %" if ratios else "no length"
 
 
@@ -198,8 +200,8 @@ def _never_without(study: Study) -> Claim:
     return Claim(
         "5",
         "no vibration if the volume constraint is not applied",
-        _each(lambda body: f"stable at {calm[body]} of {len(LENGTHS)} lengths ({_percents(LENGTHS)})"),
-        _verdict(*(number == len(LENGTHS) for number in calm.values())),
+        _each(lambda body: f"stable at {calm[body]} of {len(LENGTHS)} lengths ({percents(LENGTHS)})"),
+        agreement(*(number == len(LENGTHS) for number in calm.values())),
     )
 
 
@@ -216,9 +218,9 @@ def _calm(study: Study) -> Claim:
     return Claim(
         "6, Fig. 7",
         "the adaptive force makes no vibration",
-        f"maximum amplitude in the last 20 of 200 iterations at {_percents(LENGTHS)}, "
+        f"maximum amplitude in the last 20 of 200 iterations at {percents(LENGTHS)}, "
         + _each(lambda body: f"{swing[body]:.1g} %"),
-        _verdict(*(each < 0.001 for each in swing.values())),
+        agreement(*(each < 0.001 for each in swing.values())),
     )
 
 
@@ -241,7 +243,7 @@ def _higher(study: Study) -> Claim:
         "6, Fig. 6",
         "the height of the nipples converges, and ends bigger than with the conventional force",
         "adaptive less conventional, " + "; ".join(found),
-        _verdict(*holds),
+        agreement(*holds),
     )
 
 
@@ -256,7 +258,7 @@ def _smaller(study: Study) -> Claim:
         "the adaptive error is significantly smaller",
         f"line at {100 * MODEST:.0f} %, "
         + _each(lambda b: f"{error[b, 'adaptive']:.1g} % against {error[b, 'conventional']:.2g} %"),
-        _verdict(*(10 * error[b, "adaptive"] < error[b, "conventional"] for b in BODIES.values())),
+        agreement(*(10 * error[b, "adaptive"] < error[b, "conventional"] for b in BODIES.values())),
     )
 
 
@@ -275,7 +277,7 @@ def _first_error(study: Study) -> Claim:
         "6, Fig. 7",
         "the real body gives a bigger error in the initial stage",
         "maximum error of the first 10 iterations, " + "; ".join(found),
-        _verdict(*holds),
+        agreement(*holds),
     )
 
 
@@ -290,7 +292,7 @@ def _speed(study: Study) -> Claim:
         "the damping does not harm the speed of convergence",
         f"line at {100 * MODEST:.0f} %, iterations to convergence: "
         + _each(lambda b: f"{turns[b, 'adaptive']}, conventional {turns[b, 'conventional']}"),
-        _verdict(*(turns[b, "adaptive"] <= turns[b, "conventional"] for b in BODIES.values())),
+        agreement(*(turns[b, "adaptive"] <= turns[b, "conventional"] for b in BODIES.values())),
     )
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from app.research.cases import BODIES, Study
 from app.research.claims import AGREES, DIFFERS, PARTLY, Claim, claims
 from app.research.figure_style import Figure, write_table
+from app.research.lower_claims import lower_claims
 from app.research.parameter_study import COLUMNS, RATIOS, Finding, rows_of, search, search_words
 from core import __version__
 from core.deformation.tffd import GAUSS_WIDTH, HAT_RANGE
@@ -26,10 +27,11 @@ def write_page(out: Path, drawn: Sequence[Figure], study: Study, tell: Callable[
 
     Raises UserError if something cannot be written.
     """
-    stated = claims(study)
-    rows = [(c.where, c.statement, c.found, c.verdict) for c in stated]
-    write_table(out / "statements.csv", ("section", "the_paper", "here", "verdict"), rows)
-    tell(f"  {out / 'statements.csv'}: {len(stated)} statements of the paper with measured values")
+    stated, lower = claims(study), lower_claims(study)
+    for name, some in (("statements.csv", stated), ("statements-lower-trunk.csv", lower)):
+        rows = [(c.where, c.statement, c.found, c.verdict) for c in some]
+        write_table(out / name, ("section", "the_paper", "here", "verdict"), rows)
+        tell(f"  {out / name}: {len(some)} statements with measured values")
 
     def build(body: str, template: str, height: float) -> Stages:
         return study.stages(body, template, line_height=height)
@@ -38,12 +40,18 @@ def write_page(out: Path, drawn: Sequence[Figure], study: Study, tell: Callable[
     write_table(out / "search.csv", COLUMNS, rows_of(found))
     tell(f"  {out / 'search.csv'}: {len(found)} lines, laws and lengths tried")
 
-    write_text(out / NAME, page_of(drawn, stated, found, study))
+    write_text(out / NAME, page_of(drawn, stated, lower, found, study))
     tell(f"  {out / NAME}: the page")
 
 
-def page_of(drawn: Sequence[Figure], stated: Sequence[Claim], found: Sequence[Finding], study: Study) -> str:
-    """Return the page as Markdown."""
+def page_of(
+    drawn: Sequence[Figure],
+    stated: Sequence[Claim],
+    lower: Sequence[Claim],
+    found: Sequence[Finding],
+    study: Study,
+) -> str:
+    """Return the page as Markdown; ``lower`` are the statements on the lower trunk."""
     form = (resources.files("resources") / "pages" / "reproduction.md").read_text(encoding="utf-8")
     counts = {verdict: sum(c.verdict == verdict for c in stated) for verdict in (AGREES, PARTLY, DIFFERS)}
     return form.format(
@@ -53,6 +61,7 @@ def page_of(drawn: Sequence[Figure], stated: Sequence[Claim], found: Sequence[Fi
         partly=counts[PARTLY],
         differs=counts[DIFFERS],
         statements=_statements(stated),
+        lower_statements=_statements(lower),
         first_length=f"{100 * RATIOS[0]:.0f} %",
         stiffness=DEFAULT_LINE_STIFFNESS,
         share=GAIN_SHARE,

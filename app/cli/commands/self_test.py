@@ -25,6 +25,7 @@ PARTS: tuple[Part[SelfTestFixture], ...] = (
     Part("shipped files", checks.shipped_files),
     Part("landmarks", checks.landmarks),
     Part("solver", checks.solver, ("landmarks",)),
+    Part("lower trunk", checks.lower_trunk),
     Part("compiled loops", checks.compiled_loops, ("landmarks",)),
     Part("projects", checks.projects, _SAMPLE),
     Part("exports", checks.exports, _SAMPLE),

@@ -16,9 +16,12 @@ import numpy as np
 from app.cli.output import DONE
 from app.cli.parser import command_options, runner_of
 from app.cli.self_test.parts import PartError, SelfTestFixture, check
+from app.presenters.samples import WHOLE_TRUNK, sample_design
 from core import __version__
+from core.document.lower_trunk import LowerTrunk
 from core.document.storage.project_file import open_project
 from core.geometry import kernels
+from core.measurements.lower_trunk import lower_before_after
 from core.pipeline.build import build
 from core.pipeline.solve import solve
 from core.scan.readers.registry import read_raw
@@ -26,6 +29,12 @@ from core.scan.readers.registry import read_raw
 LIBRARIES = ("PySide6-Essentials", "vtk", "pyvista", "pyvistaqt", "numpy", "scipy")
 BUST_POINT, FOLD = (107.25, -229.14, 346.95), (107.25, -178.96, 299.02)
 """Their known positions on the left of the mannequin [mm]."""
+
+WAIST_RATIO, WAIST_CHANGE = 0.9, -42.0
+"""A waist line of the whole trunk at this length [1] changes the tape at the waist by this [mm]."""
+
+MOST_STEPS = 8
+"""Newton steps in which the exact solution of a line of the lower trunk is found, on any body tried."""
 
 _NEAR = 8.0  # mm: landmarks of the sample are detected within 4 mm
 
@@ -68,7 +77,7 @@ def shipped_files(bench: SelfTestFixture) -> str:
         "rating limits": _count("rating limits", lambda: [pressure_limits()], 1),
         "words": _count("words", lambda: [*translations("ja")], 1000),
         "icons": _count("icons", lambda: list(_home().glob("resources/icons/*.svg")), 40),
-        "samples": _count("samples", lambda: list(_home().glob("resources/samples/*.ply")), 2),
+        "samples": _count("samples", lambda: list(_home().glob("resources/samples/*.ply")), 3),
         "licences": _count("licences", lambda: [text for _, text in licences() if len(text) > 500], 3),
     }
     page = _home() / "site" / "index.html"
@@ -110,6 +119,27 @@ def solver(bench: SelfTestFixture) -> str:
     apart = float(np.abs(exact.control_points - solution.control_points).max())
     check(apart < 0.3, f"iterations and exact solution differ by {apart:.3f} mm")
     return f"converged in {solution.last.iteration} iterations, {apart:.2f} mm from the exact solution"
+
+
+def lower_trunk(bench: SelfTestFixture) -> str:
+    """Solve the waist line of the whole trunk exactly and by iterations: its waist changes as known."""
+    design = replace(sample_design(WHOLE_TRUNK), lines=(), lower=LowerTrunk(), volume="exact")
+    stages = build(design.with_line("waist", WAIST_RATIO))
+    check(stages.lower is not None, f"no lower trunk: {stages.lower_problem}")
+    exact = solve(stages).lower
+    run = solve(build(replace(stages.design, volume="adaptive"), stages)).lower
+    assert stages.lower is not None
+    assert exact is not None
+    assert run is not None
+    steps = exact.verdict.iterations
+    check(exact.verdict.motion == "settled" and steps <= MOST_STEPS, f"{exact.verdict.words}, {steps} steps")
+    before, after = lower_before_after(stages.lower, exact.control_points)["waist"]
+    change = after.tape_mm - before.tape_mm
+    check(abs(change - WAIST_CHANGE) < 1.5, f"the waist changes by {change:.1f} mm, not {WAIST_CHANGE} mm")
+    check(run.verdict.motion == "settled", f"the iterations end with status {run.verdict.words}")
+    apart = float(np.abs(run.control_points - exact.control_points).max())
+    check(apart < 0.3, f"iterations and exact solution differ by {apart:.3f} mm")
+    return f"waist {change:+.1f} mm in {steps} steps; iterations end {apart:.2f} mm from there"
 
 
 def compiled_loops(bench: SelfTestFixture) -> str:

@@ -11,6 +11,7 @@ from app.cli.output import DONE, make_folder
 from app.research.cases import Study
 from app.research.fig_1_to_5 import figure_1, figure_2, figure_3, figure_4, figure_5
 from app.research.fig_6_to_10 import figure_6, figure_7, figure_8, figure_9, figure_10
+from app.research.fig_11 import figure_11
 from app.research.figure_style import Figure, print_style
 from app.research.page import write_page
 from core.errors import UserError
@@ -27,6 +28,7 @@ FIGURES: dict[str, Callable[[Study], Figure]] = {
     "8": figure_8,
     "9": figure_9,
     "10": figure_10,
+    "11": figure_11,
 }
 """How each figure is drawn, by its number: 1 to 7 are the paper's, the others ours."""
 

@@ -73,10 +73,26 @@ def test_the_meshes_are_drawn_and_counted(study: Study, tmp_path: Path) -> None:
     assert ink(tmp_path / f"{figure.name}.png") > 0.1
 
 
+@pytest.mark.parametrize("part", [0.99, 1.01])
+def test_a_waist_line_swings_beyond_its_gain_limit_alone(study: Study, part: float) -> None:
+    """By how much a swing grows in an iteration is the gain over the limit, where it is small."""
+    swings = study.lower.course(0.9, "conventional", part).swings
+    assert (swings[90] / swings[30]) ** (1 / 60) == pytest.approx(part, abs=2e-3)
+
+
+def test_one_volume_for_the_trunk_moves_the_seat_and_five_zones_do_not(study: Study) -> None:
+    one, five = (study.lower.outward(0.9, together=together) for together in (True, False))
+    seat = study.lower.at_seat()
+    assert one[seat].max() > 2.0
+    assert five[seat].max() < 1.4
+    waist = list(study.lower.stages(0.9).control.paths["waist"])
+    assert one[waist].max() < 0.0 < -five[waist].mean()
+
+
 def test_a_figure_that_there_is_not_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="Unknown figure 12"):
         make_some(["12"], tmp_path)
-    assert set(FIGURES) == set("123456789") | {"10"}
+    assert set(FIGURES) == set("123456789") | {"10", "11"}
 
 
 def test_the_line_is_set_so_that_it_reaches_what_is_asked(study: Study) -> None:
@@ -161,7 +177,7 @@ def test_a_statement_holds_only_if_it_holds_on_both_bodies() -> None:
 
 def test_the_page_leaves_no_blank(study: Study) -> None:
     found = [finding(b, ratio, 0.1, 0.2) for b in ("mannequin", "person") for ratio in RATIOS]
-    page = page_of([], [], found, study)
+    page = page_of([], [], [], found, study)
     assert "{" not in page
     words = search_words(found, study)
     assert words["higher_always"] == "mid-bust 0.5, force-density, glued"
