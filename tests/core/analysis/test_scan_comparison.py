@@ -22,6 +22,7 @@ from core.geometry.mesh import Mesh
 from core.geometry.mirror_plane import MIRROR
 from core.messages import EMPTY
 from core.pipeline.build import Stages, build
+from core.pipeline.skin import alone
 from core.scan.body import Body
 from core.scan.orientation.pose import Pose
 
@@ -215,7 +216,8 @@ def test_a_mirror_image_is_refused_where_left_and_right_differ(stages: Stages) -
     places, left = mesh.vertices.copy(), moving[mesh.vertices[moving, 0] > stages.moving.middle]
     places[left, 1] -= 12.0 * stages.patch.fade[left]  # one breast stands out more
     uneven = mesh.moved(places)
-    first = replace(stages, moving=moving_faces(uneven, stages.binding.moving, stages.moving.middle))
+    faces = moving_faces(uneven, stages.binding.moving, stages.moving.middle)
+    first = replace(stages, moving=faces, skin=alone(faces, stages.binding))
     flipped = Mesh(places * MIRROR, mesh.faces[:, ::-1])
     for there, fits in ((uneven, True), (flipped, False)):
         body = as_body(there)
