@@ -1,8 +1,9 @@
 """Exact answers, iterations and shapes of the lower trunk on bodies with known landmarks.
 
-    python benchmarks/lower_trunk.py FOLDER [routes|control|shapes|limits ...]
+    python benchmarks/lower_trunk.py FOLDER [fit|routes|control|shapes|limits ...]
 
-``FOLDER`` holds NAME.ply of whole trunks in mm, upright. ``routes``: 14 routes at four lengths, Newton steps;
+``FOLDER`` holds NAME.ply of whole trunks in mm, upright. ``fit``: how well the control mesh lies on them;
+``routes``: 14 routes at four lengths, Newton steps;
 ``control``: adaptive and conventional runs of the routes; ``limits``: where the conventional control begins
 to swing against the computed limit; ``shapes``: what lines and presets do to girths, fold and seat.
 """
@@ -36,6 +37,9 @@ ROUTES: tuple[tuple[str, ...], ...] = (
 )
 """Lines that are shortened together; a pair is worn on both sides."""
 
+ROWS = ("waist", "belly", "hip")
+"""Rows of the control mesh whose lengths are shown, besides the tape at a height."""
+
 RATIOS = (0.97, 0.90, 0.80, 0.70)
 
 SHAPES: Mapping[str, Mapping[str, float]] = {
@@ -66,6 +70,18 @@ def wearing(stages: Stages, lines: Mapping[str, float], **settings: object) -> S
         for each in lower_lines_of(name):
             design = design.with_line(each, ratio)
     return build(design, stages)
+
+
+def fit(folder: Path) -> None:
+    """Print how well the control mesh lies on each body: angles, edges, distances, normals."""
+    print("| body | smallest angle | shortest edge mm | distance mean / 95 % / max mm | normals |")
+    print("|---|---|---|---|---|")
+    for name, stages in bodies(folder):
+        assert stages.lower is not None
+        of = stages.lower.control.quality
+        assert of is not None
+        far = " / ".join(f"{each:.1f}" for each in (of.deviation_mean, of.deviation_95, of.deviation_max))
+        print(f"| {name} | {of.smallest_angle:.1f} | {of.shortest_edge:.0f} | {far} | {of.same_way:.2f} |")
 
 
 def routes(folder: Path) -> None:
@@ -143,8 +159,9 @@ def _calm(lower: object, factor: float) -> bool:
 
 
 def shapes(folder: Path) -> None:
-    """Print what lines and presets do: girths, belly, seat, fold, zones, edges."""
+    """Print what lines and presets do: rows of the mesh, girths, belly, seat, fold, zones, edges."""
     heading = (
+        *(f"{each} row" for each in ROWS),
         "waist",
         "belly",
         "hip",
@@ -182,7 +199,10 @@ def _row(name: str, title: str, solution: Solution) -> None:
     zones = lower.stages.model.volume.zone_volumes(lower.control_points) - lower.stages.model.rest_zones
     condition = lower.verdict.condition
     assert condition is not None
+    lines = {line.name: at for at, line in enumerate(lower.stages.model.lines)}
+    rows = [lower.last.lengths[lines[each]] - lower.rest.lengths[lines[each]] for each in ROWS]
     figures = [
+        *(f"{value:+.0f}" for value in rows),
         *change,
         *(f"{value:+.1f}" for value in (belly, seat[2], seat[1], fold[2])),
         f"{-zones.sum() / 1000.0:.0f}",
@@ -195,7 +215,7 @@ def _row(name: str, title: str, solution: Solution) -> None:
 def main() -> None:
     """Print the tables that are asked for, or all."""
     folder, *asked = sys.argv[1:]
-    for table in (routes, control, limits, shapes):
+    for table in (fit, routes, control, limits, shapes):
         if not asked or table.__name__ in asked:
             print(f"\n{table.__name__}\n")
             table(Path(folder))
