@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import reduce
 from typing import TYPE_CHECKING
 
-import numpy as np
 from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QTimer
 from PySide6.QtWidgets import QWidget
 
@@ -254,14 +253,13 @@ class Tour(QObject):
         """Return where the part of the body that lines shape is seen."""
         frame, viewport = self._window.session.frame, self._window.view.viewport
         assert frame is not None, "a tour is of a body"
-        points = np.concatenate(frame.region_points)
-        spots = viewport.scene.view.to_picture(points, viewport.width(), viewport.height())
-        low, high = (QPoint(*map(int, each)) for each in (spots[:, :2].min(axis=0), spots[:, :2].max(axis=0)))
-        return (
-            QRect(low, high)
-            .translated(viewport.mapTo(self._window, QPoint(0, 0)))
-            .intersected(self._place_of(viewport))
-        )
+        places = []
+        for points in frame.region_points:
+            spots = viewport.scene.view.to_picture(points, viewport.width(), viewport.height())[:, :2]
+            low, high = (QPoint(*map(int, each)) for each in (spots.min(axis=0), spots.max(axis=0)))
+            places.append(QRect(low, high))
+        place = reduce(QRect.united, places).translated(viewport.mapTo(self._window, QPoint(0, 0)))
+        return place.intersected(self._place_of(viewport))
 
     def _verdict_place(self) -> QRect:
         """Return where the verdict stands with its values and its first reason, beside the plots."""

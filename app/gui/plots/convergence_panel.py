@@ -110,14 +110,7 @@ class ConvergencePanel(QWidget):
         self._lower: LowerRun | None = None
         self._of_lower = False
         self._events: tuple[tuple[Event, ...], tuple[Event, ...]] = ((), ())
-        for plot, name in zip(self.all_plots, ("error", "height", "zones"), strict=True):
-            plot.setObjectName(name)
-            for other in self.all_plots:
-                plot.pointed.connect(other.point_at)
-                plot.zoomed.connect(other.show_turns)
-            plot.quantity_chosen.connect(self._draw_anew)
-            plot.quantity_chosen.connect(self.quantity_chosen)
-            plot.menu_requested.connect(self._show_menu)
+        self._connect_plots()
         self._entries: list[Entry] = []
         # Beside the title of the first plot, below both, or beside the choice of the region.
         self._legends = Legend(), Legend(), Legend()
@@ -274,6 +267,17 @@ class ConvergencePanel(QWidget):
         if event.type() == QEvent.Type.Resize:
             self._share_legend()
         return False
+
+    def _connect_plots(self) -> None:
+        """Let all plots show the same turns, and read the same one."""
+        for plot, name in zip(self.all_plots, ("error", "height", "zones"), strict=True):
+            plot.setObjectName(name)
+            for other in self.all_plots:
+                plot.pointed.connect(other.point_at)
+                plot.zoomed.connect(other.show_turns)
+            plot.quantity_chosen.connect(self._draw_anew)
+            plot.quantity_chosen.connect(self.quantity_chosen)
+            plot.menu_requested.connect(self._show_menu)
 
     def _build_body(self) -> None:
         row = QHBoxLayout(self._body)
