@@ -132,17 +132,6 @@ class ConvergencePanel(QWidget):
         self._place_region()
         self._show_emptiness(True)
 
-    def _connect_plots(self) -> None:
-        """Let all plots point at the same iterations, and tell what is chosen in one."""
-        for plot, name in zip(self.all_plots, ("error", "height", "zones"), strict=True):
-            plot.setObjectName(name)
-            for other in self.all_plots:
-                plot.pointed.connect(other.point_at)
-                plot.zoomed.connect(other.show_turns)
-            plot.quantity_chosen.connect(self._draw_anew)
-            plot.quantity_chosen.connect(self.quantity_chosen)
-            plot.menu_requested.connect(self._show_menu)
-
     def sizeHint(self) -> QSize:
         return QSize(800, _FOLDED if self.is_folded() else _HIGH)
 
@@ -283,6 +272,17 @@ class ConvergencePanel(QWidget):
         if event.type() == QEvent.Type.Resize:
             self._share_legend()
         return False
+
+    def _connect_plots(self) -> None:
+        """Let all plots show the same turns, and read the same one."""
+        for plot, name in zip(self.all_plots, ("error", "height", "zones"), strict=True):
+            plot.setObjectName(name)
+            for other in self.all_plots:
+                plot.pointed.connect(other.point_at)
+                plot.zoomed.connect(other.show_turns)
+            plot.quantity_chosen.connect(self._draw_anew)
+            plot.quantity_chosen.connect(self.quantity_chosen)
+            plot.menu_requested.connect(self._show_menu)
 
     def _build_body(self) -> None:
         row = QHBoxLayout(self._body)
