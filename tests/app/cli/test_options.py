@@ -33,7 +33,7 @@ from core.mechanics.options import ModelOptions
         (["gain=1.2", "gain=auto"], {"gain": None}),
         (["tissue-stiffness=300"], {"tissue_stiffness": 300.0}),
         (
-            ["belly-row-height=0.4", "lower_firmness=0,2", "waist_kept=1", "lower-stiffness=200"],
+            ["belly-line-height=0.4", "lower_firmness=0,2", "waist_kept=1", "lower-stiffness=200"],
             {"lower": LowerTrunk(belly_height=0.4, firmness=0.2, waist_kept=1.0, stiffness=200.0)},
         ),
     ],
