@@ -18,7 +18,7 @@ from core.document.serialization import to_json
 from core.export.mesh import write_control_points, write_mesh
 from core.files.atomic_write import atomic_path, write_text
 from core.garment.cup_fit import WornCups
-from core.measurements.lower_trunk import lower_before_after
+from core.measurements.lower_trunk import lower_before_after, lower_moves
 from core.mechanics.constraint_lines import Line
 from core.mechanics.iteration import Observables, Record
 from core.mechanics.mesh_quality import MeshQuality
@@ -137,6 +137,7 @@ def _lower_report(stages: LowerStages, solution: RegionSolution) -> dict[str, An
             name: {"level_mm": before.level_mm, "before_mm": before.tape_mm, "after_mm": after.tape_mm}
             for name, (before, after) in lower_before_after(stages, solution.control_points).items()
         },
+        "moves": dict(lower_moves(stages, solution.control_points)),
         "gain": stages.gain,
         "gain_limit_at_rest": stages.gain_limit,
     }

@@ -95,11 +95,9 @@ def find_elastic(text: str) -> Elastic:
     Raises LineError if there is none, or more than one.
     """
     elastics = library()
-    words = text.casefold().split()
-    exact = [each for name, each in elastics.items() if name.casefold().split() == words]
-    alike = [
-        each for name, each in elastics.items() if set(words) <= set(name.casefold().replace(",", "").split())
-    ]
+    words = _words(text)
+    exact = [each for name, each in elastics.items() if _words(name) == words]
+    alike = [each for name, each in elastics.items() if set(words) <= set(_words(name))]
     found = exact or (alike if words else [])
     if len(found) > 1:
         names = "; ".join(each.name for each in found)
@@ -113,6 +111,11 @@ def find_elastic(text: str) -> Elastic:
             Message("Choose one of: {choices}.", choices=tuple(map(ElasticName, elastics))),
         )
     return found[0]
+
+
+def _words(name: str) -> list[str]:
+    """Return the words of a name without capitals and commas."""
+    return name.casefold().replace(",", " ").split()
 
 
 def read_elastic(path: Path, width_mm: float | None = None) -> Elastic:

@@ -10,6 +10,7 @@ from types import MappingProxyType
 import numpy as np
 
 from core.control_mesh.fit import ControlMesh
+from core.control_mesh.lower_template import BELLY_ROW, FOLD_ROW, SEAT, read_lower_template
 from core.deformation.tffd import deform
 from core.geometry.closest_point import nearest_faces
 from core.geometry.mesh import Floats, Indices, Mesh, Points
@@ -86,6 +87,21 @@ def _moved(stages: LowerStages, control_points: Points) -> LowerSections:
     moved = sections.mesh.moved(sections.mesh.vertices + smoothed_moves(stages.body, moves))
     share_axis(moved, sections.mesh)
     return LowerSections(moved, sections.top, sections.bottom, sections.middle)
+
+
+def lower_moves(stages: LowerStages, control_points: Points) -> Mapping[str, float]:
+    """Return how far buttock points and gluteal folds rise, and how far the belly goes back [mm], by name.
+
+    ``control_points`` (n, 3) [mm] are those of the reshaped body; the points are those of the control mesh
+    that lie there at rest.
+    """
+    template = read_lower_template()
+    moves = control_points - stages.control.mesh.vertices
+    found = {"belly_back_mm": float(moves[template.point(BELLY_ROW, 0), 1])}
+    for side, column, apex in zip(SIDES, (SEAT, -SEAT), stages.control.apexes, strict=True):
+        found[f"buttock_{side}_up_mm"] = float(moves[apex, 2])
+        found[f"gluteal_fold_{side}_up_mm"] = float(moves[template.point(FOLD_ROW, column), 2])
+    return MappingProxyType(found)
 
 
 @lru_cache(maxsize=2)

@@ -16,6 +16,7 @@ from app.presenters.assessment import assessment_lines
 from core.export.solution_report import write_solution
 from core.garment.assessment import assess
 from core.garment.wires import nearest_wires
+from core.landmarks.types import SIDES
 from core.landmarks.warnings import collect_warnings
 from core.pipeline.solve import NoEquilibriumError, Solution, solve
 from core.pipeline.warnings import immovable_lines, shape_warnings
@@ -68,6 +69,7 @@ def _lines(values: Mapping[str, Any]) -> Iterator[str]:
                 f"({line['set_percent']:.1f} %), reached {line['reached_mm']:.1f} mm"
                 + (f"; full length {line['whole_band_reached_mm']:.1f} mm" if closed else "")
             )
+    yield from _figure(lower)
     taken = {name: zone["taken_up_inside_ml"] for name, zone in lower.get("zones", {}).items()}
     if inside := [f"{name} {ml:.0f} ml" for name, ml in taken.items() if abs(ml) >= 0.5]:
         yield f"taken up inside: {', '.join(inside)}"
@@ -81,6 +83,19 @@ def _lines(values: Mapping[str, Any]) -> Iterator[str]:
             f"cup {cup['side']}: bears {cup['up_n']:.1f} N, presses {cup['max_kpa']:.1f} kPa at most on "
             f"{100.0 * cup['contact']:.0f} % of its area{wire}{more}"
         )
+
+
+def _figure(lower: Mapping[str, Any]) -> Iterator[str]:
+    """Yield what becomes of waist, hips and seat, from the report of the ``lower`` trunk."""
+    for name, girth in lower.get("girths", {}).items():
+        before, after = girth["before_mm"], girth["after_mm"]
+        told = name.replace("_", " ")
+        yield f"girth, {told}: {before:.1f} to {after:.1f} mm ({after - before:+z.1f})"
+    if moves := lower.get("moves"):
+        for name in ("buttock", "gluteal_fold"):
+            left, right = (moves[f"{name}_{side}_up_mm"] for side in SIDES)
+            yield f"{name.replace('_', ' ')}: left {left:+z.1f}, right {right:+z.1f} mm up"
+        yield f"belly: {moves['belly_back_mm']:+z.1f} mm back"
 
 
 def _end(values: Mapping[str, Any], solution: Solution, out: Path) -> str:

@@ -20,7 +20,7 @@ TRUNK = (str(sample_path("trunk")), *STANDING)
 PERSON = (str(sample_path("person")), *STANDING)
 
 
-def test_both_regions_are_worn_and_reported(tmp_path: Path) -> None:
+def test_both_regions_are_worn_and_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     lines = ("--line", "mid-bust=97%", "--line", "waist=-4cm", "--line", "sling=95%")
     assert main(["solve", *TRUNK, *lines, "--volume", "exact", "--out", str(tmp_path)]) == 0
     report = json.loads((tmp_path / "report.json").read_text("utf-8"))
@@ -33,6 +33,11 @@ def test_both_regions_are_worn_and_reported(tmp_path: Path) -> None:
     assert lower["zones"]["waist"]["taken_up_inside_ml"] > 30.0
     assert max(abs(zone["error_ml"]) for zone in lower["zones"].values()) < 1e-6
     assert lower["girths"]["waist"]["after_mm"] < lower["girths"]["waist"]["before_mm"] - 20.0
+    rises = [lower["moves"][f"gluteal_fold_{side}_up_mm"] for side in ("left", "right")]
+    assert all(2.0 < rise < 5.0 for rise in rises), "half of what slings at 90 % do: 6.7 mm"
+    told = capsys.readouterr().out
+    assert f"gluteal fold: left {rises[0]:+.1f}, right {rises[1]:+.1f} mm up" in told
+    assert "girth, waist: " in told
     assert set(report["lines"]) == {"under-bust", "mid-bust", "full-bust"}
     heading = (tmp_path / "turns-lower.csv").read_text("utf-8").splitlines()[0]
     assert "volume_error_seat-left_ml" in heading

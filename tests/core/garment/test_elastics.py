@@ -229,6 +229,7 @@ def test_an_elastic_is_found_by_words_that_only_it_has(text):
 
 
 def test_no_elastic_or_more_than_one_is_said():
+    assert find_elastic("waistband, soft 40").name == "Waistband, soft 40 mm"
     with pytest.raises(LineError, match=r"Several elastics match 'picot'.*8 mm; Picot edge 10 mm"):
         find_elastic("picot")
     with pytest.raises(LineError, match="No elastic matches 'rope'"):
