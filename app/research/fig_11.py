@@ -45,14 +45,7 @@ def figure_11(study: Study) -> Figure:
         for part, course in conventional.items():
             rows += _rows(ratio, "conventional", part, course)
         texts.append(f"{100 * ratio:.0f} %, " + _words(lower.gain_limit(ratio), adaptive, conventional))
-    for first, *others in (axes[0], axes[1], axes[2, 1:]):
-        for plot in others:
-            plot.sharey(first)
-            plot.tick_params(labelleft=False)
-    axes[0, 0].set_ylabel("volume error of the\nwaist zone [% of it]")
-    axes[0, 0].set_ylim(*SEEN)
-    axes[1, 0].set_ylabel("swing of a zone\n[% of its volume]")
-    axes[1, 2].legend(loc="upper center", ncols=3, title="gain / limit", columnspacing=0.9, handlelength=1.4)
+    _label_axes(axes)
     apart = _compared_volumes(lower, axes[2])
     stages = lower.stages(RATIOS[0])
     caption = (
@@ -70,6 +63,18 @@ def figure_11(study: Study) -> Figure:
     return Figure(
         "fig-11-lower-trunk", "Waist line on a whole trunk", caption, (*COLUMNS, *names), rows, drawn
     )
+
+
+def _label_axes(axes: np.ndarray) -> None:
+    """Say what the plots (3, 3) are of; those beside each other have one height."""
+    for first, *others in (axes[0], axes[1], axes[2, 1:]):
+        for plot in others:
+            plot.sharey(first)
+            plot.tick_params(labelleft=False)
+    axes[0, 0].set_ylabel("volume error of the\nwaist zone [% of it]")
+    axes[0, 0].set_ylim(*SEEN)
+    axes[1, 0].set_ylabel("swing of a zone\n[% of its volume]")
+    axes[1, 2].legend(loc="upper center", ncols=3, title="gain / limit", columnspacing=0.9, handlelength=1.4)
 
 
 def _errors(plot: Axes, adaptive: Course, conventional: dict[float, Course]) -> None:
