@@ -101,7 +101,9 @@ def solve_design(
 
 
 def _effect_of(stages: Stages, rigid: Stages) -> tuple[str, ...]:
-    """Return the lift of a design compared with rigid bands, if both have an equilibrium."""
+    """Return the lift of a design compared with rigid bands, if lines lift and both have an equilibrium."""
+    if not stages.design.lines:
+        return ()
     try:
         return (effect_text(outcome_of(stages), outcome_of(rigid)),)
     except LineError:
