@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -21,6 +22,9 @@ from core.geometry.mesh import Floats
 
 LOWEST, HIGHEST = 52.0, 116.0
 """How high the curves are at least, and at most [mm]."""
+
+LEVEL = 62.0
+"""How high the levels of waist and hip are [mm]."""
 
 _SIDE, _GAP, _AXIS, _FOOT = 62.0, 8.0, 9.0, 3.6
 _METRIC = (5.0, 10.0, 20.0, 50.0, 100.0, 200.0)
@@ -45,8 +49,8 @@ def curve_block(handout: ReportDocument, height: float) -> Block:
     names = [elide(each, "caption", room) for each, room in zip(where, (_SIDE, WIDE - right), strict=True)]
     marks = _bust_points(sheet)
     parts = [
-        (0.0, top, _section(side, marks, names[0], _SIDE, height - top)),
-        (right, top, _section(bust, [], names[1], WIDE - right, half - 2.0)),
+        (0.0, top, _section(side, marks, names[0], _SIDE, height - top, _from_bust_point())),
+        (right, top, _section(bust, [], names[1], WIDE - right, half - 2.0, _from_bust_point())),
         *_plots(sheet, right, top + half, wide, height - top - half),
     ]
     legend = _legend()
@@ -58,6 +62,18 @@ def curve_block(handout: ReportDocument, height: float) -> Block:
             part.paint(paper, x + left, y + down)
 
     return Block(height, paint, gap=4.0)
+
+
+def lower_section_blocks(sheet: Report, width: float) -> Iterator[Block]:
+    """Yield the levels of waist and hip, ``width`` [mm] wide, where the design has the lower trunk."""
+    titles = {"waist": tr("Top view at waist level"), "hip": tr("Top view at hip level")}
+    for at, cut in enumerate(sheet.lower_sections):
+        block = _section(cut, [], titles[cut.name], width, LEVEL, tr("grid {length}, origin at the middle"))
+        yield replace(block, gap=4.0 if at else 0.0)
+
+
+def _from_bust_point() -> str:
+    return tr("grid {length}, origin at bust point")
 
 
 def _legend() -> Block:
@@ -82,15 +98,20 @@ def _bust_points(sheet: Report) -> list[tuple[float, float]]:
 
 
 def _section(
-    cut: SectionCurves, marks: Sequence[tuple[float, float]], title: str, width: float, height: float
+    cut: SectionCurves,
+    marks: Sequence[tuple[float, float]],
+    title: str,
+    width: float,
+    height: float,
+    origin: str,
 ) -> Block:
-    """Return a cut on a grid that is counted from the bust point, as large as it can be shown."""
+    """Return a cut on a grid, as large as it can be shown; ``origin`` says from where that is counted."""
     box, zero = np.array(cut.box), np.array(cut.bust_point)
     room = np.array([width - _AXIS, height - 4.0 - _FOOT])
     scale = float((room / (box[1] - box[0])).min())
     centre, step = box.mean(axis=0), next(each for each in _GRID[length_unit()] if each * scale >= _NARROWEST)
     low, high = centre - zero + np.array([[-0.5], [0.5]]) * room / scale
-    text = elide(tr("grid {length}, origin at bust point").format(length=length(step, 0)), "caption", width)
+    text = elide(origin.format(length=length(step, 0)), "caption", width)
     bands = [_band(curve, off) for curve, off in zip(cut.after, cut.off_mm, strict=False) if len(curve) > 2]
 
     def paint(paper: PagePainter, x: float, y: float) -> None:

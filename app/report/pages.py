@@ -11,7 +11,7 @@ from PySide6.QtGui import QPageLayout, QPageSize, QPainter, QPdfWriter
 
 from app.i18n.catalog import tr, using_language
 from app.rendering.palette import LIGHT
-from app.report.curves import LOWEST, curve_block
+from app.report.curves import LOWEST, curve_block, lower_section_blocks
 from app.report.cut_rows import force_range_warning
 from app.report.cut_table import cut_blocks
 from app.report.document import ReportDocument
@@ -40,6 +40,9 @@ _GAP = 5.0  # over the key measures, and under the curves [mm]
 _SMALLER = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5)  # of the height of the pictures, until the first page holds all
 _CURVES = (100.0, 84.0, 70.0, 60.0, 50.0, 42.0)  # heights of the curves at the head of the appendix [mm]
 
+
+_SEVERAL_PAGES = 84.0
+"""The height of the curves where the levels of waist and hip follow [mm]."""
 
 _DOTS = 1200  # of the writer to an inch
 
@@ -94,12 +97,21 @@ def _first(handout: ReportDocument) -> list[PlacedBlock]:
 def _appendix(handout: ReportDocument, page: int) -> list[PlacedBlock]:
     """Return curves, notes and all other measures; where these are many, curves give way to them."""
     sheet, title = handout.report, heading(tr("Appendix"), WIDE)
-    words: list[Block] = [*line_note_blocks(handout), *measure_blocks(sheet), *note_blocks(sheet)]
+    words: list[Block] = [
+        *lower_section_blocks(sheet, HALF),
+        *line_note_blocks(handout),
+        *measure_blocks(sheet),
+        *note_blocks(sheet),
+    ]
     top = MARGIN + title.height + 2.0
     for height in _CURVES:
         below = place_blocks(words, _halves(page, top + height + _GAP))[0]
         if all(each.page == page for each in below):
             break
+    else:
+        if sheet.lower_sections:  # these fill more than a page whatever gives way
+            height = _SEVERAL_PAGES
+            below = place_blocks(words, _halves(page, top + height + _GAP))[0]
     curves = PlacedBlock(page, MARGIN, top, curve_block(handout, height))
     return [PlacedBlock(page, MARGIN, MARGIN, title), curves, *below]
 

@@ -33,6 +33,9 @@ from core.progress import Progress, quiet
 AROUND = 12.0
 """What a section shows beside the part that can move [mm]."""
 
+NEAR_LEVEL = 40.0
+"""Control points this near to a level tell how wide its section is [mm]."""
+
 NOT_MODELLED = (
     Message(
         "Friction between garment and skin, breathing and movement are not modelled; gravity and posture "
@@ -130,7 +133,8 @@ class Report:
     overall verdict. ``off`` is how far figures may be off, by the keys of ``uncertain_value``, in their
     units: nothing where that was not worked out; see ``with_uncertainty``. ``off_factor`` tells of others how
     many times smaller or larger they may be [1], ``off_notes`` where all of this says less than it seems to,
-    ``off_sources`` what any of it comes from. ``strain`` is that of the verdict.
+    ``off_sources`` what any of it comes from. ``strain`` is that of the verdict. ``lower_sections`` are the
+    levels of waist and hip, where the design has the lower trunk.
     """
 
     heading: Heading
@@ -162,6 +166,7 @@ class Report:
     off_notes: tuple[Message, ...] = ()
     off_sources: tuple[str, ...] = ()
     strain: Pair | None = None
+    lower_sections: tuple[SectionCurves, ...] = ()
 
     @property
     def is_valid(self) -> bool:
@@ -211,6 +216,7 @@ def make_report(
         left_out=(*NOT_MODELLED, *LEFT_OUT),
         model=_model(stages),
         strain=verdict.strain,
+        lower_sections=_lower_sections(stages, shown.region_points),
         assessment=assess_with(shown, cuts, pressed),
         versions={"busk": __version__, "python": platform.python_version(), "numpy": np.__version__},
     )
@@ -271,6 +277,25 @@ def _sections(stages: Stages, control_points: Points) -> tuple[SectionCurves, ..
         at, point, before = _cut(rest, rest.vertices, axis, mark)
         after_at, point_after, after = _cut(rest, places, axis, moved)
         found.append(SectionCurves(name, axis, at, after_at, box, point, point_after, before, after))
+    return tuple(found)
+
+
+def _lower_sections(stages: Stages, region_points: Sequence[Points]) -> tuple[SectionCurves, ...]:
+    """Return the levels of waist and hip, counted from the middle of their outlines."""
+    lower = stages.lower
+    if lower is None or len(region_points) < 2:
+        return ()
+    rest, places = stages.body.mesh, deform(lower.binding, region_points[1])
+    points, found = lower.control.mesh.vertices, []
+    for name in ("waist", "hip"):
+        mark = lower.landmarks.position(name)
+        near = points[np.abs(points[:, 2] - mark[2]) < NEAR_LEVEL]
+        flat = Plane("z", 0.0).flat(near if len(near) else points)
+        low, high = flat.min(axis=0), flat.max(axis=0)
+        box, middle = (_pair(low - AROUND), _pair(high + AROUND)), _pair(0.5 * (low + high))
+        at, _, before = _cut(rest, rest.vertices, "z", mark)
+        _, _, after = _cut(rest, places, "z", mark)
+        found.append(SectionCurves(name, "z", at, at, box, middle, middle, before, after))
     return tuple(found)
 
 

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from whole_trunk import wearing as whole_trunk
 
 from core.export.report_data import Heading, Report, make_report
 from core.export.report_data_file import COLUMNS, report_csv, report_json
@@ -17,6 +18,7 @@ from core.garment.cut_list import cut_list
 from core.garment.elastic_library import find_elastic
 from core.garment.pressure_list import pressure_list
 from core.landmarks.warnings import collect_warnings
+from core.measurements.lower_trunk import lower_before_after
 from core.measurements.table import before_after, measure_rows
 from core.messages import plain
 from core.pipeline.build import Stages, build
@@ -168,3 +170,23 @@ def test_the_table_has_every_figure_once(sheet: Report) -> None:
     assert found["cut", "full-bust: cut"]["after"] == "", "no elastic is chosen for it"
     assert found["size", "uk"]["before"] == sheet.sizes[0]["size"]
     assert found["sheet", "customer"]["after"] == "Customer 0412"
+
+
+def test_the_levels_of_waist_and_hip_are_shown_where_lines_shape_them() -> None:
+    solution = solve(whole_trunk({"waist": 0.9}))
+    waist, hip = make_report(solution, solution.records, HEADING).lower_sections
+    assert (waist.name, hip.name) == ("waist", "hip")
+    lower = solution.stages.lower
+    assert lower is not None
+    assert waist.at_mm == pytest.approx(lower.landmarks.levels["waist"])
+    girths = lower_before_after(lower, solution.region_points[1])
+    for cut, name, curves in ((waist, "waist", 1), (hip, "hip", 1)):
+        assert len(cut.before) == len(cut.after) == curves
+        for line, girth in zip((cut.before[0], cut.after[0]), girths[name], strict=True):
+            assert np.linalg.norm(np.diff(line, axis=0), axis=1).sum() == pytest.approx(
+                girth.skin_mm, abs=8.0
+            )
+
+
+def test_a_bust_alone_has_no_levels_below(sheet: Report) -> None:
+    assert sheet.lower_sections == ()
