@@ -7,6 +7,7 @@ from dataclasses import fields
 from app.gui.main_window import MainWindow
 from app.gui.widgets.option_field import AmountField
 from app.i18n.catalog import number
+from app.presenters.model_options import present_values
 from core.document.design import Design
 from core.document.document import Document
 
@@ -26,14 +27,19 @@ def differences(one: Document, other: Document) -> list[str]:
 def differences_seen(window: MainWindow, document: Document) -> list[str]:
     """Tell where the window at rest shows something else than a document."""
     design, found = document.design, [*_lines_seen(window, document.design)]
+    present = present_values(design)
+    if window.model._present.keys() != present.keys():
+        found.append(f"model options {window.model._present.keys() ^ present.keys()}")
     for key, field in window.model.fields.items():
+        if key not in present:
+            continue
         if isinstance(field, AmountField):
-            value, scale = getattr(design, key), field.edit._amount.scale
+            value, scale = present[key], field.edit._amount.scale
             shown = "" if value is None else number(scale * value, field.edit._amount.digits).replace(",", "")
             if field.edit.text() != shown:
                 found.append(f"{key}: {field.edit.text()!r} for {shown!r}")
-        if window.model._present[key] != getattr(design, key):
-            found.append(f"{key}: {window.model._present[key]} for {getattr(design, key)}")
+        if window.model._present[key] != present[key]:
+            found.append(f"{key}: {window.model._present[key]} for {present[key]}")
     do, segment = window.actions_, window.variants_controller.segment
     for name, said in (
         ("control", do.controls[design.volume].isChecked()),
